@@ -1,0 +1,59 @@
+"""Epicyclic: power losses of planetary gear sets.
+
+>>> import epicyclic as ep
+>>> case = ep.load_case("talbot-2012")
+>>> result = ep.solve(case)
+>>> result.total > 0
+True
+
+Public names are imported when first used, so that ``import epicyclic`` is quick.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from epicyclic.analysis.result import Result
+    from epicyclic.analysis.solve import mesh_contacts, solve
+    from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema, load_case
+    from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
+
+_HOME = {
+    "ConvergenceError": "epicyclic.errors",
+    "EpicyclicError": "epicyclic.errors",
+    "GearPairCase": "epicyclic.case.case",
+    "InputError": "epicyclic.errors",
+    "PlanetaryCase": "epicyclic.case.case",
+    "Problem": "epicyclic.errors",
+    "Result": "epicyclic.analysis.result",
+    "case_schema": "epicyclic.case.case",
+    "load_case": "epicyclic.case.case",
+    "mesh_contacts": "epicyclic.analysis.solve",
+    "solve": "epicyclic.analysis.solve",
+}
+
+__all__ = [
+    "ConvergenceError",
+    "EpicyclicError",
+    "GearPairCase",
+    "InputError",
+    "PlanetaryCase",
+    "Problem",
+    "Result",
+    "case_schema",
+    "load_case",
+    "mesh_contacts",
+    "solve",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        return getattr(importlib.import_module(_HOME[name]), name)
+    raise AttributeError(f"module 'epicyclic' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

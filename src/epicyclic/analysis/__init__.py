@@ -1,0 +1,1 @@
+"""From a case to its result: the only place that combines the loss models."""

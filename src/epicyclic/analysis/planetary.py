@@ -1,0 +1,330 @@
+"""Losses of a planetary gear set: both meshes and the bearing of every planet, and the drags."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from epicyclic.analysis.parts import (
+    MeshDuty,
+    Part,
+    fluids_of,
+    general_notes,
+    loss_terms,
+    resolve_models,
+    solve_mesh,
+    used_sources,
+)
+from epicyclic.analysis.result import BearingFigures, Result
+from epicyclic.case import build
+from epicyclic.case.case import PlanetaryCase
+from epicyclic.case.schema import PlanetBearing
+from epicyclic.kernels.line_contact import equivalent_modulus, hertz_pressure
+from epicyclic.kinematics import (
+    lossless_torques,
+    planet_speed,
+    planetary_power_flow,
+    planetary_speeds,
+)
+from epicyclic.losses.planet_bearing import (
+    BearingLoss,
+    RollerBearing,
+    RollerLoads,
+    mixed_ehl_rolling_loss,
+    palmgren_loss,
+    roller_loads,
+)
+from epicyclic.losses.validity import ValidityFlag
+from epicyclic.losses.viscous import bearing_viscous_loss, disc_drag_loss
+from epicyclic.lubricant.properties import MixtureState, OilState
+
+__all__ = ["planetary_duties", "solve_planetary"]
+
+CAGED_PALMGREN = 0.0003
+"""f1 of a caged roller bearing, middle of 0.0002-0.0004. Talbot (2012), p. 56. [1]"""
+FULL_COMPLEMENT_PALMGREN = 0.00055
+"""f1 of a full-complement roller bearing. Talbot (2012), p. 56. [1]"""
+VISCOUS_METHOD = "viscous moment after Palmgren and Harris"
+VISCOUS_SOURCE = "T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991); Talbot (2012), Eq. 5.6"
+DRAG_METHOD = "drag of a disc in the air-oil mixture"
+DRAG_SOURCE = "Seetharaman and Kahraman, Tribol. Trans. 53 (2010) 473; Talbot (2012), Eq. 5.4, 5.5"
+BEARING_METHOD = "mixed-EHL rolling-loss regression, slice by slice"
+BEARING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), Eq. 3.2 to 3.6"
+PALMGREN_METHOD = "friction coefficient f1 of Palmgren"
+PALMGREN_SOURCE = "A. Palmgren, Ball and Roller Bearing Engineering (1959); Talbot (2012), Eq. 3.1"
+
+
+def solve_planetary(case: PlanetaryCase) -> Result:
+    """The losses of a planetary gear set."""
+    fluids = fluids_of(case)
+    speeds = member_speeds(case)
+    duties = planetary_duties(case)
+    meshes = {
+        duty.key: solve_mesh(case, duty, fluids.oil, case.planet.count) for duty in duties
+    }
+    bearing = _solve_bearing(case, duties, fluids.oil, speeds)
+    parts = bearing.parts | _drags(case, speeds, fluids.mixture)
+    parts["thrust_bearing_viscous"] = _thrust_bearing(case, speeds, fluids.oil)
+    flags = fluids.flags
+    for mesh in meshes.values():
+        parts |= mesh.parts
+        flags += mesh.flags
+    terms = loss_terms(parts, case.losses)
+    flow = planetary_power_flow(
+        speeds,
+        _lossless(case),
+        case.operation.input,
+        _held_member(case),
+        sum(term.watts for term in terms),
+    )
+    angles = build.planet_angles(case.sun, case.planet, case.ring)
+    return Result(
+        title=case.title,
+        kind=case.kind,
+        terms=terms,
+        flow=flow,
+        meshes={key: mesh.figures for key, mesh in meshes.items()},
+        bearing=bearing.figures,
+        models=resolve_models(case),
+        flags=flags + bearing.flags,
+        notes=(
+            *general_notes(terms, flow.input_power, flow.efficiency),
+            *_planet_notes(case, angles),
+            *_ring_notes(case, speeds),
+        ),
+        sources=used_sources(terms),
+        inputs=case.inputs(),
+        planet_angles=angles,
+    )
+
+
+def planetary_duties(case: PlanetaryCase) -> tuple[MeshDuty, MeshDuty]:
+    """Both meshes of one planet, each with its torque and speed relative to the carrier."""
+    sun_mesh, ring_mesh = build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)
+    speeds = member_speeds(case)
+    branch_torque = _lossless(case)["sun"] / case.planet.count
+    planet_torque = branch_torque * case.planet.teeth / case.sun.teeth
+    sun_speed = speeds["sun"] - speeds["carrier"]
+    own_speed = planet_speed(case.sun.teeth, case.planet.teeth, speeds)
+    return (
+        MeshDuty("sun_mesh", sun_mesh, (case.sun, case.planet), branch_torque, sun_speed),
+        MeshDuty("ring_mesh", ring_mesh, (case.planet, case.ring), planet_torque, own_speed),
+    )
+
+
+def member_speeds(case: PlanetaryCase) -> dict[str, float]:
+    """Speeds of sun, ring and carrier. [rad/s]"""
+    operation = case.operation
+    held_speed = 0.0 if operation.second_speed is None else operation.second_speed
+    given = {operation.input: operation.speed, _held_member(case): held_speed}
+    return planetary_speeds(case.sun.teeth, case.ring.teeth, given)
+
+
+def _held_member(case: PlanetaryCase) -> str:
+    """The fixed member, or the second driven one."""
+    held = case.operation.fixed or case.operation.second_input
+    assert held is not None
+    return held
+
+
+def _lossless(case: PlanetaryCase) -> dict[str, float]:
+    operation = case.operation
+    return lossless_torques(case.sun.teeth, case.ring.teeth, operation.input, operation.torque)
+
+
+# --- planet bearing -------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _BearingOutcome:
+    parts: dict[str, Part]
+    figures: BearingFigures | None = None
+    flags: tuple[ValidityFlag, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetLoad:
+    """Load of one planet on its bearing, x along the radial force.
+
+    Attributes
+    ----------
+    force : float
+        Radial. [N]
+    moment_x, moment_y : float
+        Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
+    """
+
+    force: float
+    moment_x: float
+    moment_y: float
+
+
+def planet_load(duties: tuple[MeshDuty, MeshDuty], centrifugal: float) -> PlanetLoad:
+    """Load on the bearing of a planet from both meshes and the centrifugal force.
+
+    Talbot (2012), Eq. 3.7 and 3.8, for equal or unequal pressure angles: the tangential forces
+    add, the radial ones cancel or not, the axial ones form a couple in the plane of the axes.
+    """
+    tangential = radial = couple = 0.0
+    for duty, outward in zip(duties, (1, -1), strict=True):
+        mesh = duty.mesh
+        planet_radius = mesh.operating_radius2 if outward > 0 else mesh.operating_radius1
+        force = abs(duty.torque1) / mesh.operating_radius1
+        tangential += force
+        radial += outward * force * math.tan(mesh.operating_pressure_angle)
+        couple += force * mesh.operating_helix_tangent * planet_radius
+    radial += centrifugal
+    turn = math.atan2(radial, tangential)
+    return PlanetLoad(
+        math.hypot(tangential, radial), couple * math.sin(turn), couple * math.cos(turn)
+    )
+
+
+def _solve_bearing(
+    case: PlanetaryCase,
+    duties: tuple[MeshDuty, MeshDuty],
+    oil: OilState,
+    speeds: Mapping[str, float],
+) -> _BearingOutcome:
+    table = case.planet_bearing
+    mechanical, viscous = "planet_bearing_mechanical", "planet_bearing_viscous"
+    if table is None:
+        absent = Part(left_out="the case has no [planet_bearing]")
+        return _BearingOutcome({mechanical: absent, viscous: absent})
+    bearing = roller_bearing(table, case.numerics.bearing_slices)
+    speed = planet_speed(case.sun.teeth, case.planet.teeth, speeds)
+    load = planet_load(duties, _centrifugal(case, speeds))
+    loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
+    if resolve_models(case)["bearing"] == "mixed-ehl":
+        loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil)
+        part = Part(case.planet.count * loss.loss, BEARING_METHOD, BEARING_SOURCE)
+    else:
+        coefficient = palmgren_coefficient(table)
+        loss = BearingLoss(palmgren_loss(coefficient, load.force, bearing.pitch_diameter, speed))
+        part = Part(case.planet.count * loss.loss, PALMGREN_METHOD, PALMGREN_SOURCE)
+    viscous_loss = bearing_viscous_loss(
+        table.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
+    )
+    return _BearingOutcome(
+        {
+            mechanical: part,
+            viscous: Part(case.planet.count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE),
+        },
+        _bearing_figures(bearing, loads, load, speed),
+        loss.flags,
+    )
+
+
+def palmgren_coefficient(table: PlanetBearing) -> float:
+    """f1 of the case, or the published one of the bearing's kind. [1]"""
+    if table.palmgren_coefficient is not None:
+        return table.palmgren_coefficient
+    return CAGED_PALMGREN if table.cage == "caged" else FULL_COMPLEMENT_PALMGREN
+
+
+def roller_bearing(table: PlanetBearing, slices: int) -> RollerBearing:
+    """The bearing that `table` describes, each roller cut into `slices`."""
+    modulus, poisson = table.material.elastic_modulus, table.material.poisson_ratio
+    return RollerBearing(
+        rows=table.rows,
+        rollers_per_row=table.rollers_per_row,
+        roller_diameter=table.roller_diameter,
+        roller_length=table.roller_length,
+        inner_diameter=table.pin_diameter,
+        diametral_clearance=table.diametral_clearance,
+        crown_drop=table.crown_drop,
+        crown_length_fraction=table.crown_length_fraction,
+        row_gap=table.row_gap,
+        roller_roughness=table.roller_roughness,
+        race_roughness=table.race_roughness,
+        equivalent_modulus=equivalent_modulus(modulus, poisson, modulus, poisson),
+        slices=slices,
+    )
+
+
+def _centrifugal(case: PlanetaryCase, speeds: Mapping[str, float]) -> float:
+    if case.planet.mass is None:
+        return 0.0
+    return case.planet.mass * case.gears.center_distance * speeds["carrier"] ** 2
+
+
+def _bearing_figures(
+    bearing: RollerBearing, loads: RollerLoads, load: PlanetLoad, speed: float
+) -> BearingFigures:
+    rollers = loads.intensity.sum(axis=2) * bearing.slice_width
+    row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
+    pressure = hertz_pressure(
+        float(loads.intensity.max()), bearing.inner_radius, bearing.equivalent_modulus
+    )
+    return BearingFigures(
+        radial_force=load.force,
+        moment=math.hypot(load.moment_x, load.moment_y),
+        speed=abs(speed),
+        rollers_loaded=float(np.count_nonzero(rollers)),
+        roller_load_max=float(rollers[row, most]),
+        roller_azimuth=float(loads.azimuth[most]),
+        hertz_pressure_max=pressure,
+        loads=loads,
+    )
+
+
+# --- drag and thrust bearing ----------------------------------------------------------------------
+
+
+def _drags(
+    case: PlanetaryCase, speeds: Mapping[str, float], mixture: MixtureState
+) -> dict[str, Part]:
+    sun = build.gear("sun", case.sun, case.gears)
+    ring = build.gear("ring", case.ring, case.gears)
+    bodies = {
+        "sun": (sun.tip_radius, sun.face_width),
+        "ring": (build.outside_radius(ring, case.ring), ring.face_width),
+    }
+    if case.carrier is not None:
+        bodies["carrier"] = (case.carrier.outer_diameter / 2, case.carrier.width)
+    parts = {"carrier_drag": Part(left_out="the case has no [carrier]")}
+    for name, (radius, width) in bodies.items():
+        loss = disc_drag_loss(radius, width, speeds[name], mixture)
+        parts[f"{name}_drag"] = Part(loss, DRAG_METHOD, DRAG_SOURCE)
+    return parts
+
+
+def _thrust_bearing(case: PlanetaryCase, speeds: Mapping[str, float], oil: OilState) -> Part:
+    bearing = case.thrust_bearing
+    if bearing is None:
+        return Part(left_out="the case has no [thrust_bearing]")
+    absolute = {**speeds, "housing": 0.0}
+    one, two = bearing.between.split("-")
+    loss = bearing_viscous_loss(
+        bearing.viscous_factor,
+        oil.kinematic_viscosity,
+        absolute[one] - absolute[two],
+        bearing.mean_diameter,
+    )
+    return Part(bearing.count * loss, VISCOUS_METHOD, VISCOUS_SOURCE)
+
+
+# --- notes ----------------------------------------------------------------------------------------
+
+
+def _planet_notes(case: PlanetaryCase, angles: tuple[float, ...]) -> tuple[str, ...]:
+    count, teeth = case.planet.count, case.sun.teeth + case.ring.teeth
+    if case.planet.angles is not None or teeth % count == 0:
+        return ()
+    placed = ", ".join(f"{math.degrees(angle):.4f}" for angle in angles)
+    return (
+        f"{count} planets cannot be equally spaced, because ({case.sun.teeth} + "
+        f"{case.ring.teeth})/{count} is no integer; they stand at {placed} deg.",
+    )
+
+
+def _ring_notes(case: PlanetaryCase, speeds: Mapping[str, float]) -> tuple[str, ...]:
+    if case.ring.rim_thickness is not None or speeds["ring"] == 0:
+        return ()
+    return (
+        "ring.rim_thickness is not given: the drag of the turning ring is that of a rim of "
+        f"{build.DEFAULT_RIM_THICKNESS:g} normal modules.",
+    )

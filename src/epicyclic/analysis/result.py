@@ -1,0 +1,289 @@
+"""Results: what `solve` returns, and its JSON form.
+
+Figures are dataclass fields that carry their label and unit, so that tables, JSON and sweeps read
+them from one place.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import platform
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from importlib import metadata
+from typing import Any
+
+from epicyclic.kinematics import PowerFlow
+from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.planet_bearing import RollerLoads
+from epicyclic.losses.validity import ValidityFlag, describe_flags
+from epicyclic.status import Status
+from epicyclic.units import Quantity
+
+__all__ = ["BearingFigures", "Figure", "LossTerm", "MeshFigures", "Result", "figures"]
+
+_DEGREE = Quantity("an angle", "rad", "deg")
+_NUMBER = Quantity("a number", "", "")
+_METRE_PER_SECOND = Quantity("a speed", "m/s", "m/s")
+_GIGAPASCAL = Quantity("a pressure", "Pa", "GPa")
+_NEWTON = Quantity("a force", "N", "N")
+_NEWTON_METRE = Quantity("a moment", "N*m", "N*m")
+_NEWTON_PER_MM = Quantity("a line load", "N/m", "N/mm")
+_MILLIMETRE = Quantity("a length", "m", "mm")
+_RPM = Quantity("a rotational speed", "rad/s", "rpm")
+_WATT = Quantity("a power", "W", "W")
+
+LOAD_DEPENDENT = "load-dependent"
+LOAD_INDEPENDENT = "load-independent"
+
+
+def _figure(label: str, unit: Quantity) -> Any:
+    return dataclasses.field(metadata={"label": label, "unit": unit})
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """One number for the user, in its display unit."""
+
+    key: str
+    label: str
+    value: float
+    unit: str
+
+
+def figures(source: object) -> Iterator[Figure]:
+    """The labelled numbers of a dataclass."""
+    for field in dataclasses.fields(source):  # type: ignore[arg-type]
+        if "label" in field.metadata:
+            unit: Quantity = field.metadata["unit"]
+            value = getattr(source, field.name)
+            shown = unit.to_display(value) if unit.si else value
+            yield Figure(field.name, field.metadata["label"], shown, unit.display)
+
+
+@dataclass(frozen=True, slots=True)
+class LossTerm:
+    """One component of the loss.
+
+    Attributes
+    ----------
+    name : str
+        Key of the contract, ``"sun_mesh_sliding"``.
+    watts : float
+        Of the whole gear set, factor included. [W]
+    group : str
+        ``"load-dependent"`` or ``"load-independent"``.
+    method, source : str
+        The model and where it is printed.
+    factor : float
+        The user's factor. [1]
+    left_out : str
+        Why the term is not included; empty if it is.
+    """
+
+    name: str
+    watts: float
+    group: str
+    method: str
+    source: str
+    factor: float = 1.0
+    left_out: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeshFigures:
+    """What an engineer checks by eye on a mesh; NaN where there is no load or no motion."""
+
+    pressure_angle: float = _figure("operating pressure angle, transverse", _DEGREE)
+    transverse_contact_ratio: float = _figure("transverse contact ratio", _NUMBER)
+    overlap_ratio: float = _figure("overlap ratio", _NUMBER)
+    backlash: float = _figure("circumferential backlash", _MILLIMETRE)
+    pitch_line_speed: float = _figure("pitch-line speed, relative to carrier", _METRE_PER_SECOND)
+    sliding_speed_max: float = _figure("largest sliding speed", _METRE_PER_SECOND)
+    line_load_max: float = _figure("largest line load", _NEWTON_PER_MM)
+    hertz_pressure_max: float = _figure("largest Hertz pressure", _GIGAPASCAL)
+    film_ratio_min: float = _figure("film ratio, smallest", _NUMBER)
+    film_ratio_max: float = _figure("film ratio, largest", _NUMBER)
+    friction_mean: float = _figure("mean coefficient of friction", _NUMBER)
+    loss_factor: float = _figure("loss factor H_V (Ohlendorf)", _NUMBER)
+    contact: MeshContact | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BearingFigures:
+    """What an engineer checks by eye on the planet bearing."""
+
+    radial_force: float = _figure("radial force", _NEWTON)
+    moment: float = _figure("tilting moment", _NEWTON_METRE)
+    speed: float = _figure("speed relative to carrier", _RPM)
+    rollers_loaded: float = _figure("loaded rollers, all rows", _NUMBER)
+    roller_load_max: float = _figure("most loaded roller", _NEWTON)
+    roller_azimuth: float = _figure("azimuth of that roller from the load", _DEGREE)
+    hertz_pressure_max: float = _figure("largest Hertz pressure, inner race", _GIGAPASCAL)
+    loads: RollerLoads | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Result:
+    """The losses of one case, where they arise, and how they were found.
+
+    Attributes
+    ----------
+    title : str
+    kind : str
+        ``"planetary"`` or ``"gear_pair"``.
+    terms : tuple of LossTerm
+    flow : PowerFlow
+        Speeds, torques, powers, efficiency.
+    meshes : mapping of str to MeshFigures
+    bearing : BearingFigures or None
+    models : mapping of str to str
+        The models used, defaults resolved.
+    flags : tuple of ValidityFlag
+        Models used outside their ranges.
+    notes : tuple of str
+        Other warnings.
+    sources : tuple of str
+        Literature of the models used.
+    inputs : mapping
+        The case, defaults included, as a case file has it.
+    planet_angles : tuple of float
+        Positions of the planets; empty for a pair. [rad]
+    status : Status
+    """
+
+    title: str
+    kind: str
+    terms: tuple[LossTerm, ...]
+    flow: PowerFlow
+    meshes: Mapping[str, MeshFigures]
+    bearing: BearingFigures | None
+    models: Mapping[str, str]
+    flags: tuple[ValidityFlag, ...]
+    notes: tuple[str, ...]
+    sources: tuple[str, ...]
+    inputs: Mapping[str, Any]
+    planet_angles: tuple[float, ...] = ()
+    status: Status = Status.CONVERGED
+
+    @property
+    def losses(self) -> dict[str, float]:
+        """Every loss term. [W]"""
+        return {term.name: term.watts for term in self.terms}
+
+    @property
+    def load_dependent(self) -> float:
+        """Sum of the load-dependent terms, P_LD. [W]"""
+        return sum(term.watts for term in self.terms if term.group == LOAD_DEPENDENT)
+
+    @property
+    def load_independent(self) -> float:
+        """Sum of the load-independent terms, P_LI. [W]"""
+        return sum(term.watts for term in self.terms if term.group == LOAD_INDEPENDENT)
+
+    @property
+    def total(self) -> float:
+        """Total loss. [W]"""
+        return self.load_dependent + self.load_independent
+
+    @property
+    def input_power(self) -> float:
+        """Power that enters the gear set. [W]"""
+        return self.flow.input_power
+
+    @property
+    def efficiency(self) -> float | None:
+        """Power out over power in; None if no power is passed on. [1]"""
+        return self.flow.efficiency
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Everything the user should know before trusting the numbers."""
+        return (*self.notes, *describe_flags(self.flags))
+
+    def numbers(self) -> Iterator[Figure]:
+        """Every number of the result with key, label and unit, as sweeps store them."""
+        for term in self.terms:
+            yield Figure(term.name, term.name.replace("_", " "), term.watts, _WATT.display)
+        yield Figure("load_dependent", "load-dependent loss", self.load_dependent, "W")
+        yield Figure("load_independent", "load-independent loss", self.load_independent, "W")
+        yield Figure("total", "total loss", self.total, "W")
+        yield Figure("input_power", "input power", self.input_power, "W")
+        efficiency = float("nan") if self.efficiency is None else self.efficiency
+        yield Figure("efficiency", "efficiency", efficiency, "")
+        for name, member in self.flow.members.items():
+            speed = _RPM.to_display(member.speed)
+            yield Figure(f"{name}_speed", f"speed of the {name}", speed, "rpm")
+            yield Figure(f"{name}_torque", f"torque on the {name}", member.torque, "N*m")
+        parts: dict[str, object] = dict(self.meshes)
+        if self.bearing is not None:
+            parts["planet_bearing"] = self.bearing
+        for name, part in parts.items():
+            for item in figures(part):
+                label = f"{name.replace('_', ' ')}: {item.label}"
+                yield Figure(f"{name}_{item.key}", label, item.value, item.unit)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON result of the contract, numbers in W and in the units stated beside them."""
+        result: dict[str, Any] = {
+            "title": self.title,
+            "kind": self.kind,
+            "status": str(self.status),
+            "losses": self.losses,
+            "load_dependent": self.load_dependent,
+            "load_independent": self.load_independent,
+            "total": self.total,
+            "input_power": self.input_power,
+            "efficiency": self.efficiency,
+            "units": {"losses": "W", "total": "W", "input_power": "W", "efficiency": "1"},
+            "warnings": list(self.warnings),
+            "not_included": {term.name: term.left_out for term in self.terms if term.left_out},
+            "factors": {term.name: term.factor for term in self.terms if term.factor != 1.0},
+            "methods": {term.name: term.method for term in self.terms if not term.left_out},
+            "models": dict(self.models),
+            "validity": [dataclasses.asdict(flag) for flag in self.flags],
+            "members": {
+                name: {
+                    "speed": {"value": _RPM.to_display(member.speed), "unit": "rpm"},
+                    "torque": {"value": member.torque, "unit": "N*m"},
+                    "power": {"value": member.power, "unit": "W"},
+                }
+                for name, member in self.flow.members.items()
+            },
+            "meshes": {name: _figures_dict(mesh) for name, mesh in self.meshes.items()},
+            "planet_bearing": None if self.bearing is None else _figures_dict(self.bearing),
+            "planet_angles": {
+                "value": [_DEGREE.to_display(angle) for angle in self.planet_angles],
+                "unit": "deg",
+            },
+            "sources": list(self.sources),
+            "inputs": dict(self.inputs),
+            "versions": versions(),
+        }
+        return _without_nan(result)  # type: ignore[no-any-return]
+
+    def to_json(self) -> str:
+        """`to_dict` as indented JSON text."""
+        return json.dumps(self.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
+
+
+def versions() -> dict[str, str]:
+    """Versions of this package and of what its numbers depend on."""
+    names = ("epicyclic", "numpy", "numba", "pint", "pydantic")
+    return {"python": platform.python_version()} | {name: metadata.version(name) for name in names}
+
+
+def _figures_dict(source: object) -> dict[str, Any]:
+    return {item.key: {"value": item.value, "unit": item.unit} for item in figures(source)}
+
+
+def _without_nan(value: Any) -> Any:
+    """`value` with None for every NaN, which JSON does not know."""
+    if isinstance(value, dict):
+        return {key: _without_nan(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_without_nan(item) for item in value]
+    if isinstance(value, float) and value != value:
+        return None
+    return value

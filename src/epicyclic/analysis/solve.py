@@ -1,0 +1,47 @@
+"""`solve`: the losses of a case.
+
+Parts that do not depend on the operating point (geometry, contact lines, load shape), and parts
+that depend on some of it only (roller loads on the torque), are cached by what they depend on, so
+that a sweep does them once.
+"""
+
+from __future__ import annotations
+
+from epicyclic.analysis.pair import pair_duty, solve_pair
+from epicyclic.analysis.parts import fluids_of, load_mesh
+from epicyclic.analysis.planetary import planetary_duties, solve_planetary
+from epicyclic.analysis.result import Result
+from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.losses.contact import MeshContact
+
+__all__ = ["mesh_contacts", "solve"]
+
+
+def solve(case: Case) -> Result:
+    """The losses of a case.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+        From `load_case`.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    ConvergenceError
+        If an iteration ends without a solution.
+    """
+    if isinstance(case, PlanetaryCase):
+        return solve_planetary(case)
+    return solve_pair(case)
+
+
+def mesh_contacts(case: Case) -> dict[str, MeshContact]:
+    """Conditions along the contact lines of every mesh of a case; empty without load or motion."""
+    oil = fluids_of(case).oil
+    duties = planetary_duties(case) if isinstance(case, PlanetaryCase) else (pair_duty(case),)
+    contacts = {duty.key: load_mesh(duty, case.models, case.numerics, oil) for duty in duties}
+    return {key: contact for key, contact in contacts.items() if contact is not None}

@@ -1,0 +1,433 @@
+"""The tables and keys of a case file.
+
+Each class is one table; field descriptions become the JSON Schema and the commented template.
+Values are SI after validation. Checks across keys and tables live in `epicyclic.case.checks`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic_core import PydanticCustomError
+
+from epicyclic import library
+from epicyclic.case.nearest import did_you_mean
+from epicyclic.lubricant.oil import Oil
+from epicyclic.units import (
+    Angle,
+    Density,
+    HelixAngle,
+    Length,
+    Mass,
+    Modulus,
+    Pressure,
+    Quantity,
+    RotationalSpeed,
+    SmallLength,
+    Speed,
+    Temperature,
+    Torque,
+)
+
+Member = Literal["sun", "ring", "carrier"]
+
+
+class Table(BaseModel):
+    """Base of all tables: immutable, no unknown keys.
+
+    ``EXACTLY_ONE`` lists groups of alternatives of which a file gives exactly one; an alternative
+    of several keys, joined by ``+``, needs all of them.
+    """
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", validate_default=True, allow_inf_nan=False
+    )
+    EXACTLY_ONE: ClassVar[tuple[tuple[str, ...], ...]] = ()
+
+
+class _Roughness(Quantity):
+    """A length, or the name of a built-in finish."""
+
+    def parse(self, value: object) -> float:
+        if isinstance(value, str) and value in library.finishes():
+            value = library.finishes()[value]["roughness"]
+        elif isinstance(value, str) and value[:1].isalpha():
+            raise PydanticCustomError(
+                "preset",
+                "no such finish: allowed is a length in um or one of {allowed}",
+                {
+                    "allowed": ", ".join(library.finishes()),
+                    "remedy": did_you_mean(value, library.finishes()),
+                },
+            )
+        return super().parse(value)
+
+
+Roughness = Annotated[
+    float,
+    _Roughness("an rms roughness, or the name of a finish", "m", "um", low=0.0, open_low=True),
+]
+
+
+def _named_material(value: object) -> object:
+    return _from_library(value, library.materials(), "material")
+
+
+def _named_oil(value: object) -> object:
+    if isinstance(value, str) and value in library.oil_names():
+        return library.oil_table(value)
+    return _from_library(value, dict.fromkeys(library.oil_names(), {}), "oil")
+
+
+def _from_library(value: object, known: dict[str, dict[str, Any]], noun: str) -> object:
+    if not isinstance(value, str):
+        return value
+    if value not in known:
+        raise PydanticCustomError(
+            "preset",
+            "no such {noun}: allowed is a table of properties or one of {allowed}",
+            {
+                "noun": noun,
+                "allowed": ", ".join(known),
+                "remedy": did_you_mean(value, known),
+            },
+        )
+    return known[value]
+
+
+class Material(Table):
+    """Elastic constants of a solid."""
+
+    title: str = "material of the case"
+    elastic_modulus: Modulus
+    poisson_ratio: float = Field(default=0.3, ge=0.0, le=0.5)
+    density: Density = Field(default="7850 kg/m^3")
+    source: str = ""
+
+
+NamedMaterial = Annotated[Material, BeforeValidator(_named_material)]
+
+
+class PlanetaryOperation(Table):
+    """How the gear set runs."""
+
+    EXACTLY_ONE = (("fixed", "second_input+second_speed"),)
+
+    input: Member = Field(description="The member to which torque and speed belong.")
+    fixed: Member | None = Field(
+        default=None, description="The member held still; the third one is the output."
+    )
+    second_input: Member | None = Field(
+        default=None, description="Instead of fixed: a second member of given speed."
+    )
+    second_speed: RotationalSpeed | None = Field(
+        default=None, description="Speed of the second member; same sign = same sense of rotation."
+    )
+    torque: Torque = Field(
+        description="On the input member; negative = coasting, power flows back through it."
+    )
+    speed: RotationalSpeed = Field(description="Of the input member.")
+    oil_inlet_temperature: Temperature = Field(description="Oil temperature at all contacts.")
+
+
+class GearPairOperation(Table):
+    """How the gear pair runs."""
+
+    torque: Torque = Field(description="On the pinion; negative = coasting.")
+    speed: RotationalSpeed = Field(description="Of the pinion.")
+    oil_inlet_temperature: Temperature = Field(description="Oil temperature at all contacts.")
+
+
+class Gears(Table):
+    """What all gears share."""
+
+    EXACTLY_ONE = (
+        ("normal_module", "transverse_module"),
+        ("normal_pressure_angle", "transverse_pressure_angle"),
+    )
+
+    normal_module: Length | None = Field(default=None, description="m_n.")
+    transverse_module: Length | None = Field(default=None, description="m_t = m_n/cos(beta).")
+    normal_pressure_angle: (
+        Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)] | None
+    ) = Field(default=None, description="alpha_n at the reference circle.")
+    transverse_pressure_angle: (
+        Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=40.0)] | None
+    ) = Field(default=None, description="alpha_t at the reference circle.")
+    helix_angle: HelixAngle = Field(description="beta at the reference circle, magnitude.")
+    center_distance: Length = Field(description="Of every mesh.")
+    addendum_coefficient: float = Field(
+        default=1.0,
+        gt=0,
+        le=3,
+        description="h_aP/m_n, for gears without tip_diameter. ISO 53, profile A.",
+    )
+    dedendum_coefficient: float = Field(
+        default=1.25,
+        gt=0,
+        le=4,
+        description="h_fP/m_n, for gears without root_diameter. ISO 53, profile A.",
+    )
+
+
+class GearTable(Table):
+    """One gear."""
+
+    EXACTLY_ONE = (("tooth_thickness+thickness_diameter", "profile_shift_coefficient"),)
+
+    teeth: int = Field(ge=5, le=2000, description="Number of teeth.")
+    face_width: Length
+    tip_diameter: Length | None = Field(
+        default=None, description="Inner diameter of a ring. Default: from addendum_coefficient."
+    )
+    root_diameter: Length | None = Field(
+        default=None, description="Default: from dedendum_coefficient."
+    )
+    tooth_thickness: Length | None = Field(
+        default=None, description="Transverse arc thickness at thickness_diameter."
+    )
+    thickness_diameter: Length | None = None
+    profile_shift_coefficient: float | None = Field(
+        default=None, ge=-3, le=5, description="x; positive thickens the teeth, on a ring too."
+    )
+    roughness: Roughness = Field(description="rms roughness Rq of the flanks, or a finish.")
+    material: NamedMaterial = Field(default="steel", description="A name or a table.")
+    tool_tip_radius: Annotated[float, Quantity("a length", "m", "mm", low=0.0)] | None = Field(
+        default=None,
+        description="Rounding of the cutting tool's tip, which leaves the root fillet. Default: "
+        "0.38 m_n (rack) or 0.2 m_n (shaper), or less where the mate needs the involute.",
+    )
+
+
+class PairGear(GearTable):
+    """The gear that meets the pinion."""
+
+    internal: bool = Field(default=False, description="true: a ring gear around the pinion.")
+
+
+class Planet(GearTable):
+    """The planets, all alike."""
+
+    count: int = Field(ge=1, le=24, description="Number of planets.")
+    angles: tuple[Angle, ...] | None = Field(
+        default=None,
+        description="Position of each planet on the carrier. Default: the admissible positions "
+        "nearest to equal spacing.",
+    )
+    mass: Mass | None = Field(
+        default=None,
+        description="Of one planet with its rollers. If given, its centrifugal force loads the "
+        "planet bearing.",
+    )
+
+
+class Ring(GearTable):
+    """The ring gear."""
+
+    rim_thickness: Length | None = Field(
+        default=None, description="From root to outside. Default: 3 normal modules (estimate)."
+    )
+
+
+class PlanetBearing(Table):
+    """The roller bearing between planet and pin."""
+
+    rows: int = Field(ge=1, le=4)
+    rollers_per_row: int = Field(ge=3, le=200)
+    roller_diameter: Length
+    roller_length: Length = Field(description="Effective length of one roller.")
+    pin_diameter: Length = Field(description="Inner race. The bore follows.")
+    diametral_clearance: SmallLength
+    roller_roughness: Roughness
+    race_roughness: Roughness
+    viscous_factor: float = Field(
+        default=3.0,
+        ge=0,
+        le=100,
+        description="f0 of the viscous loss: caged cylindrical 2.2-4 a row, needle up to 12.",
+    )
+    cage: Literal["caged", "full-complement"] = "caged"
+    palmgren_coefficient: float | None = Field(
+        default=None,
+        gt=0,
+        le=0.05,
+        description="f1 of the method palmgren. Default: 0.0003 caged, 0.00055 full complement.",
+    )
+    crown_drop: SmallLength = Field(
+        default="3 um", description="Drop of the profile at the roller's end (estimate)."
+    )
+    crown_length_fraction: float = Field(
+        default=0.2, ge=0, le=0.5, description="Crowned part of the length, at each end."
+    )
+    row_gap: Annotated[float, Quantity("a length", "m", "mm", low=0.0)] = Field(
+        default="0 mm", description="Axial gap between the rollers of neighbouring rows."
+    )
+    material: NamedMaterial = Field(default="steel", description="Of rollers and races.")
+
+
+class Carrier(Table):
+    """The planet carrier as a disc, for its drag."""
+
+    outer_diameter: Length
+    width: Length
+
+
+class ThrustBearing(Table):
+    """A thrust bearing that carries no load worth counting, for its viscous loss."""
+
+    mean_diameter: Length
+    between: Literal["sun-carrier", "sun-ring", "ring-carrier", "sun-housing", "carrier-housing"] = (
+        Field(default="carrier-housing", description="The two parts whose speeds differ.")
+    )
+    viscous_factor: float = Field(default=3.5, ge=0, le=100, description="f0 (Harris).")
+    count: int = Field(default=1, ge=1, le=10)
+
+
+class Lubricant(Table):
+    """The oil."""
+
+    oil: Annotated[Oil, BeforeValidator(_named_oil)] = Field(
+        description="A name of the oil library (epicyclic oils) or a table of properties."
+    )
+
+
+class Surroundings(Table):
+    """What surrounds the gears."""
+
+    oil_air_ratio: float = Field(
+        default=0.05, ge=0, le=1, description="Oil share by volume at ambient pressure."
+    )
+    pressure: Pressure = Field(default="1.01325 bar", description="Ambient pressure.")
+
+
+FrictionName = Literal[
+    "auto",
+    "mixed-ehl",
+    "schlenk",
+    "niemann-winter",
+    "benedict-kelley",
+    "matsumoto",
+    "doleschel",
+    "xu-2007",
+    "constant",
+    "table",
+]
+
+
+class FrictionTable(Table):
+    """A user's coefficients of friction against one or two quantities of the contact.
+
+    Between the points linear, beyond them constant.
+    """
+
+    AXES: ClassVar = ("slide_to_roll_ratio", "film_ratio", "hertz_pressure", "rolling_speed")
+
+    slide_to_roll_ratio: tuple[float, ...] | None = None
+    film_ratio: tuple[float, ...] | None = None
+    hertz_pressure: tuple[Modulus, ...] | None = None
+    rolling_speed: tuple[Speed, ...] | None = None
+    friction: tuple[float, ...] | tuple[tuple[float, ...], ...] = Field(
+        description="One value, or one row, for each value of the first axis."
+    )
+
+    def axes(self) -> dict[str, tuple[float, ...]]:
+        """The axes given, by name."""
+        given = {name: getattr(self, name) for name in self.AXES}
+        return {name: points for name, points in given.items() if points is not None}
+
+    def shape(self) -> tuple[int, ...]:
+        """Shape of `friction`; -1 for rows of unequal length."""
+        lengths = {len(row) for row in self.friction if isinstance(row, tuple)}
+        if not lengths:
+            return (len(self.friction),)
+        return (len(self.friction), lengths.pop() if len(lengths) == 1 else -1)
+
+
+class GearPairModels(Table):
+    """Which method computes what."""
+
+    friction: FrictionName = Field(
+        default="auto",
+        description="auto: mixed-ehl for the fluid it was made for, else schlenk.",
+    )
+    constant_friction: float = Field(
+        default=0.04, ge=0, le=1, description="For friction = constant."
+    )
+    boundary_friction: float = Field(
+        default=0.10,
+        ge=0,
+        le=1,
+        description="Of dry contact, for matsumoto and doleschel (estimate; an oil's own is measured).",
+    )
+    fluid_friction: float = Field(
+        default=0.02,
+        ge=0,
+        le=1,
+        description="Of separated contact, for matsumoto and doleschel (estimate, as above).",
+    )
+    rolling: Literal["auto", "mixed-ehl", "goksem-hargreaves"] = Field(
+        default="auto",
+        description="auto: mixed-ehl for the fluid it was made for, else goksem-hargreaves.",
+    )
+    load_distribution: Literal["uniform", "minimum-energy"] = Field(
+        default="uniform", description="Stiffness along the contact lines."
+    )
+    mesh: Literal["local", "loss-factor"] = Field(
+        default="local",
+        description="local: along the contact lines; loss-factor: mean friction times Ohlendorf's.",
+    )
+    drag: Literal["seetharaman-kahraman"] = "seetharaman-kahraman"
+
+
+class PlanetaryModels(GearPairModels):
+    """Which method computes what, with the planet bearing."""
+
+    bearing: Literal["auto", "mixed-ehl", "palmgren"] = Field(
+        default="auto", description="auto: mixed-ehl for the fluid it was made for, else palmgren."
+    )
+    bearing_viscous: Literal["harris"] = "harris"
+
+
+class Numerics(Table):
+    """Resolution."""
+
+    mesh_positions: int = Field(default=20, ge=4, le=1000)
+    contact_segments: int = Field(default=20, ge=2, le=1000)
+    bearing_slices: int = Field(default=20, ge=3, le=500, description="On each roller.")
+
+
+class LossOption(Table):
+    """What becomes of one loss term."""
+
+    include: bool = Field(default=True, description="false leaves the term out.")
+    factor: float = Field(default=1.0, ge=0, le=100, description="Multiplies the term.")
+
+
+_AS_COMPUTED = LossOption()
+
+
+class PlanetaryLosses(Table):
+    """Options of each loss term."""
+
+    sun_mesh_sliding: LossOption = _AS_COMPUTED
+    sun_mesh_rolling: LossOption = _AS_COMPUTED
+    ring_mesh_sliding: LossOption = _AS_COMPUTED
+    ring_mesh_rolling: LossOption = _AS_COMPUTED
+    planet_bearing_mechanical: LossOption = _AS_COMPUTED
+    planet_bearing_viscous: LossOption = _AS_COMPUTED
+    sun_mesh_pocketing: LossOption = _AS_COMPUTED
+    ring_mesh_pocketing: LossOption = _AS_COMPUTED
+    sun_drag: LossOption = _AS_COMPUTED
+    ring_drag: LossOption = _AS_COMPUTED
+    carrier_drag: LossOption = _AS_COMPUTED
+    thrust_bearing_viscous: LossOption = _AS_COMPUTED
+
+
+class GearPairLosses(Table):
+    """Options of each loss term."""
+
+    mesh_sliding: LossOption = _AS_COMPUTED
+    mesh_rolling: LossOption = _AS_COMPUTED
+    mesh_pocketing: LossOption = _AS_COMPUTED
+    drag: LossOption = _AS_COMPUTED

@@ -1,0 +1,75 @@
+"""Exceptions and warnings of the package.
+
+Bad input is described by `Problem` objects, one per mistake, and reported all together by one
+`InputError`. Nothing here imports the rest of the package.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+__all__ = [
+    "ConvergenceError",
+    "EpicyclicError",
+    "InputError",
+    "Problem",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One mistake in the input: what was given, what is allowed, what to change.
+
+    Attributes
+    ----------
+    key : str
+        Dotted key of the case, ``"sun.tip_diameter"``; empty for the file as a whole.
+    value : str
+        What was given, as the user wrote it; empty if nothing was.
+    allowed : str
+        What is allowed, or why the value cannot be.
+    remedy : str
+        What to change.
+    """
+
+    key: str
+    value: str
+    allowed: str
+    remedy: str
+
+    def __str__(self) -> str:
+        given = f"{self.key} = {self.value}" if self.value else self.key
+        head = f"{given}: {self.allowed}" if given else self.allowed
+        return f"{head} {self.remedy}".rstrip()
+
+
+class EpicyclicError(Exception):
+    """Base of every error this package raises on purpose."""
+
+
+class InputError(EpicyclicError, ValueError):
+    """The case, the file or the command cannot be used as given.
+
+    Parameters
+    ----------
+    problems : iterable of Problem
+        Every mistake found, not only the first.
+    source : str
+        The file or built-in case the input came from.
+    """
+
+    def __init__(self, problems: Iterable[Problem], source: str = "") -> None:
+        self.problems = tuple(problems)
+        self.source = source
+        super().__init__(self.problems, source)
+
+    def __str__(self) -> str:
+        count = len(self.problems)
+        where = f" in {self.source}" if self.source else ""
+        head = f"{count} problem{'s' if count != 1 else ''}{where}:"
+        return "\n".join([head, *(f"  - {problem}" for problem in self.problems)])
+
+
+class ConvergenceError(EpicyclicError):
+    """An iteration ended without a solution; the message names the next thing to try."""

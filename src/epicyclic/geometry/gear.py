@@ -1,0 +1,153 @@
+"""One involute helical gear, external or internal, in its transverse section.
+
+Symbols follow ISO 21771; angles in radians, lengths in metres. Tooth counts of internal gears are
+positive here, and a positive profile shift thickens the tooth of every gear, internal ones too.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+__all__ = ["BasicRack", "Gear", "involute"]
+
+
+def involute(angle: float) -> float:
+    """Involute function inv(angle) = tan(angle) - angle. ISO 21771, Eq. 5."""
+    return math.tan(angle) - angle
+
+
+@dataclass(frozen=True, slots=True)
+class BasicRack:
+    """What gears that mesh have in common. ISO 21771, clause 4.
+
+    Attributes
+    ----------
+    transverse_module : float
+        m_t. [m]
+    transverse_pressure_angle : float
+        alpha_t at the reference circle. [rad]
+    helix_angle : float
+        beta at the reference circle, magnitude. [rad]
+    """
+
+    transverse_module: float
+    transverse_pressure_angle: float
+    helix_angle: float
+
+    @property
+    def normal_module(self) -> float:
+        """m_n = m_t cos(beta). [m]"""
+        return self.transverse_module * math.cos(self.helix_angle)
+
+    @property
+    def normal_pressure_angle(self) -> float:
+        """alpha_n from tan(alpha_n) = tan(alpha_t) cos(beta). [rad]"""
+        return math.atan(math.tan(self.transverse_pressure_angle) * math.cos(self.helix_angle))
+
+    @property
+    def base_helix_angle(self) -> float:
+        """beta_b from tan(beta_b) = tan(beta) cos(alpha_t). [rad]"""
+        return math.atan(math.tan(self.helix_angle) * math.cos(self.transverse_pressure_angle))
+
+    @property
+    def transverse_base_pitch(self) -> float:
+        """p_bt = pi m_t cos(alpha_t). [m]"""
+        return math.pi * self.transverse_module * math.cos(self.transverse_pressure_angle)
+
+
+@dataclass(frozen=True, slots=True)
+class Gear:
+    """One gear of a mesh.
+
+    Attributes
+    ----------
+    name : str
+        Its table in the case: ``"sun"``.
+    rack : BasicRack
+        Module, pressure angle and helix angle.
+    teeth : int
+        Number of teeth, positive.
+    internal : bool
+        True for a ring gear.
+    thickness_half_angle : float
+        Half the angle that the transverse tooth thickness takes at the reference circle. [rad]
+    tip_radius, root_radius : float
+        [m]
+    face_width : float
+        [m]
+    """
+
+    name: str
+    rack: BasicRack
+    teeth: int
+    internal: bool
+    thickness_half_angle: float
+    tip_radius: float
+    root_radius: float
+    face_width: float
+
+    @property
+    def reference_radius(self) -> float:
+        """r = z m_t / 2. [m]"""
+        return self.teeth * self.rack.transverse_module / 2
+
+    @property
+    def base_radius(self) -> float:
+        """r_b = r cos(alpha_t). [m]"""
+        return self.reference_radius * math.cos(self.rack.transverse_pressure_angle)
+
+    @property
+    def profile_shift_coefficient(self) -> float:
+        """x of the rack that cuts this tooth thickness. ISO 21771, Eq. 33. [1]"""
+        rack = self.rack
+        thickness = 2 * self.reference_radius * self.thickness_half_angle
+        excess = thickness - math.pi * rack.transverse_module / 2
+        return excess / (2 * rack.normal_module * math.tan(rack.transverse_pressure_angle))
+
+    def pressure_angle_at(self, radius: float) -> float:
+        """Transverse pressure angle of the involute at `radius` (zero below the base circle)."""
+        return math.acos(min(1.0, self.base_radius / radius))
+
+    def half_angle_at(self, radius: float) -> float:
+        """Half the angle of the tooth thickness at `radius`, negative beyond a pointed tip."""
+        change = involute(self.pressure_angle_at(radius)) - involute(
+            self.rack.transverse_pressure_angle
+        )
+        return self.thickness_half_angle + (change if self.internal else -change)
+
+    def thickness_at(self, radius: float) -> float:
+        """Transverse tooth thickness, an arc, at `radius`. ISO 21771, Eq. 36. [m]"""
+        return 2 * radius * self.half_angle_at(radius)
+
+    @property
+    def tip_involute_length(self) -> float:
+        """Radius of curvature of the involute at the tip circle, transverse. [m]"""
+        return math.sqrt(max(0.0, self.tip_radius**2 - self.base_radius**2))
+
+
+def half_angle_from_thickness(
+    rack: BasicRack, teeth: int, internal: bool, thickness: float, radius: float
+) -> float:
+    """Half angle at the reference circle of a tooth `thickness` thick at `radius`.
+
+    Raises
+    ------
+    ValueError
+        If `radius` is inside the base circle, where there is no involute.
+    """
+    reference = teeth * rack.transverse_module / 2
+    cosine = reference * math.cos(rack.transverse_pressure_angle) / radius
+    if cosine > 1.0:
+        raise ValueError("inside the base circle")
+    change = involute(math.acos(cosine)) - involute(rack.transverse_pressure_angle)
+    return thickness / (2 * radius) + (-change if internal else change)
+
+
+def half_angle_from_profile_shift(rack: BasicRack, teeth: int, coefficient: float) -> float:
+    """Half angle at the reference circle for profile shift `coefficient`. ISO 21771, Eq. 33."""
+    shift = coefficient * rack.normal_module
+    thickness = (
+        math.pi * rack.transverse_module / 2 + 2 * shift * math.tan(rack.transverse_pressure_angle)
+    )
+    return thickness / (teeth * rack.transverse_module)

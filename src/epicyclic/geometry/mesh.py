@@ -1,0 +1,174 @@
+"""The mesh of two gears: operating pressure angle, path of contact, contact ratios, clearances.
+
+Member 1 is always external: the sun of a sun-planet mesh, the planet of a planet-ring mesh, the
+pinion of a pair. The position on the path of contact is the transverse radius of curvature of
+member 1, measured on the line of action from its base circle. Symbols follow ISO 21771.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from epicyclic.geometry.gear import Gear, involute
+
+__all__ = ["Mesh"]
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """Two gears in mesh.
+
+    Attributes
+    ----------
+    name : str
+        ``"sun mesh"``, ``"ring mesh"`` or ``"mesh"``.
+    gear1, gear2 : Gear
+        Member 1 is external; member 2 external or internal.
+    center_distance : float
+        [m]
+    """
+
+    name: str
+    gear1: Gear
+    gear2: Gear
+    center_distance: float
+
+    @property
+    def internal(self) -> bool:
+        """True if member 2 is a ring."""
+        return self.gear2.internal
+
+    @property
+    def ratio(self) -> float:
+        """u = z2 / z1, positive. [1]"""
+        return self.gear2.teeth / self.gear1.teeth
+
+    @property
+    def side(self) -> int:
+        """+1 for an external mesh, -1 for an internal one: the sign of member 2 in sums."""
+        return -1 if self.internal else 1
+
+    @property
+    def operating_pressure_angle(self) -> float:
+        """alpha_wt from cos(alpha_wt) = (r_b2 +- r_b1)/a. ISO 21771, Eq. 56. [rad]"""
+        bases = self.gear2.base_radius + self.side * self.gear1.base_radius
+        return math.acos(bases / self.center_distance)
+
+    @property
+    def operating_radius1(self) -> float:
+        """r_w1 = a z1/(z2 +- z1). [m]"""
+        z1, z2 = self.gear1.teeth, self.gear2.teeth
+        return self.center_distance * z1 / (z2 + self.side * z1)
+
+    @property
+    def operating_radius2(self) -> float:
+        """r_w2 = r_w1 u. [m]"""
+        return self.operating_radius1 * self.ratio
+
+    @property
+    def operating_helix_tangent(self) -> float:
+        """tan(beta_w) = tan(beta) r_w/r, the same for both members. [1]"""
+        gear = self.gear1
+        return math.tan(gear.rack.helix_angle) * self.operating_radius1 / gear.reference_radius
+
+    @property
+    def line_of_action(self) -> float:
+        """Distance of the two points where the line of action touches the base circles. [m]"""
+        return self.center_distance * math.sin(self.operating_pressure_angle)
+
+    def curvature2(self, curvature1: float) -> float:
+        """Transverse radius of curvature of member 2 where member 1 has `curvature1`. [m]"""
+        return self.line_of_action - self.side * curvature1
+
+    @property
+    def path_start(self) -> float:
+        """Radius of curvature of member 1 where the tip of member 2 is in contact. [m]"""
+        return self.side * (self.line_of_action - self.gear2.tip_involute_length)
+
+    @property
+    def path_end(self) -> float:
+        """Radius of curvature of member 1 at its own tip. [m]"""
+        return self.gear1.tip_involute_length
+
+    @property
+    def pitch_point(self) -> float:
+        """Radius of curvature of member 1 at the pitch point. [m]"""
+        return self.operating_radius1 * math.sin(self.operating_pressure_angle)
+
+    @property
+    def face_width(self) -> float:
+        """Common face width: the smaller one, the other gear reaching beyond it. [m]"""
+        return min(self.gear1.face_width, self.gear2.face_width)
+
+    @property
+    def tip_contact_ratio1(self) -> float:
+        """epsilon_1: the path from the pitch point to the tip of member 1, in base pitches. [1]"""
+        return (self.path_end - self.pitch_point) / self.gear1.rack.transverse_base_pitch
+
+    @property
+    def tip_contact_ratio2(self) -> float:
+        """epsilon_2: the path from the tip of member 2 to the pitch point, in base pitches. [1]"""
+        return (self.pitch_point - self.path_start) / self.gear1.rack.transverse_base_pitch
+
+    @property
+    def transverse_contact_ratio(self) -> float:
+        """epsilon_alpha = epsilon_1 + epsilon_2. ISO 21771, Eq. 92. [1]"""
+        return self.tip_contact_ratio1 + self.tip_contact_ratio2
+
+    @property
+    def overlap_ratio(self) -> float:
+        """epsilon_beta = b tan(beta_b)/p_bt. ISO 21771, Eq. 94. [1]"""
+        rack = self.gear1.rack
+        return self.face_width * math.tan(rack.base_helix_angle) / rack.transverse_base_pitch
+
+    @property
+    def backlash(self) -> float:
+        """Circumferential backlash at the operating circles, transverse. ISO 21771, Eq. 84. [m]"""
+        pitch = 2 * math.pi * self.operating_radius1 / self.gear1.teeth
+        return (
+            pitch
+            - self.gear1.thickness_at(self.operating_radius1)
+            - self.gear2.thickness_at(self.operating_radius2)
+        )
+
+    @property
+    def tip_clearance1(self) -> float:
+        """Gap between the tip of member 1 and the root of member 2. [m]"""
+        if self.internal:
+            return self.gear2.root_radius - self.center_distance - self.gear1.tip_radius
+        return self.center_distance - self.gear1.tip_radius - self.gear2.root_radius
+
+    @property
+    def tip_clearance2(self) -> float:
+        """Gap between the tip of member 2 and the root of member 1. [m]"""
+        if self.internal:
+            return self.gear2.tip_radius - self.center_distance - self.gear1.root_radius
+        return self.center_distance - self.gear2.tip_radius - self.gear1.root_radius
+
+    @property
+    def radius1_at_start(self) -> float:
+        """Radius on member 1 where contact with the tip of member 2 begins. [m]"""
+        return math.hypot(self.gear1.base_radius, self.path_start)
+
+    @property
+    def radius2_at_end(self) -> float:
+        """Radius on member 2 where contact with the tip of member 1 ends. [m]"""
+        return math.hypot(self.gear2.base_radius, self.curvature2(self.path_end))
+
+    @property
+    def tip_passage(self) -> float:
+        """Clearance of the tips of an internal mesh where the tip circles cross, as an angle of
+        member 2; infinite if they do not cross. Negative: tip interference. [rad]
+
+        Polder (1991); Colbourne, The Geometry of Involute Gears (1987), section 8.
+        """
+        r1, r2, a = self.gear1.tip_radius, self.gear2.tip_radius, self.center_distance
+        if not self.internal or r1 + a <= r2:
+            return math.inf
+        delta1 = math.acos((r2**2 - r1**2 - a**2) / (2 * a * r1))
+        delta2 = math.acos((r2**2 - r1**2 + a**2) / (2 * a * r2))
+        inv1 = involute(self.gear1.pressure_angle_at(r1))
+        inv2 = involute(self.gear2.pressure_angle_at(r2))
+        inv_w = involute(self.operating_pressure_angle)
+        return (delta1 + inv1) / self.ratio - (delta2 + inv2) + (1 - 1 / self.ratio) * inv_w

@@ -1,0 +1,288 @@
+"""Load distribution of a roller bearing under radial force and moment, slice by slice.
+
+Talbot (2012), Eq. 3.2 and 3.3 (after Harris), extended to two radial directions. State vector
+d = (delta_x, delta_y, theta_x L, theta_y L): displacements of the outer race against the inner one
+and tilts, made lengths with the half-width L of the bearing. A slice at azimuth psi and axial
+position y is pressed by
+
+    delta = [delta_x cos(psi) + delta_y sin(psi)
+             + y (theta_x cos(psi) + theta_y sin(psi)) - C_d/2]/2 - c(y)
+
+at each of its two contacts (the factor 1/2 shares the approach between inner and outer race), and
+carries q = delta^1.11 / (1.24e-5 l^0.11) in N and mm, l being the loaded length of its roller.
+
+For fixed l the balance of forces is the minimum of a convex function, so that a Newton iteration
+with line search finds it from any start; l follows by substitution, which contracts because it
+enters with the power 0.11 only.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.kernels._jit import kernel
+
+__all__ = ["solve_roller_loads"]
+
+FloatArray = NDArray[np.float64]
+
+DEFLECTION_EXPONENT = 1.11
+"""Exponent of the line contact, Talbot (2012) Eq. 3.3a. [1]"""
+LENGTH_EXPONENT = 0.11
+"""Exponent of the loaded length, Talbot (2012) Eq. 3.3a. [1]"""
+DEFLECTION_CONSTANT = 1.24e-5
+"""Palmgren's constant for steel rollers, Talbot (2012) Eq. 3.3a; N and mm."""
+MM = 1e3
+"""Millimetres in a metre."""
+LARGEST_STEP_HALVINGS = 60
+SUFFICIENT_DECREASE = 1e-4
+"""Armijo constant of the line search. [1]"""
+NEWTON_SHIFT = 1e-12
+"""Share of the reference stiffness added to the Hessian, which is singular without contact. [1]"""
+
+
+@kernel
+def slice_stiffness(loaded_length: float) -> float:
+    """K of q = K delta^1.11, q in N/m and delta in m, for a roller loaded over `loaded_length`."""
+    length_mm = loaded_length * MM
+    return MM * MM**DEFLECTION_EXPONENT / (DEFLECTION_CONSTANT * length_mm**LENGTH_EXPONENT)
+
+
+@kernel
+def slice_deflection(
+    d: FloatArray, psi: float, y_over_l: float, clearance: float, crown: float
+) -> float:
+    """Deflection of one contact of a slice; negative where there is a gap. [m]"""
+    radial = d[0] * np.cos(psi) + d[1] * np.sin(psi)
+    tilt = d[2] * np.cos(psi) + d[3] * np.sin(psi)
+    return 0.5 * (radial + y_over_l * tilt - 0.5 * clearance) - crown
+
+
+@kernel
+def potential(
+    d: FloatArray,
+    load: FloatArray,
+    psi: FloatArray,
+    y_over_l: FloatArray,
+    crown: FloatArray,
+    width: float,
+    clearance: float,
+    stiffness: FloatArray,
+    gradient: FloatArray,
+    hessian: FloatArray,
+) -> float:
+    """Elastic energy less the work of `load`; fills its `gradient` and `hessian` in `d`."""
+    energy = 0.0
+    gradient[:] = -load
+    hessian[:] = 0.0
+    shape = np.empty(4)
+    rows, slices = y_over_l.shape
+    for z in range(psi.size):
+        for row in range(rows):
+            for k in range(slices):
+                delta = slice_deflection(d, psi[z], y_over_l[row, k], clearance, crown[k])
+                if delta <= 0.0:
+                    continue
+                slope = width * stiffness[row, z] * delta**LENGTH_EXPONENT
+                force = slope * delta
+                shape[0] = np.cos(psi[z])
+                shape[1] = np.sin(psi[z])
+                shape[2] = y_over_l[row, k] * shape[0]
+                shape[3] = y_over_l[row, k] * shape[1]
+                energy += 2.0 * force * delta / (DEFLECTION_EXPONENT + 1.0)
+                for i in range(4):
+                    gradient[i] += force * shape[i]
+                    for j in range(4):
+                        hessian[i, j] += 0.5 * DEFLECTION_EXPONENT * slope * shape[i] * shape[j]
+    for i in range(4):
+        energy -= load[i] * d[i]
+    return energy
+
+
+@kernel
+def loaded_lengths(
+    d: FloatArray,
+    psi: FloatArray,
+    y_over_l: FloatArray,
+    crown: FloatArray,
+    width: float,
+    clearance: float,
+    lengths: FloatArray,
+) -> None:
+    """Fill `lengths`, (rows, rollers), with the length over which each roller is loaded.
+
+    The source counts loaded slices, a number that jumps. Here the slice in which the load ends
+    counts for the part of it that a straight line between slice middles finds loaded, so that
+    the load distribution is a continuous function of the load.
+    """
+    rows, slices = y_over_l.shape
+    delta = np.empty(slices)
+    for z in range(psi.size):
+        for row in range(rows):
+            for k in range(slices):
+                delta[k] = slice_deflection(d, psi[z], y_over_l[row, k], clearance, crown[k])
+            count = 0.5 * ((1.0 if delta[0] > 0.0 else 0.0) + (1.0 if delta[-1] > 0.0 else 0.0))
+            for k in range(slices - 1):
+                a, b = delta[k], delta[k + 1]
+                if a > 0.0 and b > 0.0:
+                    count += 1.0
+                elif a > 0.0 or b > 0.0:
+                    count += max(a, b) / abs(a - b)
+            # an unloaded roller keeps one slice: its stiffness is then finite and unused
+            lengths[row, z] = width * max(count, 1.0)
+
+
+@kernel
+def minimise(
+    d: FloatArray,
+    load: FloatArray,
+    psi: FloatArray,
+    y_over_l: FloatArray,
+    crown: FloatArray,
+    width: float,
+    clearance: float,
+    stiffness: FloatArray,
+    tolerance: float,
+    max_iterations: int,
+) -> int:
+    """Move `d` to the minimum of `potential` by Newton steps with line search.
+
+    Returns the number of steps, or -1 if `max_iterations` did not suffice.
+    """
+    gradient = np.empty(4)
+    hessian = np.empty((4, 4))
+    trial_gradient = np.empty(4)
+    trial_hessian = np.empty((4, 4))
+    scale = np.abs(load).max()
+    reference = slice_stiffness(width * y_over_l.size) * width * clearance_scale(clearance)
+    energy = potential(
+        d, load, psi, y_over_l, crown, width, clearance, stiffness, gradient, hessian
+    )
+    for iteration in range(max_iterations):
+        if np.abs(gradient).max() <= tolerance * scale:
+            return iteration
+        shift = NEWTON_SHIFT * reference
+        for i in range(4):
+            shift = max(shift, NEWTON_SHIFT * hessian[i, i])
+        for i in range(4):
+            hessian[i, i] += shift
+        step = np.linalg.solve(hessian, -gradient)
+        # without contact the Newton step is as long as the shift makes it: start small
+        length = np.abs(step).max()
+        largest = max(10.0 * np.abs(d).max(), 10.0 * clearance_length(clearance))
+        if length > largest:
+            step *= largest / length
+        slope = np.dot(gradient, step)
+        factor = 1.0
+        accepted = False
+        for _ in range(LARGEST_STEP_HALVINGS):
+            trial = d + factor * step
+            trial_energy = potential(
+                trial, load, psi, y_over_l, crown, width, clearance, stiffness,
+                trial_gradient, trial_hessian,
+            )  # fmt: skip
+            decrease = SUFFICIENT_DECREASE * factor * slope
+            # near the minimum the energy is rounding noise: then the gradient decides
+            flatter = np.abs(trial_gradient).max() < 0.5 * np.abs(gradient).max()
+            if trial_energy <= energy + decrease or flatter:
+                accepted = True
+                break
+            factor *= 0.5
+        if not accepted:
+            return -1
+        d[:] = trial
+        energy = trial_energy
+        gradient[:] = trial_gradient
+        hessian[:] = trial_hessian
+    return -1
+
+
+@kernel
+def clearance_length(clearance: float) -> float:
+    """A length of the size of clearances and deflections, at least 1 um. [m]"""
+    return max(clearance, 1e-6)
+
+
+@kernel
+def clearance_scale(clearance: float) -> float:
+    """delta^0.11 at that length."""
+    return clearance_length(clearance) ** LENGTH_EXPONENT
+
+
+@kernel
+def solve_roller_loads(
+    load: FloatArray,
+    start: FloatArray,
+    psi: FloatArray,
+    y_over_l: FloatArray,
+    crown: FloatArray,
+    width: float,
+    clearance: float,
+    tolerance: float,
+    max_iterations: int,
+) -> tuple[FloatArray, FloatArray, int]:
+    """Load intensity of every slice of every roller.
+
+    Parameters
+    ----------
+    load : ndarray, shape (4,)
+        F_x, F_y [N] and M_x/L, M_y/L [N], moments conjugate to the tilts.
+    start : ndarray, shape (4,)
+        Where the iteration starts. [m]
+    psi : ndarray, shape (rollers,)
+        Azimuth of each roller. [rad]
+    y_over_l : ndarray, shape (rows, slices)
+        Axial position of the slices over the half-width of the bearing. [1]
+    crown : ndarray, shape (slices,)
+        Crown drop at each slice. [m]
+    width : float
+        Slice width. [m]
+    clearance : float
+        Diametral clearance. [m]
+    tolerance : float
+        Largest residual force over the largest load. [1]
+    max_iterations : int
+        For each of the two nested iterations.
+
+    Returns
+    -------
+    q : ndarray, shape (rows, rollers, slices)
+        Load intensity. [N/m]
+    d : ndarray, shape (4,)
+        State vector. [m]
+    iterations : int
+        Newton steps in all, or -1 without convergence.
+    """
+    rows, slices = y_over_l.shape
+    q = np.zeros((rows, psi.size, slices))
+    d = start.copy()
+    if np.abs(load).max() == 0.0:
+        return q, d, 0
+    lengths = np.full((rows, psi.size), width * slices)
+    stiffness = np.empty((rows, psi.size))
+    total = 0
+    converged = False
+    for outer in range(max_iterations):
+        for row in range(rows):
+            for z in range(psi.size):
+                stiffness[row, z] = slice_stiffness(lengths[row, z])
+        steps = minimise(
+            d, load, psi, y_over_l, crown, width, clearance, stiffness, tolerance, max_iterations
+        )
+        if steps < 0:
+            return q, d, -1
+        total += steps
+        if outer > 0 and steps == 0:
+            converged = True
+            break
+        loaded_lengths(d, psi, y_over_l, crown, width, clearance, lengths)
+    if not converged:
+        return q, d, -1
+    for z in range(psi.size):
+        for row in range(rows):
+            for k in range(slices):
+                delta = slice_deflection(d, psi[z], y_over_l[row, k], clearance, crown[k])
+                if delta > 0.0:
+                    q[row, z, k] = stiffness[row, z] * delta**DEFLECTION_EXPONENT
+    return q, d, total

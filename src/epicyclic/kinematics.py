@@ -1,0 +1,147 @@
+"""Speeds, torques and power flow of a planetary gear set and of a gear pair.
+
+Signs: speeds are positive in one common sense of rotation; a torque is the one that acts on the
+gear set from outside, so that torque times speed is the power that enters through that member.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+__all__ = [
+    "MEMBERS",
+    "MemberState",
+    "PowerFlow",
+    "pair_power_flow",
+    "planet_speed",
+    "planetary_power_flow",
+    "planetary_speeds",
+]
+
+MEMBERS = ("sun", "ring", "carrier")
+
+
+@dataclass(frozen=True, slots=True)
+class MemberState:
+    """One shaft.
+
+    Attributes
+    ----------
+    speed : float
+        [rad/s]
+    torque : float
+        From outside, losses accounted for. [N m]
+    """
+
+    speed: float
+    torque: float
+
+    @property
+    def power(self) -> float:
+        """Power that enters the gear set through this shaft. [W]"""
+        return self.torque * self.speed
+
+
+@dataclass(frozen=True, slots=True)
+class PowerFlow:
+    """Where power enters and leaves.
+
+    Attributes
+    ----------
+    members : mapping of str to MemberState
+        The shafts; their powers sum to the loss.
+    input_power : float
+        Power that enters: at the input member when it drives, else at the others, loss included.
+        [W]
+    efficiency : float or None
+        Power that leaves over power that enters; 0 if the loss takes all of it; None if no power
+        is passed on. [1]
+    """
+
+    members: Mapping[str, MemberState]
+    input_power: float
+    efficiency: float | None
+
+
+def planetary_speeds(
+    teeth_sun: int, teeth_ring: int, given: Mapping[str, float]
+) -> dict[str, float]:
+    """Speeds of sun, ring and carrier from those of two of them.
+
+    Willis: z_s omega_s + z_r omega_r = (z_s + z_r) omega_c. [rad/s]
+    """
+    factors = {"sun": teeth_sun, "ring": teeth_ring, "carrier": -(teeth_sun + teeth_ring)}
+    (third,) = set(MEMBERS) - set(given)
+    rest = sum(factors[name] * speed for name, speed in given.items())
+    speeds = {**given, third: -rest / factors[third]}
+    return {name: speeds[name] for name in MEMBERS}
+
+
+def planet_speed(teeth_sun: int, teeth_planet: int, speeds: Mapping[str, float]) -> float:
+    """Speed of a planet relative to the carrier: -(omega_s - omega_c) z_s/z_p. [rad/s]"""
+    return -(speeds["sun"] - speeds["carrier"]) * teeth_sun / teeth_planet
+
+
+def lossless_torques(
+    teeth_sun: int, teeth_ring: int, member: str, torque: float
+) -> dict[str, float]:
+    """Torques of all members from one of them, T_s : T_r : T_c = z_s : z_r : -(z_s + z_r). [N m]"""
+    factors = {"sun": teeth_sun, "ring": teeth_ring, "carrier": -(teeth_sun + teeth_ring)}
+    return {name: torque * factors[name] / factors[member] for name in MEMBERS}
+
+
+def planetary_power_flow(
+    speeds: Mapping[str, float],
+    lossless: Mapping[str, float],
+    given: str,
+    held: str,
+    loss: float,
+) -> PowerFlow:
+    """Torques and powers with the loss, the torque of the member `given` being prescribed.
+
+    Torques of the three members balance, and their powers sum to the loss; the reaction of the
+    housing to the drag counts with the member `held`.
+
+    Parameters
+    ----------
+    speeds, lossless : mapping of str to float
+        Speeds [rad/s] and lossless torques [N m] of the members.
+    given, held : str
+        The member of prescribed torque, and the fixed or second driven one; the third is the
+        output.
+    loss : float
+        [W]
+    """
+    (output,) = set(MEMBERS) - {given, held}
+    torque = lossless[given]
+    difference = speeds[output] - speeds[held]
+    if difference == 0.0:
+        torques = dict(lossless)  # turning as one body: no relative motion, no power passed on
+    else:
+        torques = {given: torque}
+        torques[output] = (loss - torque * (speeds[given] - speeds[held])) / difference
+        torques[held] = -torque - torques[output]
+    members = {name: MemberState(speeds[name], torques[name]) for name in MEMBERS}
+    passed = sum(max(0.0, lossless[name] * speeds[name]) for name in MEMBERS)
+    return _flow(members, passed, torque * speeds[given] >= 0, loss)
+
+
+def pair_power_flow(
+    ratio: float, internal: bool, torque: float, speed: float, loss: float
+) -> PowerFlow:
+    """Power flow of a pair, pinion torque and speed given, ratio u = z2/z1."""
+    speed2 = speed / ratio * (1 if internal else -1)
+    passed = torque * speed
+    torque2 = (loss - passed) / speed2 if speed2 else -torque * ratio * (1 if internal else -1)
+    members = {"pinion": MemberState(speed, torque), "gear": MemberState(speed2, torque2)}
+    return _flow(members, abs(passed), passed >= 0, loss)
+
+
+def _flow(
+    members: Mapping[str, MemberState], passed: float, driving: bool, loss: float
+) -> PowerFlow:
+    """Input power and efficiency; `passed` is the power passed on without losses."""
+    entering = passed if driving else passed + loss
+    efficiency = None if passed == 0.0 else max(0.0, 1 - loss / entering)
+    return PowerFlow(members, entering, efficiency)

@@ -1,0 +1,101 @@
+"""Built-in data: oils, materials, surface finishes and published cases, as TOML files.
+
+Every value stands in its file with its source; the functions here only read.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from importlib import resources
+from importlib.resources.abc import Traversable
+from typing import Any
+
+__all__ = [
+    "builtin_case",
+    "case_files",
+    "case_variants",
+    "finishes",
+    "materials",
+    "oil_names",
+    "oil_table",
+]
+
+
+def _root() -> Traversable:
+    return resources.files("epicyclic.library")
+
+
+def _read(file: Traversable) -> dict[str, Any]:
+    return tomllib.loads(file.read_text(encoding="utf-8"))
+
+
+def _stems(folder: str) -> tuple[str, ...]:
+    files = (entry.name for entry in _root().joinpath(folder).iterdir())
+    return tuple(sorted(name.removesuffix(".toml") for name in files if name.endswith(".toml")))
+
+
+@cache
+def oil_names() -> tuple[str, ...]:
+    """Names of the built-in oils."""
+    return _stems("oils")
+
+
+@cache
+def oil_table(name: str) -> dict[str, Any]:
+    """The data of one built-in oil."""
+    return _read(_root().joinpath("oils", f"{name}.toml")) | {"name": name}
+
+
+@cache
+def materials() -> dict[str, dict[str, Any]]:
+    """Built-in gear and bearing steels by name."""
+    return _read(_root().joinpath("materials.toml"))
+
+
+@cache
+def finishes() -> dict[str, dict[str, Any]]:
+    """Built-in surface finishes by name."""
+    return _read(_root().joinpath("finishes.toml"))
+
+
+@cache
+def case_files() -> tuple[str, ...]:
+    """Names of the built-in cases, without their variants."""
+    return _stems("cases")
+
+
+@cache
+def case_variants() -> dict[str, list[dict[str, Any]]]:
+    """For each built-in case, its groups of variants: word in the name -> keys it sets."""
+    return _read(_root().joinpath("variants.toml"))
+
+
+def builtin_case(name: str) -> dict[str, Any]:
+    """The tables of a built-in case or of one of its variants.
+
+    A variant is named by words after the name of its case, at most one of each group, in any
+    order: ``talbot-2012-n6-polished-40C``.
+
+    Raises
+    ------
+    KeyError
+        If there is no such case or variant.
+    """
+    base = max((file for file in case_files() if f"{name}-".startswith(f"{file}-")), key=len)
+    table = _read(_root().joinpath("cases", f"{base}.toml"))
+    words = name[len(base) :].split("-")[1:]
+    groups = case_variants().get(base, [])
+    for group in groups:
+        chosen = [word for word in words if word in group["words"]]
+        if len(chosen) > 1:
+            raise KeyError(name)
+        for word in chosen:
+            words.remove(word)
+            for key, value in group["words"][word].items():
+                section, _, field = key.rpartition(".")
+                (table[section] if section else table)[field] = value
+            table["title"] += f", {word}"
+    if words:
+        raise KeyError(name)
+    return table

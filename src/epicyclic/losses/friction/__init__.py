@@ -1,0 +1,72 @@
+"""Coefficients of sliding friction: one class a model, chosen by name.
+
+=================  ============  ==================================================================
+name               kind          source
+=================  ============  ==================================================================
+mixed-ehl          local         Talbot (2012), Eq. 5.8: regression of mixed-EHL simulations
+xu-2007            local         Xu, Kahraman, Anderson, Maddock (2007): regression, full film
+benedict-kelley    local         Benedict and Kelley (1961)
+matsumoto          local         Matsumoto and Morikawa (2014): film share
+doleschel          local         Doleschel (2002): film share
+schlenk            mean          Schlenk (1994), as in ISO/TR 14179-2
+niemann-winter     mean          Michaelis (1987), as in Niemann and Winter
+constant           mean          the case
+table              local         the case
+=================  ============  ==================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from epicyclic.losses.friction.base import FrictionModel
+from epicyclic.losses.friction.classical import BenedictKelley, NiemannWinter, Schlenk
+from epicyclic.losses.friction.film_share import Doleschel, Matsumoto
+from epicyclic.losses.friction.regressions import MixedEhl, Xu2007
+from epicyclic.losses.friction.user import Constant, FrictionMap
+
+__all__ = ["FRICTION_MODELS", "FrictionModel", "FrictionSettings", "friction_model"]
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionSettings:
+    """Numbers that some models take from the case.
+
+    Attributes
+    ----------
+    constant : float
+        Coefficient of the model constant. [1]
+    boundary, fluid : float
+        Coefficients of dry and of separated contact in the film-share models. [1]
+    table : FrictionMap or None
+    """
+
+    constant: float
+    boundary: float
+    fluid: float
+    table: FrictionMap | None = None
+
+
+def _table(settings: FrictionSettings) -> FrictionModel:
+    if settings.table is None:
+        raise ValueError("the friction model 'table' needs a friction_table")
+    return settings.table
+
+
+FRICTION_MODELS: dict[str, Callable[[FrictionSettings], FrictionModel]] = {
+    "mixed-ehl": lambda _: MixedEhl(),
+    "xu-2007": lambda _: Xu2007(),
+    "benedict-kelley": lambda _: BenedictKelley(),
+    "matsumoto": lambda settings: Matsumoto(settings.boundary, settings.fluid),
+    "doleschel": lambda settings: Doleschel(settings.boundary, settings.fluid),
+    "schlenk": lambda _: Schlenk(),
+    "niemann-winter": lambda _: NiemannWinter(),
+    "constant": lambda settings: Constant(settings.constant),
+    "table": _table,
+}
+
+
+def friction_model(name: str, settings: FrictionSettings) -> FrictionModel:
+    """The friction model called `name`."""
+    return FRICTION_MODELS[name](settings)

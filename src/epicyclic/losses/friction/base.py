@@ -1,0 +1,70 @@
+"""What a friction model is, and quantities that several of them use."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.validity import Range
+
+__all__ = [
+    "RA_OVER_RQ",
+    "FrictionModel",
+    "mean_roughness_ra",
+    "pitch_point_radius",
+    "pitch_point_sum_speed",
+    "specific_load",
+]
+
+FloatArray = NDArray[np.float64]
+
+RA_OVER_RQ = math.sqrt(2 / math.pi)
+"""Ra/Rq of a Gaussian profile. [1]"""
+
+
+class FrictionModel(Protocol):
+    """A way to the coefficient of sliding friction at every point of a mesh.
+
+    Attributes
+    ----------
+    title, source : str
+        For reports.
+    ranges : tuple of Range
+        Ranges of the quantities in `values`.
+    """
+
+    title: ClassVar[str]
+    source: ClassVar[str]
+    ranges: ClassVar[tuple[Range, ...]]
+
+    def coefficient(self, contact: MeshContact) -> FloatArray:
+        """Coefficient of friction at each point of `contact`, shape (n,). [1]"""
+        ...
+
+
+def specific_load(contact: MeshContact) -> float:
+    """F_bt/b. [N/m]"""
+    return contact.force / contact.mesh.face_width
+
+
+def pitch_point_sum_speed(contact: MeshContact) -> float:
+    """v_SigmaC = 2 v_t sin(alpha_wt), the sum of the surface speeds at the pitch point. [m/s]"""
+    return 2 * contact.pitch_line_speed * math.sin(contact.mesh.operating_pressure_angle)
+
+
+def pitch_point_radius(contact: MeshContact) -> float:
+    """rho_redC, equivalent radius at the pitch point in the normal section. [m]"""
+    mesh = contact.mesh
+    rho1 = mesh.pitch_point
+    rho2 = mesh.curvature2(rho1)
+    return rho1 * rho2 / ((rho2 + mesh.side * rho1) * math.cos(mesh.gear1.rack.base_helix_angle))
+
+
+def mean_roughness_ra(contact: MeshContact) -> float:
+    """(Ra1 + Ra2)/2 from the rms values of the flanks. [m]"""
+    flanks = contact.flanks
+    return RA_OVER_RQ * (flanks.roughness1 + flanks.roughness2) / 2

@@ -1,0 +1,67 @@
+"""Friction as a mixture of dry and separated contact: mu = xi mu_b + (1 - xi) mu_f.
+
+The share xi of dry contact follows from a film ratio. The coefficients mu_b and mu_f belong to the
+oil and the surfaces; the original works give them from disc tests of single oils, so that here they
+are keys of the case. Film thicknesses are those of smooth, isothermal contacts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.kernels.line_contact import pan_hamrock_central_film
+from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.friction.base import RA_OVER_RQ, mean_roughness_ra
+from epicyclic.losses.validity import Range
+
+__all__ = ["Doleschel", "Matsumoto"]
+
+FloatArray = NDArray[np.float64]
+
+RZ_OVER_RA = 6.0
+"""Rz/Ra, DIN 3991 approximation. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Doleschel:
+    """xi = (1 - lambda/2)^2 for lambda < 2, else 0; lambda = h_c/[(Ra1 + Ra2)/2]."""
+
+    title: ClassVar = "film share of Doleschel"
+    source: ClassVar = "A. Doleschel, Diss. TU Muenchen (2002)"
+    ranges: ClassVar[tuple[Range, ...]] = ()
+
+    boundary: float
+    fluid: float
+
+    def coefficient(self, contact: MeshContact) -> FloatArray:
+        """See the class. [1]"""
+        film = contact.radius * pan_hamrock_central_film(
+            contact.speed_number, contact.material_number, contact.load_number
+        )
+        ratio = np.minimum(film / mean_roughness_ra(contact), 2.0)
+        share = (1 - ratio / 2) ** 2
+        mu: FloatArray = share * self.boundary + (1 - share) * self.fluid
+        return mu
+
+
+@dataclass(frozen=True, slots=True)
+class Matsumoto:
+    """xi = log10(D)/2 within 0 to 1, D = (Rz1 + Rz2)/h_min."""
+
+    title: ClassVar = "film share of Matsumoto and Morikawa"
+    source: ClassVar = "S. Matsumoto and K. Morikawa, Int. Gear Conf. Lyon (2014) 1078"
+    ranges: ClassVar[tuple[Range, ...]] = ()
+
+    boundary: float
+    fluid: float
+
+    def coefficient(self, contact: MeshContact) -> FloatArray:
+        """See the class. [1]"""
+        rz = RZ_OVER_RA * RA_OVER_RQ * (contact.flanks.roughness1 + contact.flanks.roughness2)
+        share = np.clip(np.log10(rz / contact.minimum_film) / 2, 0.0, 1.0)
+        mu: FloatArray = share * self.boundary + (1 - share) * self.fluid
+        return mu

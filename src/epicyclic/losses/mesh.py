@@ -1,0 +1,131 @@
+r"""Load-dependent loss of one mesh.
+
+Local method, Talbot (2012), Eq. 5.9 and 5.11: averages over the mesh period of
+
+.. math:: P_\mu = \int \mu W' |u_s|\,\mathrm{d}l, \qquad P_r = \int \Re\,\mathrm{d}l .
+
+Quick method: mean friction times the loss factor of Ohlendorf, no rolling loss.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.geometry.mesh import Mesh
+from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.friction.base import FrictionModel
+from epicyclic.losses.rolling import RollingModel
+from epicyclic.losses.validity import Range, ValidityFlag, check_ranges
+
+__all__ = ["MeshLoss", "local_loss", "loss_factor_loss", "ohlendorf_loss_factor"]
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class MeshLoss:
+    """Loss of one mesh.
+
+    Attributes
+    ----------
+    sliding, rolling : float
+        [W]
+    mean_friction : float
+        Coefficient of friction, weighted with the sliding power of the load. [1]
+    flags : tuple of ValidityFlag
+    """
+
+    sliding: float
+    rolling: float
+    mean_friction: float
+    flags: tuple[ValidityFlag, ...] = ()
+
+
+def local_loss(
+    contact: MeshContact, friction: FrictionModel, rolling: RollingModel
+) -> MeshLoss:
+    """Sliding and rolling loss, summed along the contact lines, averaged over the mesh period."""
+    sliding_power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
+    local_sliding = friction.coefficient(contact) * sliding_power
+    local_rolling = rolling.loss_density(contact) * contact.weight
+    sliding = float(local_sliding.sum())
+    where = contact.mesh.name
+    return MeshLoss(
+        sliding=sliding,
+        rolling=float(local_rolling.sum()),
+        mean_friction=sliding / float(sliding_power.sum()),
+        flags=_flags(f"{friction.title} ({where})", friction.ranges, contact, local_sliding)
+        + _flags(f"{rolling.title} ({where})", rolling.ranges, contact, local_rolling),
+    )
+
+
+def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
+    """The quick method: P = P_in mu_m H_V. Niemann and Winter, vol. II, Eq. 21.11/3.
+
+    A local friction model enters with its mean over the sliding power.
+    """
+    sliding_power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
+    local_sliding = friction.coefficient(contact) * sliding_power
+    mean = float(local_sliding.sum() / sliding_power.sum())
+    return MeshLoss(
+        sliding=contact.input_power * mean * ohlendorf_loss_factor(contact.mesh),
+        rolling=0.0,
+        mean_friction=mean,
+        flags=_flags(
+            f"{friction.title} ({contact.mesh.name})", friction.ranges, contact, local_sliding
+        ),
+    )
+
+
+def ohlendorf_loss_factor(mesh: Mesh) -> float:
+    """H_V = pi (u +- 1)/(z1 u cos(beta_b)) (1 - eps_alpha + eps_1^2 + eps_2^2). [1]
+
+    H. Ohlendorf, Diss. TH Muenchen (1958); minus for internal meshes. Constant friction, tooth
+    pairs in contact sharing the load equally. The last bracket holds for 1 <= eps_alpha <= 2 with
+    eps_1, eps_2 <= 1; here it is the integral that it stands for, 2 int |s|/N(s) ds with N the
+    number of pairs in contact, which has no such limits.
+    """
+    bracket = _sliding_integral(mesh.tip_contact_ratio1, mesh.tip_contact_ratio2)
+    ratio_term = (mesh.ratio + mesh.side) / (mesh.gear1.teeth * mesh.ratio)
+    return math.pi * ratio_term * bracket / math.cos(mesh.gear1.rack.base_helix_angle)
+
+
+def _sliding_integral(tip1: float, tip2: float) -> float:
+    """2 int |s|/N(s) ds from -tip2 to tip1, s in base pitches from the pitch point."""
+    # N changes where a neighbouring pair enters or leaves, at whole pitches from the ends
+    reach = math.ceil(tip1 + tip2)
+    corners = {-tip2, tip1, 0.0}
+    corners |= {-tip2 + k for k in range(1, reach)} | {tip1 - k for k in range(1, reach)}
+    ordered = sorted(corner for corner in corners if -tip2 <= corner <= tip1)
+    total = 0.0
+    for start, end in zip(ordered[:-1], ordered[1:], strict=True):
+        middle = (start + end) / 2
+        pairs = math.floor(tip1 - middle) + math.floor(middle + tip2) + 1
+        total += 2 * abs(middle) * (end - start) / pairs
+    return total
+
+
+def _flags(
+    model: str, ranges: tuple[Range, ...], contact: MeshContact, weight: FloatArray
+) -> tuple[ValidityFlag, ...]:
+    """Range check of `contact`, roughness of both flanks included."""
+    flags: tuple[ValidityFlag, ...] = ()
+    for item in ranges:
+        values: FloatArray | float
+        if item.name == "roughness":
+            values = np.array([contact.flanks.roughness1, contact.flanks.roughness2])
+            flags += check_ranges(model, (item,), {item.name: values})
+            continue
+        if item.name == "temperature":
+            values = contact.oil.temperature
+        else:
+            values = getattr(contact, item.name)
+        scalar = np.ndim(values) == 0
+        flags += check_ranges(
+            model, (item,), {item.name: values}, 1.0 if scalar else weight
+        )
+    return flags
