@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from epicyclic.analysis.solve import mesh_contacts, solve
     from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema, load_case
     from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
+    from epicyclic.sweeps.run import sweep
 
 _HOME = {
     "ConvergenceError": "epicyclic.errors",
@@ -32,6 +33,7 @@ _HOME = {
     "load_case": "epicyclic.case.case",
     "mesh_contacts": "epicyclic.analysis.solve",
     "solve": "epicyclic.analysis.solve",
+    "sweep": "epicyclic.sweeps.run",
 }
 
 __all__ = [
@@ -46,6 +48,7 @@ __all__ = [
     "load_case",
     "mesh_contacts",
     "solve",
+    "sweep",
 ]
 
 

@@ -126,9 +126,7 @@ def resolve_models(case: Case) -> dict[str, str]:
         automatic["bearing"] = "mixed-ehl" if own and caged else "palmgren"
         keys += ["bearing", "bearing_viscous"]
     chosen = {key: str(getattr(models, key)) for key in keys}
-    return {
-        key: automatic[key] if choice == "auto" else choice for key, choice in chosen.items()
-    }
+    return {key: automatic[key] if choice == "auto" else choice for key, choice in chosen.items()}
 
 
 def fluids_of(case: Case) -> Fluids:
@@ -221,9 +219,7 @@ def solve_mesh(case: Case, duty: MeshDuty, oil: OilState, count: int) -> MeshOut
     return MeshOutcome(parts, _mesh_figures(duty, contact, loss.mean_friction), loss.flags)
 
 
-def _mesh_figures(
-    duty: MeshDuty, contact: MeshContact | None, friction_mean: float
-) -> MeshFigures:
+def _mesh_figures(duty: MeshDuty, contact: MeshContact | None, friction_mean: float) -> MeshFigures:
     mesh = duty.mesh
     speed1 = abs(duty.speed1)
     sliding = max(

@@ -62,9 +62,7 @@ def solve_planetary(case: PlanetaryCase) -> Result:
     fluids = fluids_of(case)
     speeds = member_speeds(case)
     duties = planetary_duties(case)
-    meshes = {
-        duty.key: solve_mesh(case, duty, fluids.oil, case.planet.count) for duty in duties
-    }
+    meshes = {duty.key: solve_mesh(case, duty, fluids.oil, case.planet.count) for duty in duties}
     bearing = _solve_bearing(case, duties, fluids.oil, speeds)
     parts = bearing.parts | _drags(case, speeds, fluids.mixture)
     parts["thrust_bearing_viscous"] = _thrust_bearing(case, speeds, fluids.oil)

@@ -12,7 +12,7 @@ import platform
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib import metadata
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from epicyclic.kinematics import PowerFlow
 from epicyclic.losses.contact import MeshContact
@@ -20,6 +20,9 @@ from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.losses.validity import ValidityFlag, describe_flags
 from epicyclic.status import Status
 from epicyclic.units import Quantity
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 __all__ = ["BearingFigures", "Figure", "LossTerm", "MeshFigures", "Result", "figures"]
 
@@ -52,9 +55,9 @@ class Figure:
     unit: str
 
 
-def figures(source: object) -> Iterator[Figure]:
+def figures(source: DataclassInstance) -> Iterator[Figure]:
     """The labelled numbers of a dataclass."""
-    for field in dataclasses.fields(source):  # type: ignore[arg-type]
+    for field in dataclasses.fields(source):
         if "label" in field.metadata:
             unit: Quantity = field.metadata["unit"]
             value = getattr(source, field.name)
@@ -95,6 +98,7 @@ class LossTerm:
 class MeshFigures:
     """What an engineer checks by eye on a mesh; NaN where there is no load or no motion."""
 
+    contact: MeshContact | None
     pressure_angle: float = _figure("operating pressure angle, transverse", _DEGREE)
     transverse_contact_ratio: float = _figure("transverse contact ratio", _NUMBER)
     overlap_ratio: float = _figure("overlap ratio", _NUMBER)
@@ -107,13 +111,13 @@ class MeshFigures:
     film_ratio_max: float = _figure("film ratio, largest", _NUMBER)
     friction_mean: float = _figure("mean coefficient of friction", _NUMBER)
     loss_factor: float = _figure("loss factor H_V (Ohlendorf)", _NUMBER)
-    contact: MeshContact | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BearingFigures:
     """What an engineer checks by eye on the planet bearing."""
 
+    loads: RollerLoads | None
     radial_force: float = _figure("radial force", _NEWTON)
     moment: float = _figure("tilting moment", _NEWTON_METRE)
     speed: float = _figure("speed relative to carrier", _RPM)
@@ -121,7 +125,6 @@ class BearingFigures:
     roller_load_max: float = _figure("most loaded roller", _NEWTON)
     roller_azimuth: float = _figure("azimuth of that roller from the load", _DEGREE)
     hertz_pressure_max: float = _figure("largest Hertz pressure, inner race", _GIGAPASCAL)
-    loads: RollerLoads | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -216,7 +219,7 @@ class Result:
             speed = _RPM.to_display(member.speed)
             yield Figure(f"{name}_speed", f"speed of the {name}", speed, "rpm")
             yield Figure(f"{name}_torque", f"torque on the {name}", member.torque, "N*m")
-        parts: dict[str, object] = dict(self.meshes)
+        parts: dict[str, DataclassInstance] = dict(self.meshes)
         if self.bearing is not None:
             parts["planet_bearing"] = self.bearing
         for name, part in parts.items():
@@ -261,7 +264,8 @@ class Result:
             "inputs": dict(self.inputs),
             "versions": versions(),
         }
-        return _without_nan(result)  # type: ignore[no-any-return]
+        clean: dict[str, Any] = _without_nan(result)
+        return clean
 
     def to_json(self) -> str:
         """`to_dict` as indented JSON text."""
@@ -274,7 +278,7 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version()} | {name: metadata.version(name) for name in names}
 
 
-def _figures_dict(source: object) -> dict[str, Any]:
+def _figures_dict(source: DataclassInstance) -> dict[str, Any]:
     return {item.key: {"value": item.value, "unit": item.unit} for item in figures(source)}
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 __all__ = ["admissible_angles", "nearest_admissible_angle", "smallest_planet_gap"]
 
@@ -36,7 +37,7 @@ def smallest_planet_gap(
     if len(angles) < 2:
         return math.inf
     ordered = sorted(angle % (2 * math.pi) for angle in angles)
-    steps = [b - a for a, b in zip(ordered, ordered[1:], strict=False)]
+    steps = [b - a for a, b in pairwise(ordered)]
     steps.append(2 * math.pi - ordered[-1] + ordered[0])
     chord = min(2 * center_distance * math.sin(step / 2) for step in steps)
     return chord - 2 * tip_radius

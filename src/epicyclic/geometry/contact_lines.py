@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,7 +123,7 @@ def _positions(mesh: Mesh, count: int) -> tuple[FloatArray, FloatArray]:
     breaks = np.unique([0.0, *(corner % 1.0 for corner in corners), 1.0])
     parts = [np.empty(0)]
     widths = [np.empty(0)]
-    for start, end in zip(breaks[:-1], breaks[1:], strict=True):
+    for start, end in pairwise(breaks):
         n = max(1, round(count * (end - start)))
         parts.append(start + (np.arange(n) + 0.5) * (end - start) / n)
         widths.append(np.full(n, (end - start) / n))

@@ -147,7 +147,7 @@ def half_angle_from_thickness(
 def half_angle_from_profile_shift(rack: BasicRack, teeth: int, coefficient: float) -> float:
     """Half angle at the reference circle for profile shift `coefficient`. ISO 21771, Eq. 33."""
     shift = coefficient * rack.normal_module
-    thickness = (
-        math.pi * rack.transverse_module / 2 + 2 * shift * math.tan(rack.transverse_pressure_angle)
+    thickness = math.pi * rack.transverse_module / 2 + 2 * shift * math.tan(
+        rack.transverse_pressure_angle
     )
     return thickness / (teeth * rack.transverse_module)

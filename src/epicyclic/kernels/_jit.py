@@ -11,7 +11,7 @@ import hashlib
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import numba
 import platformdirs
@@ -43,12 +43,13 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     ``fastmath`` stays off, because it makes NaN checks vanish; division by zero gives inf, and
     callers check that results are finite.
     """
-    previous = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = _CACHE_DIR
+    config: Any = numba.config
+    previous = config.CACHE_DIR
+    config.CACHE_DIR = _CACHE_DIR
     try:
         compiled: Callable[P, R] = numba.njit(
             cache=True, fastmath=False, error_model="numpy", nogil=True
         )(function)
     finally:
-        numba.config.CACHE_DIR = previous
+        config.CACHE_DIR = previous
     return compiled

@@ -35,17 +35,20 @@ def hertz_half_width(w: Real, r_eq: Real, e_eq: float) -> Real:
 
     `w` line load [N/m], `r_eq` equivalent radius [m], `e_eq` [Pa].
     """
-    return (8 * w * r_eq / (math.pi * e_eq)) ** 0.5  # type: ignore[no-any-return]
+    half_width: Real = (8 * w * r_eq / (math.pi * e_eq)) ** 0.5
+    return half_width
 
 
 def hertz_pressure(w: Real, r_eq: Real, e_eq: float) -> Real:
     """p_h = 2 W'/(pi b_h). Johnson (1985), Eq. 4.44. [Pa]"""
-    return (w * e_eq / (2 * math.pi * r_eq)) ** 0.5  # type: ignore[no-any-return]
+    pressure: Real = (w * e_eq / (2 * math.pi * r_eq)) ** 0.5
+    return pressure
 
 
 def line_load_at_pressure(p_h: Real, r_eq: Real, e_eq: float) -> Real:
     """W' that gives the Hertz pressure `p_h`: the inverse of `hertz_pressure`. [N/m]"""
-    return 2 * math.pi * r_eq * p_h**2 / e_eq  # type: ignore[no-any-return]
+    load: Real = 2 * math.pi * r_eq * p_h**2 / e_eq
+    return load
 
 
 def pan_hamrock_minimum_film(u: Real, g: float, w: Real) -> Real:
@@ -54,12 +57,14 @@ def pan_hamrock_minimum_film(u: Real, g: float, w: Real) -> Real:
     Pan and Hamrock, J. Tribol. 111 (1989) 246; Talbot (2012), p. 135. Smooth, isothermal, fully
     flooded line contacts in the elastic-piezoviscous regime.
     """
-    return 1.714 * u**0.694 * g**0.568 * w ** (-0.128)  # type: ignore[no-any-return]
+    film: Real = 1.714 * u**0.694 * g**0.568 * w ** (-0.128)
+    return film
 
 
 def pan_hamrock_central_film(u: Real, g: float, w: Real) -> Real:
     """h_c/R_eq = 2.922 U^0.692 G^0.470 W^-0.166. Pan and Hamrock (1989), as above."""
-    return 2.922 * u**0.692 * g**0.470 * w ** (-0.166)  # type: ignore[no-any-return]
+    film: Real = 2.922 * u**0.692 * g**0.470 * w ** (-0.166)
+    return film
 
 
 def goksem_hargreaves_force(u: Real, g: float, w: Real, thermal_load: Real) -> Real:
@@ -70,4 +75,5 @@ def goksem_hargreaves_force(u: Real, g: float, w: Real, thermal_load: Real) -> R
     flooded contacts. [1]
     """
     inlet_heating = 1 / (1 + 0.29 * thermal_load**0.78)
-    return 4.318 * (g * u) ** 0.658 * w**0.0126 * inlet_heating  # type: ignore[no-any-return]
+    force: Real = 4.318 * (g * u) ** 0.658 * w**0.0126 * inlet_heating
+    return force

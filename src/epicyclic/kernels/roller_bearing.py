@@ -46,7 +46,9 @@ NEWTON_SHIFT = 1e-12
 def slice_stiffness(loaded_length: float) -> float:
     """K of q = K delta^1.11, q in N/m and delta in m, for a roller loaded over `loaded_length`."""
     length_mm = loaded_length * MM
-    return MM * MM**DEFLECTION_EXPONENT / (DEFLECTION_CONSTANT * length_mm**LENGTH_EXPONENT)
+    compliance: float = DEFLECTION_CONSTANT * length_mm**LENGTH_EXPONENT
+    stiffness: float = MM * MM**DEFLECTION_EXPONENT / compliance
+    return stiffness
 
 
 @kernel
@@ -56,7 +58,8 @@ def slice_deflection(
     """Deflection of one contact of a slice; negative where there is a gap. [m]"""
     radial = d[0] * np.cos(psi) + d[1] * np.sin(psi)
     tilt = d[2] * np.cos(psi) + d[3] * np.sin(psi)
-    return 0.5 * (radial + y_over_l * tilt - 0.5 * clearance) - crown
+    delta: float = 0.5 * (radial + y_over_l * tilt - 0.5 * clearance) - crown
+    return delta
 
 
 @kernel
@@ -207,7 +210,8 @@ def clearance_length(clearance: float) -> float:
 @kernel
 def clearance_scale(clearance: float) -> float:
     """delta^0.11 at that length."""
-    return clearance_length(clearance) ** LENGTH_EXPONENT
+    power: float = clearance_length(clearance) ** LENGTH_EXPONENT
+    return power
 
 
 @kernel

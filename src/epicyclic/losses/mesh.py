@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,9 +46,7 @@ class MeshLoss:
     flags: tuple[ValidityFlag, ...] = ()
 
 
-def local_loss(
-    contact: MeshContact, friction: FrictionModel, rolling: RollingModel
-) -> MeshLoss:
+def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingModel) -> MeshLoss:
     """Sliding and rolling loss, summed along the contact lines, averaged over the mesh period."""
     sliding_power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
     local_sliding = friction.coefficient(contact) * sliding_power
@@ -102,7 +101,7 @@ def _sliding_integral(tip1: float, tip2: float) -> float:
     corners |= {-tip2 + k for k in range(1, reach)} | {tip1 - k for k in range(1, reach)}
     ordered = sorted(corner for corner in corners if -tip2 <= corner <= tip1)
     total = 0.0
-    for start, end in zip(ordered[:-1], ordered[1:], strict=True):
+    for start, end in pairwise(ordered):
         middle = (start + end) / 2
         pairs = math.floor(tip1 - middle) + math.floor(middle + tip2) + 1
         total += 2 * abs(middle) * (end - start) / pairs
@@ -125,7 +124,5 @@ def _flags(
         else:
             values = getattr(contact, item.name)
         scalar = np.ndim(values) == 0
-        flags += check_ranges(
-            model, (item,), {item.name: values}, 1.0 if scalar else weight
-        )
+        flags += check_ranges(model, (item,), {item.name: values}, 1.0 if scalar else weight)
     return flags

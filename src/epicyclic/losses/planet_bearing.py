@@ -138,9 +138,7 @@ class RollerBearing:
     def slice_positions(self) -> FloatArray:
         """Axial position of the slices, shape (rows, slices). [m]"""
         within = (np.arange(self.slices) + 0.5) * self.slice_width - self.roller_length / 2
-        middles = (np.arange(self.rows) - (self.rows - 1) / 2) * (
-            self.roller_length + self.row_gap
-        )
+        middles = (np.arange(self.rows) - (self.rows - 1) / 2) * (self.roller_length + self.row_gap)
         positions: FloatArray = middles[:, None] + within
         return positions
 
@@ -287,8 +285,6 @@ def mixed_ehl_rolling_loss(
     return BearingLoss(float(local.sum()), flags)
 
 
-def palmgren_loss(
-    coefficient: float, force: float, pitch_diameter: float, speed: float
-) -> float:
+def palmgren_loss(coefficient: float, force: float, pitch_diameter: float, speed: float) -> float:
     """P_mb = f1 F_r d_m omega. Talbot (2012), Eq. 3.1, after Palmgren and Harris. [W]"""
     return coefficient * force * pitch_diameter * abs(speed)

@@ -82,7 +82,7 @@ class GoksemHargreaves:
         )
         number = goksem_hargreaves_force(
             contact.speed_number,
-            contact.material_number,  # type: ignore[arg-type]
+            contact.material_number,
             contact.load_number,
             heating,
         )

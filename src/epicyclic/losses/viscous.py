@@ -38,7 +38,7 @@ def bearing_viscous_loss(
     """
     rpm = abs(speed) / RPM
     product = kinematic_viscosity * 1e6 * rpm
-    group = product ** (2 / 3) if product >= LOW_SPEED_LIMIT else 160.0
+    group = math.pow(product, 2 / 3) if product >= LOW_SPEED_LIMIT else 160.0
     moment = 1e-7 * factor * group * (pitch_diameter * 1e3) ** 3 * 1e-3
     return moment * abs(speed)
 
@@ -61,9 +61,9 @@ def disc_drag_loss(radius: float, width: float, speed: float, mixture: MixtureSt
     rim = 4 * math.pi * mixture.dynamic_viscosity * width * radius**2 * omega**2
     nu = mixture.kinematic_viscosity
     if reynolds_number(radius, omega, mixture) < TRANSITION_REYNOLDS:
-        face = 0.41 * nu**0.5 * omega**2.5 * radius**4
+        face = 0.41 * math.sqrt(nu) * math.pow(omega, 2.5) * radius**4
     else:
-        face = 0.025 * nu**0.14 * omega**2.86 * radius**4.72
+        face = 0.025 * math.pow(nu, 0.14) * math.pow(omega, 2.86) * math.pow(radius, 4.72)
     return rim + math.pi * mixture.density * face
 
 

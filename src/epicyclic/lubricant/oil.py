@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from itertools import pairwise
+from typing import Annotated, Any, Literal, cast
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -103,7 +104,8 @@ class Oil(_Data):
     kind: Literal["mineral", "pao", "ester", "pag", "atf"]
     description: str = ""
     temperature_range: tuple[Temperature, Temperature] = Field(
-        default=("0 degC", "120 degC"), description="Where the values are meant to hold."
+        default=cast("Any", ("0 degC", "120 degC")),
+        description="Where the values are meant to hold.",
     )
     kinematic_viscosity: tuple[ViscosityPoint, ...] = Field(min_length=2)
     density: tuple[DensityPoint, ...] = Field(min_length=1)
@@ -125,7 +127,7 @@ class Oil(_Data):
     @model_validator(mode="after")
     def _check_points(self) -> Oil:
         viscosity = sorted(self.kinematic_viscosity, key=lambda point: point.temperature)
-        for colder, warmer in zip(viscosity[:-1], viscosity[1:], strict=True):
+        for colder, warmer in pairwise(viscosity):
             if warmer.temperature == colder.temperature:
                 raise PydanticCustomError(
                     "oil", "kinematic_viscosity has two values at one temperature"

@@ -139,7 +139,7 @@ def mixture_state(oil: OilState, oil_fraction: float, pressure: float) -> Mixtur
 
 def air_viscosity(temperature: float) -> float:
     """Dynamic viscosity of air, Sutherland's law, 100 to 1900 K. ISO 2533. [Pa s]"""
-    return SUTHERLAND_CONSTANT * temperature**1.5 / (temperature + SUTHERLAND_TEMPERATURE)
+    return SUTHERLAND_CONSTANT * math.pow(temperature, 1.5) / (temperature + SUTHERLAND_TEMPERATURE)
 
 
 def _kinematic_viscosity(oil: Oil, temperature: float) -> float:
@@ -170,7 +170,7 @@ def _density(oil: Oil, temperature: float) -> float:
 def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> float:
     law = oil.pressure_viscosity
     if isinstance(law, GoldLaw):
-        return law.s * (nu / MM2_PER_S) ** law.t * 1e-9
+        return law.s * math.pow(nu / MM2_PER_S, law.t) * 1e-9
     return _roelands_index(oil, law, temperature) * roelands_slope(mu)
 
 

@@ -1,0 +1,1 @@
+"""Results as tables for a terminal. Only reads results; computes nothing."""

@@ -1,0 +1,1 @@
+"""Published figures, and what this package computes for them."""

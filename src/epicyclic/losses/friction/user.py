@@ -56,8 +56,6 @@ class FrictionMap:
 
         points = [np.asarray(axis) for _, axis in self.axes]
         table = RegularGridInterpolator(points, np.asarray(self.values))
-        where = [
-            np.clip(getattr(contact, name), axis[0], axis[-1]) for name, axis in self.axes
-        ]
+        where = [np.clip(getattr(contact, name), axis[0], axis[-1]) for name, axis in self.axes]
         mu: FloatArray = table(np.column_stack(where))
         return mu

@@ -1,0 +1,177 @@
+"""Tables of results, libraries and comparisons for a terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from rich import box
+from rich.console import Console, Group, RenderableType
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from epicyclic.analysis.compare import FrictionComparison
+from epicyclic.analysis.result import (
+    LOAD_DEPENDENT,
+    LOAD_INDEPENDENT,
+    Figure,
+    LossTerm,
+    MeshFigures,
+    Result,
+    figures,
+)
+from epicyclic.units import format_number, registry
+
+__all__ = ["friction_table", "plain_table", "result_tables", "terminal"]
+
+PIPE_WIDTH = 100
+"""Width of tables that do not go to a terminal. [characters]"""
+
+
+def terminal() -> Console:
+    """The console for results, on standard output."""
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=PIPE_WIDTH)
+
+
+def plain_table(title: str) -> Table:
+    """An empty table in the style of the package."""
+    return Table(
+        title=title,
+        title_justify="left",
+        title_style="bold",
+        header_style="",
+        box=box.SIMPLE_HEAD,
+        pad_edge=False,
+    )
+
+
+def result_tables(result: Result) -> RenderableType:
+    """Everything an engineer reads first: losses, figures, warnings, sources."""
+    parts: list[RenderableType] = [Text(result.title or result.kind, style="bold")]
+    parts += [_losses(result), _members(result), _meshes(result)]
+    if result.bearing is not None:
+        parts.append(_figure_table("Planet bearing", figures(result.bearing)))
+    if result.planet_angles:
+        angles = ", ".join(f"{math.degrees(angle):.4f}" for angle in result.planet_angles)
+        parts.append(Text(f"Planets at {angles} deg"))
+    parts.append(_methods(result))
+    parts += [_list("Warnings", result.warnings), _list("Sources", result.sources)]
+    return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
+
+
+def _table(title: str, *columns: str) -> Table:
+    table = plain_table(title)
+    for number, column in enumerate(columns):
+        first = number == 0
+        table.add_column(column, justify="left" if first else "right", no_wrap=first)
+    return table
+
+
+def _losses(result: Result) -> Table:
+    table = _table("Losses of the gear set", "", "W", "of total", "of input")
+    for group in (LOAD_DEPENDENT, LOAD_INDEPENDENT):
+        for term in result.terms:
+            if term.group == group:
+                table.add_row(term.name.replace("_", " "), *_share_cells(result, term))
+        watts = result.load_dependent if group == LOAD_DEPENDENT else result.load_independent
+        table.add_row(group, *_shares(result, watts), style="bold", end_section=True)
+    table.add_row("total", *_shares(result, result.total), style="bold", end_section=True)
+    table.add_row("input power", f"{result.input_power:.1f}", "", "")
+    efficiency = "undefined" if result.efficiency is None else f"{result.efficiency:.3%}"
+    table.add_row("efficiency", efficiency, "", "")
+    return table
+
+
+def _share_cells(result: Result, term: LossTerm) -> tuple[str, str, str]:
+    if term.left_out:
+        return "not included", "", ""
+    return _shares(result, term.watts)
+
+
+def _methods(result: Result) -> Group:
+    """Which method computed which terms, each method once."""
+    users: dict[str, list[str]] = {}
+    for term in result.terms:
+        if not term.left_out:
+            users.setdefault(term.method, []).append(term.name.replace("_", " "))
+    return _list("Methods", [f"{', '.join(names)}: {how}" for how, names in users.items()])
+
+
+def _shares(result: Result, watts: float) -> tuple[str, str, str]:
+    of_total = f"{watts / result.total:.1%}" if result.total else ""
+    of_input = f"{watts / result.input_power:.3%}" if result.input_power else ""
+    return f"{watts:.1f}", of_total, of_input
+
+
+def _members(result: Result) -> Table:
+    table = _table("Power flow (into the gear set)", "", "speed rpm", "torque N·m", "power W")
+    rpm = registry().Quantity(1.0, "rad/s").to("rpm").magnitude
+    for name, member in result.flow.members.items():
+        table.add_row(
+            name, f"{member.speed * rpm:.1f}", f"{member.torque:.2f}", f"{member.power:.1f}"
+        )
+    return table
+
+
+def _meshes(result: Result) -> Table:
+    names = [name.replace("_", " ") for name in result.meshes]
+    table = _table("Meshes", "", *names, "unit")
+    table.columns[-1].justify = "left"
+    columns: Sequence[MeshFigures] = tuple(result.meshes.values())
+    for row in zip(*(figures(mesh) for mesh in columns), strict=True):
+        table.add_row(row[0].label, *(_cell(item) for item in row), _unit(row[0]))
+    return table
+
+
+def _figure_table(title: str, items: Iterable[Figure]) -> Table:
+    table = _table(title, "", "value", "unit")
+    table.columns[-1].justify = "left"
+    for item in items:
+        table.add_row(item.label, _cell(item), _unit(item))
+    return table
+
+
+def _cell(item: Figure) -> str:
+    return "-" if math.isnan(item.value) else format_number(item.value, 4)
+
+
+def _unit(item: Figure) -> str:
+    return item.unit.replace("*", "·")
+
+
+def _list(title: str, items: Sequence[str]) -> Group:
+    if not items:
+        return Group(Text(f"{title}: none"))
+    lines = [Padding(Text(f"• {item}"), (0, 0, 0, 2)) for item in items]
+    return Group(Text(title, style="bold"), *lines)
+
+
+def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
+    """Friction models side by side, with the spread."""
+    meshes = list(rows[0].mean_friction)
+    columns = [f"μ {mesh.replace('_', ' ')}" for mesh in meshes]
+    table = _table("Friction models", "", *columns, "sliding W", "quick W", "to chosen", "")
+    table.columns[-1].justify = "left"
+    chosen = next((row.sliding for row in rows if row.chosen), math.nan)
+    for row in rows:
+        marks = ", ".join(
+            mark for mark, holds in (("chosen", row.chosen), ("out of range", row.flagged)) if holds
+        )
+        table.add_row(
+            row.name,
+            *(f"{row.mean_friction[mesh]:.4f}" for mesh in meshes),
+            f"{row.sliding:.1f}",
+            f"{row.quick:.1f}",
+            f"{row.sliding / chosen:.2f}" if chosen else "",
+            marks,
+            style="bold" if row.chosen else "",
+        )
+    low, high = min(row.sliding for row in rows), max(row.sliding for row in rows)
+    quick = Text("sliding: local, along the contact lines; quick: mean friction times loss factor")
+    spread = Text(
+        f"Spread: {low:.1f} to {high:.1f} W" + (f", a factor of {high / low:.2f}." if low else ".")
+    )
+    sources = _list("Sources", [f"{row.name}: {row.title}, {row.source}" for row in rows])
+    return Group(table, quick, spread, Text(), sources)

@@ -1,0 +1,51 @@
+"""Published against computed, for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from epicyclic.report.tables import plain_table
+from epicyclic.units import format_number
+from epicyclic.validation.compare import Comparison
+
+__all__ = ["validation_table"]
+
+_STYLES = {"agrees": "green", "differs": "bold red", "calibrated": "dim", "no verdict": "dim"}
+
+
+def validation_table(rows: Sequence[Comparison]) -> RenderableType:
+    """One row for each figure, and a count of the verdicts."""
+    table = plain_table("Published against computed")
+    table.add_column("figure, source")
+    for column in ("published", "computed", "difference"):
+        table.add_column(column, justify="right", no_wrap=True)
+    table.add_column("verdict", no_wrap=True)
+    for row in rows:
+        table.add_row(
+            Text.assemble(row.what, ("\n" + row.source, "dim")),
+            f"{_published(row)} {row.unit}".rstrip(),
+            f"{format_number(row.computed, 4)} {row.unit}".rstrip(),
+            f"{row.difference:+.1%}",
+            Text(_verdict(row), style=_STYLES[row.verdict]),
+        )
+    counted = [row for row in rows if row.role == "validation"]
+    agreeing = sum(row.verdict == "agrees" for row in counted)
+    note = Text(
+        f"{agreeing} of {len(counted)} figures agree within their tolerances. Figures marked "
+        "'calibrated' fixed an unknown input and do not count; 'no verdict' stands for context."
+    )
+    return Group(table, note)
+
+
+def _verdict(row: Comparison) -> str:
+    if row.role != "validation":
+        return row.verdict
+    return f"{row.verdict} ({100 * row.tolerance:.2g} %)"
+
+
+def _published(row: Comparison) -> str:
+    low, high = format_number(row.low, 4), format_number(row.high, 4)
+    return low if low == high else f"{low} to {high}"

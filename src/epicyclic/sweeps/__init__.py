@@ -1,0 +1,1 @@
+"""Many cases: the full product of swept keys, in parallel, with failures kept and work resumed."""

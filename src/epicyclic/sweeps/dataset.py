@@ -1,0 +1,111 @@
+"""Rows of a sweep as an `xarray.Dataset`, and the files it is kept in."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import tempfile
+from collections.abc import Sequence
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from epicyclic.errors import InputError, Problem
+from epicyclic.sweeps.journal import Row
+from epicyclic.sweeps.plan import Plan
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+__all__ = ["FORMATS", "check_output", "to_dataset", "write_dataset"]
+
+FORMATS = (".nc", ".csv", ".parquet")
+
+
+def to_dataset(plan: Plan, rows: Sequence[Row]) -> xr.Dataset:
+    """The rows of all cases of `plan` over its axes."""
+    import xarray as xr
+
+    dims = tuple(axis.key for axis in plan.axes)
+    coords = {
+        axis.key: (axis.key, np.array(axis.coordinate), {"units": axis.unit, "long_name": axis.key})
+        for axis in plan.axes
+    }
+    described = {
+        key: (unit, label) for row in rows for key, (_, unit, label) in row["numbers"].items()
+    }
+    missing = [math.nan]
+    variables = {
+        key: (
+            dims,
+            np.array([row["numbers"].get(key, missing)[0] for row in rows]).reshape(plan.shape),
+            {"units": unit or "1", "long_name": label},
+        )
+        for key, (unit, label) in described.items()
+    }
+    texts = {
+        "status": "how the case ended",
+        "message": "why the case failed",
+        "warnings": "warnings of the case",
+    }
+    for key, label in texts.items():
+        values = np.array([row[key] for row in rows], dtype=object).reshape(plan.shape)
+        variables[key] = (dims, values, {"long_name": label})
+    return xr.Dataset(variables, coords, _attributes(plan))
+
+
+def _attributes(plan: Plan) -> dict[str, str]:
+    return {
+        "title": plan.case.title,
+        "source": f"epicyclic {metadata.version('epicyclic')}",
+        "case": json.dumps(plan.case.inputs()),
+        "conventions": "losses in W of the whole gear set, summed over planets; "
+        "torque and speed of the input member",
+    }
+
+
+def check_output(path: Path) -> None:
+    """Raise `InputError` unless a sweep can be written to `path`."""
+    if path.suffix not in FORMATS:
+        problem = Problem(
+            "-o", str(path), f"must end in {', '.join(FORMATS)}.", "Choose one of these formats."
+        )
+    elif path.is_dir() or not path.absolute().parent.is_dir():
+        problem = Problem("-o", str(path), "is no place for a file.", "Name a file in a folder.")
+    elif not os.access(path.absolute().parent, os.W_OK):
+        problem = Problem("-o", str(path), "lies in a folder without write permission.", "Move it.")
+    else:
+        return
+    raise InputError([problem], "the command")
+
+
+def write_dataset(dataset: xr.Dataset, path: Path) -> None:
+    """Write `dataset` to `path` in the format its suffix names, whole or not at all."""
+    handle, name = tempfile.mkstemp(suffix=path.suffix, dir=path.absolute().parent)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        if path.suffix == ".nc":
+            dataset.to_netcdf(temporary, engine="netcdf4")
+        elif path.suffix == ".csv":
+            to_table(dataset).to_csv(temporary, index=False)
+        else:
+            to_table(dataset).to_parquet(temporary, index=False)
+        temporary.chmod(0o644)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def to_table(dataset: xr.Dataset) -> pd.DataFrame:
+    """One row for each case, units in the column names."""
+    table = dataset.to_dataframe().reset_index()
+    columns = {**dataset.coords, **dataset.data_vars}
+    units = {str(name): str(array.attrs.get("units", "")) for name, array in columns.items()}
+    return table.rename(
+        columns={name: f"{name} [{unit}]" for name, unit in units.items() if unit not in ("", "1")}
+    )

@@ -1,0 +1,237 @@
+"""What a sweep varies: keys, their values, and the cases of the full product."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import metadata
+from typing import Any
+
+import numpy as np
+from pydantic_core import PydanticCustomError
+
+from epicyclic.case.case import Case
+from epicyclic.case.fields import all_keys, find_field, is_whole_number, quantity_of
+from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.values import parse_value
+from epicyclic.errors import InputError, Problem
+from epicyclic.units import Quantity, format_number
+
+__all__ = ["Axis", "Plan", "make_plan", "parse_vary"]
+
+_RANGE = re.compile(
+    r"\s*(?P<start>[^:,]+?)\s*:\s*(?P<stop>[^:,]+?)\s*:\s*(?P<count>\d+)\s*(?P<unit>[^:,\d][^:,]*)?"
+)
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+
+# Tables whose keys leave geometry alone: varied innermost, so that geometry is built once.
+_OPERATING_TABLES = ("operation", "lubricant", "surroundings", "models", "losses")
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One swept key.
+
+    Attributes
+    ----------
+    key : str
+        Dotted key of the case.
+    values : tuple
+        As a case file has them.
+    coordinate : tuple of float or str
+        The same as numbers in `unit`, or as names.
+    unit : str
+        Display unit; empty for numbers without one and for names.
+    """
+
+    key: str
+    values: tuple[Any, ...]
+    coordinate: tuple[float | str, ...]
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A sweep: a case and its axes."""
+
+    case: Case
+    axes: tuple[Axis, ...]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values of each axis."""
+        return tuple(len(axis.values) for axis in self.axes)
+
+    @property
+    def size(self) -> int:
+        """Number of cases."""
+        return int(np.prod(self.shape, dtype=int))
+
+    def changes(self, index: int) -> dict[str, Any]:
+        """The keys that case number `index`, counted with the last axis fastest, changes."""
+        position = np.unravel_index(index, self.shape)
+        return {axis.key: axis.values[i] for axis, i in zip(self.axes, position, strict=True)}
+
+    def order(self) -> list[int]:
+        """Indices of all cases, those that share geometry next to each other."""
+        inner = [axis.key.split(".")[0] in _OPERATING_TABLES for axis in self.axes]
+        by_cost = sorted(range(len(self.axes)), key=lambda i: inner[i])
+        numbers = np.arange(self.size).reshape(self.shape)
+        return [int(index) for index in numbers.transpose(by_cost).ravel()]
+
+    def fingerprint(self) -> str:
+        """Changes with the case, the axes and the version: results of equal ones are equal."""
+        content = {
+            "case": self.case.inputs(),
+            "axes": [[axis.key, axis.coordinate] for axis in self.axes],
+            "version": metadata.version("epicyclic"),
+        }
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def make_plan(case: Case, vary: Mapping[str, Iterable[Any]]) -> Plan:
+    """Check what is to be varied.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+    vary : mapping of str to iterable
+        Dotted keys to their values, as a case file has them.
+
+    Raises
+    ------
+    InputError
+        For unknown or unsuitable keys, no values, values that cannot be read, or repeated ones.
+    """
+    problems: list[Problem] = []
+    axes = []
+    if not vary:
+        problems.append(Problem("vary", "", "is empty.", "Give at least one key and its values."))
+    for key, values in vary.items():
+        axis, found = _make_axis(case, key, [values] if isinstance(values, str) else list(values))
+        problems += found
+        if axis is not None:
+            axes.append(axis)
+    if problems:
+        raise InputError(problems, "the sweep")
+    return Plan(case, tuple(axes))
+
+
+def _make_axis(case: Case, key: str, values: list[Any]) -> tuple[Axis | None, list[Problem]]:
+    field = find_field(type(case), key)
+    if field is None:
+        known = list(all_keys(type(case)))
+        remedy = did_you_mean(key, known) or "See 'epicyclic init' for the keys."
+        return None, [Problem(key, "", "is not a known key.", remedy)]
+    if not values:
+        return None, [Problem(key, "", "has no values.", "Give at least one.")]
+    quantity = quantity_of(*field)
+    coordinate: list[float | str] = []
+    problems = []
+    for value in values:
+        try:
+            coordinate.append(_coordinate(value, quantity))
+        except PydanticCustomError as error:
+            remedy = str((error.context or {}).get("remedy", ""))
+            problems.append(Problem(key, repr(value), f"{error.message()}.", f"{remedy}."))
+    if not problems and len(set(coordinate)) < len(coordinate):
+        problems.append(Problem(key, "", "has the same value twice.", "Give each value once."))
+    if problems:
+        return None, problems
+    if any(isinstance(item, str) for item in coordinate):
+        coordinate = [str(item) for item in coordinate]
+    unit = "" if quantity is None else quantity.display
+    return Axis(key, tuple(values), tuple(coordinate), unit), []
+
+
+def _coordinate(value: Any, quantity: Quantity | None) -> float | str:
+    if quantity is not None:
+        return quantity.to_display(quantity.parse(value))
+    if isinstance(value, int | float | np.number) and not isinstance(value, bool):
+        return value if isinstance(value, int) else float(value)
+    return str(value)
+
+
+def parse_vary(case: Case, options: Sequence[str]) -> dict[str, list[Any]]:
+    """The options ``key=a,b,c`` and ``key=start:stop:count`` of a command line.
+
+    A unit after the last value, or after the count, holds for all values without one.
+
+    Raises
+    ------
+    InputError
+        If an option is not of that form.
+    """
+    problems = []
+    vary: dict[str, list[Any]] = {}
+    for option in options:
+        key, equals, text = option.partition("=")
+        key = key.strip()
+        if not equals or not text.strip():
+            problems.append(
+                Problem(
+                    "--vary", f'"{option}"', "must be key=a,b,c or key=start:stop:count.",
+                    'For example --vary "operation.speed=1000:4000:4 rpm".',
+                )
+            )  # fmt: skip
+            continue
+        if key in vary:
+            problems.append(
+                Problem("--vary", f'"{option}"', f"varies {key} again.", "Name a key once.")
+            )
+            continue
+        try:
+            vary[key] = list(_values(case, key, text))
+        except ValueError as error:
+            problems.append(
+                Problem(key, f'"{text}"', f"{error}.", "Write start:stop:count in one unit.")
+            )
+    if problems:
+        raise InputError(problems, "the command")
+    return vary
+
+
+def _values(case: Case, key: str, text: str) -> Iterator[Any]:
+    match = _RANGE.fullmatch(text)
+    if match is not None:
+        yield from _range(case, key, match)
+        return
+    items = [item.strip() for item in text.split(",") if item.strip()]
+    shared = _unit_of(items[-1]) if items else ""
+    for item in items:
+        yield parse_value(f"{item} {shared}" if shared and _is_bare(item) else item)
+
+
+def _range(case: Case, key: str, match: re.Match[str]) -> Iterator[Any]:
+    start, stop = _NUMBER.fullmatch(match["start"]), _NUMBER.fullmatch(match["stop"])
+    if start is None or stop is None:
+        raise ValueError("start and stop must be numbers")
+    count = int(match["count"])
+    if count < 1:
+        raise ValueError("the count must be 1 or more")
+    units = {unit for unit in (start[2], stop[2], (match["unit"] or "").strip()) if unit}
+    if len(units) > 1:
+        raise ValueError(f"the units {' and '.join(sorted(units))} differ")
+    unit = units.pop() if units else ""
+    field = find_field(type(case), key)
+    whole = field is not None and is_whole_number(field[0])
+    for number in np.linspace(float(start[1]), float(stop[1]), count):
+        if unit:
+            yield f"{format_number(float(number), 12)} {unit}"
+        elif whole and float(number).is_integer():
+            yield int(number)
+        else:
+            yield float(number)
+
+
+def _is_bare(item: str) -> bool:
+    match = _NUMBER.fullmatch(item)
+    return match is not None and not match[2]
+
+
+def _unit_of(item: str) -> str:
+    match = _NUMBER.fullmatch(item)
+    return match[2] if match is not None else ""

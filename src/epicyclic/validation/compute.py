@@ -1,0 +1,143 @@
+"""The published figures computed: one function for each kind of figure.
+
+Each takes plain values as `published.toml` has them and returns a number in the unit stated there.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.analysis.parts import fluids_of
+from epicyclic.analysis.planetary import planet_load, planetary_duties, roller_bearing
+from epicyclic.analysis.result import Result
+from epicyclic.analysis.solve import solve
+from epicyclic.case.case import PlanetaryCase, load_case
+from epicyclic.losses.planet_bearing import roller_loads
+
+__all__ = ["FIGURES"]
+
+TEST_TORQUES = (250, 500, 750, 1000)
+"""Loaded tests: torque on the sun. [N m]"""
+TEST_SPEEDS = (1000, 2000, 3000, 4000)
+"""Speeds of the sun. [rpm]"""
+
+
+def _case(**changes: object) -> PlanetaryCase:
+    case = load_case("talbot-2012")
+    assert isinstance(case, PlanetaryCase)
+    return case.updated({key.replace("__", "."): value for key, value in changes.items()})
+
+
+def _tests(temperature: str, finish: str, planets: Iterable[int]) -> list[Result]:
+    """The loaded tests of the dissertation at one temperature and finish."""
+    return [
+        solve(
+            _case(
+                operation__oil_inlet_temperature=temperature,
+                operation__torque=f"{torque} N*m",
+                operation__speed=f"{speed} rpm",
+                planet__count=count,
+                planet__roughness=finish,
+            )
+        )
+        for count, torque, speed in itertools.product(planets, TEST_TORQUES, TEST_SPEEDS)
+    ]
+
+
+def planet_bearing_loss(temperature: str, composite_roughness: float) -> float:
+    """Rolling loss of one planet bearing at 333 N m on the branch and 4000 rpm. [W]"""
+    rough = f"{composite_roughness / math.sqrt(2)} um"
+    case = _case(
+        operation__torque="999 N*m",
+        operation__oil_inlet_temperature=temperature,
+        planet_bearing__roller_roughness=rough,
+        planet_bearing__race_roughness=rough,
+    )
+    return solve(case).losses["planet_bearing_mechanical"] / case.planet.count
+
+
+def planet_bearing_ratio(temperature: str, rough: float, smooth: float) -> float:
+    """Rolling loss with rough over that with smooth surfaces. [1]"""
+    return planet_bearing_loss(temperature, rough) / planet_bearing_loss(temperature, smooth)
+
+
+def azimuth_of_gained_rollers(low: int, high: int, couple: bool) -> float:
+    """Smallest azimuth of a roller that carries load at the branch torque `high`, not at `low`.
+
+    Torques in N m. With `couple` false the tilting couple of the helical meshes is left out. [deg]
+    """
+    gained = _loaded_rollers(high, couple) & ~_loaded_rollers(low, couple)
+    azimuth = np.arange(gained.size) * 360 / gained.size
+    return float(np.minimum(azimuth, 360 - azimuth)[gained].min())
+
+
+def _loaded_rollers(branch_torque: int, couple: bool) -> NDArray[np.bool_]:
+    """Which rollers carry load in either row."""
+    case = _case(operation__torque=f"{3 * branch_torque} N*m")
+    assert case.planet_bearing is not None
+    bearing = roller_bearing(case.planet_bearing, case.numerics.bearing_slices)
+    load = planet_load(planetary_duties(case), 0.0)
+    moments = (load.moment_x, load.moment_y) if couple else (0.0, 0.0)
+    loads = roller_loads(bearing, load.force, 0.0, *moments)
+    loaded: NDArray[np.bool_] = loads.intensity.sum(axis=(0, 2)) > 0
+    return loaded
+
+
+def mixture_density(temperature: str) -> float:
+    """Density of the mixture at the case's oil share. [kg/m^3]"""
+    return fluids_of(_case(operation__oil_inlet_temperature=temperature)).mixture.density
+
+
+def mixture_viscosity(temperature: str) -> float:
+    """Dynamic viscosity of the mixture. [mPa s]"""
+    fluids = fluids_of(_case(operation__oil_inlet_temperature=temperature))
+    return fluids.mixture.dynamic_viscosity * 1e3
+
+
+def branch_slope(temperature: str, finish: str, planets: list[int]) -> float:
+    """Slope of P_LD/n over P_in/n, a straight line with intercept through all tests. [%]"""
+    results = _tests(temperature, finish, planets)
+    counts = np.repeat(planets, len(TEST_TORQUES) * len(TEST_SPEEDS))
+    power = np.array([result.input_power for result in results]) / counts
+    loss = np.array([result.load_dependent for result in results]) / counts
+    return float(100 * np.polyfit(power, loss, 1)[0])
+
+
+def load_dependent_loss(temperature: str, planets: int) -> float:
+    """P_LD at 1000 N m and 4000 rpm. [kW]"""
+    case = _case(operation__oil_inlet_temperature=temperature, planet__count=planets)
+    return solve(case).load_dependent / 1e3
+
+
+def load_independent_loss(temperature: str, planets: int) -> float:
+    """P_LI at 4000 rpm. [kW]"""
+    case = _case(operation__oil_inlet_temperature=temperature, planet__count=planets)
+    return solve(case).load_independent / 1e3
+
+
+def mechanical_efficiency(temperature: str, extreme: str) -> float:
+    """Extreme of 1 - P_LD/P_in over the 3-planet tests. [%]"""
+    results = _tests(temperature, "shaved", [3])
+    values = [100 * (1 - result.load_dependent / result.input_power) for result in results]
+    return min(values) if extreme == "lowest" else max(values)
+
+
+FIGURES: dict[str, Callable[..., float]] = {
+    function.__name__: function
+    for function in (
+        planet_bearing_loss,
+        planet_bearing_ratio,
+        azimuth_of_gained_rollers,
+        mixture_density,
+        mixture_viscosity,
+        branch_slope,
+        load_dependent_loss,
+        load_independent_loss,
+        mechanical_efficiency,
+    )
+}
