@@ -1,0 +1,138 @@
+"""Time what users wait for. Run: python benchmarks/benchmark.py
+
+Seconds depend on the machine; the last column, a ratio to a reference measured in the same run, does
+not, or much less. Whole commands run in processes of their own, the first one with an empty folder
+for compiled code.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+
+from rich.console import Console
+from rich.table import Table
+
+import epicyclic as ep
+
+REPEATS = 5
+MATRIX = {
+    "operation.torque": [f"{torque} N*m" for torque in (0, 250, 500, 750, 1000)],
+    "operation.speed": [f"{speed} rpm" for speed in (1000, 2000, 3000, 4000)],
+    "operation.oil_inlet_temperature": ["40 degC", "60 degC", "90 degC"],
+}
+"""The test matrix of Talbot (2012): these 60 points for each of five gear sets."""
+GEAR_SETS = ("n3", "n4", "n5", "n6", "n6-polished")
+
+
+def process_seconds(*arguments: str, **environment: str) -> float:
+    """Wall time of one Python process."""
+    start = time.perf_counter()
+    subprocess.run(
+        [sys.executable, *arguments],
+        check=True,
+        stdout=subprocess.DEVNULL,
+        env={**os.environ, **environment},
+    )
+    return time.perf_counter() - start
+
+
+def median_seconds(action: Callable[[], object], repeats: int = REPEATS) -> float:
+    """Median wall time of `action`."""
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        action()
+        times.append(time.perf_counter() - start)
+    return statistics.median(times)
+
+
+def median_process_seconds(*arguments: str) -> float:
+    return statistics.median(process_seconds(*arguments) for _ in range(REPEATS))
+
+
+def points() -> list[ep.PlanetaryCase]:
+    """Operating points that differ in everything but the geometry, so that nothing is cached."""
+    case = ep.load_case("talbot-2012")
+    return [
+        case.updated({"operation.torque": f"{900 + i} N*m", "operation.speed": f"{3000 + i} rpm"})
+        for i in range(50)
+    ]
+
+
+def matrix(jobs: int | None) -> None:
+    """The dissertation's test matrix, 300 points."""
+    for gear_set in GEAR_SETS:
+        ep.sweep(ep.load_case(f"talbot-2012-{gear_set}"), MATRIX, jobs=jobs)
+
+
+def clear_caches() -> None:
+    from epicyclic.case import build
+    from epicyclic.geometry import contact_lines
+    from epicyclic.losses import load_distribution, planet_bearing
+
+    for function in (
+        build.basic_rack,
+        build.gear,
+        build.planetary_meshes,
+        contact_lines.contact_lines,
+        load_distribution.load_shape,
+        planet_bearing.roller_loads,
+    ):
+        function.cache_clear()
+
+
+def main() -> None:
+    case = ep.load_case("talbot-2012")
+    with tempfile.TemporaryDirectory() as empty:
+        first = process_seconds("-m", "epicyclic", "run", "talbot-2012", NUMBA_CACHE_DIR=empty)
+    python = median_process_seconds("-c", "pass")
+    importing = median_process_seconds("-c", "import epicyclic") - python
+    warm = median_process_seconds("-m", "epicyclic", "run", "talbot-2012")
+    ep.solve(case)
+    batch = itertools.cycle(points())
+    point = median_seconds(lambda: ep.solve(next(batch)), repeats=50)
+
+    def unshared() -> None:
+        clear_caches()
+        ep.solve(next(batch))
+
+    alone = median_seconds(unshared, repeats=20)
+    matrix_seconds = median_seconds(lambda: matrix(None), repeats=3)
+    matrix_process = process_seconds("-c", "import benchmark; benchmark.matrix(None)", PYTHONPATH=(
+        os.path.dirname(os.path.abspath(__file__))
+    ))  # fmt: skip
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+
+    table = Table(title="Epicyclic benchmark", title_justify="left")
+    table.add_column("what")
+    for column in ("measured", "aim", "ratio"):
+        table.add_column(column, justify="right")
+    table.add_column("to")
+    for row in (
+        ("import epicyclic", f"{importing:.3f} s", "0.5 s", f"{importing / python:.2f}",
+         "starting Python"),
+        ("first run, compiling", f"{first:.1f} s", "60 s", f"{first / warm:.1f}", "a warm run"),
+        ("run talbot-2012, warm", f"{warm:.2f} s", "2 s", f"{warm / python:.0f}",
+         "starting Python"),
+        ("one operating point, warm", f"{1e3 * point:.2f} ms", "20 ms", f"{alone / point:.1f}",
+         "times faster than without shared work"),
+        ("test matrix, 300 points", f"{matrix_seconds:.2f} s", "10 s",
+         f"{matrix_seconds / (300 * point):.2f}", "300 single points"),
+        ("the same in a new process", f"{matrix_process:.2f} s", "10 s",
+         f"{matrix_process / matrix_seconds:.2f}", "the matrix, warm"),
+        ("largest memory of a process", f"{peak:.0f} MB", "500 MB", "", ""),
+    ):  # fmt: skip
+        table.add_row(*row)
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,218 @@
+"""The command as a user meets it."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import epicyclic as ep
+
+PLANETARY_LOSSES = [
+    "sun_mesh_sliding",
+    "sun_mesh_rolling",
+    "ring_mesh_sliding",
+    "ring_mesh_rolling",
+    "planet_bearing_mechanical",
+    "planet_bearing_viscous",
+    "sun_mesh_pocketing",
+    "ring_mesh_pocketing",
+    "sun_drag",
+    "ring_drag",
+    "carrier_drag",
+    "thrust_bearing_viscous",
+]
+
+
+def test_run_prints_where_the_watts_go(epicyclic):
+    done = epicyclic("run", "talbot-2012")
+    assert done.returncode == 0
+    assert done.stderr == ""
+    for name in PLANETARY_LOSSES:
+        assert name.replace("_", " ") in done.stdout
+    for words in (
+        "load-dependent",
+        "load-independent",
+        "efficiency",
+        "operating pressure angle",
+        "transverse contact ratio",
+        "pitch-line speed",
+        "largest sliding speed",
+        "largest Hertz pressure",
+        "film ratio, smallest",
+        "mean coefficient of friction",
+        "radial force",
+        "tilting moment",
+        "most loaded roller",
+        "pocketing is not modelled yet",
+        "Out of range, extrapolated",
+        "Sources",
+    ):
+        assert words in done.stdout, words
+    assert max(map(len, done.stdout.splitlines())) <= 100
+
+
+def test_json_result_keeps_the_contract(epicyclic, tmp_path):
+    done = epicyclic("run", "talbot-2012", "--json", "-")
+    result = json.loads(done.stdout)
+    assert list(result["losses"]) == PLANETARY_LOSSES
+    assert result["total"] == pytest.approx(sum(result["losses"].values()), rel=1e-12)
+    assert result["total"] == pytest.approx(
+        result["load_dependent"] + result["load_independent"], rel=1e-12
+    )
+    assert result["efficiency"] == pytest.approx(1 - result["total"] / result["input_power"])
+    assert result["status"] == "converged"
+    assert all(isinstance(warning, str) for warning in result["warnings"])
+    assert result["versions"]["epicyclic"]
+    assert result["models"]["friction"] == "mixed-ehl"
+    file = tmp_path / "result.json"
+    assert epicyclic("run", "talbot-2012", "--json", str(file)).returncode == 0
+    assert json.loads(file.read_text()) == result
+
+
+def test_inputs_of_a_result_are_the_case_again(epicyclic):
+    result = json.loads(epicyclic("run", "talbot-2012-n4-polished", "--json", "-").stdout)
+    again = ep.solve(ep.load_case(result["inputs"]))
+    assert again.losses == result["losses"]
+
+
+def test_gear_pair_has_its_own_losses(epicyclic):
+    done = epicyclic("run", "talbot-2012-pair", "--set", "operation.torque=100 N*m", "--json", "-")
+    result = json.loads(done.stdout)
+    assert list(result["losses"]) == ["mesh_sliding", "mesh_rolling", "mesh_pocketing", "drag"]
+    assert result["losses"]["mesh_sliding"] > 0
+
+
+def test_set_changes_the_case(epicyclic):
+    args = ("--set", "operation.torque=-500 N*m", "--set", "planet.count=6", "--json", "-")
+    result = json.loads(epicyclic("run", "talbot-2012", *args).stdout)
+    assert result["inputs"]["planet"]["count"] == 6
+    assert result["members"]["sun"]["torque"]["value"] == -500
+    assert 0 < result["efficiency"] < 1
+    # with the torque reversed power enters through the carrier
+    assert result["members"]["carrier"]["power"]["value"] == pytest.approx(result["input_power"])
+
+
+def test_an_empty_value_removes_a_key(epicyclic):
+    done = epicyclic("run", "talbot-2012", "--set", "carrier=", "--json", "-")
+    result = json.loads(done.stdout)
+    assert result["losses"]["carrier_drag"] == 0
+    assert "no [carrier]" in result["not_included"]["carrier_drag"]
+
+
+def test_options_of_a_loss_are_reported(epicyclic):
+    args = (
+        "--set", "losses.sun_drag.factor=2",
+        "--set", "losses.ring_mesh_rolling.include=false",
+    )  # fmt: skip
+    plain = json.loads(epicyclic("run", "talbot-2012", "--json", "-").stdout)
+    result = json.loads(epicyclic("run", "talbot-2012", *args, "--json", "-").stdout)
+    assert result["losses"]["sun_drag"] == 2 * plain["losses"]["sun_drag"]
+    assert result["losses"]["ring_mesh_rolling"] == 0
+    assert result["not_included"]["ring_mesh_rolling"] == "left out by the case"
+    assert result["factors"] == {"sun_drag": 2.0}
+    assert any("sun_drag is multiplied by 2" in warning for warning in result["warnings"])
+
+
+def test_all_problems_of_a_case_are_reported_together(epicyclic, tmp_path):
+    text = Path(ep.__file__).with_name("library").joinpath("cases/talbot-2012.toml").read_text()
+    text = text.replace('helix_angle = "13.124 deg"', 'helix_angle = "13.124 mm"')
+    text = text.replace("count = 3", "count = 3\ncuont = 4")
+    text = text.replace('oil = "atf-talbot-2012"', 'oil = "atf-talbot-2021"')
+    text = text.replace('width = "60 mm"', "width = 60")
+    file = tmp_path / "case.toml"
+    file.write_text(text)
+    done = epicyclic("run", str(file), "--json", str(tmp_path / "result.json"))
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert "4 problems" in done.stderr
+    for words in ("gears.helix_angle", "planet.cuont", "lubricant.oil", "carrier.width"):
+        assert words in done.stderr
+    for words in ("'count'", "'atf-talbot-2012'", "60 mm"):
+        assert words in done.stderr
+    assert not (tmp_path / "result.json").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("run", "talbot-2013"), "talbot-2012"),
+        (("run", "missing.toml"), "cannot be read"),
+        (("run",), "Missing argument"),
+        (("rum", "talbot-2012"), "No such command"),
+        (("run", "talbot-2012", "--set", "planet.count"), "KEY=VALUE"),
+        (("run", "talbot-2012", "--set", "planet.cuont=3"), "Did you mean 'count'?"),
+        (("run", "talbot-2012", "--json", "no/such/folder/r.json"), "cannot be written"),
+        (("sweep", "talbot-2012", "-o", "s.csv"), "--vary"),
+        (("oils", "atf-talbot-2021"), "atf-talbot-2012"),
+    ],
+)
+def test_bad_commands_end_with_2_and_a_hint(epicyclic, arguments, words):
+    done = epicyclic(*arguments)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_check_only_checks(epicyclic):
+    done = epicyclic("check", "talbot-2012-n5")
+    assert done.returncode == 0
+    assert "sound planetary case" in done.stdout
+    assert epicyclic("check", "talbot-2012", "--set", "planet.count=13").returncode == 2
+
+
+def test_lists_of_what_is_built_in(epicyclic):
+    cases = epicyclic("cases").stdout
+    assert "talbot-2012-pair" in cases
+    assert "polished" in cases
+    oils = epicyclic("oils").stdout
+    for name in ("atf-talbot-2012", "iso-vg-32-mineral", "iso-vg-680-pao"):
+        assert name in oils
+    assert "29.77 mm²/s" in epicyclic("oils", "atf-talbot-2012").stdout
+
+
+@pytest.mark.parametrize("kind", ["planetary", "gear_pair"])
+def test_init_writes_a_case_that_runs(epicyclic, tmp_path, kind):
+    file = tmp_path / "mine.toml"
+    done = epicyclic("init", str(file), "--kind", kind)
+    assert done.returncode == 0
+    assert tomllib.loads(file.read_text())["kind"] == kind
+    assert epicyclic("check", str(file)).returncode == 0
+    again = epicyclic("init", str(file))
+    assert again.returncode == 2
+    assert "exists already" in again.stderr
+
+
+def test_init_names_every_key(epicyclic, tmp_path):
+    from epicyclic.case.fields import all_keys
+
+    file = tmp_path / "mine.toml"
+    epicyclic("init", str(file))
+    text = file.read_text()
+    for key in all_keys(ep.PlanetaryCase):
+        table, _, name = key.rpartition(".")
+        if not table.startswith(("lubricant.oil", "losses.")) and "material" not in table:
+            assert name in text, key
+
+
+def test_schema_is_json(epicyclic):
+    schema = json.loads(epicyclic("schema").stdout)
+    assert {"PlanetaryCase", "GearPairCase"} <= set(schema["$defs"])
+
+
+def test_friction_models_side_by_side(epicyclic):
+    done = epicyclic("friction", "talbot-2012")
+    assert done.returncode == 0
+    for name in (
+        "mixed-ehl", "schlenk", "niemann-winter", "benedict-kelley", "matsumoto", "doleschel",
+        "xu-2007", "constant",
+    ):  # fmt: skip
+        assert name in done.stdout
+    assert "Spread" in done.stdout
+
+
+def test_version_and_help(epicyclic):
+    assert "epicyclic" in epicyclic("--version").stdout
+    assert "talbot-2012" in epicyclic("--help").stdout

@@ -1,0 +1,152 @@
+"""What a sweep varies: command-line forms, axes, order, journal."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pint
+import pytest
+
+import epicyclic as ep
+from epicyclic.sweeps.journal import Journal
+from epicyclic.sweeps.plan import make_plan, parse_vary
+
+
+@pytest.fixture(scope="module")
+def case():
+    return ep.load_case("talbot-2012")
+
+
+@pytest.mark.parametrize(
+    ("option", "key", "values"),
+    [
+        (
+            "operation.speed=1000:4000:4 rpm",
+            "operation.speed",
+            ["1000 rpm", "2000 rpm", "3000 rpm", "4000 rpm"],
+        ),
+        ("operation.speed=1000 rpm:2000 rpm:2", "operation.speed", ["1000 rpm", "2000 rpm"]),
+        ("operation.speed=1000:2000 rpm:2", "operation.speed", ["1000 rpm", "2000 rpm"]),
+        ("operation.torque=-100,0,100 N*m", "operation.torque", ["-100 N*m", "0 N*m", "100 N*m"]),
+        ("planet.count=3:6:4", "planet.count", [3, 4, 5, 6]),
+        ("surroundings.oil_air_ratio=0:0.1:3", "surroundings.oil_air_ratio", [0.0, 0.05, 0.1]),
+        ("models.friction=schlenk,xu-2007", "models.friction", ["schlenk", "xu-2007"]),
+        ("losses.sun_drag.include=true,false", "losses.sun_drag.include", [True, False]),
+        ("planet.roughness=shaved,0.1 um", "planet.roughness", ["shaved", "0.1 um"]),
+        (
+            "operation.oil_inlet_temperature=40,60 degC",
+            "operation.oil_inlet_temperature",
+            ["40 degC", "60 degC"],
+        ),
+    ],
+)
+def test_command_line_form(case, option, key, values):
+    assert parse_vary(case, [option]) == {key: values}
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["operation.speed"], "key=a,b,c or key=start:stop:count"),
+        (["operation.speed="], "key=a,b,c or key=start:stop:count"),
+        (["operation.speed=1 rpm:2 rad/s:3"], "differ"),
+        (["operation.speed=a:b:3"], "must be numbers"),
+        (["operation.speed=1:2:0 rpm"], "1 or more"),
+        (["planet.count=3,4", "planet.count=5,6"], "again"),
+    ],
+)
+def test_unreadable_option(case, options, words):
+    with pytest.raises(ep.InputError, match=words):
+        parse_vary(case, options)
+
+
+@pytest.mark.parametrize(
+    ("vary", "words"),
+    [
+        ({}, "empty"),
+        ({"operation.sped": ["1 rpm"]}, "operation.speed"),
+        ({"operation.speed": []}, "no values"),
+        ({"operation.speed": [1000, 2000]}, "has no unit"),
+        ({"operation.speed": ["1 kg"]}, "rotational speed"),
+        ({"operation.speed": ["60 rpm", "6.283185307179586 rad/s"]}, "same value twice"),
+    ],
+)
+def test_unsuitable_axis(case, vary, words):
+    with pytest.raises(ep.InputError, match=words):
+        make_plan(case, vary)
+
+
+def test_all_problems_of_a_sweep_are_reported_together(case):
+    with pytest.raises(ep.InputError) as caught:
+        make_plan(case, {"operation.sped": ["1 rpm"], "sun.teth": [3], "planet.count": []})
+    assert len(caught.value.problems) == 3
+
+
+def test_coordinates_are_in_display_units(case):
+    quantity = pint.UnitRegistry().Quantity
+    plan = make_plan(
+        case,
+        {
+            "operation.speed": ["1000 rpm", quantity(2000, "rpm")],
+            "gears.center_distance": ["92.13 mm", "9.2 cm"],
+            "planet.count": [3, 4],
+        },
+    )
+    assert plan.axes[0].coordinate == pytest.approx((1000.0, 2000.0), rel=1e-12)
+    assert plan.axes[1].coordinate == (92.13, 92.0)
+    assert plan.axes[2].coordinate == (3, 4)
+    assert [axis.unit for axis in plan.axes] == ["rpm", "mm", ""]
+
+
+def test_cases_that_share_geometry_are_next_to_each_other(case):
+    plan = make_plan(
+        case,
+        {
+            "operation.speed": ["1000 rpm", "2000 rpm"],
+            "gears.center_distance": ["92.13 mm", "92.14 mm"],
+            "operation.torque": ["1 N*m", "2 N*m", "3 N*m"],
+        },
+    )
+    distances = [plan.changes(index)["gears.center_distance"] for index in plan.order()]
+    assert sorted(plan.order()) == list(range(12))
+    assert distances == ["92.13 mm"] * 6 + ["92.14 mm"] * 6
+
+
+def test_case_numbers_count_with_the_last_axis_fastest(case):
+    plan = make_plan(case, {"planet.count": [3, 4], "operation.torque": ["1 N*m", "2 N*m"]})
+    assert plan.changes(1) == {"planet.count": 3, "operation.torque": "2 N*m"}
+    assert plan.changes(2) == {"planet.count": 4, "operation.torque": "1 N*m"}
+
+
+def test_fingerprint_follows_case_and_values(case):
+    plans = [
+        make_plan(case, {"planet.count": [3, 4]}),
+        make_plan(case, {"planet.count": [3, 5]}),
+        make_plan(case.updated({"operation.torque": "1 N*m"}), {"planet.count": [3, 4]}),
+    ]
+    assert len({plan.fingerprint() for plan in plans}) == 3
+    assert plans[0].fingerprint() == make_plan(case, {"planet.count": [3, 4]}).fingerprint()
+
+
+def test_journal_survives_a_line_cut_short(tmp_path):
+    journal = Journal(tmp_path / "sweep.partial", "abc")
+    assert journal.read() == {}
+    journal.append([(0, {"x": 0.1}), (1, {"x": float("nan")})])
+    with journal.path.open("a") as file:
+        file.write('{"case": 2, "ro')
+    rows = journal.read()
+    assert sorted(rows) == [0, 1]
+    assert rows[0] == {"x": 0.1}
+    assert np.isnan(rows[1]["x"])
+    journal.append([(2, {"x": 3.0})])
+    assert sorted(journal.read()) == [0, 1, 2]
+
+
+def test_journal_of_another_sweep_is_not_taken_over(tmp_path):
+    path = tmp_path / "sweep.partial"
+    first = Journal(path, "abc")
+    first.read()
+    first.append([(0, {})])
+    assert Journal(path, "other").read() == {}
+    assert json.loads(path.read_text()) == {"fingerprint": "other"}
