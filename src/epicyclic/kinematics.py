@@ -97,11 +97,12 @@ def planetary_power_flow(
     given: str,
     held: str,
     loss: float,
+    drags: Mapping[str, float] | None = None,
 ) -> PowerFlow:
-    """Torques and powers with the loss, the torque of the member `given` being prescribed.
+    """Torques and powers with the losses, the torque of the member `given` being prescribed.
 
-    Torques of the three members balance, and their powers sum to the loss; the reaction of the
-    housing to the drag counts with the member `held`.
+    The torques that the meshes pass balance, and their powers sum to the loss inside the gear set;
+    each shaft carries besides the torque of its own drag against the housing.
 
     Parameters
     ----------
@@ -111,20 +112,25 @@ def planetary_power_flow(
         The member of prescribed torque, and the fixed or second driven one; the third is the
         output.
     loss : float
-        [W]
+        Inside the gear set. [W]
+    drags : mapping of str to float, optional
+        Power that each member loses to the housing. [W]
     """
     (output,) = set(MEMBERS) - {given, held}
-    torque = lossless[given]
+    powers = dict.fromkeys(MEMBERS, 0.0) | dict(drags or {})
+    drag = {name: powers[name] / speeds[name] if speeds[name] else 0.0 for name in MEMBERS}
+    torque = lossless[given] - drag[given]
     difference = speeds[output] - speeds[held]
-    if difference == 0.0:
-        torques = dict(lossless)  # turning as one body: no relative motion, no power passed on
+    passed = {given: torque}
+    if difference == 0.0:  # turning as one body: no relative motion, no loss inside
+        passed[output] = torque * lossless[output] / lossless[given] if lossless[given] else 0.0
     else:
-        torques = {given: torque}
-        torques[output] = (loss - torque * (speeds[given] - speeds[held])) / difference
-        torques[held] = -torque - torques[output]
-    members = {name: MemberState(speeds[name], torques[name]) for name in MEMBERS}
-    passed = sum(max(0.0, lossless[name] * speeds[name]) for name in MEMBERS)
-    return _flow(members, passed, torque * speeds[given] >= 0, loss)
+        passed[output] = (loss - torque * (speeds[given] - speeds[held])) / difference
+    passed[held] = -torque - passed[output]
+    members = {name: MemberState(speeds[name], passed[name] + drag[name]) for name in MEMBERS}
+    transmitted = sum(max(0.0, lossless[name] * speeds[name]) for name in MEMBERS)
+    driving = lossless[given] * speeds[given] >= 0
+    return _flow(members, transmitted, driving, loss + sum(powers.values()))
 
 
 def pair_power_flow(

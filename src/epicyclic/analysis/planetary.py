@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,12 +18,13 @@ from epicyclic.analysis.parts import (
     solve_mesh,
     used_sources,
 )
-from epicyclic.analysis.result import BearingFigures, Result
+from epicyclic.analysis.result import BearingFigures, LossTerm, Result
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.schema import PlanetBearing
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_pressure
 from epicyclic.kinematics import (
+    MEMBERS,
     lossless_torques,
     planet_speed,
     planetary_power_flow,
@@ -71,12 +72,14 @@ def solve_planetary(case: PlanetaryCase) -> Result:
         parts |= mesh.parts
         flags += mesh.flags
     terms = loss_terms(parts, case.losses)
+    drags = _housing_drags(case, terms)
     flow = planetary_power_flow(
         speeds,
         _lossless(case),
         case.operation.input,
         _held_member(case),
-        sum(term.watts for term in terms),
+        sum(term.watts for term in terms) - sum(drags.values()),
+        drags,
     )
     angles = build.planet_angles(case.sun, case.planet, case.ring)
     return Result(
@@ -288,6 +291,17 @@ def _drags(
         loss = disc_drag_loss(radius, width, speeds[name], mixture)
         parts[f"{name}_drag"] = Part(loss, DRAG_METHOD, DRAG_SOURCE)
     return parts
+
+
+def _housing_drags(case: PlanetaryCase, terms: Iterable[LossTerm]) -> dict[str, float]:
+    """Power that each member loses to the housing: its own drag, and that of a thrust bearing."""
+    watts = {term.name: term.watts for term in terms}
+    drags = {name: watts[f"{name}_drag"] for name in MEMBERS}
+    if case.thrust_bearing is not None:
+        one, two = case.thrust_bearing.between.split("-")
+        if two == "housing":
+            drags[one] += watts["thrust_bearing_viscous"]
+    return drags
 
 
 def _thrust_bearing(case: PlanetaryCase, speeds: Mapping[str, float], oil: OilState) -> Part:
