@@ -5,6 +5,7 @@ from __future__ import annotations
 from epicyclic.analysis.parts import (
     MeshDuty,
     Part,
+    fluid_notes,
     fluids_of,
     general_notes,
     loss_terms,
@@ -46,7 +47,7 @@ def solve_pair(case: GearPairCase) -> Result:
         bearing=None,
         models=resolve_models(case),
         flags=fluids.flags + mesh.flags,
-        notes=general_notes(terms, flow.input_power, flow.efficiency),
+        notes=general_notes(terms, flow.input_power, flow.efficiency) + fluid_notes(case),
         sources=used_sources(terms),
         inputs=case.inputs(),
     )

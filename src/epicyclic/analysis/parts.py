@@ -34,6 +34,7 @@ __all__ = [
     "MeshDuty",
     "MeshOutcome",
     "Part",
+    "fluid_notes",
     "fluids_of",
     "friction_settings",
     "general_notes",
@@ -46,8 +47,8 @@ __all__ = [
 
 NO_POCKETING = "pocketing is not modelled yet"
 OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
-MESH_TERMS = {"sliding": LOAD_DEPENDENT, "rolling": LOAD_DEPENDENT, "mechanical": LOAD_DEPENDENT}
-"""Group of a term by the last word of its name; all others do not depend on the load."""
+LOAD_DEPENDENT_WORDS = ("sliding", "rolling", "mechanical")
+"""Last words of the names of load-dependent terms."""
 
 _VISCOSITY = Range(
     "kinematic_viscosity",
@@ -253,12 +254,33 @@ def loss_terms(parts: Mapping[str, Part], options: BaseModel) -> tuple[LossTerm,
 
 
 def _term(name: str, part: Part, option: LossOption) -> LossTerm:
-    group = MESH_TERMS.get(name.rpartition("_")[2], LOAD_INDEPENDENT)
+    loaded = name.rpartition("_")[2] in LOAD_DEPENDENT_WORDS
+    group = LOAD_DEPENDENT if loaded else LOAD_INDEPENDENT
     reason = part.left_out or ("" if option.include else "left out by the case")
     if reason:
         return LossTerm(name, 0.0, group, "", "", left_out=reason)
     watts = option.factor * part.watts
     return LossTerm(name, watts, group, part.method, part.source, factor=option.factor)
+
+
+def fluid_notes(case: Case) -> tuple[str, ...]:
+    """A note for every regression that was made for another oil than that of the case."""
+    oil = case.lubricant.oil
+    models = resolve_models(case)
+    notes = []
+    if oil.friction_regression is None:
+        keys = [key for key in ("friction", "rolling", "bearing") if models.get(key) == "mixed-ehl"]
+        notes += [
+            f"models.{key}: the mixed-EHL regression was made for the oil atf-talbot-2012, not for "
+            f"{oil.name}."
+            for key in keys
+        ]
+    if models["friction"] == "xu-2007" and oil.name != "75w-90-gear-oil":
+        notes.append(
+            f"models.friction: the regression xu-2007 was made for a 75W-90 gear oil, not for "
+            f"{oil.name}; it knows no mixed lubrication."
+        )
+    return tuple(notes)
 
 
 def used_sources(terms: Iterable[LossTerm], *more: str) -> tuple[str, ...]:

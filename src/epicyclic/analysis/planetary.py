@@ -11,6 +11,7 @@ import numpy as np
 from epicyclic.analysis.parts import (
     MeshDuty,
     Part,
+    fluid_notes,
     fluids_of,
     general_notes,
     loss_terms,
@@ -93,6 +94,7 @@ def solve_planetary(case: PlanetaryCase) -> Result:
         flags=flags + bearing.flags,
         notes=(
             *general_notes(terms, flow.input_power, flow.efficiency),
+            *fluid_notes(case),
             *_planet_notes(case, angles),
             *_ring_notes(case, speeds),
         ),

@@ -5,6 +5,7 @@ Exit codes: 0 done, 2 bad input, 3 no solution found, 4 a sweep with failed case
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,7 +17,8 @@ from epicyclic.errors import ConvergenceError, InputError, Problem
 
 __all__ = ["main"]
 
-EXIT_INPUT, EXIT_NO_SOLUTION, EXIT_FAILED_CASES, EXIT_INTERRUPTED = 2, 3, 4, 130
+EXIT_INPUT, EXIT_NO_SOLUTION, EXIT_FAILED_CASES = 2, 3, 4
+EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
 SHOWN_FAILURES = 10
 
 case_argument = click.argument("case", metavar="CASE")
@@ -255,6 +257,9 @@ def main() -> None:
     except ConvergenceError as error:
         click.echo(f"No solution: {error}", err=True)
         sys.exit(EXIT_NO_SOLUTION)
+    except BrokenPipeError:  # the reader of a pipe has seen enough
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123
+        sys.exit(EXIT_BROKEN_PIPE)
     except (KeyboardInterrupt, click.Abort):
         click.echo("Interrupted.", err=True)
         sys.exit(EXIT_INTERRUPTED)

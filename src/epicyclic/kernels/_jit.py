@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
@@ -27,7 +28,13 @@ def cache_directory(kernel_folder: Path) -> Path:
     digest = hashlib.sha256()
     for source in sorted(kernel_folder.glob("*.py")):
         digest.update(source.read_bytes())
-    return Path(platformdirs.user_cache_dir("epicyclic")) / f"kernels-{digest.hexdigest()[:16]}"
+    name = f"kernels-{digest.hexdigest()[:16]}"
+    folder = Path(platformdirs.user_cache_dir("epicyclic")) / name
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:  # a home that cannot be written to: compile once for each start of the machine
+        folder = Path(tempfile.gettempdir()) / f"epicyclic-{name}"
+    return folder
 
 
 _CACHE_DIR = (
