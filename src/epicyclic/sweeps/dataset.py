@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from epicyclic.analysis.result import Figure
 from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.journal import Row
 from epicyclic.sweeps.plan import Plan
@@ -26,8 +27,8 @@ __all__ = ["FORMATS", "check_output", "to_dataset", "write_dataset"]
 FORMATS = (".nc", ".csv", ".parquet")
 
 
-def to_dataset(plan: Plan, rows: Sequence[Row]) -> xr.Dataset:
-    """The rows of all cases of `plan` over its axes."""
+def to_dataset(plan: Plan, rows: Sequence[Row], described: Sequence[Figure]) -> xr.Dataset:
+    """The rows of all cases of `plan` over its axes; `described` names their numbers."""
     import xarray as xr
 
     dims = tuple(axis.key for axis in plan.axes)
@@ -35,17 +36,13 @@ def to_dataset(plan: Plan, rows: Sequence[Row]) -> xr.Dataset:
         axis.key: (axis.key, np.array(axis.coordinate), {"units": axis.unit, "long_name": axis.key})
         for axis in plan.axes
     }
-    described = {
-        key: (unit, label) for row in rows for key, (_, unit, label) in row["numbers"].items()
-    }
-    missing = [math.nan]
     variables = {
-        key: (
+        item.key: (
             dims,
-            np.array([row["numbers"].get(key, missing)[0] for row in rows]).reshape(plan.shape),
-            {"units": unit or "1", "long_name": label},
+            np.array([row["numbers"].get(item.key, math.nan) for row in rows]).reshape(plan.shape),
+            {"units": item.unit or "1", "long_name": item.label},
         )
-        for key, (unit, label) in described.items()
+        for item in described
     }
     texts = {
         "status": "how the case ended",

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from epicyclic.analysis.result import Figure
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case
 from epicyclic.errors import EpicyclicError, InputError
@@ -65,7 +66,16 @@ def sweep(
     """
     plan = make_plan(case, vary)
     kept = None if journal is None else Journal(Path(journal), plan.fingerprint())
-    return to_dataset(plan, run_plan(plan, jobs=jobs, journal=kept, progress=progress))
+    rows = run_plan(plan, jobs=jobs, journal=kept, progress=progress)
+    return to_dataset(plan, rows, _describe(plan, rows))
+
+
+def _describe(plan: Plan, rows: Sequence[Row]) -> list[Figure]:
+    """Label and unit of every number of the rows: those of one case, computed once more."""
+    for index, row in enumerate(rows):
+        if row["numbers"]:
+            return list(solve(plan.case.updated(plan.changes(index))).numbers())
+    return []
 
 
 def run_plan(
@@ -132,7 +142,7 @@ def solve_row(plan: Plan, index: int) -> Row:
         "status": str(result.status),
         "message": "",
         "warnings": " | ".join(result.warnings),
-        "numbers": {item.key: [item.value, item.unit, item.label] for item in result.numbers()},
+        "numbers": {item.key: item.value for item in result.numbers()},
     }
 
 
