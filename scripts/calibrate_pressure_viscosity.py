@@ -24,7 +24,7 @@ from epicyclic.kinematics import planet_speed
 from epicyclic.losses.planet_bearing import mixed_ehl_rolling_loss, roller_loads
 
 PUBLISHED = {"40 degC": 236.0, "60 degC": 195.0, "90 degC": 181.0}
-"""Oil inlet temperature: loss of one planet bearing, Talbot (2012), p. 69. [W]"""
+"""Oil inlet temperature: loss of one planet bearing, Talbot (2012), p. 70. [W]"""
 
 
 def calibrate(temperature: str, loss: float) -> float:

@@ -69,6 +69,8 @@ def planetary_speeds(
 ) -> dict[str, float]:
     """Speeds of sun, ring and carrier from those of two of them.
 
+    Theory (K1).
+
     Willis: z_s omega_s + z_r omega_r = (z_s + z_r) omega_c. [rad/s]
     """
     factors = {"sun": teeth_sun, "ring": teeth_ring, "carrier": -(teeth_sun + teeth_ring)}
@@ -79,14 +81,20 @@ def planetary_speeds(
 
 
 def planet_speed(teeth_sun: int, teeth_planet: int, speeds: Mapping[str, float]) -> float:
-    """Speed of a planet relative to the carrier: -(omega_s - omega_c) z_s/z_p. [rad/s]"""
+    """Speed of a planet relative to the carrier: -(omega_s - omega_c) z_s/z_p. [rad/s]
+
+    Theory (K2).
+    """
     return -(speeds["sun"] - speeds["carrier"]) * teeth_sun / teeth_planet
 
 
 def lossless_torques(
     teeth_sun: int, teeth_ring: int, member: str, torque: float
 ) -> dict[str, float]:
-    """Torques of all members from one of them, T_s : T_r : T_c = z_s : z_r : -(z_s + z_r). [N m]"""
+    """Torques of all members from one of them, T_s : T_r : T_c = z_s : z_r : -(z_s + z_r). [N m]
+
+    Theory (K3).
+    """
     factors = {"sun": teeth_sun, "ring": teeth_ring, "carrier": -(teeth_sun + teeth_ring)}
     return {name: torque * factors[name] / factors[member] for name in MEMBERS}
 
@@ -100,6 +108,8 @@ def planetary_power_flow(
     drags: Mapping[str, float] | None = None,
 ) -> PowerFlow:
     """Torques and powers with the losses, the torque of the member `given` being prescribed.
+
+    Theory (K5), (P5).
 
     The torques that the meshes pass balance, and their powers sum to the loss inside the gear set;
     each shaft carries besides the torque of its own drag against the housing.
@@ -136,7 +146,7 @@ def planetary_power_flow(
 def pair_power_flow(
     ratio: float, internal: bool, torque: float, speed: float, loss: float
 ) -> PowerFlow:
-    """Power flow of a pair, pinion torque and speed given, ratio u = z2/z1."""
+    """Power flow of a pair, pinion torque and speed given, ratio u = z2/z1. Theory (K6)."""
     speed2 = speed / ratio * (1 if internal else -1)
     passed = torque * speed
     torque2 = (loss - passed) / speed2 if speed2 else -torque * ratio * (1 if internal else -1)
@@ -147,7 +157,10 @@ def pair_power_flow(
 def _flow(
     members: Mapping[str, MemberState], passed: float, driving: bool, loss: float
 ) -> PowerFlow:
-    """Input power and efficiency; `passed` is the power passed on without losses."""
+    """Input power and efficiency; `passed` is the power passed on without losses.
+
+    Theory (P6), (P7).
+    """
     entering = passed if driving else passed + loss
     efficiency = None if passed == 0.0 else max(0.0, 1 - loss / entering)
     return PowerFlow(members, entering, efficiency)

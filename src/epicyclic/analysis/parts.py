@@ -162,7 +162,7 @@ def friction_settings(case: Case) -> FrictionSettings:
 def load_mesh(
     duty: MeshDuty, models: GearPairModels, numerics: Numerics, oil: OilState
 ) -> MeshContact | None:
-    """Conditions along the contact lines; None without load or motion."""
+    """Conditions along the contact lines; None without load or motion. Theory (D1)."""
     if duty.torque1 == 0 or duty.speed1 == 0:
         return None
     lines, shape = load_shape(
@@ -254,6 +254,7 @@ def loss_terms(parts: Mapping[str, Part], options: BaseModel) -> tuple[LossTerm,
 
 
 def _term(name: str, part: Part, option: LossOption) -> LossTerm:
+    """One loss term with the user's options. Theory (P4)."""
     loaded = name.rpartition("_")[2] in LOAD_DEPENDENT_WORDS
     group = LOAD_DEPENDENT if loaded else LOAD_INDEPENDENT
     reason = part.left_out or ("" if option.include else "left out by the case")

@@ -105,7 +105,10 @@ def solve_planetary(case: PlanetaryCase) -> Result:
 
 
 def planetary_duties(case: PlanetaryCase) -> tuple[MeshDuty, MeshDuty]:
-    """Both meshes of one planet, each with its torque and speed relative to the carrier."""
+    """Both meshes of one planet, each with its torque and speed relative to the carrier.
+
+    Theory (K4).
+    """
     sun_mesh, ring_mesh = build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)
     speeds = member_speeds(case)
     branch_torque = _lossless(case)["sun"] / case.planet.count
@@ -167,6 +170,8 @@ class PlanetLoad:
 
 def planet_load(duties: tuple[MeshDuty, MeshDuty], centrifugal: float) -> PlanetLoad:
     """Load on the bearing of a planet from both meshes and the centrifugal force.
+
+    Theory (B1), (B2).
 
     Talbot (2012), Eq. 3.7 and 3.8, for equal or unequal pressure angles: the tangential forces
     add, the radial ones cancel or not, the axial ones form a couple in the plane of the axes.
@@ -249,6 +254,7 @@ def roller_bearing(table: PlanetBearing, slices: int) -> RollerBearing:
 
 
 def _centrifugal(case: PlanetaryCase, speeds: Mapping[str, float]) -> float:
+    """Centrifugal force of one planet. Theory (B3). [N]"""
     if case.planet.mass is None:
         return 0.0
     return case.planet.mass * case.gears.center_distance * speeds["carrier"] ** 2
@@ -307,6 +313,7 @@ def _housing_drags(case: PlanetaryCase, terms: Iterable[LossTerm]) -> dict[str, 
 
 
 def _thrust_bearing(case: PlanetaryCase, speeds: Mapping[str, float], oil: OilState) -> Part:
+    """Viscous loss of all thrust bearings. Theory (V2)."""
     bearing = case.thrust_bearing
     if bearing is None:
         return Part(left_out="the case has no [thrust_bearing]")

@@ -72,7 +72,7 @@ class LossTerm:
     Attributes
     ----------
     name : str
-        Key of the contract, ``"sun_mesh_sliding"``.
+        Key of the term, ``"sun_mesh_sliding"``.
     watts : float
         Of the whole gear set, factor included. [W]
     group : str
@@ -177,17 +177,17 @@ class Result:
 
     @property
     def load_dependent(self) -> float:
-        """Sum of the load-dependent terms, P_LD. [W]"""
+        """Sum of the load-dependent terms, P_LD. Theory (P1). [W]"""
         return sum(term.watts for term in self.terms if term.group == LOAD_DEPENDENT)
 
     @property
     def load_independent(self) -> float:
-        """Sum of the load-independent terms, P_LI. [W]"""
+        """Sum of the load-independent terms, P_LI. Theory (P2). [W]"""
         return sum(term.watts for term in self.terms if term.group == LOAD_INDEPENDENT)
 
     @property
     def total(self) -> float:
-        """Total loss. [W]"""
+        """Total loss. Theory (P3). [W]"""
         return self.load_dependent + self.load_independent
 
     @property
@@ -228,7 +228,7 @@ class Result:
                 yield Figure(f"{name}_{item.key}", label, item.value, item.unit)
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON result of the contract, numbers in W and in the units stated beside them."""
+        """The result as plain numbers and text, in W and in the units stated beside them."""
         result: dict[str, Any] = {
             "title": self.title,
             "kind": self.kind,

@@ -14,7 +14,7 @@ __all__ = ["admissible_angles", "nearest_admissible_angle", "smallest_planet_gap
 
 
 def nearest_admissible_angle(angle: float, teeth_sun: int, teeth_ring: int) -> float:
-    """The angle nearest to `angle` at which a planet can be assembled. [rad]"""
+    """The angle nearest to `angle` at which a planet can be assembled. Theory (K7). [rad]"""
     step = 2 * math.pi / (teeth_sun + teeth_ring)
     return round(angle / step) * step
 
@@ -31,6 +31,8 @@ def smallest_planet_gap(
     angles: Sequence[float], center_distance: float, tip_radius: float
 ) -> float:
     """Smallest distance between the tip circles of neighbouring planets; negative: they overlap.
+
+    Theory (K8).
 
     Infinite for a single planet. [m]
     """

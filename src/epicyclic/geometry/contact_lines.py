@@ -64,6 +64,8 @@ class ContactLines:
 def contact_lines(mesh: Mesh, positions: int, segments: int) -> ContactLines:
     """Contact lines of `mesh` over one base pitch.
 
+    Theory (G25), (G26).
+
     Every line is cut into `segments` equal parts of its own length. The mesh positions are the
     middles of equal parts of the intervals between which lines enter and leave, so that averages
     over the mesh period converge with the second order for spur gears as well.
@@ -114,7 +116,10 @@ def contact_lines(mesh: Mesh, positions: int, segments: int) -> ContactLines:
 
 
 def _positions(mesh: Mesh, count: int) -> tuple[FloatArray, FloatArray]:
-    """Middles and widths of `count` parts of one base pitch, cut where lines enter and leave."""
+    """Middles and widths of `count` parts of one base pitch, cut where lines enter and leave.
+
+    Theory (G27).
+    """
     corners = (
         mesh.transverse_contact_ratio,
         mesh.overlap_ratio,

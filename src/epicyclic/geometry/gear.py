@@ -13,13 +13,13 @@ __all__ = ["BasicRack", "Gear", "involute"]
 
 
 def involute(angle: float) -> float:
-    """Involute function inv(angle) = tan(angle) - angle. ISO 21771, Eq. 5."""
+    """Involute function inv(angle) = tan(angle) - angle. ISO 21771. Theory (G7)."""
     return math.tan(angle) - angle
 
 
 @dataclass(frozen=True, slots=True)
 class BasicRack:
-    """What gears that mesh have in common. ISO 21771, clause 4.
+    """What gears that mesh have in common. ISO 21771.
 
     Attributes
     ----------
@@ -37,22 +37,22 @@ class BasicRack:
 
     @property
     def normal_module(self) -> float:
-        """m_n = m_t cos(beta). [m]"""
+        """m_n = m_t cos(beta). Theory (G1). [m]"""
         return self.transverse_module * math.cos(self.helix_angle)
 
     @property
     def normal_pressure_angle(self) -> float:
-        """alpha_n from tan(alpha_n) = tan(alpha_t) cos(beta). [rad]"""
+        """alpha_n from tan(alpha_n) = tan(alpha_t) cos(beta). Theory (G2). [rad]"""
         return math.atan(math.tan(self.transverse_pressure_angle) * math.cos(self.helix_angle))
 
     @property
     def base_helix_angle(self) -> float:
-        """beta_b from tan(beta_b) = tan(beta) cos(alpha_t). [rad]"""
+        """beta_b from tan(beta_b) = tan(beta) cos(alpha_t). Theory (G3). [rad]"""
         return math.atan(math.tan(self.helix_angle) * math.cos(self.transverse_pressure_angle))
 
     @property
     def transverse_base_pitch(self) -> float:
-        """p_bt = pi m_t cos(alpha_t). [m]"""
+        """p_bt = pi m_t cos(alpha_t). Theory (G4). [m]"""
         return math.pi * self.transverse_module * math.cos(self.transverse_pressure_angle)
 
 
@@ -89,40 +89,46 @@ class Gear:
 
     @property
     def reference_radius(self) -> float:
-        """r = z m_t / 2. [m]"""
+        """r = z m_t / 2. Theory (G5). [m]"""
         return self.teeth * self.rack.transverse_module / 2
 
     @property
     def base_radius(self) -> float:
-        """r_b = r cos(alpha_t). [m]"""
+        """r_b = r cos(alpha_t). Theory (G6). [m]"""
         return self.reference_radius * math.cos(self.rack.transverse_pressure_angle)
 
     @property
     def profile_shift_coefficient(self) -> float:
-        """x of the rack that cuts this tooth thickness. ISO 21771, Eq. 33. [1]"""
+        """x of the rack that cuts this tooth thickness. ISO 21771. Theory (G8). [1]"""
         rack = self.rack
         thickness = 2 * self.reference_radius * self.thickness_half_angle
         excess = thickness - math.pi * rack.transverse_module / 2
         return excess / (2 * rack.normal_module * math.tan(rack.transverse_pressure_angle))
 
     def pressure_angle_at(self, radius: float) -> float:
-        """Transverse pressure angle of the involute at `radius` (zero below the base circle)."""
+        """Transverse pressure angle of the involute at `radius` (zero below the base circle).
+
+        Theory (G9).
+        """
         return math.acos(min(1.0, self.base_radius / radius))
 
     def half_angle_at(self, radius: float) -> float:
-        """Half the angle of the tooth thickness at `radius`, negative beyond a pointed tip."""
+        """Half the angle of the tooth thickness at `radius`, negative beyond a pointed tip.
+
+        Theory (G10).
+        """
         change = involute(self.pressure_angle_at(radius)) - involute(
             self.rack.transverse_pressure_angle
         )
         return self.thickness_half_angle + (change if self.internal else -change)
 
     def thickness_at(self, radius: float) -> float:
-        """Transverse tooth thickness, an arc, at `radius`. ISO 21771, Eq. 36. [m]"""
+        """Transverse tooth thickness, an arc, at `radius`. ISO 21771. Theory (G11). [m]"""
         return 2 * radius * self.half_angle_at(radius)
 
     @property
     def tip_involute_length(self) -> float:
-        """Radius of curvature of the involute at the tip circle, transverse. [m]"""
+        """Radius of curvature of the involute at the tip circle, transverse. Theory (G12). [m]"""
         return math.sqrt(max(0.0, self.tip_radius**2 - self.base_radius**2))
 
 
@@ -130,6 +136,8 @@ def half_angle_from_thickness(
     rack: BasicRack, teeth: int, internal: bool, thickness: float, radius: float
 ) -> float:
     """Half angle at the reference circle of a tooth `thickness` thick at `radius`.
+
+    Theory (G10).
 
     Raises
     ------
@@ -145,7 +153,10 @@ def half_angle_from_thickness(
 
 
 def half_angle_from_profile_shift(rack: BasicRack, teeth: int, coefficient: float) -> float:
-    """Half angle at the reference circle for profile shift `coefficient`. ISO 21771, Eq. 33."""
+    """Half angle at the reference circle for profile shift `coefficient`. ISO 21771.
+
+    Theory (G8).
+    """
     shift = coefficient * rack.normal_module
     thickness = math.pi * rack.transverse_module / 2 + 2 * shift * math.tan(
         rack.transverse_pressure_angle

@@ -51,49 +51,58 @@ class Mesh:
 
     @property
     def operating_pressure_angle(self) -> float:
-        """alpha_wt from cos(alpha_wt) = (r_b2 +- r_b1)/a. ISO 21771, Eq. 56. [rad]"""
+        """alpha_wt from cos(alpha_wt) = (r_b2 +- r_b1)/a. ISO 21771. Theory (G13). [rad]"""
         bases = self.gear2.base_radius + self.side * self.gear1.base_radius
         return math.acos(bases / self.center_distance)
 
     @property
     def operating_radius1(self) -> float:
-        """r_w1 = a z1/(z2 +- z1). [m]"""
+        """r_w1 = a z1/(z2 +- z1). Theory (G14). [m]"""
         z1, z2 = self.gear1.teeth, self.gear2.teeth
         return self.center_distance * z1 / (z2 + self.side * z1)
 
     @property
     def operating_radius2(self) -> float:
-        """r_w2 = r_w1 u. [m]"""
+        """r_w2 = r_w1 u. Theory (G14). [m]"""
         return self.operating_radius1 * self.ratio
 
     @property
     def operating_helix_tangent(self) -> float:
-        """tan(beta_w) = tan(beta) r_w/r, the same for both members. [1]"""
+        """tan(beta_w) = tan(beta) r_w/r, the same for both members. Theory (G15). [1]"""
         gear = self.gear1
         return math.tan(gear.rack.helix_angle) * self.operating_radius1 / gear.reference_radius
 
     @property
     def line_of_action(self) -> float:
-        """Distance of the two points where the line of action touches the base circles. [m]"""
+        """Distance of the two points where the line of action touches the base circles. [m]
+
+        Theory (G16).
+        """
         return self.center_distance * math.sin(self.operating_pressure_angle)
 
     def curvature2(self, curvature1: float) -> float:
-        """Transverse radius of curvature of member 2 where member 1 has `curvature1`. [m]"""
+        """Transverse radius of curvature of member 2 where member 1 has `curvature1`. [m]
+
+        Theory (G16).
+        """
         return self.line_of_action - self.side * curvature1
 
     @property
     def path_start(self) -> float:
-        """Radius of curvature of member 1 where the tip of member 2 is in contact. [m]"""
+        """Radius of curvature of member 1 where the tip of member 2 is in contact. [m]
+
+        Theory (G17).
+        """
         return self.side * (self.line_of_action - self.gear2.tip_involute_length)
 
     @property
     def path_end(self) -> float:
-        """Radius of curvature of member 1 at its own tip. [m]"""
+        """Radius of curvature of member 1 at its own tip. Theory (G17). [m]"""
         return self.gear1.tip_involute_length
 
     @property
     def pitch_point(self) -> float:
-        """Radius of curvature of member 1 at the pitch point. [m]"""
+        """Radius of curvature of member 1 at the pitch point. Theory (G18). [m]"""
         return self.operating_radius1 * math.sin(self.operating_pressure_angle)
 
     @property
@@ -103,28 +112,37 @@ class Mesh:
 
     @property
     def tip_contact_ratio1(self) -> float:
-        """epsilon_1: the path from the pitch point to the tip of member 1, in base pitches. [1]"""
+        """epsilon_1: the path from the pitch point to the tip of member 1, in base pitches. [1]
+
+        Theory (G19).
+        """
         return (self.path_end - self.pitch_point) / self.gear1.rack.transverse_base_pitch
 
     @property
     def tip_contact_ratio2(self) -> float:
-        """epsilon_2: the path from the tip of member 2 to the pitch point, in base pitches. [1]"""
+        """epsilon_2: the path from the tip of member 2 to the pitch point, in base pitches. [1]
+
+        Theory (G19).
+        """
         return (self.pitch_point - self.path_start) / self.gear1.rack.transverse_base_pitch
 
     @property
     def transverse_contact_ratio(self) -> float:
-        """epsilon_alpha = epsilon_1 + epsilon_2. ISO 21771, Eq. 92. [1]"""
+        """epsilon_alpha = epsilon_1 + epsilon_2. ISO 21771. Theory (G19). [1]"""
         return self.tip_contact_ratio1 + self.tip_contact_ratio2
 
     @property
     def overlap_ratio(self) -> float:
-        """epsilon_beta = b tan(beta_b)/p_bt. ISO 21771, Eq. 94. [1]"""
+        """epsilon_beta = b tan(beta_b)/p_bt. ISO 21771. Theory (G20). [1]"""
         rack = self.gear1.rack
         return self.face_width * math.tan(rack.base_helix_angle) / rack.transverse_base_pitch
 
     @property
     def backlash(self) -> float:
-        """Circumferential backlash at the operating circles, transverse. ISO 21771, Eq. 84. [m]"""
+        """Circumferential backlash at the operating circles, transverse. ISO 21771. [m]
+
+        Theory (G21).
+        """
         pitch = 2 * math.pi * self.operating_radius1 / self.gear1.teeth
         return (
             pitch
@@ -134,32 +152,34 @@ class Mesh:
 
     @property
     def tip_clearance1(self) -> float:
-        """Gap between the tip of member 1 and the root of member 2. [m]"""
+        """Gap between the tip of member 1 and the root of member 2. Theory (G22). [m]"""
         if self.internal:
             return self.gear2.root_radius - self.center_distance - self.gear1.tip_radius
         return self.center_distance - self.gear1.tip_radius - self.gear2.root_radius
 
     @property
     def tip_clearance2(self) -> float:
-        """Gap between the tip of member 2 and the root of member 1. [m]"""
+        """Gap between the tip of member 2 and the root of member 1. Theory (G22). [m]"""
         if self.internal:
             return self.gear2.tip_radius - self.center_distance - self.gear1.root_radius
         return self.center_distance - self.gear2.tip_radius - self.gear1.root_radius
 
     @property
     def radius1_at_start(self) -> float:
-        """Radius on member 1 where contact with the tip of member 2 begins. [m]"""
+        """Radius on member 1 where contact with the tip of member 2 begins. Theory (G23). [m]"""
         return math.hypot(self.gear1.base_radius, self.path_start)
 
     @property
     def radius2_at_end(self) -> float:
-        """Radius on member 2 where contact with the tip of member 1 ends. [m]"""
+        """Radius on member 2 where contact with the tip of member 1 ends. Theory (G23). [m]"""
         return math.hypot(self.gear2.base_radius, self.curvature2(self.path_end))
 
     @property
     def tip_passage(self) -> float:
         """Clearance of the tips of an internal mesh where the tip circles cross, as an angle of
         member 2; infinite if they do not cross. Negative: tip interference. [rad]
+
+        Theory (G24).
 
         Polder (1991); Colbourne, The Geometry of Involute Gears (1987), section 8.
         """

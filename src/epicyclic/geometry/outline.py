@@ -227,6 +227,8 @@ def default_tool(gear: Gear) -> Tool:
 def form_radius(gear: Gear, tool: Tool | None = None) -> float:
     """Root form radius r_Ff, where the involute meets the fillet.
 
+    Theory (G34).
+
     Without undercut this is the point that the last point of the tool flank generates: on the line
     of action, in closed form. With undercut it is where fillet and involute intersect; whether the
     undercut leaves the tooth on its root is not checked here.
@@ -347,7 +349,10 @@ class _RackCut:
         return self.center_offset / self.pitch_radius
 
     def fillet(self, normal: Floats) -> tuple[Floats, Floats]:
-        """Radius, and angle from the middle of the space, where the contact normal has `normal`."""
+        """Radius, and angle from the middle of the space, where the contact normal has `normal`.
+
+        Theory (G30).
+        """
         sine, cosine, tangent = np.sin(normal), np.cos(normal), np.tan(normal)
         # The point of the ellipse, about its centre, where its outward normal has this angle.
         support = np.sqrt((self.stretch * sine) ** 2 + cosine**2)
@@ -399,7 +404,10 @@ class _ShaperCut:
         return self.center_angle * self.ratio
 
     def fillet(self, normal: Floats) -> tuple[Floats, Floats]:
-        """Radius, and angle from the middle of the space, where the contact normal has `normal`."""
+        """Radius, and angle from the middle of the space, where the contact normal has `normal`.
+
+        Theory (G33).
+        """
         sine, cosine = np.sin(normal), np.cos(normal)
         # Distance from the pitch point, along the normal, of the circle that the centre of the
         # rounding runs on; rounding errors may leave it a hair out of reach at the end.
@@ -415,6 +423,8 @@ class _ShaperCut:
 
     def center_path(self, cutter_angle: Floats) -> tuple[Floats, Floats]:
         """Centre of the rounding as the ring sees it; angles from the middle of the space.
+
+        Theory (G35).
 
         Parameters
         ----------
@@ -458,6 +468,7 @@ def _cut(gear: Gear, tool: Tool) -> _RackCut | _ShaperCut:
 
 
 def _rack_cut(gear: Gear, tool: RackTool) -> _RackCut:
+    """The rack that cuts `gear`, its rounding reduced to what fits its tip. Theory (G28), (G29)."""
     rack = gear.rack
     alpha_t, alpha_n = rack.transverse_pressure_angle, rack.normal_pressure_angle
     radius = gear.reference_radius
@@ -486,6 +497,7 @@ def _rack_cut(gear: Gear, tool: RackTool) -> _RackCut:
 
 
 def _shaper_cut(gear: Gear, tool: ShaperTool) -> _ShaperCut:
+    """The cutter that cuts `gear`, its rounding reduced to what fits its tip. Theory (G32)."""
     rack = gear.rack
     difference = gear.teeth - tool.teeth
     if difference <= 0:
@@ -540,6 +552,8 @@ def _shaper_cut(gear: Gear, tool: ShaperTool) -> _ShaperCut:
 
 def _generating_pressure_angle(gear: Gear, cutter_teeth: int, cutter_half_angle: float) -> float:
     """Operating pressure angle of cutter and ring without backlash. [rad]
+
+    Theory (G31).
 
     Both thicknesses on the pitch circles add up to the pitch there. ISO 21771 gives the same
     relation in terms of profile shifts: inv(alpha_w) = inv(alpha) + 2 tan(alpha) sum(x)/sum(z).
@@ -597,7 +611,10 @@ def _check_trimming(gear: Gear, cut: _ShaperCut) -> None:
 
 
 def _involute_start(gear: Gear, cut: _RackCut | _ShaperCut) -> tuple[float, float]:
-    """Root form radius, and the angle of the contact normal where the fillet ends there."""
+    """Root form radius, and the angle of the contact normal where the fillet ends there.
+
+    Theory (G34).
+    """
     if cut.last_curvature >= 0.0:
         radius, normal = math.hypot(gear.base_radius, cut.last_curvature), cut.last_normal
     else:

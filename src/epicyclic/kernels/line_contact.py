@@ -26,12 +26,14 @@ Real = TypeVar("Real", float, NDArray[np.float64])
 
 
 def equivalent_modulus(e1: float, nu1: float, e2: float, nu2: float) -> float:
-    """E_eq = 2/[(1 - nu1^2)/E1 + (1 - nu2^2)/E2]. Talbot (2012), p. 63. [Pa]"""
+    """E_eq = 2/[(1 - nu1^2)/E1 + (1 - nu2^2)/E2]. Talbot (2012), p. 63. Theory (C1). [Pa]"""
     return 2 / ((1 - nu1**2) / e1 + (1 - nu2**2) / e2)
 
 
 def hertz_half_width(w: Real, r_eq: Real, e_eq: float) -> Real:
     """b_h = sqrt(8 W' R_eq/(pi E_eq)). Johnson, Contact Mechanics (1985), Eq. 4.43. [m]
+
+    Theory (C5).
 
     `w` line load [N/m], `r_eq` equivalent radius [m], `e_eq` [Pa].
     """
@@ -40,19 +42,24 @@ def hertz_half_width(w: Real, r_eq: Real, e_eq: float) -> Real:
 
 
 def hertz_pressure(w: Real, r_eq: Real, e_eq: float) -> Real:
-    """p_h = 2 W'/(pi b_h). Johnson (1985), Eq. 4.44. [Pa]"""
+    """p_h = 2 W'/(pi b_h). Johnson (1985), Eq. 4.45. Theory (C6). [Pa]"""
     pressure: Real = (w * e_eq / (2 * math.pi * r_eq)) ** 0.5
     return pressure
 
 
 def line_load_at_pressure(p_h: Real, r_eq: Real, e_eq: float) -> Real:
-    """W' that gives the Hertz pressure `p_h`: the inverse of `hertz_pressure`. [N/m]"""
+    """W' that gives the Hertz pressure `p_h`: the inverse of `hertz_pressure`. [N/m]
+
+    Theory (C6).
+    """
     load: Real = 2 * math.pi * r_eq * p_h**2 / e_eq
     return load
 
 
 def pan_hamrock_minimum_film(u: Real, g: float, w: Real) -> Real:
     """h_min/R_eq = 1.714 U^0.694 G^0.568 W^-0.128.
+
+    Theory (C10).
 
     Pan and Hamrock, J. Tribol. 111 (1989) 246; Talbot (2012), p. 135. Smooth, isothermal, fully
     flooded line contacts in the elastic-piezoviscous regime.
@@ -62,13 +69,15 @@ def pan_hamrock_minimum_film(u: Real, g: float, w: Real) -> Real:
 
 
 def pan_hamrock_central_film(u: Real, g: float, w: Real) -> Real:
-    """h_c/R_eq = 2.922 U^0.692 G^0.470 W^-0.166. Pan and Hamrock (1989), as above."""
+    """h_c/R_eq = 2.922 U^0.692 G^0.470 W^-0.166. Pan and Hamrock (1989), as above. Theory (C11)."""
     film: Real = 2.922 * u**0.692 * g**0.470 * w ** (-0.166)
     return film
 
 
 def goksem_hargreaves_force(u: Real, g: float, w: Real, thermal_load: Real) -> Real:
     """Rolling force of one surface: F_r alpha/R_eq = 4.318 (G U)^0.658 W^0.0126 phi_T.
+
+    Theory (R6).
 
     Goksem and Hargreaves, J. Lubr. Technol. 100 (1978) 346, in the form of Zhou and Hoeprich,
     J. Tribol. 113 (1991) 590; phi_T = 1/(1 + 0.29 L^0.78), L = mu beta u^2/k. Smooth, fully

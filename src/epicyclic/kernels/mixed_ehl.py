@@ -31,7 +31,7 @@ SMALLEST_SLIDE_TO_ROLL = 1e-9
 
 @kernel
 def blend_weight(lam: float, limit: float) -> float:
-    """Weight of the branch above `limit`: 0 to 1 with continuous slope in ln(lam)."""
+    """Weight of the branch above `limit`: 0 to 1 with continuous slope in ln(lam). Theory (F4)."""
     t = (math.log(lam / limit) + BLEND_HALF_WIDTH) / (2.0 * BLEND_HALF_WIDTH)
     t = min(max(t, 0.0), 1.0)
     return t * t * (3.0 - 2.0 * t)
@@ -41,7 +41,7 @@ def blend_weight(lam: float, limit: float) -> float:
 def _log_mu_boundary(
     s: float, u: float, g: float, p: float, r: float, s_co: float, s_eq: float, lam: float
 ) -> float:
-    """ln(mu) of Eq. 5.8a, 0 < L <= 0.7."""
+    """ln(mu) of Eq. 5.8a, 0 < L <= 0.7. Theory (F1)."""
     a0, a1, a2, a3 = -0.92139, -0.00008711, -4400.2, -208.356
     a4, a5, a6 = 0.00034889, 0.00000156, 18.9479
     b1, b2, b3, b4, b5 = 0.00201603, -0.0059483, -1.90169, -0.579273, -0.00711570
@@ -58,7 +58,7 @@ def _log_mu_boundary(
 def _log_mu_mixed(
     s: float, u: float, g: float, p: float, r: float, s_co: float, lam: float
 ) -> float:
-    """ln(mu) of Eq. 5.8b, 0.7 < L <= 3."""
+    """ln(mu) of Eq. 5.8b, 0.7 < L <= 3. Theory (F2)."""
     a0, a1, a2, a3 = -4.35656, -0.0060247, 0.00001033, -5940595.0
     b1, b2, b3, b4 = -0.00009197, -0.0251361, 0.0092455, -0.146072
     b5, b6, b7, b8 = -21.8661, 0.00007909, 0.00315987, -0.0584464
@@ -74,7 +74,7 @@ def _log_mu_mixed(
 
 @kernel
 def _log_mu_full_film(s: float, u: float, g: float, p: float, r: float) -> float:
-    """ln(mu) of Eq. 5.8c, L > 3."""
+    """ln(mu) of Eq. 5.8c, L > 3. Theory (F3)."""
     a0, a1, a2, a3 = -54.986, -0.0058891, -0.041242, 0.00000905
     b1, b2, b3, b4, b5 = 0.48686, -0.00022193, 21.533, 0.0074347, 6.8850
     b6, b7, b8, b9 = 0.035346, -5.2323, -0.00073500, -0.052499
@@ -93,7 +93,7 @@ def _log_mu_full_film(s: float, u: float, g: float, p: float, r: float) -> float
 def sliding_friction(
     s: float, u: float, g: float, p: float, r: float, s_co: float, s_eq: float, lam: float
 ) -> float:
-    """Coefficient of sliding friction, Talbot (2012) Eq. 5.8, branches blended. [1]"""
+    """Coefficient of sliding friction, Talbot (2012) Eq. 5.8, branches blended. Theory (F4). [1]"""
     s = max(s, SMALLEST_SLIDE_TO_ROLL)
     upper = blend_weight(lam, FRICTION_BOUNDARY_LIMIT)
     full = blend_weight(lam, FRICTION_FULL_FILM_LIMIT)
@@ -111,7 +111,7 @@ def sliding_friction(
 def _log_rolling_mixed(
     s: float, u: float, g: float, r: float, s_co: float, s_eq: float, lam: float
 ) -> float:
-    """ln of Eq. 5.10a without its prefactor, 0 < L <= 1."""
+    """ln of Eq. 5.10a without its prefactor, 0 < L <= 1. Theory (R1)."""
     a0, a1, a2, a3 = -55.5228, -4049775804.0, 0.00036893, 91748360.0
     b1, b2, b3, b4 = 0.0035756, -2.81418, 0.79315, -1.57573
     b5, b6, b7 = 0.71772, -4.20259, -0.162010
@@ -134,6 +134,8 @@ def _log_rolling_film(
     s: float, u: float, g: float, p: float, r: float, s_co: float, s_eq: float, lam: float
 ) -> float:
     """ln of Eq. 5.10b without its prefactor, L > 1.
+
+    Theory (R2).
 
     The bases of b5 (G) and b6 (R_eq) are set the way in which the two branches meet at L = 1.
     """
@@ -158,6 +160,8 @@ def rolling_loss_number(
 ) -> float:
     """Dimensionless rolling loss of Talbot (2012) Eq. 5.10, branches blended. [1]
 
+    Theory (R3).
+
     The prefactor printed in the source, 1e5 W/m, is left out: see `losses.mesh.rolling_scale`.
     """
     film = blend_weight(lam, ROLLING_LIMIT)
@@ -181,6 +185,8 @@ def needle_rolling_loss(
     p_h: float, u_r: float, mu_d: float, alpha_pv: float, r_eq: float, s_co: float, e_eq: float
 ) -> float:
     """Rolling loss of a needle contact per length, Talbot (2012) Eq. 3.5 and Table 3.2. [W/m]
+
+    Theory (B14).
 
     Parameters
     ----------

@@ -44,7 +44,10 @@ NEWTON_SHIFT = 1e-12
 
 @kernel
 def slice_stiffness(loaded_length: float) -> float:
-    """K of q = K delta^1.11, q in N/m and delta in m, for a roller loaded over `loaded_length`."""
+    """K of q = K delta^1.11, q in N/m and delta in m, for a roller loaded over `loaded_length`.
+
+    Theory (B9).
+    """
     length_mm = loaded_length * MM
     compliance: float = DEFLECTION_CONSTANT * length_mm**LENGTH_EXPONENT
     stiffness: float = MM * MM**DEFLECTION_EXPONENT / compliance
@@ -55,7 +58,7 @@ def slice_stiffness(loaded_length: float) -> float:
 def slice_deflection(
     d: FloatArray, psi: float, y_over_l: float, clearance: float, crown: float
 ) -> float:
-    """Deflection of one contact of a slice; negative where there is a gap. [m]"""
+    """Deflection of one contact of a slice; negative where there is a gap. Theory (B8). [m]"""
     radial = d[0] * np.cos(psi) + d[1] * np.sin(psi)
     tilt = d[2] * np.cos(psi) + d[3] * np.sin(psi)
     delta: float = 0.5 * (radial + y_over_l * tilt - 0.5 * clearance) - crown
@@ -75,7 +78,10 @@ def potential(
     gradient: FloatArray,
     hessian: FloatArray,
 ) -> float:
-    """Elastic energy less the work of `load`; fills its `gradient` and `hessian` in `d`."""
+    """Elastic energy less the work of `load`; fills its `gradient` and `hessian` in `d`.
+
+    Theory (B10).
+    """
     energy = 0.0
     gradient[:] = -load
     hessian[:] = 0.0
@@ -114,6 +120,8 @@ def loaded_lengths(
     lengths: FloatArray,
 ) -> None:
     """Fill `lengths`, (rows, rollers), with the length over which each roller is loaded.
+
+    Theory (B11).
 
     The source counts loaded slices, a number that jumps. Here the slice in which the load ends
     counts for the part of it that a straight line between slice middles finds loaded, so that

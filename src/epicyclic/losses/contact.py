@@ -46,12 +46,12 @@ class Flanks:
 
     @property
     def composite_roughness(self) -> float:
-        """sqrt(Rq1^2 + Rq2^2). [m]"""
+        """sqrt(Rq1^2 + Rq2^2). Theory (C12). [m]"""
         return math.hypot(self.roughness1, self.roughness2)
 
     @property
     def reduced_roughness(self) -> float:
-        """Rq1 Rq2/(Rq1 + Rq2). Talbot (2012), p. 137. [m]"""
+        """Rq1 Rq2/(Rq1 + Rq2). Talbot (2012), p. 137. Theory (C13). [m]"""
         return self.roughness1 * self.roughness2 / (self.roughness1 + self.roughness2)
 
 
@@ -101,7 +101,7 @@ class MeshContact:
 
     @cached_property
     def slide_to_roll_ratio(self) -> FloatArray:
-        """|u_s|/u_r. [1]"""
+        """abs(u_s)/u_r. Theory (C4). [1]"""
         ratio: FloatArray = np.abs(self.sliding_speed) / self.rolling_speed
         return ratio
 
@@ -117,7 +117,7 @@ class MeshContact:
 
     @cached_property
     def speed_number(self) -> FloatArray:
-        """U = u_r mu/(E_eq R_eq). [1]"""
+        """U = u_r mu/(E_eq R_eq). Theory (C7). [1]"""
         number: FloatArray = (
             self.rolling_speed
             * self.oil.dynamic_viscosity
@@ -127,18 +127,18 @@ class MeshContact:
 
     @cached_property
     def material_number(self) -> float:
-        """G = alpha E_eq. [1]"""
+        """G = alpha E_eq. Theory (C8). [1]"""
         return self.oil.pressure_viscosity * self.flanks.equivalent_modulus
 
     @cached_property
     def load_number(self) -> FloatArray:
-        """W = W'/(E_eq R_eq). [1]"""
+        """W = W'/(E_eq R_eq). Theory (C9). [1]"""
         number: FloatArray = self.line_load / (self.flanks.equivalent_modulus * self.radius)
         return number
 
     @cached_property
     def minimum_film(self) -> FloatArray:
-        """h_min of the smooth contact (Pan and Hamrock). [m]"""
+        """h_min of the smooth contact (Pan and Hamrock). Theory (C10). [m]"""
         film: FloatArray = self.radius * pan_hamrock_minimum_film(
             self.speed_number, self.material_number, self.load_number
         )
@@ -146,18 +146,18 @@ class MeshContact:
 
     @cached_property
     def film_ratio(self) -> FloatArray:
-        """Lambda = h_min/sqrt(Rq1^2 + Rq2^2). [1]"""
+        """Lambda = h_min/sqrt(Rq1^2 + Rq2^2). Theory (C14). [1]"""
         ratio: FloatArray = self.minimum_film / self.flanks.composite_roughness
         return ratio
 
     @cached_property
     def pitch_line_speed(self) -> float:
-        """Speed of the operating circles relative to the carrier. [m/s]"""
+        """Speed of the operating circles relative to the carrier. Theory (C15). [m/s]"""
         return self.speed1 * self.mesh.operating_radius1
 
     @cached_property
     def input_power(self) -> float:
-        """Power through the mesh, relative to the carrier. [W]"""
+        """Power through the mesh, relative to the carrier. Theory (C15). [W]"""
         return self.force * self.speed1 * self.mesh.gear1.base_radius
 
 
@@ -172,6 +172,8 @@ def mesh_contact(
     flanks: Flanks,
 ) -> MeshContact:
     """Conditions at the loaded segments of `lines`.
+
+    Theory (C2), (C3).
 
     Parameters
     ----------

@@ -26,12 +26,14 @@ FloatArray = NDArray[np.float64]
 
 
 def _uniform(mesh: Mesh, lines: ContactLines) -> FloatArray:
-    """Constant stiffness: the load per length is the same everywhere on all lines."""
+    """Constant stiffness: the load per length is the same everywhere on all lines. Theory (D3)."""
     return np.ones_like(lines.length)
 
 
 def _minimum_energy(mesh: Mesh, lines: ContactLines) -> FloatArray:
     """Stiffness cos[b0 (xi - xi_m)] along the path of contact, xi in base pitches.
+
+    Theory (D4).
 
     Sanchez, Pleguezuelos, Pedrero, Mech. Mach. Theory 109 (2017) 231: b0 = [(1.11 +
     epsilon_alpha/2)^2/2 - 1.17]^-1/2, for 1 <= epsilon_alpha <= 2; beyond, the value at the limit
@@ -57,6 +59,8 @@ def load_shape(
     mesh: Mesh, model: str, positions: int, segments: int
 ) -> tuple[ContactLines, FloatArray]:
     """Contact lines, and the line load on them for a unit transverse force.
+
+    Theory (D2).
 
     Returns
     -------

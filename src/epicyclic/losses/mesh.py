@@ -47,7 +47,10 @@ class MeshLoss:
 
 
 def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingModel) -> MeshLoss:
-    """Sliding and rolling loss, summed along the contact lines, averaged over the mesh period."""
+    """Sliding and rolling loss, summed along the contact lines, averaged over the mesh period.
+
+    Theory (M1), (M2), (M3).
+    """
     sliding_power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
     local_sliding = friction.coefficient(contact) * sliding_power
     local_rolling = rolling.loss_density(contact) * contact.weight
@@ -64,6 +67,8 @@ def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingMo
 
 def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
     """The quick method: P = P_in mu_m H_V. Niemann and Winter, vol. II, Eq. 21.11/3.
+
+    Theory (M4).
 
     A local friction model enters with its mean over the sliding power.
     """
@@ -83,6 +88,8 @@ def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
 def ohlendorf_loss_factor(mesh: Mesh) -> float:
     """H_V = pi (u +- 1)/(z1 u cos(beta_b)) (1 - eps_alpha + eps_1^2 + eps_2^2). [1]
 
+    Theory (M5).
+
     H. Ohlendorf, Diss. TH Muenchen (1958); minus for internal meshes. Constant friction, tooth
     pairs in contact sharing the load equally. The last bracket holds for 1 <= eps_alpha <= 2 with
     eps_1, eps_2 <= 1; here it is the integral that it stands for, 2 int |s|/N(s) ds with N the
@@ -94,7 +101,7 @@ def ohlendorf_loss_factor(mesh: Mesh) -> float:
 
 
 def _sliding_integral(tip1: float, tip2: float) -> float:
-    """2 int |s|/N(s) ds from -tip2 to tip1, s in base pitches from the pitch point."""
+    """2 int |s|/N(s) ds from -tip2 to tip1, s in base pitches from the pitch point. Theory (M6)."""
     # N changes where a neighbouring pair enters or leaves, at whole pitches from the ends
     reach = math.ceil(tip1 + tip2)
     corners = {-tip2, tip1, 0.0}

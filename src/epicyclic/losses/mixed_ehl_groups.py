@@ -70,7 +70,7 @@ class RegressionGroups(NamedTuple):
 
 
 def regression_groups(contact: MeshContact) -> RegressionGroups:
-    """Groups of Eq. 5.8 and 5.10 at every point of `contact`."""
+    """Groups of Eq. 5.8 and 5.10 at every point of `contact`. Theory (F5)."""
     flanks, oil = contact.flanks, contact.oil
     e_eq = flanks.equivalent_modulus
     radius = held_in_range(contact.radius, _RADIUS)
@@ -97,14 +97,17 @@ def regression_groups(contact: MeshContact) -> RegressionGroups:
 
 
 def light_load_share(pressure: FloatArray, item: Range = _PRESSURE) -> FloatArray:
-    """Line load over the line load held for it: below 1 where the contact is held at its limit."""
+    """Line load over the line load held for it: below 1 where the contact is held at its limit.
+
+    Theory (R5).
+    """
     lowest = item.low / item.unit.to_display(1.0) / MARGIN
     share: FloatArray = np.minimum(1.0, pressure / lowest) ** 2
     return share
 
 
 def held_in_range(value: FloatArray, item: Range) -> FloatArray:
-    """`value` within the range of `item`, widened by `MARGIN`."""
+    """`value` within the range of `item`, widened by `MARGIN`. Theory (F5)."""
     scale = 1 / item.unit.to_display(1.0)
     held: FloatArray = np.clip(value, item.low * scale / MARGIN, item.high * scale * MARGIN)
     return held

@@ -100,29 +100,29 @@ class RollerBearing:
 
     @property
     def outer_diameter(self) -> float:
-        """Of the outer race. [m]"""
+        """Of the outer race. Theory (B4). [m]"""
         return self.inner_diameter + 2 * self.roller_diameter + self.diametral_clearance
 
     @property
     def pitch_diameter(self) -> float:
-        """d_m, mean of the two races. [m]"""
+        """d_m, mean of the two races. Theory (B4). [m]"""
         return (self.inner_diameter + self.outer_diameter) / 2
 
     @property
     def inner_radius(self) -> float:
-        """Equivalent radius of the contact at the inner race. [m]"""
+        """Equivalent radius of the contact at the inner race. Theory (B5). [m]"""
         roller, race = self.roller_diameter / 2, self.inner_diameter / 2
         return roller * race / (race + roller)
 
     @property
     def outer_radius(self) -> float:
-        """Equivalent radius of the contact at the outer race. [m]"""
+        """Equivalent radius of the contact at the outer race. Theory (B5). [m]"""
         roller, race = self.roller_diameter / 2, self.outer_diameter / 2
         return roller * race / (race - roller)
 
     @property
     def composite_roughness(self) -> float:
-        """S_co = sqrt(Rq1^2 + Rq2^2). [m]"""
+        """S_co = sqrt(Rq1^2 + Rq2^2). Theory (B13). [m]"""
         return math.hypot(self.roller_roughness, self.race_roughness)
 
     @property
@@ -136,14 +136,14 @@ class RollerBearing:
         return (self.rows * self.roller_length + (self.rows - 1) * self.row_gap) / 2
 
     def slice_positions(self) -> FloatArray:
-        """Axial position of the slices, shape (rows, slices). [m]"""
+        """Axial position of the slices, shape (rows, slices). Theory (B7). [m]"""
         within = (np.arange(self.slices) + 0.5) * self.slice_width - self.roller_length / 2
         middles = (np.arange(self.rows) - (self.rows - 1) / 2) * (self.roller_length + self.row_gap)
         positions: FloatArray = middles[:, None] + within
         return positions
 
     def crown(self) -> FloatArray:
-        """Drop of the profile at each slice, a parabola over the crowned ends. [m]"""
+        """Drop of the profile at each slice, a parabola over the crowned ends. Theory (B6). [m]"""
         within = (np.arange(self.slices) + 0.5) * self.slice_width - self.roller_length / 2
         crowned = self.crown_length_fraction * self.roller_length
         if crowned == 0.0:
@@ -153,7 +153,7 @@ class RollerBearing:
         return drop
 
     def rolling_speed(self, speed: float) -> float:
-        """u_r = d_m omega (1 - d_r^2/d_m^2)/4. Talbot (2012), Eq. 3.4. [m/s]"""
+        """u_r = d_m omega (1 - d_r^2/d_m^2)/4. Talbot (2012), Eq. 3.4. Theory (B12). [m/s]"""
         ratio = self.roller_diameter / self.pitch_diameter
         return self.pitch_diameter * abs(speed) * (1 - ratio**2) / 4
 
@@ -252,6 +252,8 @@ def mixed_ehl_rolling_loss(
 ) -> BearingLoss:
     """P_mb = w sum P_WD over the loaded slices. Talbot (2012), Eq. 3.5 and 3.6. [W]
 
+    Theory (B15).
+
     As printed, one evaluation for each loaded slice; with the radius of the outer race, the
     reading that reproduces the published effects of roughness and size. Pressures far outside
     Table 3.1 are treated as in `mixed_ehl_groups`.
@@ -286,5 +288,8 @@ def mixed_ehl_rolling_loss(
 
 
 def palmgren_loss(coefficient: float, force: float, pitch_diameter: float, speed: float) -> float:
-    """P_mb = f1 F_r d_m omega. Talbot (2012), Eq. 3.1, after Palmgren and Harris. [W]"""
+    """P_mb = f1 F_r d_m omega. Talbot (2012), Eq. 3.1, after Palmgren and Harris. [W]
+
+    Theory (B16).
+    """
     return coefficient * force * pitch_diameter * abs(speed)

@@ -37,6 +37,8 @@ class RollingModel(Protocol):
 def rolling_scale(contact: MeshContact) -> FloatArray:
     """mu u_r^2: the power per length that turns the number of Eq. 5.10 into W/m.
 
+    Theory (R4).
+
     A documented reconstruction. The source prints 1e5 W/m, with which the rolling loss exceeds the
     input power; mu u_r^2 is the only natural scale of the problem, reproduces the published
     totals, and agrees with smooth EHL solutions within about a factor of two.
@@ -47,6 +49,8 @@ def rolling_scale(contact: MeshContact) -> FloatArray:
 
 class MixedEhlRolling:
     """Regression of 33,600 mixed-EHL simulations of an automatic transmission fluid.
+
+    Theory (R5).
 
     Talbot (2012), Eq. 5.10 and Table 5.2(b), in the scale of `rolling_scale`.
     """
@@ -65,7 +69,7 @@ class MixedEhlRolling:
 
 
 class GoksemHargreaves:
-    """Rolling force of both surfaces of a smooth, fully flooded contact, times u_r."""
+    """Rolling force of both surfaces of a smooth, fully flooded contact, times u_r. Theory (R7)."""
 
     title: ClassVar = "rolling loss of Goksem and Hargreaves"
     source: ClassVar = "Goksem and Hargreaves, J. Lubr. Technol. 100 (1978) 346"

@@ -110,7 +110,10 @@ def check_ranges(
     values: Mapping[str, FloatArray | float],
     weight: FloatArray | float = 1.0,
 ) -> tuple[ValidityFlag, ...]:
-    """Flags for every quantity that leaves its range; `weight` is the loss at each value."""
+    """Flags for every quantity that leaves its range; `weight` is the loss at each value.
+
+    Theory (P8).
+    """
     flags = []
     for item in ranges:
         value = np.atleast_1d(np.asarray(values[item.name], dtype=float))

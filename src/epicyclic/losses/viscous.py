@@ -21,6 +21,8 @@ def bearing_viscous_loss(
 ) -> float:
     """Viscous loss of a rolling bearing after Palmgren and Harris. [W]
 
+    Theory (V1).
+
     M0 = 1e-7 f0 (nu n)^(2/3) d_m^3 for nu n >= 2000, else 160e-7 f0 d_m^3; N mm, mm^2/s, rpm, mm.
     Talbot (2012), Eq. 5.6 for the first branch; Harris, Rolling Bearing Analysis, 3rd ed. (1991)
     for both. They differ by 0.8 % where they meet.
@@ -46,6 +48,8 @@ def bearing_viscous_loss(
 def disc_drag_loss(radius: float, width: float, speed: float, mixture: MixtureState) -> float:
     """Drag of a disc in the mixture: rim (Eq. 5.4) and both faces (Eq. 5.5). [W]
 
+    Theory (V3), (V4).
+
     Seetharaman and Kahraman (2010), Talbot (2012), p. 130. The face formula jumps at its
     transition, by about a factor of seven: that is the source's.
 
@@ -68,5 +72,5 @@ def disc_drag_loss(radius: float, width: float, speed: float, mixture: MixtureSt
 
 
 def reynolds_number(radius: float, speed: float, mixture: MixtureState) -> float:
-    """omega r^2/nu. [1]"""
+    """omega r^2/nu. Theory (V5). [1]"""
     return abs(speed) * radius**2 / mixture.kinematic_viscosity

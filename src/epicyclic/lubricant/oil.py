@@ -50,7 +50,7 @@ class SourcedNumber(_Data):
 
 
 class GoldLaw(_Data):
-    """alpha = s nu^t with nu in mm^2/s and alpha in 1/GPa (Gold et al. 2001)."""
+    """alpha = s nu^t with nu in mm^2/s and alpha in 1/GPa (Gold et al. 2001). Theory (L4)."""
 
     law: Literal["gold"]
     s: float = Field(gt=0)
@@ -60,7 +60,7 @@ class GoldLaw(_Data):
 
 
 class RoelandsLaw(_Data):
-    """alpha = z (ln mu + 9.67)/1.96e8, the index z linear between the given points."""
+    """alpha = z (ln mu + 9.67)/1.96e8, the index z linear between the given points. Theory (L5)."""
 
     law: Literal["roelands"]
     point: tuple[PressureViscosityPoint, ...] = Field(min_length=1)

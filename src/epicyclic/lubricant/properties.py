@@ -97,13 +97,13 @@ class MixtureState:
 
     @property
     def kinematic_viscosity(self) -> float:
-        """mu/rho. [m^2/s]"""
+        """mu/rho. Theory (L10). [m^2/s]"""
         return self.dynamic_viscosity / self.density
 
 
 @lru_cache(maxsize=256)
 def oil_state(oil: Oil, temperature: float) -> OilState:
-    """Properties of `oil` at `temperature` in kelvin."""
+    """Properties of `oil` at `temperature` in kelvin. Theory (L3)."""
     nu = _kinematic_viscosity(oil, temperature)
     rho = _density(oil, temperature)
     return OilState(
@@ -125,6 +125,8 @@ def oil_state(oil: Oil, temperature: float) -> OilState:
 def mixture_state(oil: OilState, oil_fraction: float, pressure: float) -> MixtureState:
     """Oil at `oil_fraction` by volume, the rest air at the oil's temperature and `pressure`.
 
+    Theory (L7), (L8).
+
     The rules reproduce the densities and viscosities printed in Talbot (2012), p. 139, to the
     last digit: density by volume, viscosity weighted by mass (Cicchitti et al. 1960).
     """
@@ -138,12 +140,12 @@ def mixture_state(oil: OilState, oil_fraction: float, pressure: float) -> Mixtur
 
 
 def air_viscosity(temperature: float) -> float:
-    """Dynamic viscosity of air, Sutherland's law, 100 to 1900 K. ISO 2533. [Pa s]"""
+    """Dynamic viscosity of air, Sutherland's law, 100 to 1900 K. ISO 2533. Theory (L9). [Pa s]"""
     return SUTHERLAND_CONSTANT * math.pow(temperature, 1.5) / (temperature + SUTHERLAND_TEMPERATURE)
 
 
 def _kinematic_viscosity(oil: Oil, temperature: float) -> float:
-    """ASTM D341 between neighbouring points, and beyond the outermost two. [m^2/s]"""
+    """ASTM D341 between neighbouring points, and beyond the outermost two. Theory (L1). [m^2/s]"""
     points = sorted(oil.kinematic_viscosity, key=lambda point: point.temperature)
     log_t = [math.log10(point.temperature) for point in points]
     ordinate = [math.log10(math.log10(point.value / MM2_PER_S + D341_OFFSET)) for point in points]
@@ -152,13 +154,14 @@ def _kinematic_viscosity(oil: Oil, temperature: float) -> float:
 
 
 def _thermoviscosity(oil: Oil, temperature: float) -> float:
-    """-d(ln nu)/dT by central difference. [1/K]"""
+    """-d(ln nu)/dT by central difference. Theory (L6). [1/K]"""
     colder = _kinematic_viscosity(oil, temperature - SLOPE_STEP)
     warmer = _kinematic_viscosity(oil, temperature + SLOPE_STEP)
     return math.log(colder / warmer) / (2 * SLOPE_STEP)
 
 
 def _density(oil: Oil, temperature: float) -> float:
+    """Density. Theory (L2). [kg/m^3]"""
     points = sorted(oil.density, key=lambda point: point.temperature)
     if len(points) == 1:
         return points[0].value + oil.density_slope.value * (temperature - points[0].temperature)
@@ -168,6 +171,7 @@ def _density(oil: Oil, temperature: float) -> float:
 
 
 def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> float:
+    """Pressure-viscosity coefficient. Theory (L4). [1/Pa]"""
     law = oil.pressure_viscosity
     if isinstance(law, GoldLaw):
         return law.s * math.pow(nu / MM2_PER_S, law.t) * 1e-9
@@ -175,12 +179,12 @@ def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> f
 
 
 def roelands_slope(mu: float) -> float:
-    """alpha/z of Roelands' law, (ln mu + 9.67)/1.96e8 with mu in Pa s. [1/Pa]"""
+    """alpha/z of Roelands' law, (ln mu + 9.67)/1.96e8 with mu in Pa s. Theory (L5). [1/Pa]"""
     return (math.log(mu) + ROELANDS_OFFSET) / ROELANDS_PRESSURE
 
 
 def _roelands_index(oil: Oil, law: RoelandsLaw, temperature: float) -> float:
-    """z, linear between the points of `law` and constant beyond them."""
+    """z, linear between the points of `law` and constant beyond them. Theory (L5)."""
     points = sorted(law.point, key=lambda point: point.temperature)
     index = [
         point.value

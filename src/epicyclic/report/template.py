@@ -41,9 +41,8 @@ def case_template(kind: str) -> str:
 def _table_lines(
     key: str, table: type[BaseModel], values: dict[str, Any], field: FieldInfo
 ) -> list[str]:
-    active = key in (values and {key}) or bool(values)
     about = (table.__doc__ or "").strip().splitlines()[0]
-    mark = "" if active or field.is_required() else "# "
+    mark = "" if values or field.is_required() else "# "
     lines = ["", f"{mark}[{key}]".ljust(COMMENT_COLUMN) + f"# {about}"]
     for name, inner in table.model_fields.items():
         subtable = table_of(inner.annotation)
@@ -78,7 +77,8 @@ def _default(field: FieldInfo) -> str:
     if field.default is not None and not field.is_required():
         return _toml(field.default)
     quantity = quantity_of(field.annotation, tuple(field.metadata))
-    return f'"... {quantity.display}"' if quantity is not None else "..."
+    value = f'"... {quantity.display}"' if quantity is not None else "..."
+    return f"[{value}, ...]" if "tuple" in str(field.annotation) else value
 
 
 def _toml(value: Any) -> str:

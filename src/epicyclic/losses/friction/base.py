@@ -47,17 +47,20 @@ class FrictionModel(Protocol):
 
 
 def specific_load(contact: MeshContact) -> float:
-    """F_bt/b. [N/m]"""
+    """F_bt/b. Theory (F13). [N/m]"""
     return contact.force / contact.mesh.face_width
 
 
 def pitch_point_sum_speed(contact: MeshContact) -> float:
-    """v_SigmaC = 2 v_t sin(alpha_wt), the sum of the surface speeds at the pitch point. [m/s]"""
+    """v_SigmaC = 2 v_t sin(alpha_wt), the sum of the surface speeds at the pitch point. [m/s]
+
+    Theory (F11).
+    """
     return 2 * contact.pitch_line_speed * math.sin(contact.mesh.operating_pressure_angle)
 
 
 def pitch_point_radius(contact: MeshContact) -> float:
-    """rho_redC, equivalent radius at the pitch point in the normal section. [m]"""
+    """rho_redC, equivalent radius at the pitch point in the normal section. Theory (F12). [m]"""
     mesh = contact.mesh
     rho1 = mesh.pitch_point
     rho2 = mesh.curvature2(rho1)
@@ -65,6 +68,6 @@ def pitch_point_radius(contact: MeshContact) -> float:
 
 
 def mean_roughness_ra(contact: MeshContact) -> float:
-    """(Ra1 + Ra2)/2 from the rms values of the flanks. [m]"""
+    """(Ra1 + Ra2)/2 from the rms values of the flanks. Theory (F14). [m]"""
     flanks = contact.flanks
     return RA_OVER_RQ * (flanks.roughness1 + flanks.roughness2) / 2

@@ -33,6 +33,8 @@ def _mean_group(contact: MeshContact) -> float:
 class Schlenk:
     """mu = 0.048 [(F_bt/b)/(v_SigmaC rho_redC)]^0.2 eta^-0.05 Ra^0.25 X_L, one value for the mesh.
 
+    Theory (F15).
+
     N/mm, m/s, mm, mPa s, um; Ra the mean of both flanks. The standard's text was not read; the
     constants agree in several independent implementations.
     """
@@ -55,6 +57,8 @@ class Schlenk:
 
 class NiemannWinter:
     """mu = 0.045 [(F_bt/b)/(v_SigmaC rho_redC)]^0.2 eta^-0.05 X_R X_L, X_R = 3.8 (Ra/d1)^0.25.
+
+    Theory (F16).
 
     N/mm, m/s, mm, mPa s, um. Standard formula from general knowledge, its text not read; X_R
     agrees with the form 2.2 (Ra/rho)^0.25 of DIN 3990-4.
@@ -80,6 +84,8 @@ class NiemannWinter:
 
 class BenedictKelley:
     """mu = 0.0127 [50/(50 - S)] log10[29.66 w/(eta v_s v_r^2)], local.
+
+    Theory (F7).
 
     w in N/m, eta in mPa s, v_s and v_r = u1 + u2 in m/s, S rms roughness in microinches. The
     logarithm is kept at 1 or above: with little load on much oil it has no meaning. Near the pitch

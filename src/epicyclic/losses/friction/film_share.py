@@ -28,7 +28,10 @@ RZ_OVER_RA = 6.0
 
 @dataclass(frozen=True, slots=True)
 class Doleschel:
-    """xi = (1 - lambda/2)^2 for lambda < 2, else 0; lambda = h_c/[(Ra1 + Ra2)/2]."""
+    """xi = (1 - lambda/2)^2 for lambda < 2, else 0; lambda = h_c/[(Ra1 + Ra2)/2].
+
+    Theory (F8), (F9).
+    """
 
     title: ClassVar = "film share of Doleschel"
     source: ClassVar = "A. Doleschel, Diss. TU Muenchen (2002)"
@@ -50,7 +53,7 @@ class Doleschel:
 
 @dataclass(frozen=True, slots=True)
 class Matsumoto:
-    """xi = log10(D)/2 within 0 to 1, D = (Rz1 + Rz2)/h_min."""
+    """xi = log10(D)/2 within 0 to 1, D = (Rz1 + Rz2)/h_min. Theory (F8), (F10)."""
 
     title: ClassVar = "film share of Matsumoto and Morikawa"
     source: ClassVar = "S. Matsumoto and K. Morikawa, Int. Gear Conf. Lyon (2014) 1078"

@@ -36,6 +36,8 @@ class MixedEhl:
 class Xu2007:
     """Regression of EHL simulations of a 75W-90 gear oil, full film only.
 
+    Theory (F6).
+
     Xu, Kahraman, Anderson and Maddock, J. Mech. Des. 129 (2007) 58: with p_h in GPa, u_r in m/s,
     dynamic viscosity in mPa s, composite rms roughness in um, radius in m. The range of the
     regression was not found in print.

@@ -35,6 +35,8 @@ class Constant:
 class FrictionMap:
     """Linear interpolation in a table over one or two local quantities, constant beyond it.
 
+    Theory (F17).
+
     Attributes
     ----------
     axes : tuple of (str, tuple of float)
