@@ -8,7 +8,7 @@ losses fall in proportion to the load. Every use outside Table 5.1 itself is fla
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,7 @@ __all__ = [
 ]
 
 FloatArray = NDArray[np.float64]
+Real = TypeVar("Real", float, FloatArray)
 
 MARGIN = 2.0
 """Factor by which the formulas are followed beyond the range of their simulations. [1]"""
@@ -75,8 +76,8 @@ def regression_groups(contact: MeshContact) -> RegressionGroups:
     e_eq = flanks.equivalent_modulus
     radius = held_in_range(contact.radius, _RADIUS)
     speed = held_in_range(contact.rolling_speed, _SPEED)
-    rough1 = float(held_in_range(np.array(flanks.roughness1), _ROUGHNESS))
-    rough2 = float(held_in_range(np.array(flanks.roughness2), _ROUGHNESS))
+    rough1 = held_in_range(flanks.roughness1, _ROUGHNESS)
+    rough2 = held_in_range(flanks.roughness2, _ROUGHNESS)
     pressure = held_in_range(contact.hertz_pressure, _PRESSURE)
 
     load = line_load_at_pressure(pressure, radius, e_eq)
@@ -106,8 +107,8 @@ def light_load_share(pressure: FloatArray, item: Range = _PRESSURE) -> FloatArra
     return share
 
 
-def held_in_range(value: FloatArray, item: Range) -> FloatArray:
+def held_in_range(value: Real, item: Range) -> Real:
     """`value` within the range of `item`, widened by `MARGIN`. Theory (F5)."""
     scale = 1 / item.unit.to_display(1.0)
-    held: FloatArray = np.clip(value, item.low * scale / MARGIN, item.high * scale * MARGIN)
+    held: Real = np.clip(value, item.low * scale / MARGIN, item.high * scale * MARGIN)
     return held

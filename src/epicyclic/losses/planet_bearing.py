@@ -49,12 +49,17 @@ FIRST_APPROACH = 1e-5
 
 _SOURCE = "Talbot (2012), Table 3.1"
 _PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.25, 3.0, GIGAPASCAL, _SOURCE)
+_RACE = Range("race_roughness", "rms roughness of the races", 0.02, 0.10, MICROMETRE, _SOURCE)
+_ROLLER = Range(
+    "roller_roughness", "rms roughness of the rollers", 0.055, 0.165, MICROMETRE, _SOURCE
+)
+_SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SOURCE)
 NEEDLE_RANGES = (
     Range("temperature", "oil temperature", 25.0, 100.0, CELSIUS, _SOURCE),
     Range("radius", "equivalent radius", 0.5, 4.0, MILLIMETRE, _SOURCE),
-    Range("race_roughness", "rms roughness of the races", 0.02, 0.10, MICROMETRE, _SOURCE),
-    Range("roller_roughness", "rms roughness of the rollers", 0.055, 0.165, MICROMETRE, _SOURCE),
-    Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SOURCE),
+    _RACE,
+    _ROLLER,
+    _SPEED,
 )
 """Ranges of the 2,880 simulations behind Eq. 3.5, with `_PRESSURE`."""
 
@@ -119,11 +124,6 @@ class RollerBearing:
         """Equivalent radius of the contact at the outer race. Theory (B5). [m]"""
         roller, race = self.roller_diameter / 2, self.outer_diameter / 2
         return roller * race / (race - roller)
-
-    @property
-    def composite_roughness(self) -> float:
-        """S_co = sqrt(Rq1^2 + Rq2^2). Theory (B13). [m]"""
-        return math.hypot(self.roller_roughness, self.race_roughness)
 
     @property
     def slice_width(self) -> float:
@@ -252,11 +252,12 @@ def mixed_ehl_rolling_loss(
 ) -> BearingLoss:
     """P_mb = w sum P_WD over the loaded slices. Talbot (2012), Eq. 3.5 and 3.6. [W]
 
-    Theory (B15).
+    Theory (B13), (B15).
 
     As printed, one evaluation for each loaded slice; with the radius of the outer race, the
-    reading that reproduces the published effects of roughness and size. Pressures far outside
-    Table 3.1 are treated as in `mixed_ehl_groups`.
+    reading that reproduces the published effects of roughness and size. Pressure, speed and
+    roughness far outside Table 3.1 are held as in `mixed_ehl_groups`; below the load or the speed
+    held there, the loss falls in proportion to it.
     """
     intensity = loads.intensity[loads.intensity > 0]
     if intensity.size == 0 or speed == 0:
@@ -264,16 +265,25 @@ def mixed_ehl_rolling_loss(
     radius = np.full_like(intensity, bearing.outer_radius)
     pressure = hertz_pressure(intensity, radius, bearing.equivalent_modulus)
     rolling_speed = bearing.rolling_speed(speed)
+    held_speed = held_in_range(rolling_speed, _SPEED)
     density = needle_rolling_loss_at(
         held_in_range(pressure, _PRESSURE),
-        rolling_speed,
+        held_speed,
         oil.dynamic_viscosity,
         oil.pressure_viscosity,
         bearing.outer_radius,
-        bearing.composite_roughness,
+        math.hypot(
+            held_in_range(bearing.race_roughness, _RACE),
+            held_in_range(bearing.roller_roughness, _ROLLER),
+        ),
         bearing.equivalent_modulus,
     )
-    local = bearing.slice_width * density * light_load_share(pressure, _PRESSURE)
+    local = (
+        bearing.slice_width
+        * density
+        * light_load_share(pressure, _PRESSURE)
+        * min(1.0, rolling_speed / held_speed)
+    )
     values: dict[str, FloatArray | float] = {
         "temperature": oil.temperature,
         "radius": bearing.outer_radius,

@@ -1,0 +1,16 @@
+"""Values typed on a command line."""
+
+from __future__ import annotations
+
+import tomllib
+from typing import Any
+
+__all__ = ["parse_value"]
+
+
+def parse_value(text: str) -> Any:
+    """`text` as TOML would read it (numbers, true, lists), else as plain text."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
