@@ -16,12 +16,13 @@ from epicyclic.analysis.result import (
 )
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.schema import GearPairModels, GearTable, LossOption, Numerics
+from epicyclic.elasticity.mesh_compliance import Elastic
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.contact import Flanks, MeshContact, mesh_contact
 from epicyclic.losses.friction import FrictionSettings, friction_model
 from epicyclic.losses.friction.user import FrictionMap
-from epicyclic.losses.load_distribution import load_shape
+from epicyclic.losses.load_distribution import distribute_load
 from epicyclic.losses.mesh import MeshLoss, local_loss, loss_factor_loss, ohlendorf_loss_factor
 from epicyclic.losses.rolling import ROLLING_MODELS
 from epicyclic.losses.validity import CELSIUS, Range, ValidityFlag, check_ranges
@@ -165,14 +166,22 @@ def load_mesh(
     """Conditions along the contact lines; None without load or motion. Theory (D1)."""
     if duty.torque1 == 0 or duty.speed1 == 0:
         return None
-    lines, shape = load_shape(
-        duty.mesh, models.load_distribution, numerics.mesh_positions, numerics.contact_segments
-    )
     force = abs(duty.torque1) / duty.mesh.gear1.base_radius
+    one, two = (
+        Elastic(gear.material.elastic_modulus, gear.material.poisson_ratio) for gear in duty.gears
+    )
+    lines, line_load = distribute_load(
+        duty.mesh,
+        models.load_distribution,
+        force,
+        (one, two),
+        numerics.mesh_positions,
+        numerics.contact_segments,
+    )
     return mesh_contact(
         duty.mesh,
         lines,
-        force * shape,
+        line_load,
         force=force,
         speed1=abs(duty.speed1),
         oil=oil,

@@ -7,11 +7,14 @@ that a sweep does them once.
 
 from __future__ import annotations
 
+import math
+
 from epicyclic.analysis.pair import pair_duty, solve_pair
 from epicyclic.analysis.parts import fluids_of, load_mesh
 from epicyclic.analysis.planetary import planetary_duties, solve_planetary
 from epicyclic.analysis.result import Result
 from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.errors import ConvergenceError
 from epicyclic.losses.contact import MeshContact
 
 __all__ = ["mesh_contacts", "solve"]
@@ -32,11 +35,16 @@ def solve(case: Case) -> Result:
     Raises
     ------
     ConvergenceError
-        If an iteration ends without a solution.
+        If an iteration ends without a solution, or a loss is no finite number.
     """
-    if isinstance(case, PlanetaryCase):
-        return solve_planetary(case)
-    return solve_pair(case)
+    result = solve_planetary(case) if isinstance(case, PlanetaryCase) else solve_pair(case)
+    bad = [term.name for term in result.terms if not math.isfinite(term.watts)]
+    if bad:
+        raise ConvergenceError(
+            f"{', '.join(bad)} came out as no finite number: the case is far outside the range of "
+            "the models; choose others (models.friction, models.rolling, models.bearing)."
+        )
+    return result
 
 
 def mesh_contacts(case: Case) -> dict[str, MeshContact]:

@@ -38,6 +38,11 @@ MM = 1e3
 LARGEST_STEP_HALVINGS = 60
 SUFFICIENT_DECREASE = 1e-4
 """Armijo constant of the line search. [1]"""
+ROUNDING = 16 * 2.2e-16
+"""Share of a displacement that is rounding: the force it makes cannot be balanced better. [1]"""
+LENGTH_UPDATES = 25
+"""Substitutions of the loaded lengths. They contract by 0.1 each, but for bearings of few rollers
+that have hardly any stiffness in one direction; there the last lengths are kept."""
 NEWTON_SHIFT = 1e-12
 """Share of the reference stiffness added to the Hessian, which is singular without contact. [1]"""
 
@@ -171,7 +176,9 @@ def minimise(
         d, load, psi, y_over_l, crown, width, clearance, stiffness, gradient, hessian
     )
     for iteration in range(max_iterations):
-        if np.abs(gradient).max() <= tolerance * scale:
+        stiffest = max(hessian[0, 0], hessian[1, 1], hessian[2, 2], hessian[3, 3])
+        rounding = ROUNDING * stiffest * np.abs(d).max()
+        if np.abs(gradient).max() <= max(tolerance * scale, rounding):
             return iteration
         shift = NEWTON_SHIFT * reference
         for i in range(4):
@@ -285,7 +292,7 @@ def solve_roller_loads(
         if steps < 0:
             return q, d, -1
         total += steps
-        if outer > 0 and steps == 0:
+        if (outer > 0 and steps == 0) or outer == LENGTH_UPDATES:
             converged = True
             break
         loaded_lengths(d, psi, y_over_l, crown, width, clearance, lengths)

@@ -150,6 +150,21 @@ class MeshContact:
         ratio: FloatArray = self.minimum_film / self.flanks.composite_roughness
         return ratio
 
+    @property
+    def temperature(self) -> float:
+        """Of the oil at the contacts. [K]"""
+        return self.oil.temperature
+
+    @property
+    def roughness(self) -> tuple[float, float]:
+        """rms roughness of both flanks. [m]"""
+        return self.flanks.roughness1, self.flanks.roughness2
+
+    @property
+    def composite_roughness(self) -> float:
+        """sqrt(Rq1^2 + Rq2^2). [m]"""
+        return self.flanks.composite_roughness
+
     @cached_property
     def pitch_line_speed(self) -> float:
         """Speed of the operating circles relative to the carrier. Theory (C15). [m/s]"""

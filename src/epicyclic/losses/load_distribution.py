@@ -1,11 +1,11 @@
-r"""Load along the contact lines: models that need no compliance of the teeth.
+r"""Load along the contact lines.
 
-Both share the load in proportion to a stiffness per length k along the contact lines,
+The simple models share the load in proportion to a stiffness per length k along the contact lines,
 
 .. math:: W'(x) = F_n\, k(x) \Big/ \int k\,\mathrm{d}l ,
 
-which balances the force exactly at every mesh position. A compliance-based model fits behind the
-same function.
+which balances the force exactly at every mesh position; ``compliance`` solves the contact of elastic
+teeth (`epicyclic.elasticity`).
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.elasticity.mesh_compliance import Elastic, load_mesh_elastically
 from epicyclic.geometry.contact_lines import ContactLines, contact_lines
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = ["LOAD_DISTRIBUTIONS", "load_shape"]
+__all__ = ["LOAD_DISTRIBUTIONS", "distribute_load", "load_shape"]
 
 FloatArray = NDArray[np.float64]
 
@@ -46,6 +47,41 @@ def _minimum_energy(mesh: Mesh, lines: ContactLines) -> FloatArray:
     stretch = ratio / mesh.transverse_contact_ratio
     stiffness: FloatArray = np.cos(b0 * xi * stretch)
     return stiffness
+
+
+def distribute_load(
+    mesh: Mesh,
+    model: str,
+    force: float,
+    elastic: tuple[Elastic, Elastic],
+    positions: int,
+    segments: int,
+) -> tuple[ContactLines, FloatArray]:
+    """Contact lines of `mesh` and the load on them.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    model : str
+        ``"compliance"``, or a key of `LOAD_DISTRIBUTIONS`.
+    force : float
+        Transverse, tangent to the base circles. [N]
+    elastic : tuple of Elastic
+        Materials of both members.
+    positions, segments : int
+        As for `contact_lines`.
+
+    Returns
+    -------
+    lines : ContactLines
+    line_load : ndarray, shape (positions, lines, segments)
+        [N/m]
+    """
+    if model == "compliance":
+        loaded = load_mesh_elastically(mesh, *elastic, positions, segments, force)
+        return loaded.lines, loaded.line_load
+    lines, shape = load_shape(mesh, model, positions, segments)
+    return lines, force * shape
 
 
 LOAD_DISTRIBUTIONS: dict[str, Callable[[Mesh, ContactLines], FloatArray]] = {

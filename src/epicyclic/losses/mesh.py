@@ -118,18 +118,10 @@ def _sliding_integral(tip1: float, tip2: float) -> float:
 def _flags(
     model: str, ranges: tuple[Range, ...], contact: MeshContact, weight: FloatArray
 ) -> tuple[ValidityFlag, ...]:
-    """Range check of `contact`, roughness of both flanks included."""
+    """Range check of `contact`; local quantities count with the loss where they occur."""
     flags: tuple[ValidityFlag, ...] = ()
     for item in ranges:
-        values: FloatArray | float
-        if item.name == "roughness":
-            values = np.array([contact.flanks.roughness1, contact.flanks.roughness2])
-            flags += check_ranges(model, (item,), {item.name: values})
-            continue
-        if item.name == "temperature":
-            values = contact.oil.temperature
-        else:
-            values = getattr(contact, item.name)
-        scalar = np.ndim(values) == 0
-        flags += check_ranges(model, (item,), {item.name: values}, 1.0 if scalar else weight)
+        values = np.asarray(getattr(contact, item.name))
+        weights = weight if values.shape == weight.shape else np.ones(values.shape)
+        flags += check_ranges(model, (item,), {item.name: values}, weights)
     return flags

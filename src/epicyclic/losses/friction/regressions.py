@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from epicyclic.kernels.mixed_ehl import sliding_friction_at
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.mixed_ehl_groups import TALBOT_GEAR_RANGES, regression_groups
-from epicyclic.losses.validity import Range
+from epicyclic.losses.validity import MICROMETRE, Range
 
 __all__ = ["MixedEhl", "Xu2007"]
 
@@ -39,13 +39,25 @@ class Xu2007:
     Theory (F6).
 
     Xu, Kahraman, Anderson and Maddock, J. Mech. Des. 129 (2007) 58: with p_h in GPa, u_r in m/s,
-    dynamic viscosity in mPa s, composite rms roughness in um, radius in m. The range of the
-    regression was not found in print.
+    dynamic viscosity in mPa s, composite rms roughness S in um, radius in m. The range of the
+    regression was not found in print; exp(b9 exp(S)) runs away on rough flanks, so that S is held
+    at `LARGEST_ROUGHNESS`, which is flagged.
     """
 
     title: ClassVar = "EHL friction regression of Xu et al."
     source: ClassVar = "Xu, Kahraman, Anderson, Maddock, J. Mech. Des. 129 (2007) 58"
-    ranges: ClassVar[tuple[Range, ...]] = ()
+    LARGEST_ROUGHNESS: ClassVar = 1e-6
+    """Composite rms roughness up to which the formula is followed. [m]"""
+    ranges: ClassVar[tuple[Range, ...]] = (
+        Range(
+            "composite_roughness",
+            "composite rms roughness",
+            0.0,
+            LARGEST_ROUGHNESS * 1e6,
+            MICROMETRE,
+            "limit of this package; none is in print",
+        ),
+    )
 
     B: ClassVar = (
         -8.916465, 1.03303, 1.036077, -0.354068, 2.812084, -0.100601, 0.752755, -0.390958, 0.620305,
@@ -58,7 +70,7 @@ class Xu2007:
         pressure = contact.hertz_pressure * 1e-9
         slip = np.maximum(contact.slide_to_roll_ratio, self.SMALLEST_SLIDE_TO_ROLL)
         viscosity = contact.oil.dynamic_viscosity * 1e3
-        roughness = contact.flanks.composite_roughness * 1e6
+        roughness = min(contact.flanks.composite_roughness, self.LARGEST_ROUGHNESS) * 1e6
         group = slip * pressure * np.log10(viscosity)
         f = b1 + b4 * group + b5 * np.exp(-group) + b9 * np.exp(roughness)
         mu: FloatArray = (

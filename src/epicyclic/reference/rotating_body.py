@@ -1,0 +1,89 @@
+"""Power to turn a free disc or cylinder in a large body of fluid at rest."""
+
+from __future__ import annotations
+
+import math
+
+__all__ = ["cylinder_power", "laminar_disc_power", "turbulent_disc_power"]
+
+
+def laminar_disc_power(
+    radius: float, speed: float, density: float, kinematic_viscosity: float
+) -> float:
+    """Both faces of a disc in laminar flow: C_M = 3.87 Re^-1/2, P = C_M rho omega^3 r^5/2.
+
+    Parameters
+    ----------
+    radius : float
+        [m]
+    speed : float
+        omega. [rad/s]
+    density : float
+        [kg/m^3]
+    kinematic_viscosity : float
+        nu, with Re = omega r^2/nu up to about 3e5. [m^2/s]
+
+    Returns
+    -------
+    float
+        [W]
+
+    References
+    ----------
+    T. von Karman, ZAMM 1 (1921) 233, constant of W. G. Cochran (1934); H. Schlichting,
+    Boundary-Layer Theory, 7th ed. (1979), Eq. 5.56.
+    """
+    reynolds = speed * radius**2 / kinematic_viscosity
+    return 3.87 / math.sqrt(reynolds) * density * speed**3 * radius**5 / 2
+
+
+def turbulent_disc_power(
+    radius: float, speed: float, density: float, kinematic_viscosity: float
+) -> float:
+    """Both faces of a disc in turbulent flow: C_M = 0.146 Re^-1/5, P = C_M rho omega^3 r^5/2.
+
+    Parameters
+    ----------
+    radius, speed, density, kinematic_viscosity : float
+        As for `laminar_disc_power`, Re above about 3e5.
+
+    Returns
+    -------
+    float
+        [W]
+
+    References
+    ----------
+    T. von Karman, ZAMM 1 (1921) 233; H. Schlichting, Boundary-Layer Theory, 7th ed. (1979),
+    section 21.3.
+    """
+    reynolds = speed * radius**2 / kinematic_viscosity
+    return 0.146 * math.pow(reynolds, -0.2) * density * speed**3 * radius**5 / 2
+
+
+def cylinder_power(radius: float, length: float, speed: float, dynamic_viscosity: float) -> float:
+    """A cylinder in an unbounded viscous fluid: shear stress 2 mu omega at its surface.
+
+    Exact solution of the Navier-Stokes equations, v = omega r^2/R.
+
+    Parameters
+    ----------
+    radius, length : float
+        [m]
+    speed : float
+        omega. [rad/s]
+    dynamic_viscosity : float
+        mu. [Pa s]
+
+    Returns
+    -------
+    float
+        P = 4 pi mu l omega^2 r^2. [W]
+
+    References
+    ----------
+    H. Schlichting, Boundary-Layer Theory, 7th ed. (1979), section 5.2.
+    """
+    stress = 2 * dynamic_viscosity * speed
+    area = 2 * math.pi * radius * length
+    return stress * area * radius * speed

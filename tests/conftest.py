@@ -1,0 +1,91 @@
+"""Shared by all tests: the published test article, gears made to order, seeded property tests."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import settings
+
+import epicyclic as ep
+from epicyclic.case import build
+from epicyclic.geometry.gear import BasicRack, Gear, half_angle_from_profile_shift
+from epicyclic.geometry.mesh import Mesh
+from epicyclic.lubricant.properties import oil_state
+
+settings.register_profile("epicyclic", derandomize=True, deadline=None, max_examples=60)
+settings.load_profile("epicyclic")
+
+CELSIUS = 273.15
+
+
+@pytest.fixture(scope="session")
+def talbot():
+    """The test article of Talbot (2012): 3 planets, 1000 N m, 4000 rpm, 90 degC."""
+    return ep.load_case("talbot-2012")
+
+
+@pytest.fixture(scope="session")
+def talbot_meshes(talbot):
+    """Its sun and ring mesh."""
+    return build.planetary_meshes(talbot.gears, talbot.sun, talbot.planet, talbot.ring)
+
+
+@pytest.fixture(scope="session")
+def atf(talbot):
+    """The test fluid by temperature in degC."""
+
+    def state(celsius):
+        return oil_state(talbot.lubricant.oil, celsius + CELSIUS)
+
+    return state
+
+
+@pytest.fixture(scope="session")
+def make_gear():
+    """Gears of the proportions of ISO 53."""
+
+    def gear(
+        teeth,
+        x=0.0,
+        *,
+        internal=False,
+        alpha=20.0,
+        beta=0.0,
+        module=2e-3,
+        addendum=1.0,
+        dedendum=1.25,
+        width=20e-3,
+        name="gear",
+    ):
+        helix = math.radians(beta)
+        alpha_t = math.atan(math.tan(math.radians(alpha)) / math.cos(helix))
+        rack = BasicRack(module / math.cos(helix), alpha_t, helix)
+        reference = teeth * rack.transverse_module / 2
+        outward = -module if internal else module
+        return Gear(
+            name=name,
+            rack=rack,
+            teeth=teeth,
+            internal=internal,
+            thickness_half_angle=half_angle_from_profile_shift(rack, teeth, x),
+            tip_radius=reference + outward * (x + addendum),
+            root_radius=reference + outward * (x - dedendum),
+            face_width=width,
+        )
+
+    return gear
+
+
+@pytest.fixture(scope="session")
+def make_mesh(make_gear):
+    """Meshes of such gears, at the reference centre distance unless another is given."""
+
+    def mesh(teeth1, teeth2, *, internal=False, x1=0.0, x2=0.0, center_distance=None, **kwargs):
+        one = make_gear(teeth1, x1, name="pinion", **kwargs)
+        two = make_gear(teeth2, x2, internal=internal, name="wheel", **kwargs)
+        side = -1 if internal else 1
+        reference = two.reference_radius + side * one.reference_radius
+        return Mesh("mesh", one, two, center_distance or reference)
+
+    return mesh

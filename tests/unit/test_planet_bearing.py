@@ -1,0 +1,293 @@
+"""Load and loss of the planet bearing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import epicyclic as ep
+from epicyclic.analysis.parts import MeshDuty
+from epicyclic.analysis.planetary import (
+    palmgren_coefficient,
+    planet_load,
+    planetary_duties,
+    roller_bearing,
+)
+from epicyclic.geometry.mesh import Mesh
+from epicyclic.kernels.mixed_ehl import needle_rolling_loss
+from epicyclic.losses.planet_bearing import (
+    mixed_ehl_rolling_loss,
+    palmgren_loss,
+    roller_loads,
+)
+
+BEARING_SPEED = 4000 * 125 / 198 * 73 / 26 * math.pi / 30  # at 4000 rpm of the sun, rad/s
+
+
+@pytest.fixture(scope="module")
+def article(talbot):
+    """The test article at 333 N m a branch, as in Talbot (2012), Fig. 3.4."""
+    return talbot.updated({"operation.torque": "999 N*m"})
+
+
+def bearing_and_loads(case):
+    bearing = roller_bearing(case.planet_bearing, case.numerics.bearing_slices)
+    load = planet_load(planetary_duties(case), 0.0)
+    return bearing, roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
+
+
+def composite(bearing, value):
+    """The bearing with a composite roughness in um."""
+    each = value * 1e-6 / math.sqrt(2)
+    return replace(bearing, roller_roughness=each, race_roughness=each)
+
+
+# --- load on the bearing --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("torque", [42.0, 100.0, 333.0])
+def test_load_of_the_test_article(article, torque):
+    case = article.updated({"operation.torque": f"{3 * torque} N*m"})
+    load = planet_load(planetary_duties(case), 0.0)
+    # Talbot (2012), Eq. 3.7 and 3.8, with operating pitch radii a z/(z_s + z_p)
+    r_ps, r_pp = 92.13e-3 * 73 / 99, 92.13e-3 * 26 / 99
+    assert load.force == pytest.approx(2 * torque / r_ps, rel=1e-12)
+    # helix angle at the operating circle, 0.02 % from that at the reference circle
+    moment = 2 * torque * r_pp * math.tan(math.radians(13.124)) / r_ps
+    assert load.moment_y == pytest.approx(moment, rel=5e-4)
+    # equal pressure angles: radial forces cancel, the moment is orthogonal to the force
+    assert abs(load.moment_x) < 1e-9 * load.moment_y
+
+
+def forces_on_planet(sun_mesh, ring_mesh, torque):
+    """Tooth forces on a planet and where they act; x tangential, y outward, z axial.
+
+    Planet at the origin. Normal forces in the plane of action: along the line of action in the
+    transverse section, and sideways by tan(beta_b).
+    """
+    normal = torque / sun_mesh.gear1.base_radius
+    forces = []
+    for mesh, outward in ((sun_mesh, -1.0), (ring_mesh, 1.0)):
+        alpha = mesh.operating_pressure_angle
+        axial = normal * math.tan(mesh.gear1.rack.base_helix_angle)
+        # at the pitch point below (sun) or above (ring); both drive the planet the same way and
+        # push it away from the other gear
+        radius = mesh.operating_radius2 if outward < 0 else mesh.operating_radius1
+        push = np.array(
+            [normal * math.cos(alpha), -outward * normal * math.sin(alpha), -outward * axial]
+        )
+        forces.append((np.array([0.0, outward * radius, 0.0]), push))
+    return forces
+
+
+@pytest.mark.parametrize("beta", [0.0, 20.0])
+@pytest.mark.parametrize("centrifugal", [0.0, 700.0])
+@pytest.mark.parametrize("x_ring", [-0.4, 0.0, 0.3])
+def test_load_is_the_resultant_of_the_tooth_forces(make_gear, beta, centrifugal, x_ring):
+    """Unequal pressure angles leave a radial force, and turn the moment against the force."""
+    sun, planet = make_gear(30, 0.2, beta=beta), make_gear(24, 0.1, beta=beta)
+    ring = make_gear(79, x_ring, internal=True, beta=beta)  # one tooth more than 30 + 2 * 24
+    distance = 1.02 * (sun.reference_radius + planet.reference_radius)
+    meshes = Mesh("sun mesh", sun, planet, distance), Mesh("ring mesh", planet, ring, distance)
+    assert meshes[0].operating_pressure_angle != pytest.approx(
+        meshes[1].operating_pressure_angle, abs=0.01
+    )
+    torque = 120.0
+    # the same force along both lines of action, by the balance of the planet
+    planet_torque = torque / sun.base_radius * planet.base_radius
+    duties = (
+        MeshDuty("sun_mesh", meshes[0], (None, None), torque, 100.0),
+        MeshDuty("ring_mesh", meshes[1], (None, None), -planet_torque, -80.0),
+    )
+    load = planet_load(duties, centrifugal)
+    force = np.array([0.0, centrifugal, 0.0])
+    moment = np.zeros(3)
+    for at, push in forces_on_planet(*meshes, torque):
+        force += push
+        moment += np.cross(at, push)
+    assert moment[2] == pytest.approx(0.0, abs=1e-9 * torque)  # the planet turns freely
+    assert force[2] == pytest.approx(0.0, abs=1e-9 * force[0])  # and floats axially
+    assert load.force == pytest.approx(math.hypot(force[0], force[1]), rel=1e-10)
+    # The moment about an axis tilts in the plane square to it: about x it tilts y. Components along
+    # and across the force, up to the hand of the helix, which is not given.
+    along = np.array([force[0], force[1]]) / load.force
+    across = np.array([-along[1], along[0]])
+    tilting = np.array([moment[1], -moment[0]])  # in the planes of z with x and with y
+    found = np.array([load.moment_x, load.moment_y])
+    expected = np.array([tilting @ along, tilting @ across])
+    scale = np.abs(expected).max() + 1e-12
+    assert np.allclose(found, expected, atol=1e-9 * scale) or np.allclose(
+        found, -expected, atol=1e-9 * scale
+    )
+
+
+def test_centrifugal_force_of_the_planets(article):
+    light = ep.solve(article)
+    heavy = ep.solve(article.updated({"planet.mass": "0.3 kg"}))
+    # m a omega_c^2, square to the tangential force
+    outward = 0.3 * 92.13e-3 * (4000 * 73 / 198 * math.pi / 30) ** 2
+    expected = math.hypot(light.bearing.radial_force, outward)
+    assert heavy.bearing.radial_force == pytest.approx(expected, rel=1e-10)
+    at_rest = ep.solve(article.updated({"planet.mass": "0.3 kg", "operation.fixed": "carrier"}))
+    assert at_rest.bearing.radial_force == pytest.approx(light.bearing.radial_force, rel=1e-10)
+
+
+# --- published losses -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("celsius", "watts"), [(40, 236.0), (60, 195.0), (90, 181.0)])
+def test_losses_that_calibrate_the_oil(article, celsius, watts):
+    # Talbot (2012), p. 70: not validation, these three fix the pressure-viscosity coefficient. To
+    # 1e-3: the printed whole watts, and coefficients of six digits.
+    case = article.updated({"operation.oil_inlet_temperature": f"{celsius} degC"})
+    loss = ep.solve(case).losses["planet_bearing_mechanical"] / 3
+    assert loss == pytest.approx(watts, rel=1e-3)
+
+
+def test_loss_of_smooth_needles(article, atf):
+    bearing, loads = bearing_and_loads(article)
+    # model.md section 9: 89 W at S_co 0.063 um, 90 degC; the reading chosen met it to a few per
+    # cent, single bars of that chart can be read to some watts
+    loss = mixed_ehl_rolling_loss(composite(bearing, 0.063), loads, BEARING_SPEED, atf(90)).loss
+    assert loss == pytest.approx(89.0, rel=0.10)
+
+
+def test_rough_needles_lose_three_times_as_much(article, atf):
+    bearing, loads = bearing_and_loads(article)
+    smooth, rough = (
+        mixed_ehl_rolling_loss(composite(bearing, value), loads, BEARING_SPEED, atf(90)).loss
+        for value in (0.063, 0.180)
+    )
+    # model.md section 9: "nearly three times"
+    assert rough / smooth == pytest.approx(3.0, rel=0.10)
+
+
+def test_speed_of_the_test_article(article):
+    # literature.md section 7: 7090 rpm
+    assert BEARING_SPEED * 30 / math.pi == pytest.approx(7090, abs=0.5)
+    figures = ep.solve(article).bearing
+    assert figures.speed == pytest.approx(BEARING_SPEED, rel=1e-12)
+    assert figures.moment == pytest.approx(55.3, abs=0.05)
+
+
+# --- the sum over the slices ----------------------------------------------------------------------
+
+
+def test_loss_is_the_sum_over_loaded_slices(article, atf):
+    """(3.6), one evaluation for each loaded slice, with the radius of the outer race."""
+    bearing, loads = bearing_and_loads(article)
+    oil = atf(60)
+    ratio = 4.015 / 30.008
+    u_r = 0.030008 * BEARING_SPEED * (1 - ratio**2) / 4
+    radius = 1 / (2 / 4.015e-3 - 2 / 34.025e-3)
+    modulus = 207e9 / (1 - 0.3**2)
+    total = 0.0
+    for q in loads.intensity[loads.intensity > 0]:
+        pressure = math.sqrt(q * modulus / (2 * math.pi * radius))
+        # below half the lowest simulated pressure, 0.25 GPa, in proportion to the load
+        held = max(pressure, 0.125e9)
+        density = needle_rolling_loss(
+            held,
+            u_r,
+            oil.dynamic_viscosity,
+            oil.pressure_viscosity,
+            radius,
+            math.hypot(0.1e-6, 0.1e-6),
+            modulus,
+        )
+        total += 9.52e-3 / 20 * density * min(1.0, (pressure / 0.125e9) ** 2)
+    found = mixed_ehl_rolling_loss(bearing, loads, BEARING_SPEED, oil).loss
+    assert found == pytest.approx(total, rel=1e-10)
+
+
+def test_no_motion_or_no_load_no_loss(article, atf):
+    bearing, loads = bearing_and_loads(article)
+    assert mixed_ehl_rolling_loss(bearing, loads, 0.0, atf(60)).loss == 0.0
+    idle = roller_loads(bearing, 0.0, 0.0, 0.0, 0.0)
+    assert mixed_ehl_rolling_loss(bearing, idle, BEARING_SPEED, atf(60)).loss == 0.0
+
+
+def test_loss_does_not_depend_on_the_sense_of_rotation(article, atf):
+    bearing, loads = bearing_and_loads(article)
+    one, two = (
+        mixed_ehl_rolling_loss(bearing, loads, speed, atf(60)).loss
+        for speed in (BEARING_SPEED, -BEARING_SPEED)
+    )
+    assert one == two
+
+
+@pytest.mark.parametrize("celsius", [40, 90])
+def test_loss_grows_with_load_speed_and_roughness(article, atf, celsius):
+    bearing = roller_bearing(article.planet_bearing, 20)
+    by_load = [
+        mixed_ehl_rolling_loss(
+            bearing,
+            roller_loads(bearing, force, 0.0, 0.0, 0.00564 * force),
+            BEARING_SPEED,
+            atf(celsius),
+        ).loss
+        for force in (1.0, 10.0, 100.0, 1000.0, 3000.0, 10000.0, 20000.0)
+    ]
+    assert np.all(np.diff(by_load) > 0)
+    _, loads = bearing_and_loads(article)
+    by_speed = [
+        mixed_ehl_rolling_loss(bearing, loads, share * BEARING_SPEED, atf(celsius)).loss
+        for share in (0.1, 0.25, 0.5, 1.0, 1.5)
+    ]
+    assert np.all(np.diff(by_speed) > 0)
+    by_roughness = [
+        mixed_ehl_rolling_loss(composite(bearing, value), loads, BEARING_SPEED, atf(celsius)).loss
+        for value in (0.063, 0.125, 0.149, 0.180)
+    ]
+    assert np.all(np.diff(by_roughness) > 0)
+
+
+def test_slices_converge(article, atf):
+    losses = []
+    for slices in (10, 20, 40, 320):
+        case = article.updated({"numerics.bearing_slices": slices})
+        bearing, loads = bearing_and_loads(case)
+        losses.append(mixed_ehl_rolling_loss(bearing, loads, BEARING_SPEED, atf(90)).loss)
+    # measured 0.15, 0.15 and 0.05 %, erratic because the crown begins within a slice; times 1.5
+    for loss, error in zip(losses[:-1], (2.3e-3, 2.3e-3, 0.7e-3), strict=True):
+        assert loss == pytest.approx(losses[-1], rel=error)
+
+
+def test_crown_height_matters_little(article, atf):
+    # The crown is an estimate. literature.md section 1.2 found less than 2 % over drops of 0 to
+    # 10 um, with a higher alpha and both races; as implemented, +3.8 and -6.4 % at 60 degC.
+    losses = []
+    for drop in (0, 3, 10):
+        case = article.updated({"planet_bearing.crown_drop": f"{drop} um"})
+        bearing, loads = bearing_and_loads(case)
+        losses.append(mixed_ehl_rolling_loss(bearing, loads, BEARING_SPEED, atf(60)).loss)
+    assert losses == pytest.approx([losses[1]] * 3, rel=0.08)
+
+
+# --- Palmgren -------------------------------------------------------------------------------------
+
+
+def test_palmgren_loss():
+    # (3.1): P = f1 F_r d_m omega; by hand 0.0003 * 9804 N * 0.030008 m * 742.5 rad/s = 65.53 W
+    assert palmgren_loss(0.0003, 9804.0, 0.030008, 742.5) == pytest.approx(65.53, abs=0.5e-2)
+    assert palmgren_loss(0.0003, 9804.0, 0.030008, -742.5) == pytest.approx(65.53, abs=0.5e-2)
+
+
+def test_palmgren_coefficients(talbot):
+    table = talbot.planet_bearing
+    assert 0.0002 <= palmgren_coefficient(table) <= 0.0004  # Talbot (2012), p. 56, caged
+    full = talbot.updated({"planet_bearing.cage": "full-complement"}).planet_bearing
+    assert palmgren_coefficient(full) == 0.00055
+    own = talbot.updated({"planet_bearing.palmgren_coefficient": 0.002}).planet_bearing
+    assert palmgren_coefficient(own) == 0.002
+
+
+def test_palmgren_model_of_the_set(article):
+    case = article.updated({"models.bearing": "palmgren"})
+    result = ep.solve(case)
+    force = 2 * 333 / (92.13e-3 * 73 / 99)
+    expected = 3 * 0.0003 * force * 0.030008 * BEARING_SPEED
+    assert result.losses["planet_bearing_mechanical"] == pytest.approx(expected, rel=1e-10)

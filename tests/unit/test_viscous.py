@@ -1,0 +1,209 @@
+"""Viscous loss of bearings, and drag of bodies in the mixture."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import epicyclic as ep
+from epicyclic.losses.viscous import bearing_viscous_loss, disc_drag_loss, reynolds_number
+from epicyclic.lubricant.properties import MixtureState, mixture_state
+from epicyclic.reference.rotating_body import (
+    cylinder_power,
+    laminar_disc_power,
+    turbulent_disc_power,
+)
+
+RPM = math.pi / 30
+BEARING_RPM = 4000 * 125 / 198 * 73 / 26  # relative to the carrier, at 4000 rpm of the sun
+
+
+def mixture(nu=1.4e-4, rho=42.13):
+    return MixtureState(0.05, rho, nu * rho)
+
+
+# --- bearings -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("rpm", "celsius", "watts"),
+    # literature.md section 7: (5.6) with f0 = 6 and d_m 30.008 mm, per planet
+    [
+        (4000, 40, 42.7),
+        (4000, 60, 27.5),
+        (4000, 90, 16.8),
+        (1000, 40, 4.2),
+        (1000, 60, 2.7),
+        (1000, 90, 1.7),
+    ],
+)
+def test_viscous_loss_of_the_test_article(talbot, rpm, celsius, watts):
+    case = talbot.updated(
+        {"operation.speed": f"{rpm} rpm", "operation.oil_inlet_temperature": f"{celsius} degC"}
+    )
+    loss = ep.solve(case).losses["planet_bearing_viscous"] / 3
+    # half a unit of the last digit, and 0.05 % for the speed rounded to 7090 rpm there
+    assert loss == pytest.approx(watts, abs=0.05 + 0.0005 * watts)
+
+
+@pytest.mark.parametrize(
+    ("factor", "nu", "rpm", "moment"),
+    # friction_research.md section 8, N mm: d_m 30 mm; upper and lower branch
+    [(12.0, 10.0, 4000.0, 37.8953), (3.0, 10.0, 100.0, 1.2960)],
+)
+def test_harris_moment_at_its_worked_values(factor, nu, rpm, moment):
+    loss = bearing_viscous_loss(factor, nu * 1e-6, rpm * RPM, 30e-3)
+    assert loss / (rpm * RPM) * 1e3 == pytest.approx(moment, abs=0.5e-4)
+
+
+def test_formula_of_the_dissertation():
+    # (5.6): (pi/30) 1e-10 f0 nu^(2/3) Omega^(5/3) d_m^3, W; mm^2/s, rpm, mm
+    expected = math.pi / 30 * 1e-10 * 6 * 15.39 ** (2 / 3) * 7090 ** (5 / 3) * 30.008**3
+    found = bearing_viscous_loss(6.0, 15.39e-6, 7090 * RPM, 30.008e-3)
+    assert found == pytest.approx(expected, rel=1e-12)
+
+
+def test_branches_of_harris_meet():
+    # at nu n = 2000: 2000^(2/3) = 158.74 against 160, 0.8 % apart
+    nu, speed = 20e-6, 100.0 * RPM
+    below = bearing_viscous_loss(3.0, nu, speed * (1 - 1e-9), 50e-3)
+    above = bearing_viscous_loss(3.0, nu, speed * (1 + 1e-9), 50e-3)
+    assert below / above == pytest.approx(160 / 2000 ** (2 / 3), rel=1e-7)
+    assert below == pytest.approx(above, rel=0.01)
+
+
+def test_viscous_loss_scales_as_its_powers():
+    base = bearing_viscous_loss(3.0, 20e-6, 300.0, 40e-3)
+    assert bearing_viscous_loss(6.0, 20e-6, 300.0, 40e-3) == pytest.approx(2 * base, rel=1e-12)
+    assert bearing_viscous_loss(3.0, 40e-6, 300.0, 40e-3) == pytest.approx(
+        2 ** (2 / 3) * base, rel=1e-12
+    )
+    assert bearing_viscous_loss(3.0, 20e-6, 600.0, 40e-3) == pytest.approx(
+        2 ** (5 / 3) * base, rel=1e-12
+    )
+    assert bearing_viscous_loss(3.0, 20e-6, 300.0, 80e-3) == pytest.approx(8 * base, rel=1e-12)
+    assert bearing_viscous_loss(3.0, 20e-6, -300.0, 40e-3) == base
+    assert bearing_viscous_loss(3.0, 20e-6, 0.0, 40e-3) == 0.0
+    # below nu n = 2000 the moment is constant: loss in proportion to the speed, whatever the oil
+    slow = bearing_viscous_loss(3.0, 20e-6, 1.0, 40e-3)
+    assert bearing_viscous_loss(3.0, 20e-6, 2.0, 40e-3) == pytest.approx(2 * slow, rel=1e-12)
+    assert bearing_viscous_loss(3.0, 10e-6, 1.0, 40e-3) == slow
+
+
+# --- drag -----------------------------------------------------------------------------------------
+
+
+def test_drag_of_the_sun_of_the_test_article(talbot, atf):
+    # literature.md section 7: 54 W on the faces and 2 W on the rim at 4000 rpm, 90 degC; Re 1.4e4
+    fluid = mixture_state(atf(90), 0.05, 101325.0)
+    radius, width, speed = 139.23e-3 / 2, 30.9e-3, 4000 * RPM
+    assert reynolds_number(radius, speed, fluid) == pytest.approx(1.4e4, rel=0.05)
+    thin = disc_drag_loss(radius, 0.0, speed, fluid)
+    whole = disc_drag_loss(radius, width, speed, fluid)
+    assert thin == pytest.approx(54, abs=0.5)
+    assert whole - thin == pytest.approx(2, abs=0.5)
+    assert ep.solve(talbot).losses["sun_drag"] == pytest.approx(whole, rel=1e-12)
+
+
+def test_rim_is_the_exact_solution_of_a_cylinder():
+    fluid = mixture()
+    faces = disc_drag_loss(0.07, 0.0, 300.0, fluid)
+    whole = disc_drag_loss(0.07, 0.05, 300.0, fluid)
+    exact = cylinder_power(0.07, 0.05, 300.0, fluid.dynamic_viscosity)
+    # a difference of terms twenty times as large
+    assert whole - faces == pytest.approx(exact, rel=1e-11)
+
+
+@pytest.mark.parametrize("radius", [0.02, 0.07, 0.15])
+@pytest.mark.parametrize("speed", [50.0, 400.0])
+def test_laminar_faces_against_von_karman(radius, speed):
+    fluid = mixture()
+    nu = fluid.kinematic_viscosity
+    assert reynolds_number(radius, speed, fluid) < 3e5
+    karman = laminar_disc_power(radius, speed, fluid.density, nu)
+    # von Karman: 1.935 rho nu^0.5 omega^2.5 r^4 (literature.md section 7)
+    closed = 1.935 * fluid.density * nu**0.5 * speed**2.5 * radius**4
+    assert karman == pytest.approx(closed, rel=1e-12)
+    # the source's plate formula is 0.41 pi/1.935 = 0.67 of it
+    found = disc_drag_loss(radius, 0.0, speed, fluid)
+    assert found / karman == pytest.approx(0.41 * math.pi / 1.935, rel=1e-12)
+    assert 0.5 < found / karman < 1.0
+
+
+def test_turbulent_faces_against_von_karman():
+    # literature.md section 7: 2.4 times at Re = 5e5, 2.5 times at 1e6
+    fluid = mixture(nu=1e-5, rho=10.0)
+    for reynolds, ratio in ((5.0001e5, 2.4), (1e6, 2.5)):
+        radius = 0.1
+        speed = reynolds * fluid.kinematic_viscosity / radius**2
+        karman = turbulent_disc_power(radius, speed, fluid.density, fluid.kinematic_viscosity)
+        assert disc_drag_loss(radius, 0.0, speed, fluid) / karman == pytest.approx(ratio, abs=0.05)
+
+
+def test_transition_steps_up_as_in_the_source():
+    # literature.md section 7: the turbulent branch is 6.9 times the laminar one at Re = 5e5
+    fluid = mixture(nu=1e-5, rho=10.0)
+    speed = 5e5 * fluid.kinematic_viscosity / 0.1**2
+    laminar = disc_drag_loss(0.1, 0.0, speed * (1 - 1e-9), fluid)
+    turbulent = disc_drag_loss(0.1, 0.0, speed * (1 + 1e-9), fluid)
+    assert turbulent / laminar == pytest.approx(6.9, abs=0.05)
+
+
+def test_drag_scales_as_its_powers():
+    fluid = mixture()
+    base = disc_drag_loss(0.05, 0.0, 100.0, fluid)
+    assert disc_drag_loss(0.05, 0.0, 200.0, fluid) == pytest.approx(2**2.5 * base, rel=1e-12)
+    assert disc_drag_loss(0.10, 0.0, 100.0, fluid) == pytest.approx(16 * base, rel=1e-12)
+    heavy = mixture(rho=2 * 42.13)
+    assert disc_drag_loss(0.05, 0.0, 100.0, heavy) == pytest.approx(2 * base, rel=1e-12)
+    thick = mixture(nu=4 * 1.4e-4)
+    assert disc_drag_loss(0.05, 0.0, 100.0, thick) == pytest.approx(2 * base, rel=1e-12)
+    fast = mixture(nu=1e-6)
+    turbulent = disc_drag_loss(0.1, 0.0, 200.0, fast)
+    assert disc_drag_loss(0.1, 0.0, 400.0, fast) == pytest.approx(2**2.86 * turbulent, rel=1e-12)
+    assert disc_drag_loss(0.2, 0.0, 200.0, fast) == pytest.approx(2**4.72 * turbulent, rel=1e-12)
+    assert disc_drag_loss(0.05, 0.02, -100.0, fluid) == disc_drag_loss(0.05, 0.02, 100.0, fluid)
+    assert disc_drag_loss(0.05, 0.02, 0.0, fluid) == 0.0
+
+
+def test_bodies_of_the_set_turn_at_their_own_speeds(talbot, atf):
+    result = ep.solve(talbot)
+    fluid = mixture_state(atf(90), 0.05, 101325.0)
+    carrier = 4000 * 73 / 198 * RPM
+    assert result.losses["carrier_drag"] == pytest.approx(
+        disc_drag_loss(0.115, 0.060, carrier, fluid), rel=1e-10
+    )
+    assert result.losses["ring_drag"] == 0.0
+    turning = ep.solve(talbot.updated({"operation.fixed": "carrier"}))
+    ring = 4000 * 73 / 125 * RPM
+    # a rim of three normal modules outside the root circle unless the case says otherwise
+    assert turning.losses["ring_drag"] == pytest.approx(
+        disc_drag_loss(237.23e-3 / 2 + 3 * 1.813e-3, 35.8e-3, ring, fluid), rel=1e-10
+    )
+    assert turning.losses["carrier_drag"] == 0.0
+    given = talbot.updated({"operation.fixed": "carrier", "ring.rim_thickness": "10 mm"})
+    assert ep.solve(given).losses["ring_drag"] == pytest.approx(
+        disc_drag_loss(237.23e-3 / 2 + 10e-3, 35.8e-3, ring, fluid), rel=1e-10
+    )
+
+
+@pytest.mark.parametrize(
+    ("between", "rpm"),
+    [
+        ("sun-carrier", 4000 * 125 / 198),
+        ("sun-ring", 4000),
+        ("ring-carrier", 4000 * 73 / 198),
+        ("sun-housing", 4000),
+        ("carrier-housing", 4000 * 73 / 198),
+    ],
+)
+def test_thrust_bearing_between_two_parts(talbot, atf, between, rpm):
+    case = talbot.updated(
+        {
+            "thrust_bearing": {"mean_diameter": "90 mm", "between": between, "count": 2},
+        }
+    )
+    expected = 2 * bearing_viscous_loss(3.5, atf(90).kinematic_viscosity, rpm * RPM, 90e-3)
+    found = ep.solve(case).losses["thrust_bearing_viscous"]
+    assert found == pytest.approx(expected, rel=1e-10)
