@@ -90,6 +90,8 @@ def mesh_compliance(
 ) -> MeshCompliance:
     """Influence coefficients of `mesh`, shared by all loads.
 
+    Theory (E4).
+
     Parameters
     ----------
     mesh : Mesh

@@ -90,6 +90,8 @@ class ToothPlate:
         The force acts along the common normal; in the section of the tooth it bends the plate by
         its part across the middle line and, acting beside that line, by the moment of the rest.
 
+        Theory (E3).
+
         Parameters
         ----------
         curvature : ndarray, shape (n,)
@@ -180,7 +182,7 @@ def _stiffness(
     poisson_ratio: float,
     face_terms: int,
 ) -> FloatArray:
-    """Stiffness matrix in (w, theta_s, theta_y), each of height terms times face terms."""
+    """Stiffness matrix in (w, theta_s, theta_y), each of height by face terms. Theory (E1)."""
     nu = poisson_ratio
     top = float(height[-1])
     points, weights = legendre.leggauss(HEIGHT_TERMS + QUADRATURE_MARGIN)
@@ -225,7 +227,7 @@ def _stiffness(
 def _add_foundation(
     stiffness: FloatArray, yy: FloatArray, root: float, elastic_modulus: float, nu: float
 ) -> None:
-    """Add the springs under the root section of thickness `root`."""
+    """Add the springs under the root section of thickness `root`. Theory (E2)."""
     n = HEIGHT_TERMS * len(yy)
     rotation = ROTATION_CONSTANT * (1 - nu**2) / (elastic_modulus * root**2)
     coupling = (1 - nu - 2 * nu**2) / (elastic_modulus * root)

@@ -29,7 +29,7 @@ LINEAR_SHARE = 1e-3
 
 @kernel
 def local_deflection(q: float, a: float, b: float, floor: float) -> float:
-    """delta_c of a segment. [m]"""
+    """delta_c of a segment. Theory (E4). [m]"""
     deflection: float = q * (a - 0.5 * b * np.log(max(q, floor)))
     return deflection
 
@@ -55,6 +55,8 @@ def solve_contact_loads(
     max_iterations: int,
 ) -> tuple[FloatArray, float, int]:
     """Forces on all segments of all lines.
+
+    Theory (E5).
 
     Parameters
     ----------
