@@ -1,4 +1,4 @@
-"""Exceptions and warnings of the package.
+"""Exceptions of the package, and the text of their messages.
 
 Bad input is described by `Problem` objects, one per mistake, and reported all together by one
 `InputError`. Nothing here imports the rest of the package.
@@ -39,7 +39,7 @@ class Problem:
     remedy: str
 
     def __str__(self) -> str:
-        given = f"{self.key} = {self.value}" if self.value else self.key
+        given = " = ".join(part for part in (self.key, self.value) if part)
         head = f"{given}: {self.allowed}" if given else self.allowed
         return f"{head} {self.remedy}".rstrip()
 

@@ -3,11 +3,13 @@
 Inside, every number is SI with angles in radians and temperatures in kelvin. Outside, a dimensional
 value is text with its unit, or a pint quantity; a bare number is refused. `Quantity` is the
 annotation that carries, for one kind of value, its SI unit, the unit it is shown in, and its range;
-parsing, JSON Schema, tables, file headers and labels all read it.
+parsing, JSON Schema, tables, file headers and labels all read it. `Number` marks the keys that have
+no dimension.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -17,17 +19,18 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 if TYPE_CHECKING:
-    from pint import UnitRegistry
+    from pint import Unit, UnitRegistry
 
 __all__ = [
     "Angle",
     "Density",
-    "DynamicViscosity",
     "HelixAngle",
+    "HertzPressure",
     "KinematicViscosity",
     "Length",
     "Mass",
     "Modulus",
+    "Number",
     "Pressure",
     "PressureViscosity",
     "Quantity",
@@ -36,14 +39,33 @@ __all__ = [
     "Speed",
     "Temperature",
     "Torque",
+    "describe_range",
     "format_number",
+    "from_pint",
+    "range_remedy",
     "registry",
 ]
 
+_LONGEST_TEXT = 100
+"""A number with a unit takes a few characters; longer text is not searched for one."""
+
 _NUMBER_AND_UNIT = re.compile(
-    r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*?)\s*"
+    r"(?P<number>[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(?P<unit>.*)", re.DOTALL
 )
-_MISSING_CARET = re.compile(r"(?<=[A-Za-z])(?=[23]\b)")
+_DECIMAL_COMMA = re.compile(r"(?P<whole>[+-]?[0-9]+),(?P<digits>[0-9]+).*", re.DOTALL)
+
+# Other ways to write the same sign: middle dots and crosses, superscripts, minus, Greek mu.
+_PLAIN_SIGNS = str.maketrans(
+    {"·": "*", "⋅": "*", "×": "*", "−": "-", "μ": "µ", "⁻": "-", "¹": "1", "²": "2", "³": "3"}
+)
+
+# Products and quotients of names with one-digit exponents. Anything else is kept from pint, which
+# evaluates what it is given: 9**9**9 would never end.
+_NAME = r"(?:[^\W\d]*°?[^\W\d]+|[°%'\"])"
+_EXPONENT = r"(?:\s*(?:\^|\*\*)?\s*[+-]?[0-9](?!\s*(?:[0-9.^]|\*\*)))"
+_FACTOR = rf"\(?\s*{_NAME}{_EXPONENT}?\s*\)?"
+_UNIT = re.compile(rf"(?:1?\s*/\s*)?{_FACTOR}(?:(?:\s*[*/]\s*|\s+){_FACTOR})*")
+_MISSING_CARET = re.compile(r"(?<=[^\W\d])(?=[+-]?[0-9])")
 
 
 @cache
@@ -51,9 +73,14 @@ def registry() -> UnitRegistry[float]:
     """The unit registry, built at first use (building it is most of the cost of pint)."""
     import pint
 
-    ureg: UnitRegistry[float] = pint.UnitRegistry(cache_folder=":auto:")
+    ureg: UnitRegistry[float]
+    try:
+        ureg = pint.UnitRegistry(cache_folder=":auto:")
+    except Exception:  # no place to keep the cache, or another process is just writing it
+        ureg = pint.UnitRegistry()
     # pint reads "Nm" as a count times a metre; every engineer means the torque.
     ureg.define("newton_metre = newton * meter = Nm")
+    ureg.define("@alias turn = rev")
     return ureg
 
 
@@ -62,20 +89,87 @@ def format_number(value: float, digits: int = 6) -> str:
     return f"{value:.{digits}g}"
 
 
+def describe_range(
+    noun: str, low: float | None, high: float | None, unit: str = "", *, open_low: bool = False
+) -> str:
+    """`noun` with its bounds: ``"a length > 0 mm and <= 100000 mm"``."""
+    bounds = ((">" if open_low else ">=", low), ("<=", high))
+    limits = [
+        f"{sign} {format_number(bound, 10)} {unit}".rstrip()
+        for sign, bound in bounds
+        if bound is not None
+    ]
+    return f"{noun} {' and '.join(limits)}".rstrip()
+
+
+def range_remedy(
+    value: float, low: float | None, high: float | None, unit: str = "", *, open_low: bool = False
+) -> str:
+    """What to do about a `value` beyond its bounds."""
+    if low is not None and (value < low or (open_low and value == low)):
+        limit = f"{format_number(low, 10)} {unit}".rstrip()
+        return f"give more than {limit}" if open_low else f"increase it to {limit} or more"
+    if high is not None and value > high:
+        limit = f"{format_number(high, 10)} {unit}".rstrip()
+        return f"reduce it to {limit} or less"
+    return "give a finite number"
+
+
+def from_pint(value: Any) -> tuple[float, str] | None:
+    """Number and unit of a pint quantity; None for anything else, and for arrays."""
+    if not (hasattr(value, "magnitude") and hasattr(value, "units")):
+        return None
+    try:
+        return float(value.magnitude), str(value.units)
+    except (TypeError, ValueError):
+        return None
+
+
+class _UnitError(ValueError):
+    """A unit that cannot be taken, with what to write instead."""
+
+    def __init__(self, what: str, remedy: str = "") -> None:
+        super().__init__(what)
+        self.remedy = remedy
+
+
+@lru_cache(maxsize=1024)
+def _parse_unit(text: str) -> Unit:
+    """The unit written as `text`; raises what pint raises, or `_UnitError`."""
+    if _UNIT.fullmatch(text) is None:
+        raise _UnitError("has a unit that cannot be read")
+    start = "1" if text.startswith("/") else ""
+    return registry().parse_units(_MISSING_CARET.sub("^", f"{start}{text}"))
+
+
+def _turns(unit: Unit) -> int:
+    """The power of the angle in `unit`; pint itself takes angles as pure numbers."""
+    powers = cast("Any", registry().get_base_units(unit)[1])._units
+    return int(powers.get("radian", 0))
+
+
 @lru_cache(maxsize=4096)
 def _convert(number: float, unit: str, si: str) -> float:
-    """`number` in `unit` as SI; raises what pint raises when that makes no sense."""
+    """`number` in `unit` as SI; raises what pint raises, or `_UnitError`."""
     ureg = registry()
-    parsed = ureg.parse_units(_MISSING_CARET.sub("^", unit))
-    if si == "rad/s" and not _turns(parsed):
-        raise ValueError("a rate without an angle: 1/min or Hz could mean turns or radians")
-    return float(ureg.Quantity(number, parsed).to(si).magnitude)
+    parsed, wanted = _parse_unit(unit), ureg.parse_units(si)
+    if parsed.dimensionality != wanted.dimensionality:
+        raise _UnitError("has a unit that measures something else")
+    if "delta_" in str(parsed):
+        raise _UnitError("is a temperature difference", "give the temperature itself")
+    if _turns(parsed) != _turns(wanted):
+        raise _wrong_angle(number, unit, si)
+    return float(ureg.Quantity(number, parsed).to(wanted).magnitude)
 
 
-def _turns(unit: Any) -> bool:
-    """True if `unit` counts an angle; pint itself takes angles as pure numbers."""
-    names = {str(name) for name in registry().get_base_units(unit)[1]._units}
-    return "radian" in names
+def _wrong_angle(number: float, unit: str, si: str) -> _UnitError:
+    if si != "rad/s":
+        return _UnitError("has a unit that measures something else")
+    rate = registry().Quantity(number, _parse_unit(unit)).to("1/min").magnitude
+    return _UnitError(
+        "has a unit that may count turns or radians",
+        f'write "{format_number(rate)} rpm" if it counts turns',
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,8 +209,10 @@ class Quantity:
         try:
             result = _convert(number, unit, self.si)
             shown = self.to_display(result)
-        except Exception as error:  # pint's own errors have no common base
-            raise self._error(f"cannot be read in {self.display}", str(error)) from None
+        except _UnitError as error:
+            raise self._error(str(error), error.remedy or self._form(number)) from None
+        except Exception:  # pint's own errors have no common base
+            raise self._error("has an unknown unit", self._form(number)) from None
         self._check_range(shown)
         return result
 
@@ -128,47 +224,67 @@ class Quantity:
         """SI `value` as text in the display unit, ``"139.23 mm"``."""
         return f"{format_number(self.to_display(value), digits)} {self.display}"
 
+    def exact_text(self, value: float) -> str:
+        """SI `value` as text that `parse` reads as the very same number."""
+        text = self.text(value, digits=12)
+        number, _, unit = text.partition(" ")
+        if _convert(float(number), unit, self.si) == value:
+            return text
+        return f"{value!r} {self.si}"
+
     def describe(self) -> str:
         """What is allowed, in words: ``"a length > 0 mm"``."""
-        parts = [self.noun]
-        if self.low is not None:
-            sign = ">" if self.open_low else ">="
-            parts.append(f"{sign} {format_number(self.low)} {self.display}")
-        if self.high is not None:
-            joiner = "and <=" if self.low is not None else "<="
-            parts.append(f"{joiner} {format_number(self.high)} {self.display}")
-        return " ".join(parts)
+        return describe_range(self.noun, self.low, self.high, self.display, open_low=self.open_low)
 
     def _split(self, value: object) -> tuple[float, str]:
+        """Number and unit of `value`."""
         if isinstance(value, str):
-            match = _NUMBER_AND_UNIT.fullmatch(value)
-            if match is None:
-                raise self._error("is not a number with a unit")
-            if not match["unit"]:
-                raise self._error("has no unit", f'write "{value.strip()} {self.display}"')
-            return float(match["number"]), match["unit"]
-        if hasattr(value, "magnitude") and hasattr(value, "units"):
-            quantity = cast("Any", value)
-            return float(quantity.magnitude), str(quantity.units)
+            return self._split_text(value)
+        quantity = from_pint(value)
+        if quantity is not None:
+            return quantity
         if isinstance(value, int | float) and not isinstance(value, bool):
-            raise self._error("has no unit", f'write "{value} {self.display}"')
-        raise self._error("is not a number with a unit")
+            raise self._error("has no unit", self._form(value))
+        raise self._error("is not a number with a unit", self._form())
+
+    def _split_text(self, text: str) -> tuple[float, str]:
+        if len(text) > _LONGEST_TEXT:
+            raise self._error("is not a number with a unit", self._form())
+        text = text.strip().translate(_PLAIN_SIGNS)
+        comma = _DECIMAL_COMMA.fullmatch(text)
+        if comma is not None:
+            remedy = f"write {comma['whole']}.{comma['digits']}, with a decimal point"
+            raise self._error("has a decimal comma", remedy)
+        match = _NUMBER_AND_UNIT.fullmatch(text)
+        if match is None:
+            raise self._error("is not a number with a unit", self._form())
+        if not match["unit"]:
+            raise self._error("has no unit", f'write "{text} {self.display}"')
+        return float(match["number"]), match["unit"]
 
     def _check_range(self, shown: float) -> None:
         # comparisons written so that NaN fails them
         low_ok = self.low is None or (shown > self.low if self.open_low else shown >= self.low)
         high_ok = self.high is None or shown <= self.high
-        if not (low_ok and high_ok and abs(shown) < float("inf")):
-            raise self._error("is out of range")
+        if not (low_ok and high_ok and math.isfinite(shown)):
+            remedy = range_remedy(shown, self.low, self.high, self.display, open_low=self.open_low)
+            raise self._error("is out of range", remedy)
 
-    def _error(self, what: str, remedy: str = "") -> PydanticCustomError:
+    def _form(self, number: float | None = None) -> str:
+        """How to write it; with the user's `number` if that is short enough to repeat."""
+        if number is None or not math.isfinite(_as_float(number)):
+            return f"give a number with its unit, {self.display}"
+        text = format_number(number, 12) if isinstance(number, float) else str(number)
+        return f'give it in {self.display}, such as "{text} {self.display}"'
+
+    def _error(self, what: str, remedy: str) -> PydanticCustomError:
         return PydanticCustomError(
             "quantity",
-            "{what}: allowed is {allowed}",
+            "{what}; it must be {allowed}",
             {
                 "what": what,
                 "allowed": self.describe(),
-                "remedy": remedy or f'give a number with a unit, such as in "{self.display}"',
+                "remedy": f"{remedy[:1].upper()}{remedy[1:]}",
             },
         )
 
@@ -184,8 +300,16 @@ class Quantity:
             "type": "string",
             "description": f"{self.describe()}; text with a unit",
             "x-unit": self.display,
-            "pattern": r"^\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\s*\S+.*$",
+            "pattern": r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*[^0-9\s].*$",
         }
+
+
+def _as_float(number: float) -> float:
+    """`number`, or infinity if it is a whole number too large to be one."""
+    try:
+        return float(number)
+    except OverflowError:
+        return math.inf
 
 
 @lru_cache(maxsize=4096)
@@ -195,25 +319,35 @@ def _convert_back(value: float, si: str, display: str) -> float:
     return float(f"{converted:.14g}")
 
 
-Length = Annotated[float, Quantity("a length", "m", "mm", low=0.0, open_low=True)]
-SmallLength = Annotated[float, Quantity("a length", "m", "um", low=0.0)]
-Mass = Annotated[float, Quantity("a mass", "kg", "kg", low=0.0)]
-Angle = Annotated[float, Quantity("an angle", "rad", "deg")]
+class _Dimensionless:
+    """Marks a number as one that has no unit because it has no dimension."""
+
+    def __repr__(self) -> str:
+        return "dimensionless"
+
+
+Number = Annotated[float, _Dimensionless()]
+
+Length = Annotated[float, Quantity("a length", "m", "mm", low=0.0, high=1e5, open_low=True)]
+SmallLength = Annotated[float, Quantity("a length", "m", "um", low=0.0, high=1e4)]
+Mass = Annotated[float, Quantity("a mass", "kg", "kg", low=0.0, high=1e6)]
+Angle = Annotated[float, Quantity("an angle", "rad", "deg", low=-360.0, high=360.0)]
 HelixAngle = Annotated[float, Quantity("a helix angle", "rad", "deg", low=0.0, high=45.0)]
 Torque = Annotated[float, Quantity("a torque", "N*m", "N*m", low=-1e9, high=1e9)]
 RotationalSpeed = Annotated[
     float, Quantity("a rotational speed", "rad/s", "rpm", low=-1e6, high=1e6)
 ]
-Speed = Annotated[float, Quantity("a speed", "m/s", "m/s", low=0.0)]
+Speed = Annotated[float, Quantity("a speed", "m/s", "m/s", low=0.0, high=1e4)]
 Temperature = Annotated[float, Quantity("a temperature", "K", "degC", low=-50.0, high=250.0)]
-Pressure = Annotated[float, Quantity("a pressure", "Pa", "bar", low=0.0, open_low=True)]
-Modulus = Annotated[float, Quantity("a modulus", "Pa", "GPa", low=0.0, open_low=True)]
-Density = Annotated[float, Quantity("a density", "kg/m^3", "kg/m^3", low=0.0, open_low=True)]
-KinematicViscosity = Annotated[
-    float, Quantity("a kinematic viscosity", "m^2/s", "mm^2/s", low=0.0, open_low=True)
+Pressure = Annotated[float, Quantity("a pressure", "Pa", "bar", low=0.0, high=1e3, open_low=True)]
+HertzPressure = Annotated[float, Quantity("a pressure", "Pa", "GPa", low=0.0, high=100.0)]
+Modulus = Annotated[float, Quantity("a modulus", "Pa", "GPa", low=0.0, high=2e3, open_low=True)]
+Density = Annotated[
+    float, Quantity("a density", "kg/m^3", "kg/m^3", low=0.0, high=3e4, open_low=True)
 ]
-DynamicViscosity = Annotated[
-    float, Quantity("a dynamic viscosity", "Pa*s", "mPa*s", low=0.0, open_low=True)
+KinematicViscosity = Annotated[
+    float,
+    Quantity("a kinematic viscosity", "m^2/s", "mm^2/s", low=0.0, high=1e7, open_low=True),
 ]
 PressureViscosity = Annotated[
     float, Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa", low=1.0, high=60.0)

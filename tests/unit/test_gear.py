@@ -53,7 +53,7 @@ def test_normal_and_transverse_section_agree(make_gear, angles):
     rack = make_gear(30, alpha=alpha, beta=beta, module=3e-3).rack
     assert rack.normal_module == pytest.approx(3e-3, rel=ROUNDING)
     assert math.degrees(rack.normal_pressure_angle) == pytest.approx(alpha, rel=ROUNDING)
-    # Relations of the base helix angle that its own formula does not use (ISO 21771, 4.4).
+    # Relations of the base helix angle that its own formula does not use (ISO 21771).
     sine_b = math.sin(math.radians(beta)) * math.cos(math.radians(alpha))
     assert math.sin(rack.base_helix_angle) == pytest.approx(sine_b, rel=ROUNDING)
     normal_base_pitch = math.pi * 3e-3 * math.cos(math.radians(alpha))

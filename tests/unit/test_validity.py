@@ -52,8 +52,8 @@ def test_nothing_is_flagged_inside():
 
 def test_share_is_the_weight_outside():
     values = {"pressure": np.array([0.4e9, 1e9, 2e9, 3e9])}
-    (flag,) = check_ranges("m", (PRESSURE,), values, np.array([1.0, 2.0, 3.0, 4.0]))
-    assert flag.share == pytest.approx(0.5, rel=1e-12)
+    (flag,) = check_ranges("m", (PRESSURE,), values, np.array([1.0, 2.0, 3.0, 6.0]))
+    assert flag.share == pytest.approx(7 / 12, rel=1e-12)
     assert (flag.found_low, flag.found_high) == pytest.approx((0.4, 3.0), rel=1e-12)
     assert (flag.low, flag.high, flag.unit) == (0.5, 2.5, "GPa")
 

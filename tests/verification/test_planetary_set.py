@@ -348,13 +348,34 @@ def test_resolution_of_the_default_is_enough(talbot):
     )
 
 
-@pytest.mark.xfail(
-    strict=True,
-    raises=ep.ConvergenceError,
-    reason="see test_roller_bearing.py::test_vanishing_loads_are_solved",
-)
 def test_losses_go_to_those_of_no_load(talbot):
     idle = ep.solve(talbot.updated({"operation.torque": "0 N*m"})).total
     for torque in ("1e-3 N*m", "1e-6 N*m", "1e-8 N*m"):
         total = ep.solve(talbot.updated({"operation.torque": torque})).total
         assert total == pytest.approx(idle, rel=0.01)
+
+
+@pytest.mark.xfail(
+    strict=True,
+    raises=(AssertionError, ep.ConvergenceError),
+    reason="pressure, speed, radius and roughness are held near the data of the regressions, "
+    "viscosity is not: at -20 degC the test fluid makes 714 kW in the bearings and 108 kW of "
+    "rolling loss, at -30 degC 4e34 W; ISO VG 320 at 20 degC with the same models 5e10 W",
+)
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"operation.oil_inlet_temperature": "-20 degC"},
+        {"operation.oil_inlet_temperature": "-40 degC"},
+        {
+            "lubricant.oil": "iso-vg-320-mineral",
+            "operation.oil_inlet_temperature": "20 degC",
+            "models.rolling": "mixed-ehl",
+            "models.bearing": "mixed-ehl",
+        },
+    ],
+)
+def test_thick_oil_keeps_the_losses_bounded(talbot, changes):
+    losses = ep.solve(talbot.updated(changes)).losses
+    for name in ("sun_mesh_rolling", "ring_mesh_rolling", "planet_bearing_mechanical"):
+        assert losses[name] < 20e3  # W; 0.3 to 2 kW at 0 degC, and 419 kW pass through

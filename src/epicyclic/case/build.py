@@ -14,16 +14,22 @@ from epicyclic.geometry.gear import (
     half_angle_from_thickness,
 )
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import RackTool, ShaperTool, Tool, default_tool
+from epicyclic.geometry.outline import (
+    RackTool,
+    ShaperTool,
+    default_tool,
+    form_radius,
+    tooth_outline,
+)
 
 __all__ = [
     "basic_rack",
     "gear",
+    "longest_involute",
     "outside_radius",
     "pair_mesh",
     "planet_angles",
     "planetary_meshes",
-    "sharpest_tool",
 ]
 
 DEFAULT_RIM_THICKNESS = 3.0
@@ -91,9 +97,7 @@ def gear(name: str, table: GearTable, gears: Gears) -> Gear:
 
 
 @lru_cache(maxsize=256)
-def planetary_meshes(
-    gears: Gears, sun: GearTable, planet: Planet, ring: Ring
-) -> tuple[Mesh, Mesh]:
+def planetary_meshes(gears: Gears, sun: GearTable, planet: Planet, ring: Ring) -> tuple[Mesh, Mesh]:
     """Sun-planet mesh (member 1 the sun) and planet-ring mesh (member 1 the planet)."""
     a = gears.center_distance
     planet_gear = gear("planet", planet, gears)
@@ -111,20 +115,47 @@ def pair_mesh(gears: Gears, pinion: GearTable, wheel: PairGear) -> Mesh:
     )
 
 
-def sharpest_tool(gear: Gear, table: GearTable) -> Tool:
-    """The tool of the case, or the one that leaves the longest involute: a sharp-cornered one.
+def longest_involute(gear: Gear, table: GearTable) -> float:
+    """Radius at which the involute of `gear` ends towards its root, as long as a tool leaves it.
+
+    That is the tool of the case, or else one with sharp corners. If these undercut the tooth, it is
+    the rack with just the rounding that lets the involute begin at the base circle; if they cut
+    away the tips of a ring, the default shaper cutter.
 
     Raises
     ------
     ValueError
-        If no shaper cutter generates a ring.
+        If no tool generates the tooth.
     """
-    rounding = 0.0 if table.tool_tip_radius is None else table.tool_tip_radius
     if not gear.internal:
-        return RackTool(rounding)
+        tool = _kindest_rack(gear, table)
+        if _sharp_undercut(gear) > 0:
+            tooth_outline(gear, tool, points=8)  # raises if undercut severs the teeth
+        return form_radius(gear, tool)
     shaper = default_tool(gear)
     assert isinstance(shaper, ShaperTool)
-    return ShaperTool(shaper.teeth, rounding)
+    if table.tool_tip_radius is not None:
+        return form_radius(gear, ShaperTool(shaper.teeth, table.tool_tip_radius))
+    try:
+        return form_radius(gear, ShaperTool(shaper.teeth, 0.0))
+    except ValueError:
+        return form_radius(gear, shaper)
+
+
+def _kindest_rack(gear: Gear, table: GearTable) -> RackTool:
+    if table.tool_tip_radius is not None:
+        return RackTool(table.tool_tip_radius)
+    sine = math.sin(gear.rack.normal_pressure_angle)
+    return RackTool(max(0.0, _sharp_undercut(gear)) / (1 - sine))
+
+
+def _sharp_undercut(gear: Gear) -> float:
+    """How far a rack with sharp corners reaches beyond the start of the involute. [m]
+
+    Negative if it does not reach that far: no undercut.
+    """
+    cosine = math.cos(gear.rack.transverse_pressure_angle)
+    return gear.reference_radius * cosine**2 - gear.root_radius
 
 
 def planet_angles(sun: GearTable, planet: Planet, ring: Ring) -> tuple[float, ...]:

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import copy
-import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self, TypeVar
 
-from pydantic import BaseModel, Field, PrivateAttr, TypeAdapter, ValidationError
-from pydantic_core import ErrorDetails
+from pydantic import BaseModel, Field, PrivateAttr, TypeAdapter
+from pydantic.json_schema import GenerateJsonSchema
 
 from epicyclic import library
 from epicyclic.case.checks import cross_check
-from epicyclic.case.fields import find_field, quantity_of, table_of, to_inputs
-from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.fields import find_field, locate, to_inputs
+from epicyclic.case.nearest import did_you_mean, misspelt
+from epicyclic.case.plain import plain, value_at, with_value, without
+from epicyclic.case.reading import read_file
 from epicyclic.case.schema import (
     Carrier,
     FrictionTable,
@@ -36,20 +37,18 @@ from epicyclic.case.schema import (
     Table,
     ThrustBearing,
 )
+from epicyclic.case.translation import unknown_key
+from epicyclic.case.validation import tables_of, validate
+from epicyclic.case.wording import one_line, path_of, written
 from epicyclic.errors import InputError, Problem
 
 __all__ = ["Case", "GearPairCase", "PlanetaryCase", "case_schema", "load_case"]
 
-AnyCase = TypeVar("AnyCase", "PlanetaryCase", "GearPairCase")
-
-LONGEST_SHOWN = 60
-"""Values in messages are cut to this many characters."""
-LARGEST_FILE = 1_000_000
-"""A case file is a page of text; anything larger than this is something else. [bytes]"""
+AnyCase = TypeVar("AnyCase", bound="_CaseTable")
 
 
 class _CaseTable(Table):
-    _raw: dict[str, Any] = PrivateAttr(default_factory=dict)
+    _tables: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: str = PrivateAttr(default="")
 
     @property
@@ -76,14 +75,25 @@ class _CaseTable(Table):
         InputError
             With every problem of the changed case.
         """
-        raw = copy.deepcopy(self._raw)
+        tables = self._tables or plain(self.inputs())
+        problems: list[Problem] = []
         for key, value in changes.items():
-            _set(raw, key, value)
-        return _build(type(self), raw, self._source)
+            try:
+                tables = _changed(type(self), tables, str(key), plain(value))
+            except InputError as error:
+                problems += [replace(problem, key=str(key)) for problem in error.problems]
+        return _build(type(self), tables, self._source, problems)
 
     def inputs(self) -> dict[str, Any]:
         """The case as nested tables of text and numbers, defaults included, as a file has them."""
         return to_inputs(self)
+
+    def __eq__(self, other: object) -> bool:
+        """Equal if every key has the same value, wherever the cases were read."""
+        return type(self) is type(other) and self.__dict__ == other.__dict__
+
+    def __hash__(self) -> int:
+        return hash(tuple(self.__dict__.values()))
 
 
 class PlanetaryCase(_CaseTable):
@@ -150,236 +160,127 @@ def load_case(path_or_name: str | Path | Mapping[str, Any]) -> Case:
         With every problem found, not only the first.
     """
     if isinstance(path_or_name, Mapping):
-        return _build_any(dict(path_or_name), "the given tables")
-    text = str(path_or_name)
-    path = Path(text)
-    if path.suffix == ".toml" or path.exists():
-        return _build_any(_read_file(path), text)
-    try:
-        return _build_any(library.builtin_case(text), text)
-    except KeyError:
-        raise InputError([_no_such_case(text)]) from None
+        return _build_any(plain(path_or_name), "the given tables")
+    if not isinstance(path_or_name, str | Path):
+        raise InputError([_no_such_case(path_or_name)])
+    name, path = str(path_or_name), Path(path_or_name)
+    if path.suffix.lower() != ".toml" and not _holds(path.is_file):
+        try:
+            return _build_any(plain(library.builtin_case(name)), name)
+        except KeyError:
+            if len(path.parts) == 1 and not _holds(path.exists):
+                raise InputError([_no_such_case(name)]) from None
+    tables, problems = read_file(path)
+    return _build_any(tables, name, problems)
 
 
 def case_schema() -> dict[str, Any]:
     """JSON Schema of a case file."""
     union = TypeAdapter(Annotated[Case, Field(discriminator="kind")])
-    return union.json_schema()
+    return {
+        "$schema": _FileSchema.schema_dialect,
+        **union.json_schema(schema_generator=_FileSchema),
+    }
 
 
-def _no_such_case(name: str) -> Problem:
+class _FileSchema(GenerateJsonSchema):
+    """Tables that are defaults appear as a file has them, with units."""
+
+    def encode_default(self, dft: Any) -> Any:
+        return to_inputs(dft) if isinstance(dft, BaseModel) else super().encode_default(dft)
+
+
+def _holds(test: Callable[[], bool]) -> bool:
+    """The result of a `test` of a path; False for a path too long to be one."""
+    try:
+        return test()
+    except OSError:
+        return False
+
+
+def _no_such_case(name: object) -> Problem:
+    if not isinstance(name, str):
+        allowed = "must be a path, the name of a built-in case, or the tables of a case."
+        return Problem("CASE", one_line(repr(name)), allowed, "Give one of these.")
     known = library.case_files()
-    nearest = did_you_mean(name, known)
-    return Problem(
-        "CASE",
-        repr(name),
-        f"is neither a file nor a built-in case (built in: {', '.join(known)} and variants).",
-        nearest or "See 'epicyclic cases'.",
-    )
+    allowed = f"is neither a file nor a built-in case (built in: {', '.join(known)} and variants)."
+    base = max((file for file in known if name.startswith(f"{file}-")), key=len, default="")
+    groups = library.case_variants().get(base, [])
+    words = "; ".join(" or ".join(group["words"]) for group in groups)
+    if words:
+        remedy = f"Variants are named {base}- and at most one word of each group: {words}."
+    else:
+        remedy = did_you_mean(name, known) or "See 'epicyclic cases'."
+    return Problem("CASE", written(name), allowed, remedy)
 
 
-def _read_file(path: Path) -> dict[str, Any]:
-    def fail(allowed: str, remedy: str) -> InputError:
-        return InputError([Problem("", "", allowed, remedy)], str(path))
-
-    try:
-        if path.is_file() and path.stat().st_size > LARGEST_FILE:
-            raise fail("the file is too large to be a case.", "Give a case file.")
-        content = path.read_bytes()
-    except OSError as error:
-        raise fail(f"the file cannot be read: {error.strerror}.", "Check the path.") from None
-    try:
-        return tomllib.loads(content.decode("utf-8-sig"))
-    except UnicodeDecodeError:
-        raise fail("this is not a text file in UTF-8.", "Save it as UTF-8 text.") from None
-    except tomllib.TOMLDecodeError as error:
-        raise fail(f"this is not TOML: {error}.", "Mend that line.") from None
-    except RecursionError:
-        raise fail("the tables are nested too deep.", "Give a case file.") from None
-
-
-def _build_any(raw: dict[str, Any], source: str) -> Case:
-    kind = raw.get("kind")
-    table = _KINDS.get(kind) if isinstance(kind, str) else None
-    if table is None:
-        given = "" if kind is None else repr(kind)
-        missing = "is missing; it" if kind is None else ""
-        raise InputError(
-            [
-                Problem(
-                    "kind",
-                    given,
-                    f"{missing} must be one of {', '.join(_KINDS)}.".lstrip(),
-                    did_you_mean(str(kind or ""), _KINDS) or 'Write kind = "planetary".',
-                )
-            ],
-            source,
+def _build_any(tables: dict[str, Any], source: str, problems: Sequence[Problem] = ()) -> Case:
+    """The case of `tables`; if they name no kind, every problem under the likeliest one."""
+    given = tables.get("kind")
+    name = given if isinstance(given, str) and given in _KINDS else ""
+    if not name:
+        name = misspelt(str(given), _KINDS) or max(
+            _KINDS, key=lambda kind: len(tables.keys() & tables_of(_KINDS[kind]).keys())
         )
-    if table is PlanetaryCase:
-        return _build(PlanetaryCase, raw, source)
-    return _build(GearPairCase, raw, source)
+        allowed = f"must be {' or '.join(_KINDS)}."
+        if given is None:
+            allowed = f"is missing; it {allowed}"
+        shown = "" if given is None else written(given)
+        problems = [*problems, Problem("kind", shown, allowed, f'Write kind = "{name}".')]
+        tables = tables | {"kind": name}
+    if name == "planetary":
+        return _build(PlanetaryCase, tables, source, problems)
+    return _build(GearPairCase, tables, source, problems)
 
 
-def _build(table: type[AnyCase], raw: dict[str, Any], source: str) -> AnyCase:
-    """Validate every table of `raw` by itself, then across tables; raise all problems at once."""
-    problems = [
-        _unknown_key(key, value, table) for key, value in raw.items() if key not in table.model_fields
+def _build(
+    kind: type[AnyCase], tables: dict[str, Any], source: str, problems: Sequence[Problem] = ()
+) -> AnyCase:
+    """Validate `tables` by themselves and against each other; raise all problems at once."""
+    validation = validate(kind, tables)
+    known = {problem.key for problem in problems}
+    found = [
+        *problems,
+        *(problem for problem in validation.problems if problem.key not in known),
+        *(_as_given(problem, tables) for problem in cross_check(validation.sections, tables)),
     ]
-    values: dict[str, Any] = {}
-    sections: dict[str, Table] = {}
-    for name, field in table.model_fields.items():
-        section = table_of(field.annotation)
-        if name in raw and section is not None and issubclass(section, Table):
-            sound, found = _read_section(name, section, raw[name])
-            problems += found
-            if sound is not None:
-                sections[name] = sound
-            values[name] = sound
-        elif name in raw:
-            values[name] = raw[name]
-        elif field.is_required():
-            problems.append(_missing_table(name))
-        elif isinstance(field.default, Table):
-            sections[name] = field.default
-    if not isinstance(raw.get("title", ""), str):
-        problems.append(Problem("title", _shown(raw["title"]), "must be text.", "Quote it."))
-    problems += cross_check(sections)
-    if problems:
-        raise InputError(problems, source)
-    case = table(**values)
-    case._raw = copy.deepcopy(raw)
+    case = validation.case
+    if case is None or found:
+        raise InputError(sorted(found, key=lambda problem: _position(kind, problem)), source)
+    case._tables = tables
     case._source = source
     return case
 
 
-def _read_section(
-    name: str, table: type[Table], raw: object
-) -> tuple[Table | None, list[Problem]]:
-    """The table if it can be used for further checks, and its problems.
-
-    A table with unknown keys, or with unusable optional keys, is read again without them, so that
-    the checks across tables still find what else is wrong.
-    """
-    if not isinstance(raw, Mapping):
-        problem = Problem(name, _shown(raw), "must be a table of keys.", f"Write [{name}].")
-        return None, [problem]
-    alternatives = _check_alternatives(name, table, raw)
-    try:
-        return (None if alternatives else table.model_validate(raw)), alternatives
-    except ValidationError as error:
-        details = error.errors()
-    problems = alternatives + [_translate(name, table, detail) for detail in details]
-    if alternatives:
-        return None, problems
-    bad = {detail["loc"][0] for detail in details if detail["loc"]}
-    try:
-        return table.model_validate({k: v for k, v in raw.items() if k not in bad}), problems
-    except ValidationError:
-        return None, problems
+def _as_given(problem: Problem, tables: dict[str, Any]) -> Problem:
+    """The problem with the values of its keys as the user wrote them."""
+    values = [value_at(tables, path_of(key)) for key in problem.key.split(", ")]
+    if any(value is None or isinstance(value, dict) for value in values):
+        return problem
+    return replace(problem, value=", ".join(map(written, values)))
 
 
-def _check_alternatives(
-    name: str, table: type[Table], raw: Mapping[str, Any]
-) -> list[Problem]:
-    """Exactly one of each group of alternatives must be given, and that one whole."""
-    problems = []
-    for group in table.EXACTLY_ONE:
-        alternatives = [alternative.split("+") for alternative in group]
-        started = [keys for keys in alternatives if any(key in raw for key in keys)]
-        choice = " or ".join(" with ".join(keys) for keys in alternatives)
-        if not started:
-            problems.append(
-                Problem(f"{name}.{alternatives[0][0]}", "", "is missing.", f"Give {choice}.")
-            )
-        elif len(started) > 1:
-            given = ", ".join(key for keys in started for key in keys if key in raw)
-            problems.append(
-                Problem(
-                    f"{name}.{started[1][0]}",
-                    "",
-                    f"conflicts: {given} say the same thing.",
-                    f"Give exactly one: {choice}.",
-                )
-            )
-        problems += [
-            Problem(f"{name}.{key}", "", "is missing.", f"It belongs to {keys[0]}.")
-            for keys in started
-            for key in keys
-            if key not in raw and len(started) == 1
-        ]
-    return problems
+def _position(kind: type[Table], problem: Problem) -> int:
+    """Where the table of a problem stands in a case; problems of the file come first."""
+    table = path_of(problem.key)[0] if problem.key else ""
+    tables = ["", *kind.model_fields]
+    return tables.index(table) if table in tables else len(tables)
 
 
-def _translate(section: str, table: type[Table], detail: ErrorDetails) -> Problem:
-    """A pydantic error as a problem in the user's terms."""
-    context = detail.get("ctx", {})
-    location = [str(part) for part in detail["loc"]]
-    key = ".".join([section, *location])
-    given = _shown(detail["input"])
-    kind = detail["type"]
-    if kind == "extra_forbidden":
-        owner = find_table(table, location[:-1]) or table
-        return _unknown_key(key, detail["input"], owner)
-    if kind == "missing":
-        example = _example(table, location)
-        return Problem(key, "", "is missing.", f"Add {example}." if example else "Add it.")
-    if kind in ("quantity", "preset"):
-        remedy = str(context.get("remedy", ""))
-        sentence = remedy[:1].upper() + remedy[1:]
-        return Problem(key, given, f"{detail['msg']}.", sentence and f"{sentence.rstrip('.?')}{'?' if '?' in sentence else '.'}")
-    if kind == "literal_error":
-        expected = str(context["expected"])
-        choices = [word.strip("' ") for word in expected.replace(" or ", ",").split(",")]
-        return Problem(key, given, f"must be {expected}.", did_you_mean(str(detail["input"]), choices))
-    return Problem(key, given, f"{detail['msg']}.", "")
-
-
-def find_table(table: type[Table], location: list[str]) -> type[BaseModel] | None:
-    """The table class at `location` below `table`."""
-    found: type[BaseModel] | None = table
-    for name in location:
-        field = found.model_fields.get(name) if found is not None else None
-        found = table_of(field.annotation) if field is not None else None
-    return found
-
-
-def _example(table: type[Table], location: list[str]) -> str:
-    found = find_field(table, ".".join(location))
-    quantity = quantity_of(*found) if found is not None else None
-    return f'{location[-1]} = "... {quantity.display}"' if quantity else f"{location[-1]} = ..."
-
-
-def _unknown_key(key: str, value: object, table: type[BaseModel]) -> Problem:
-    name = key.rpartition(".")[2]
-    nearest = did_you_mean(name, table.model_fields)
-    known = ", ".join(table.model_fields)
-    return Problem(key, _shown(value), "is not a known key.", nearest or f"Known are: {known}.")
-
-
-def _missing_table(name: str) -> Problem:
-    return Problem(f"[{name}]", "", "is missing.", "Add this table; see 'epicyclic init'.")
-
-
-def _shown(value: object) -> str:
-    """A value as the user wrote it, cut to one line."""
-    text = f'"{value}"' if isinstance(value, str) else str(value)
-    text = " ".join(text.split())
-    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}..."
-
-
-def _set(raw: dict[str, Any], key: str, value: object) -> None:
-    """Set dotted `key` of nested tables, making tables on the way; None removes it."""
-    *path, name = key.split(".")
-    table = raw
-    for depth, part in enumerate(path):
-        inner = table.setdefault(part, {})
-        if not isinstance(inner, dict):
-            owner = ".".join(path[: depth + 1])
-            raise InputError(
-                [Problem(key, _shown(value), f"{owner} is not a table.", "Check the key.")]
-            )
-        table = inner
-    if value is None:
-        table.pop(name, None)
-    else:
-        table[name] = value
+def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
+    """`tables` with dotted `key` set to `value`, or removed if that is None."""
+    path = key.split(".")
+    for depth in range(1, len(path)):
+        owner = value_at(tables, path[:depth])
+        if owner is not None and not isinstance(owner, dict):
+            name = ".".join(path[:depth])
+            allowed = f"{name} is {written(owner)}, which has no keys."
+            remedy = f"Change {name} to a table first."
+            raise InputError([Problem(key, written(value), allowed, remedy)])
+    if value is not None:
+        return with_value(tables, path, value)
+    if value_at(tables, path) is not None:
+        return without(tables, path)
+    if find_field(kind, key) is None:
+        raise InputError([unknown_key(locate(kind, path), None, tables_of(kind).items())])
+    return tables

@@ -1,27 +1,66 @@
-"""What the schema says about one key: its unit, its choices, its text form."""
+"""What the schema says about one key: its unit, its choices, its range, its text form."""
 
 from __future__ import annotations
 
 import types
 import typing
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from pydantic import BaseModel
+from annotated_types import Ge, Gt, Le
+from pydantic import BaseModel, GetJsonSchemaHandler, Tag
+from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema
 
-from epicyclic.units import Quantity
+from epicyclic.units import Quantity, describe_range
 
-__all__ = ["choices_of", "find_field", "quantity_of", "to_inputs"]
+__all__ = [
+    "Named",
+    "Place",
+    "all_keys",
+    "bounds_of",
+    "choices_of",
+    "describe",
+    "find_field",
+    "is_whole_number",
+    "locate",
+    "quantity_of",
+    "table_of",
+    "tables_in",
+    "to_inputs",
+]
 
 
-def quantity_of(annotation: Any, metadata: tuple[Any, ...] = ()) -> Quantity | None:
+@dataclass(frozen=True, slots=True)
+class Named:
+    """Marks a table that may also be given by name.
+
+    Attributes
+    ----------
+    names : callable
+        The names.
+    allowed : callable
+        What is allowed, in words.
+    """
+
+    names: Callable[[], tuple[str, ...]]
+    allowed: Callable[[], str]
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return {"anyOf": [{"enum": list(self.names())}, handler(schema)]}
+
+
+def quantity_of(annotation: Any, metadata: Sequence[Any] = ()) -> Quantity | None:
     """The `Quantity` of an annotation, through optional and tuple types; None for plain types."""
     for item in metadata:
         if isinstance(item, Quantity):
             return item
     if typing.get_origin(annotation) is typing.Annotated:
         inner, *items = typing.get_args(annotation)
-        return quantity_of(inner, tuple(items))
+        return quantity_of(inner, items)
     for argument in _arguments(annotation):
         found = quantity_of(argument)
         if found is not None:
@@ -36,17 +75,133 @@ def choices_of(annotation: Any) -> tuple[str, ...]:
     return tuple(name for argument in _arguments(annotation) for name in choices_of(argument))
 
 
-def table_of(annotation: Any) -> type[BaseModel] | None:
-    """The table class of an annotation, through optional and annotated types."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
+def bounds_of(annotation: Any, metadata: Sequence[Any] = ()) -> tuple[Ge | Gt | None, Le | None]:
+    """The lower and the upper bound of a number without dimension."""
     if typing.get_origin(annotation) is typing.Annotated:
-        return table_of(typing.get_args(annotation)[0])
-    for argument in _arguments(annotation):
-        found = table_of(argument)
-        if found is not None:
-            return found
-    return None
+        inner, *items = typing.get_args(annotation)
+        return bounds_of(inner, (*metadata, *items))
+    found: list[Any] = []
+    for item in metadata:
+        found += item.metadata if isinstance(item, FieldInfo) else [item]
+    low = next((item for item in found if isinstance(item, Ge | Gt)), None)
+    high = next((item for item in found if isinstance(item, Le)), None)
+    return low, high
+
+
+def table_of(annotation: Any) -> type[BaseModel] | None:
+    """The table class of an annotation, the first one of several; None if there is none."""
+    return next(tables_in(annotation), None)
+
+
+def tables_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    """The table classes of an annotation, through optional, union and array types."""
+    if _is_table(annotation):
+        yield annotation
+    elif typing.get_origin(annotation) is typing.Annotated:
+        yield from tables_in(typing.get_args(annotation)[0])
+    else:
+        for argument in _arguments(annotation):
+            yield from tables_in(argument)
+
+
+def is_whole_number(annotation: Any) -> bool:
+    """True for keys that count."""
+    return annotation is int
+
+
+def describe(annotation: Any, metadata: Sequence[Any] = ()) -> str:
+    """What a key may hold, in words: ``"a whole number >= 5 and <= 2000"``."""
+    for item in metadata:
+        if isinstance(item, Named):
+            return item.allowed()
+    members = [member for member in _members(annotation) if member is not type(None)]
+    member = _without_metadata(members[0]) if members else annotation
+    if typing.get_origin(member) is tuple:
+        first = typing.get_args(member)[0]
+        return f"an array, each entry {describe(first)}"
+    if _is_table(member):
+        return "a table of keys"
+    quantity = quantity_of(annotation, metadata)
+    if quantity is not None:
+        return quantity.describe()
+    choices = choices_of(annotation)
+    if choices:
+        quoted = [f'"{choice}"' for choice in choices]
+        return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
+    if member in (int, float):
+        noun = "a whole number" if member is int else "a number"
+        return _describe_number(noun, bounds_of(annotation, metadata))
+    return {bool: "true or false", str: "text"}.get(member, "another kind of value")
+
+
+def _describe_number(noun: str, bounds: tuple[Ge | Gt | None, Le | None]) -> str:
+    low, high = bounds
+    open_low = isinstance(low, Gt)
+    lowest: Any = low.gt if isinstance(low, Gt) else low and low.ge
+    highest: Any = high and high.le
+    return describe_range(noun, lowest, highest, open_low=open_low)
+
+
+def find_field(table: type[BaseModel], key: str) -> tuple[Any, tuple[Any, ...]] | None:
+    """Annotation and metadata of the field at dotted `key`; None if there is no such key."""
+    place = locate(table, key.split("."))
+    return None if place.annotation is None else (place.annotation, place.metadata)
+
+
+def all_keys(table: type[BaseModel], prefix: str = "") -> Iterator[str]:
+    """Every dotted key below `table` that holds a value, in the order of the schema."""
+    for name, field in table.model_fields.items():
+        inner = table_of(field.annotation)
+        if inner is None:
+            yield f"{prefix}{name}"
+        else:
+            yield from all_keys(inner, f"{prefix}{name}.")
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a value stands in the schema.
+
+    Attributes
+    ----------
+    path : tuple of str and int
+        Keys and numbers of array entries that lead to it.
+    annotation : object
+        Type of the value; None if the schema has no such key.
+    metadata : tuple
+        Metadata of the value.
+    owner : type or None
+        The table that holds the key, or should; None if there is no table there.
+    """
+
+    path: tuple[str | int, ...]
+    annotation: Any
+    metadata: tuple[Any, ...]
+    owner: type[BaseModel] | None
+
+
+def locate(table: type[BaseModel], location: Sequence[str | int]) -> Place:
+    """The place at `location` below `table`, which may name the branches of unions on the way."""
+    path: list[str | int] = []
+    annotation: Any = table
+    metadata: tuple[Any, ...] = ()
+    owner: type[BaseModel] | None = table
+    for part in location:
+        branch = _branch(annotation, part)
+        if branch is not None:
+            annotation, metadata = branch, ()
+            continue
+        path.append(part)
+        if isinstance(part, int):
+            annotation, metadata = _entry(annotation, part), ()
+            continue
+        owners = list(tables_in(annotation))
+        owners.sort(key=lambda one: part not in one.model_fields)
+        owner = owners[0] if owners else None
+        field = owner.model_fields.get(part) if owner is not None else None
+        annotation = None if field is None else field.annotation
+        metadata = () if field is None else tuple(field.metadata)
+    return Place(tuple(path), annotation, metadata, owner)
 
 
 def _arguments(annotation: Any) -> Iterator[Any]:
@@ -54,16 +209,50 @@ def _arguments(annotation: Any) -> Iterator[Any]:
         yield from typing.get_args(annotation)
 
 
-def find_field(table: type[BaseModel], key: str) -> tuple[Any, tuple[Any, ...]] | None:
-    """Annotation and metadata of the field at dotted `key`; None if there is no such key."""
-    name, _, rest = key.partition(".")
-    field = table.model_fields.get(name)
-    if field is None:
-        return None
-    if not rest:
-        return field.annotation, tuple(field.metadata)
-    inner = table_of(field.annotation)
-    return find_field(inner, rest) if inner is not None else None
+def _members(annotation: Any) -> Iterator[Any]:
+    """The members of a union, or `annotation` itself."""
+    if typing.get_origin(annotation) in (types.UnionType, typing.Union):
+        yield from typing.get_args(annotation)
+    else:
+        yield annotation
+
+
+def _without_metadata(annotation: Any) -> Any:
+    if typing.get_origin(annotation) is typing.Annotated:
+        return _without_metadata(typing.get_args(annotation)[0])
+    return annotation
+
+
+def _metadata(annotation: Any) -> tuple[Any, ...]:
+    is_annotated = typing.get_origin(annotation) is typing.Annotated
+    return typing.get_args(annotation)[1:] if is_annotated else ()
+
+
+def _is_table(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
+
+
+def _entry(annotation: Any, number: int) -> Any:
+    """Type of one entry of an array; None if `annotation` is no array."""
+    for member in map(_without_metadata, _members(annotation)):
+        if typing.get_origin(member) is tuple:
+            types_ = typing.get_args(member)
+            return types_[0] if types_[-1] is Ellipsis else types_[min(number, len(types_) - 1)]
+    return None
+
+
+def _branch(annotation: Any, name: str | int) -> Any:
+    """The member of a union that goes by `name` in an error's location; None if none does."""
+    for member in _members(annotation):
+        tags = [item.tag for item in _metadata(member) if isinstance(item, Tag)]
+        if name in tags:
+            return _without_metadata(member)
+    tables = list(tables_in(annotation))
+    if len(tables) > 1:
+        for table in tables:
+            if any(name in choices_of(field.annotation) for field in table.model_fields.values()):
+                return table
+    return None
 
 
 def to_inputs(table: BaseModel) -> dict[str, Any]:
@@ -87,5 +276,5 @@ def _to_input(value: Any, quantity: Quantity | None) -> Any:
     if isinstance(value, tuple):
         return [_to_input(item, quantity) for item in value]
     if quantity is not None and isinstance(value, float):
-        return quantity.text(value, digits=12)
+        return quantity.exact_text(value)
     return value

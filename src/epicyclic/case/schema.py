@@ -6,21 +6,34 @@ Values are SI after validation. Checks across keys and tables live in `epicyclic
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from functools import cache
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
-from pydantic_core import PydanticCustomError
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetJsonSchemaHandler,
+    Tag,
+)
+from pydantic_core import CoreSchema, PydanticCustomError
 
 from epicyclic import library
+from epicyclic.case.fields import Named
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.lubricant.oil import Oil
 from epicyclic.units import (
     Angle,
     Density,
     HelixAngle,
+    HertzPressure,
     Length,
     Mass,
     Modulus,
+    Number,
     Pressure,
     Quantity,
     RotationalSpeed,
@@ -38,62 +51,58 @@ class Table(BaseModel):
 
     ``EXACTLY_ONE`` lists groups of alternatives of which a file gives exactly one; an alternative
     of several keys, joined by ``+``, needs all of them.
+
+    ``STAND_INS`` are keys on which no check across tables depends. If such a key cannot be used,
+    the checks go on with the value given here (None: with the default).
     """
 
     model_config = ConfigDict(
         frozen=True, extra="forbid", validate_default=True, allow_inf_nan=False
     )
     EXACTLY_ONE: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    STAND_INS: ClassVar[dict[str, object]] = {}
+
+
+def _as_text(default: str) -> Any:
+    """A default as a case file would state it; it is read like any other value."""
+    return default
+
+
+def _no_preset(noun: str, name: str, known: Iterable[str], allowed: str) -> PydanticCustomError:
+    nearest = did_you_mean(name, known)
+    return PydanticCustomError(
+        "preset",
+        "no such {noun}; it must be {allowed}",
+        {"noun": noun, "allowed": allowed, "remedy": nearest or "Check the name"},
+    )
 
 
 class _Roughness(Quantity):
     """A length, or the name of a built-in finish."""
 
     def parse(self, value: object) -> float:
-        if isinstance(value, str) and value in library.finishes():
-            value = library.finishes()[value]["roughness"]
+        finishes = library.finishes()
+        if isinstance(value, str) and value in finishes:
+            value = finishes[value]["roughness"]
         elif isinstance(value, str) and value[:1].isalpha():
-            raise PydanticCustomError(
-                "preset",
-                "no such finish: allowed is a length in um or one of {allowed}",
-                {
-                    "allowed": ", ".join(library.finishes()),
-                    "remedy": did_you_mean(value, library.finishes()),
-                },
-            )
+            raise _no_preset("finish", value, finishes, self.describe())
         return super().parse(value)
+
+    def describe(self) -> str:
+        finishes = ", ".join(library.finishes())
+        return f"{super().describe()}, or one of the finishes {finishes}"
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        length = super().__get_pydantic_json_schema__(schema, handler)
+        return {"anyOf": [length, {"enum": list(library.finishes())}]}
 
 
 Roughness = Annotated[
-    float,
-    _Roughness("an rms roughness, or the name of a finish", "m", "um", low=0.0, open_low=True),
+    float, _Roughness("an rms roughness", "m", "um", low=0.0, high=100.0, open_low=True)
 ]
-
-
-def _named_material(value: object) -> object:
-    return _from_library(value, library.materials(), "material")
-
-
-def _named_oil(value: object) -> object:
-    if isinstance(value, str) and value in library.oil_names():
-        return library.oil_table(value)
-    return _from_library(value, dict.fromkeys(library.oil_names(), {}), "oil")
-
-
-def _from_library(value: object, known: dict[str, dict[str, Any]], noun: str) -> object:
-    if not isinstance(value, str):
-        return value
-    if value not in known:
-        raise PydanticCustomError(
-            "preset",
-            "no such {noun}: allowed is a table of properties or one of {allowed}",
-            {
-                "noun": noun,
-                "allowed": ", ".join(known),
-                "remedy": did_you_mean(value, known),
-            },
-        )
-    return known[value]
+_ShortLength = Annotated[float, Quantity("a length", "m", "mm", low=0.0, high=1e5)]
 
 
 class Material(Table):
@@ -101,17 +110,64 @@ class Material(Table):
 
     title: str = "material of the case"
     elastic_modulus: Modulus
-    poisson_ratio: float = Field(default=0.3, ge=0.0, le=0.5)
-    density: Density = Field(default="7850 kg/m^3")
+    poisson_ratio: Number = Field(default=0.3, ge=0.0, le=0.5)
+    density: Density = Field(default=_as_text("7850 kg/m^3"))
     source: str = ""
 
 
-NamedMaterial = Annotated[Material, BeforeValidator(_named_material)]
+@cache
+def _material(name: str) -> Material:
+    return Material.model_validate(library.materials()[name])
+
+
+@cache
+def _oil(name: str) -> Oil:
+    return Oil.model_validate(library.oil_table(name))
+
+
+_MATERIALS = Named(
+    lambda: tuple(library.materials()),
+    lambda: f"a table of properties or one of {', '.join(library.materials())}",
+)
+_OILS = Named(
+    library.oil_names,
+    lambda: "a table of properties or a name of the oil library (epicyclic oils)",
+)
+
+
+def _named_material(value: object) -> object:
+    """The built-in material if `value` is a name; anything else goes on to be checked."""
+    if not isinstance(value, str):
+        return value
+    if value not in _MATERIALS.names():
+        raise _no_preset("material", value, _MATERIALS.names(), _MATERIALS.allowed())
+    return _material(value)
+
+
+def _named_oil(value: object) -> object:
+    """The built-in oil if `value` is a name; anything else goes on to be checked."""
+    if not isinstance(value, str):
+        return value
+    if value not in _OILS.names():
+        raise _no_preset("oil", value, _OILS.names(), _OILS.allowed())
+    return _oil(value)
+
+
+NamedMaterial = Annotated[Material, BeforeValidator(_named_material), _MATERIALS]
+NamedOil = Annotated[Oil, BeforeValidator(_named_oil), _OILS]
+
+
+_ANY_OPERATION: dict[str, object] = {
+    "torque": "0 N*m",
+    "speed": "0 rpm",
+    "oil_inlet_temperature": "40 degC",
+}
 
 
 class PlanetaryOperation(Table):
     """How the gear set runs."""
 
+    STAND_INS = _ANY_OPERATION
     EXACTLY_ONE = (("fixed", "second_input+second_speed"),)
 
     input: Member = Field(description="The member to which torque and speed belong.")
@@ -133,6 +189,8 @@ class PlanetaryOperation(Table):
 
 class GearPairOperation(Table):
     """How the gear pair runs."""
+
+    STAND_INS = _ANY_OPERATION
 
     torque: Torque = Field(description="On the pinion; negative = coasting.")
     speed: RotationalSpeed = Field(description="Of the pinion.")
@@ -157,13 +215,13 @@ class Gears(Table):
     ) = Field(default=None, description="alpha_t at the reference circle.")
     helix_angle: HelixAngle = Field(description="beta at the reference circle, magnitude.")
     center_distance: Length = Field(description="Of every mesh.")
-    addendum_coefficient: float = Field(
+    addendum_coefficient: Number = Field(
         default=1.0,
         gt=0,
         le=3,
         description="h_aP/m_n, for gears without tip_diameter. ISO 53, profile A.",
     )
-    dedendum_coefficient: float = Field(
+    dedendum_coefficient: Number = Field(
         default=1.25,
         gt=0,
         le=4,
@@ -174,6 +232,11 @@ class Gears(Table):
 class GearTable(Table):
     """One gear."""
 
+    STAND_INS: ClassVar[dict[str, object]] = {
+        "roughness": "1 um",
+        "material": None,
+        "tool_tip_radius": None,
+    }
     EXACTLY_ONE = (("tooth_thickness+thickness_diameter", "profile_shift_coefficient"),)
 
     teeth: int = Field(ge=5, le=2000, description="Number of teeth.")
@@ -188,12 +251,12 @@ class GearTable(Table):
         default=None, description="Transverse arc thickness at thickness_diameter."
     )
     thickness_diameter: Length | None = None
-    profile_shift_coefficient: float | None = Field(
+    profile_shift_coefficient: Number | None = Field(
         default=None, ge=-3, le=5, description="x; positive thickens the teeth, on a ring too."
     )
     roughness: Roughness = Field(description="rms roughness Rq of the flanks, or a finish.")
-    material: NamedMaterial = Field(default="steel", description="A name or a table.")
-    tool_tip_radius: Annotated[float, Quantity("a length", "m", "mm", low=0.0)] | None = Field(
+    material: NamedMaterial = Field(default=_as_text("steel"), description="A name or a table.")
+    tool_tip_radius: _ShortLength | None = Field(
         default=None,
         description="Rounding of the cutting tool's tip, which leaves the root fillet. Default: "
         "0.38 m_n (rack) or 0.2 m_n (shaper), or less where the mate needs the involute.",
@@ -208,6 +271,8 @@ class PairGear(GearTable):
 
 class Planet(GearTable):
     """The planets, all alike."""
+
+    STAND_INS = GearTable.STAND_INS | {"angles": None, "mass": None}
 
     count: int = Field(ge=1, le=24, description="Number of planets.")
     angles: tuple[Angle, ...] | None = Field(
@@ -225,6 +290,8 @@ class Planet(GearTable):
 class Ring(GearTable):
     """The ring gear."""
 
+    STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
+
     rim_thickness: Length | None = Field(
         default=None, description="From root to outside. Default: 3 normal modules (estimate)."
     )
@@ -232,6 +299,20 @@ class Ring(GearTable):
 
 class PlanetBearing(Table):
     """The roller bearing between planet and pin."""
+
+    STAND_INS: ClassVar[dict[str, object]] = {
+        "rows": 1,
+        "roller_length": "1 mm",
+        "roller_roughness": "1 um",
+        "race_roughness": "1 um",
+        "viscous_factor": None,
+        "cage": None,
+        "palmgren_coefficient": None,
+        "crown_drop": None,
+        "crown_length_fraction": None,
+        "row_gap": None,
+        "material": None,
+    }
 
     rows: int = Field(ge=1, le=4)
     rollers_per_row: int = Field(ge=3, le=200)
@@ -241,29 +322,29 @@ class PlanetBearing(Table):
     diametral_clearance: SmallLength
     roller_roughness: Roughness
     race_roughness: Roughness
-    viscous_factor: float = Field(
+    viscous_factor: Number = Field(
         default=3.0,
         ge=0,
         le=100,
         description="f0 of the viscous loss: caged cylindrical 2.2-4 a row, needle up to 12.",
     )
     cage: Literal["caged", "full-complement"] = "caged"
-    palmgren_coefficient: float | None = Field(
+    palmgren_coefficient: Number | None = Field(
         default=None,
         gt=0,
         le=0.05,
         description="f1 of the method palmgren. Default: 0.0003 caged, 0.00055 full complement.",
     )
     crown_drop: SmallLength = Field(
-        default="3 um", description="Drop of the profile at the roller's end (estimate)."
+        default=_as_text("3 um"), description="Drop of the profile at the roller's end (estimate)."
     )
-    crown_length_fraction: float = Field(
+    crown_length_fraction: Number = Field(
         default=0.2, ge=0, le=0.5, description="Crowned part of the length, at each end."
     )
-    row_gap: Annotated[float, Quantity("a length", "m", "mm", low=0.0)] = Field(
-        default="0 mm", description="Axial gap between the rollers of neighbouring rows."
+    row_gap: _ShortLength = Field(
+        default=_as_text("0 mm"), description="Axial gap between the rollers of neighbouring rows."
     )
-    material: NamedMaterial = Field(default="steel", description="Of rollers and races.")
+    material: NamedMaterial = Field(default=_as_text("steel"), description="Of rollers and races.")
 
 
 class Carrier(Table):
@@ -277,17 +358,17 @@ class ThrustBearing(Table):
     """A thrust bearing that carries no load worth counting, for its viscous loss."""
 
     mean_diameter: Length
-    between: Literal["sun-carrier", "sun-ring", "ring-carrier", "sun-housing", "carrier-housing"] = (
-        Field(default="carrier-housing", description="The two parts whose speeds differ.")
-    )
-    viscous_factor: float = Field(default=3.5, ge=0, le=100, description="f0 (Harris).")
+    between: Literal[
+        "sun-carrier", "sun-ring", "ring-carrier", "sun-housing", "carrier-housing"
+    ] = Field(default="carrier-housing", description="The two parts whose speeds differ.")
+    viscous_factor: Number = Field(default=3.5, ge=0, le=100, description="f0 (Harris).")
     count: int = Field(default=1, ge=1, le=10)
 
 
 class Lubricant(Table):
     """The oil."""
 
-    oil: Annotated[Oil, BeforeValidator(_named_oil)] = Field(
+    oil: NamedOil = Field(
         description="A name of the oil library (epicyclic oils) or a table of properties."
     )
 
@@ -295,10 +376,10 @@ class Lubricant(Table):
 class Surroundings(Table):
     """What surrounds the gears."""
 
-    oil_air_ratio: float = Field(
+    oil_air_ratio: Number = Field(
         default=0.05, ge=0, le=1, description="Oil share by volume at ambient pressure."
     )
-    pressure: Pressure = Field(default="1.01325 bar", description="Ambient pressure.")
+    pressure: Pressure = Field(default=_as_text("1.01325 bar"), description="Ambient pressure.")
 
 
 FrictionName = Literal[
@@ -315,6 +396,22 @@ FrictionName = Literal[
 ]
 
 
+Coefficient = Annotated[Number, Field(ge=0, le=1)]
+
+
+def _values_or_rows(value: object) -> str:
+    """Which of its two forms a list of coefficients has."""
+    rows = isinstance(value, list | tuple) and any(isinstance(row, list | tuple) for row in value)
+    return "rows" if rows else "values"
+
+
+Coefficients = Annotated[
+    Annotated[tuple[Coefficient, ...], Tag("values")]
+    | Annotated[tuple[tuple[Coefficient, ...], ...], Tag("rows")],
+    Discriminator(_values_or_rows),
+]
+
+
 class FrictionTable(Table):
     """A user's coefficients of friction against one or two quantities of the contact.
 
@@ -323,11 +420,11 @@ class FrictionTable(Table):
 
     AXES: ClassVar = ("slide_to_roll_ratio", "film_ratio", "hertz_pressure", "rolling_speed")
 
-    slide_to_roll_ratio: tuple[float, ...] | None = None
-    film_ratio: tuple[float, ...] | None = None
-    hertz_pressure: tuple[Modulus, ...] | None = None
+    slide_to_roll_ratio: tuple[Number, ...] | None = None
+    film_ratio: tuple[Number, ...] | None = None
+    hertz_pressure: tuple[HertzPressure, ...] | None = None
     rolling_speed: tuple[Speed, ...] | None = None
-    friction: tuple[float, ...] | tuple[tuple[float, ...], ...] = Field(
+    friction: Coefficients = Field(
         description="One value, or one row, for each value of the first axis."
     )
 
@@ -347,20 +444,32 @@ class FrictionTable(Table):
 class GearPairModels(Table):
     """Which method computes what."""
 
+    STAND_INS: ClassVar[dict[str, object]] = {
+        "constant_friction": None,
+        "boundary_friction": None,
+        "fluid_friction": None,
+        "rolling": None,
+        "load_distribution": None,
+        "mesh": None,
+        "drag": None,
+        "bearing_viscous": None,
+    }
+
     friction: FrictionName = Field(
         default="auto",
         description="auto: mixed-ehl for the fluid it was made for, else schlenk.",
     )
-    constant_friction: float = Field(
+    constant_friction: Number = Field(
         default=0.04, ge=0, le=1, description="For friction = constant."
     )
-    boundary_friction: float = Field(
+    boundary_friction: Number = Field(
         default=0.10,
         ge=0,
         le=1,
-        description="Of dry contact, for matsumoto and doleschel (estimate; an oil's own is measured).",
+        description="Of dry contact, for matsumoto and doleschel (estimate; an oil's own is "
+        "measured).",
     )
-    fluid_friction: float = Field(
+    fluid_friction: Number = Field(
         default=0.02,
         ge=0,
         le=1,
@@ -401,7 +510,7 @@ class LossOption(Table):
     """What becomes of one loss term."""
 
     include: bool = Field(default=True, description="false leaves the term out.")
-    factor: float = Field(default=1.0, ge=0, le=100, description="Multiplies the term.")
+    factor: Number = Field(default=1.0, ge=0, le=100, description="Multiplies the term.")
 
 
 _AS_COMPUTED = LossOption()

@@ -11,6 +11,7 @@ __all__ = ["parse_value"]
 def parse_value(text: str) -> Any:
     """`text` as TOML would read it (numbers, true, lists), else as plain text."""
     try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+        tables = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):  # no TOML, numbers or lists beyond all measure
         return text
+    return tables["value"] if len(tables) == 1 else text

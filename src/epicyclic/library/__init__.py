@@ -6,9 +6,11 @@ Every value stands in its file with its source; the functions here only read.
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
+from types import MappingProxyType
 from typing import Any
 
 __all__ = [
@@ -41,22 +43,34 @@ def oil_names() -> tuple[str, ...]:
     return _stems("oils")
 
 
-@cache
 def oil_table(name: str) -> dict[str, Any]:
-    """The data of one built-in oil."""
+    """The data of one built-in oil.
+
+    Raises
+    ------
+    KeyError
+        If there is no such oil.
+    """
+    if name not in oil_names():
+        raise KeyError(name)
     return _read(_root().joinpath("oils", f"{name}.toml")) | {"name": name}
 
 
 @cache
-def materials() -> dict[str, dict[str, Any]]:
+def materials() -> Mapping[str, Mapping[str, Any]]:
     """Built-in gear and bearing steels by name."""
-    return _read(_root().joinpath("materials.toml"))
+    return _read_only("materials.toml")
 
 
 @cache
-def finishes() -> dict[str, dict[str, Any]]:
+def finishes() -> Mapping[str, Mapping[str, Any]]:
     """Built-in surface finishes by name."""
-    return _read(_root().joinpath("finishes.toml"))
+    return _read_only("finishes.toml")
+
+
+def _read_only(file: str) -> Mapping[str, Mapping[str, Any]]:
+    tables = _read(_root().joinpath(file))
+    return MappingProxyType({name: MappingProxyType(table) for name, table in tables.items()})
 
 
 @cache
@@ -65,7 +79,6 @@ def case_files() -> tuple[str, ...]:
     return _stems("cases")
 
 
-@cache
 def case_variants() -> dict[str, list[dict[str, Any]]]:
     """For each built-in case, its groups of variants: word in the name -> keys it sets."""
     return _read(_root().joinpath("variants.toml"))
@@ -82,11 +95,15 @@ def builtin_case(name: str) -> dict[str, Any]:
     KeyError
         If there is no such case or variant.
     """
-    base = max((file for file in case_files() if f"{name}-".startswith(f"{file}-")), key=len)
+    bases = (file for file in case_files() if f"{name}-".startswith(f"{file}-"))
+    base = max(bases, key=len, default="")
+    if not base:
+        raise KeyError(name)
     table = _read(_root().joinpath("cases", f"{base}.toml"))
     words = name[len(base) :].split("-")[1:]
-    groups = case_variants().get(base, [])
-    for group in groups:
+    if words:
+        table["title"] = ", ".join([table["title"].split(",")[0], *words])
+    for group in case_variants().get(base, []):
         chosen = [word for word in words if word in group["words"]]
         if len(chosen) > 1:
             raise KeyError(name)
@@ -95,7 +112,6 @@ def builtin_case(name: str) -> dict[str, Any]:
             for key, value in group["words"][word].items():
                 section, _, field = key.rpartition(".")
                 (table[section] if section else table)[field] = value
-            table["title"] += f", {word}"
     if words:
         raise KeyError(name)
     return table

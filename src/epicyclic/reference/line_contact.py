@@ -32,7 +32,7 @@ def contact_modulus(e1: float, nu1: float, e2: float, nu2: float) -> float:
 
     References
     ----------
-    K. L. Johnson, Contact Mechanics (1985), Eq. 4.23.
+    K. L. Johnson, Contact Mechanics (1985), chapter 4.
     """
     return 1 / ((1 - nu1**2) / e1 + (1 - nu2**2) / e2)
 

@@ -37,7 +37,7 @@ def planetary_efficiency(teeth_sun: int, teeth_ring: int, mesh_loss: float, held
 
     References
     ----------
-    H. W. Mueller, Epicyclic Drive Trains (1982), chapter 4.
+    H. W. Mueller, Epicyclic Drive Trains (1982).
     """
     ratio = teeth_ring / teeth_sun
     shares = {"carrier": 1.0, "ring": ratio / (ratio + 1), "sun": 1 / (ratio + 1)}

@@ -33,7 +33,7 @@ def radial_load_integral(load_zone: float, exponent: float) -> float:
 
     References
     ----------
-    T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991), section 6.4, after H. Sjoevall (1933).
+    T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991), after H. Sjoevall (1933).
     """
     end = math.acos(max(-1.0, 1 - 2 * load_zone))
 
@@ -71,7 +71,7 @@ def aligned_roller_loads(
 
     References
     ----------
-    T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991), section 6.4; after R. Stribeck (1901).
+    T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991), after R. Stribeck (1901).
     """
     cosine = np.cos(np.arange(rollers) * 2 * math.pi / rollers)
 

@@ -30,8 +30,8 @@ def laminar_disc_power(
 
     References
     ----------
-    T. von Karman, ZAMM 1 (1921) 233, constant of W. G. Cochran (1934); H. Schlichting,
-    Boundary-Layer Theory, 7th ed. (1979), Eq. 5.56.
+    T. von Karman, ZAMM 1 (1921) 233, constant of W. G. Cochran (1934), as quoted in H. Schlichting,
+    Boundary-Layer Theory, 7th ed. (1979).
     """
     reynolds = speed * radius**2 / kinematic_viscosity
     return 3.87 / math.sqrt(reynolds) * density * speed**3 * radius**5 / 2
@@ -54,8 +54,8 @@ def turbulent_disc_power(
 
     References
     ----------
-    T. von Karman, ZAMM 1 (1921) 233; H. Schlichting, Boundary-Layer Theory, 7th ed. (1979),
-    section 21.3.
+    T. von Karman, ZAMM 1 (1921) 233, as quoted in H. Schlichting, Boundary-Layer Theory, 7th ed.
+    (1979).
     """
     reynolds = speed * radius**2 / kinematic_viscosity
     return 0.146 * math.pow(reynolds, -0.2) * density * speed**3 * radius**5 / 2
@@ -82,7 +82,7 @@ def cylinder_power(radius: float, length: float, speed: float, dynamic_viscosity
 
     References
     ----------
-    H. Schlichting, Boundary-Layer Theory, 7th ed. (1979), section 5.2.
+    H. Schlichting, Boundary-Layer Theory, 7th ed. (1979).
     """
     stress = 2 * dynamic_viscosity * speed
     area = 2 * math.pi * radius * length

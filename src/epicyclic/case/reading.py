@@ -1,0 +1,200 @@
+"""From a case file to plain tables, with every line that is not TOML reported."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple, NoReturn
+
+from epicyclic.case.plain import changed_at, plain
+from epicyclic.case.wording import dotted, one_line
+from epicyclic.errors import InputError, Problem
+from epicyclic.units import format_number
+
+__all__ = ["read_file"]
+
+_LARGEST_FILE = 1_000_000
+"""A case file is a page of text; anything larger than this is something else. [bytes]"""
+
+_LONGEST_PATH = 500
+"""Paths in messages are cut to this many characters."""
+
+_MOST_BAD_LINES = 50
+"""A file with more lines that are not TOML is something else."""
+
+_DEEPEST_KEY = 50
+"""Dots of one key; the TOML reader would need memory as the square of their number."""
+
+_BETWEEN_KEYS = re.compile(r"[,={}\[\]\n]")
+_KEY_DOT = re.compile(r"[\w\"'-]\s*\.")
+_PLACE = re.compile(r" \(at line (?P<line>\d+), column \d+\)")
+_KEY_LINE = re.compile(r"(?P<key>[\w.\"'-]+)\s*=(?P<value>[^#\[{]*)(#.*)?")
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
+
+_MARK = "\ue000"
+"""Encloses the number of the line before a mended value; a character of no script."""
+
+
+class _BadLine(NamedTuple):
+    """A line that is not TOML, and why."""
+
+    number: int
+    text: str
+    reason: str
+
+
+def read_file(path: Path) -> tuple[dict[str, Any], list[Problem]]:
+    """The tables of a TOML file, and the problems of its lines.
+
+    A value that only lacks its quotes is read as if it had them, so that the rest of the file can
+    be checked too.
+
+    Raises
+    ------
+    InputError
+        If it is no file, no text, or no TOML that can be read around its mistakes.
+    """
+    try:
+        tables, bad_lines = _parse(_decode(_read(path)))
+        if not tables and not bad_lines:
+            _refuse("is empty.", "Fill it; 'epicyclic init' writes one to start from.")
+        return _take_marks(plain(tables), bad_lines)
+    except InputError as error:
+        raise InputError(error.problems, one_line(str(path), _LONGEST_PATH)) from None
+
+
+def _refuse(allowed: str, remedy: str) -> NoReturn:
+    raise InputError([Problem("", "", f"the file {allowed}", remedy)])
+
+
+def _read(path: Path) -> bytes:
+    kind, content = "a file", b""
+    try:
+        # a pipe or a device could keep the program waiting for ever
+        if path.exists() and not path.is_file():
+            kind = "a folder" if path.is_dir() else "not a regular file"
+        else:
+            with path.open("rb") as file:
+                content = file.read(_LARGEST_FILE + 1)
+    except OSError as error:
+        _refuse(f"cannot be read: {error.strerror}.", "Check the path.")
+    except ValueError:
+        _refuse("cannot be read: no path has a zero character.", "Check the path.")
+    if kind != "a file":
+        _refuse(f"cannot be read: it is {kind}.", "Name a case file.")
+    if len(content) > _LARGEST_FILE:
+        _refuse("is too large to be a case (over 1 MB).", "Name a case file.")
+    return content
+
+
+def _decode(content: bytes) -> str:
+    if b"\0" in content:
+        _refuse("is not text: it has zero bytes.", "Name a case file, saved as UTF-8 text.")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        where = f"byte 0x{content[error.start]:02x} in line {line}"
+        _refuse(f"is not UTF-8 text: {where}.", "Save it as UTF-8 text.")
+
+
+def _parse(text: str) -> tuple[dict[str, Any], list[_BadLine]]:
+    """The tables of a text, its bad lines mended where that is possible."""
+    if any(len(_KEY_DOT.findall(part)) > _DEEPEST_KEY for part in _BETWEEN_KEYS.split(text)):
+        _refuse("has too deeply nested tables.", "Name a case file.")
+    lines = text.replace("\r\n", "\n").split("\n")
+    bad_lines: list[_BadLine] = []
+    while True:
+        try:
+            # with an empty line at the end every mistake lies in a line
+            return tomllib.loads("\n".join([*lines, "", ""])), bad_lines
+        except RecursionError:
+            _refuse("has too deeply nested tables.", "Name a case file.")
+        except ValueError as error:
+            line = _bad_line(error, lines)
+        mended = None
+        if all(line.number != other.number for other in bad_lines):
+            bad_lines.append(line)
+            mended = _mended(line)
+        if mended is None or len(bad_lines) > _MOST_BAD_LINES:
+            raise InputError([_problem(bad, "") for bad in bad_lines])
+        lines[line.number - 1] = mended
+
+
+def _bad_line(error: ValueError, lines: list[str]) -> _BadLine:
+    place = _PLACE.search(str(error))
+    if place is None:  # a whole number of thousands of digits
+        _refuse(f"is not TOML: {error}.", "Shorten that number.")
+    number = min(int(place["line"]), len(lines))
+    reason = str(error)[: place.start()]
+    if reason == r"Illegal character '\n'":
+        reason = "the quotes are not closed"
+    return _BadLine(number, lines[number - 1].strip(), reason)
+
+
+def _mended(line: _BadLine) -> str | None:
+    """What to read in place of a bad line; None if nothing can be."""
+    match = _KEY_LINE.fullmatch(line.text)
+    if match is None:
+        return None
+    if _gives_again(line):
+        return ""
+    value = f"{_MARK}{line.number}{_MARK}{_value(match)}"
+    return f"{match['key']} = {json.dumps(value)}"
+
+
+def _gives_again(line: _BadLine) -> bool:
+    return line.reason.startswith("Cannot overwrite")
+
+
+def _value(match: re.Match[str]) -> str:
+    """The value of a key line, without the quotes that it may have on one side."""
+    return match["value"].strip().strip("\"'")
+
+
+def _take_marks(
+    tables: dict[str, Any], bad_lines: list[_BadLine]
+) -> tuple[dict[str, Any], list[Problem]]:
+    """The tables with mended values as plain text, and the problems of the bad lines."""
+    keys: dict[int, str] = {}
+    for number, path in list(_marked(tables, ())):
+        tables = changed_at(tables, path, lambda text: text.rpartition(_MARK)[2])
+        keys[number] = dotted(path)
+    return tables, [_problem(line, keys.get(line.number, "")) for line in bad_lines]
+
+
+def _marked(tables: Any, path: tuple[str, ...]) -> Iterator[tuple[int, tuple[str, ...]]]:
+    """Line number and path of each mended value."""
+    if isinstance(tables, dict):
+        for key, value in tables.items():
+            yield from _marked(value, (*path, key))
+    elif isinstance(tables, str) and tables.startswith(_MARK):
+        yield int(tables.split(_MARK)[1]), path
+
+
+def _problem(line: _BadLine, key: str) -> Problem:
+    match = _KEY_LINE.fullmatch(line.text)
+    if match is None or not key:
+        given = f"line {line.number}: {one_line(line.text)}"
+    else:
+        given = one_line(match["value"].strip())
+    if _gives_again(line):
+        return Problem(key, given, "gives a key that is given before.", "Keep one of the two.")
+    remedy = "Mend this line." if match is None else _remedy(match["key"], _value(match))
+    return Problem(key, given, f"is not TOML (line {line.number}): {line.reason}.", remedy)
+
+
+def _remedy(key: str, value: str) -> str:
+    if not value:
+        return "Give a value."
+    if value.casefold() in ("true", "false"):
+        return f"Write {value.casefold()}."
+    if _DECIMAL_COMMA.fullmatch(value):
+        return f"Write {value.replace(',', '.')}."
+    try:
+        return f"Write {format_number(float(value), 12)}."
+    except ValueError:
+        return f'Put the value in quotes: {key} = "{one_line(value)}".'

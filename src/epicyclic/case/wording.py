@@ -1,0 +1,79 @@
+"""Keys and values in messages, as a case file has them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+__all__ = ["dotted", "one_line", "path_of", "sentence", "written"]
+
+_LONGEST_SHOWN = 60
+"""Text that users wrote is cut to this many characters in messages."""
+
+
+def dotted(path: Sequence[str | int]) -> str:
+    """A path as users write it: ``lubricant.oil.density[1].value``."""
+    text = ""
+    for part in path:
+        if isinstance(part, int):
+            text += f"[{part}]"
+        else:
+            bare = part.isascii() and part.replace("-", "").replace("_", "").isalnum()
+            text += ("." if text else "") + (part if bare else f'"{one_line(part)}"')
+    return text
+
+
+def path_of(key: str) -> tuple[str | int, ...]:
+    """The path of a key as `dotted` writes it, of names without dots."""
+    parts = re.findall(r"[^.\[\]]+", key)
+    return tuple(int(part) if part.isdecimal() else part for part in parts)
+
+
+def written(value: Any) -> str:
+    """`value` as a case file has it, cut to one short line."""
+    text = _written(value)
+    is_short = isinstance(value, str) or len(text) <= _LONGEST_SHOWN
+    return text if is_short else f"{text[:_LONGEST_SHOWN]}..."
+
+
+def one_line(text: str, longest: int = _LONGEST_SHOWN) -> str:
+    """`text` on one line, without control characters, cut to the `longest` that is shown."""
+    shown = " ".join(text[: 2 * longest].split())
+    shown = "".join(
+        char if char.isprintable() else char.encode("unicode_escape").decode() for char in shown
+    )
+    is_cut = len(shown) > longest or len(text) > 2 * longest
+    return f"{shown[:longest]}..." if is_cut else shown
+
+
+def _written(value: Any) -> str:
+    if isinstance(value, str):
+        return f'"{one_line(value)}"'
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int) and abs(value) >= 10**_LONGEST_SHOWN:
+        return "a whole number of many digits"
+    if isinstance(value, Mapping):
+        return (
+            f"{{{_joined(f'{one_line(key)} = {_written(item)}' for key, item in value.items())}}}"
+        )
+    if isinstance(value, tuple | list):
+        return f"[{_joined(map(_written, value))}]"
+    return one_line(str(value))
+
+
+def _joined(parts: Iterator[str]) -> str:
+    """The parts, as many as a message shows."""
+    text = ""
+    for part in parts:
+        text += f", {part}" if text else part
+        if len(text) > _LONGEST_SHOWN:
+            break
+    return text
+
+
+def sentence(text: str, *, capital: bool = True) -> str:
+    """`text` with a full stop, and with a capital letter at its start unless told otherwise."""
+    start = text[:1].upper() if capital else text[:1]
+    return f"{start}{text[1:]}" + ("" if text.endswith((".", "?")) else ".")

@@ -1,0 +1,101 @@
+"""What is built in: every entry can be used, and says where its values come from."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+
+from epicyclic import library
+from epicyclic.case.case import load_case
+from epicyclic.case.schema import Material
+from epicyclic.lubricant.oil import Oil
+
+TALBOT_WORDS = [[*group["words"]] for group in library.case_variants()["talbot-2012"]]
+
+
+def test_cases_and_their_variants_are_found():
+    assert library.case_files() == ("talbot-2012", "talbot-2012-pair")
+    assert TALBOT_WORDS == [["n3", "n4", "n5", "n6"], ["shaved", "polished"], ["40C", "60C", "90C"]]
+
+
+@pytest.mark.parametrize("words", [*itertools.product(*TALBOT_WORDS)], ids="-".join)
+def test_every_variant_is_a_sound_case(words):
+    case = load_case("-".join(["talbot-2012", *words]))
+    count, finish, temperature = words
+    assert f"n{case.planet.count}" == count
+    assert case.planet.roughness == pytest.approx(0.4e-6 if finish == "shaved" else 0.1e-6)
+    assert f"{case.operation.oil_inlet_temperature - 273.15:.0f}C" == temperature
+    for word in words:
+        assert word in case.title
+
+
+def test_the_order_of_the_words_does_not_matter():
+    one, two = load_case("talbot-2012-n6-40C"), load_case("talbot-2012-40C-n6")
+    assert one.updated({"title": ""}) == two.updated({"title": ""})
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["", "talbot", "talbot-2012-", "talbot-2012-n7", "talbot-2012-n3-n3", "talbot-2012-n3-n6",
+     "talbot-2012-pair-n3", "../cases/talbot-2012", "talbot-2012.toml", "TALBOT-2012"],
+)  # fmt: skip
+def test_other_names_are_no_case(name):
+    with pytest.raises(KeyError):
+        library.builtin_case(name)
+
+
+def test_tables_are_handed_out_afresh_or_read_only():
+    library.builtin_case("talbot-2012")["sun"]["teeth"] = 1
+    assert library.builtin_case("talbot-2012")["sun"]["teeth"] == 73
+    library.oil_table("iso-vg-100-pao")["kind"] = "water"
+    assert library.oil_table("iso-vg-100-pao")["kind"] == "pao"
+    with pytest.raises(TypeError):
+        library.finishes()["ground"]["roughness"] = "1 um"
+    with pytest.raises(TypeError):
+        library.materials()["steel"] = {}
+
+
+@pytest.mark.parametrize("name", library.oil_names())
+def test_every_oil_is_sound_and_sourced(name):
+    oil = Oil.model_validate(library.oil_table(name), strict=False)
+    assert oil.name == name
+    assert oil.title
+    assert oil.pressure_viscosity.source
+    assert all(point.source for point in (*oil.kinematic_viscosity, *oil.density))
+    assert load_case("talbot-2012").updated({"lubricant.oil": name}).lubricant.oil == oil
+
+
+@pytest.mark.parametrize("name", ["", "iso-vg-100", "../finishes", "atf-talbot-2012.toml"])
+def test_other_names_are_no_oil(name):
+    with pytest.raises(KeyError):
+        library.oil_table(name)
+
+
+@pytest.mark.parametrize("name", library.materials())
+def test_every_material_is_sound_and_sourced(name):
+    material = Material.model_validate(dict(library.materials()[name]))
+    assert material.title
+    assert material.source
+    assert 185e9 <= material.elastic_modulus <= 215e9
+    assert 0.27 <= material.poisson_ratio <= 0.30
+    assert 7750 <= material.density <= 7900
+    case = load_case("talbot-2012").updated({"planet.material": name})
+    assert case.planet.material == material
+
+
+@pytest.mark.parametrize("name", library.finishes())
+def test_every_finish_is_sound_and_sourced(name):
+    finish = library.finishes()[name]
+    assert set(finish) == {"title", "roughness", "source"}
+    assert finish["source"]
+    case = load_case("talbot-2012").updated({"sun.roughness": name})
+    assert case.sun.roughness == pytest.approx(float(finish["roughness"].split()[0]) * 1e-6)
+
+
+def test_finer_processes_leave_finer_flanks():
+    rough = [float(finish["roughness"].split()[0]) for finish in library.finishes().values()]
+    assert max(rough) <= 2.5
+    order = ["milled", "hobbed", "ground", "honed", "chemically-polished", "superfinished"]
+    values = [float(library.finishes()[name]["roughness"].split()[0]) for name in order]
+    assert values == sorted(values, reverse=True)
