@@ -1,7 +1,7 @@
 """Time what users wait for. Run: python benchmarks/benchmark.py
 
-Seconds depend on the machine; the last column, a ratio to a reference measured in the same run, does
-not, or much less. Whole commands run in processes of their own, the first one with an empty folder
+Seconds depend on the machine; the ratio to a reference measured in the same run does not, or much
+less. Whole commands run in processes of their own, the first one with an empty folder
 for compiled code.
 """
 
@@ -16,6 +16,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
@@ -106,9 +107,9 @@ def main() -> None:
 
     alone = median_seconds(unshared, repeats=20)
     matrix_seconds = median_seconds(lambda: matrix(None), repeats=3)
-    matrix_process = process_seconds("-c", "import benchmark; benchmark.matrix(None)", PYTHONPATH=(
-        os.path.dirname(os.path.abspath(__file__))
-    ))  # fmt: skip
+    here = str(Path(__file__).resolve().parent)
+    command = "import benchmark; benchmark.matrix(None)"
+    matrix_process = process_seconds("-c", command, PYTHONPATH=here)
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
 
     table = Table(title="Epicyclic benchmark", title_justify="left")

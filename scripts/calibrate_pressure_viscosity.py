@@ -39,9 +39,12 @@ def calibrate(temperature: str, loss: float) -> float:
     oil = fluids_of(case).oil
 
     def excess(alpha: float) -> float:
-        return mixed_ehl_rolling_loss(
-            bearing, loads, speed, replace(oil, pressure_viscosity=alpha)
-        ).loss - loss
+        return (
+            mixed_ehl_rolling_loss(
+                bearing, loads, speed, replace(oil, pressure_viscosity=alpha)
+            ).loss
+            - loss
+        )
 
     return brentq(excess, 5e-9, 30e-9, xtol=1e-15)
 

@@ -133,7 +133,7 @@ def mu_of(name, contact):
 def test_pitch_point_quantities_are_those_of_the_standard(make_mesh, internal):
     mesh = make_mesh(24, 90, internal=internal, beta=15.0)
     contact = points_at(mesh, oil(), force=7000.0, speed1=150.0)
-    # friction_research.md section 1: rho_redC = d_w1/2 sin(alpha_wt) u/(cos(beta_b) (u +- 1)) and
+    # worked out separately: rho_redC = d_w1/2 sin(alpha_wt) u/(cos(beta_b) (u +- 1)) and
     # v_SumC = 2 v_t sin(alpha_wt)
     u, sign = 90 / 24, -1 if internal else 1
     alpha = mesh.operating_pressure_angle
@@ -147,7 +147,7 @@ def test_pitch_point_quantities_are_those_of_the_standard(make_mesh, internal):
 
 def test_ra_of_a_gaussian_profile(make_mesh):
     contact = points_at(make_mesh(20, 40), oil(), rough=(0.4e-6, 0.8e-6))
-    # Rq/Ra = sqrt(pi/2) = 1.2533 (friction_research.md section 10); mean of both flanks
+    # Rq/Ra = sqrt(pi/2) = 1.2533 (worked out separately); mean of both flanks
     assert 0.6e-6 / mean_roughness_ra(contact) == pytest.approx(1.2533, abs=0.5e-4)
 
 
@@ -155,7 +155,7 @@ def test_ra_of_a_gaussian_profile(make_mesh):
 
 
 def test_schlenk_at_its_worked_value(make_mesh):
-    # friction_research.md section 1: 250 N/mm, v_SumC 10 m/s, rho 8 mm, 10 mPa s, Ra 0.4 um, X_L 1
+    # worked out separately: 250 N/mm, v_SumC 10 m/s, rho 8 mm, 10 mPa s, Ra 0.4 um, X_L 1
     contact = at_pitch_point(
         make_mesh(20, 37), load=250e3, sum_speed=10.0, radius=8e-3, oil=oil(), ra=0.4e-6
     )
@@ -165,7 +165,7 @@ def test_schlenk_at_its_worked_value(make_mesh):
 
 
 def test_niemann_winter_at_its_worked_value(make_mesh):
-    # friction_research.md section 2: the same point with d1 = 72 mm in X_R = 3.8 (Ra/d1)^0.25
+    # worked out separately: the same point with d1 = 72 mm in X_R = 3.8 (Ra/d1)^0.25
     contact = at_pitch_point(
         make_mesh(20, 37), load=250e3, sum_speed=10.0, radius=8e-3, oil=oil(), ra=0.4e-6
     )
@@ -177,7 +177,7 @@ def test_niemann_winter_at_its_worked_value(make_mesh):
 
 @pytest.mark.parametrize(("microinches", "mu"), [(0.0, 0.037681), (16.0, 0.055413)])
 def test_benedict_kelley_at_its_worked_values(make_mesh, microinches, mu):
-    # friction_research.md section 3: 250 N/mm, 10 mPa s, v1 + v2 = 20 m/s, |v1 - v2| = 2 m/s
+    # worked out separately: 250 N/mm, 10 mPa s, v1 + v2 = 20 m/s, |v1 - v2| = 2 m/s
     rough = microinches * 25.4e-9
     contact = points(
         make_mesh(20, 40),
@@ -193,7 +193,7 @@ def test_benedict_kelley_at_its_worked_values(make_mesh, microinches, mu):
 
 @pytest.mark.parametrize(
     ("slip", "pressure", "viscosity", "rough", "rolling", "radius", "mu"),
-    # literature.md section 3 and friction_research.md section 5
+    # worked out separately
     [(0.2, 1.0, 10.0, 0.07, 10.0, 0.01, 0.0124618), (0.3, 0.5, 5.2, 0.2, 15.0, 0.04, 0.0044827)],
 )
 def test_xu_at_its_worked_values(make_mesh, slip, pressure, viscosity, rough, rolling, radius, mu):
@@ -229,7 +229,7 @@ def film_of(make_mesh, target, central, rough):
 
 
 def test_matsumoto_at_its_worked_value(make_mesh):
-    # friction_research.md section 4: Rz1 = Rz2 = 2.5 um, h_min 0.3 um: D 16.667, xi 0.610924
+    # worked out separately: Rz1 = Rz2 = 2.5 um, h_min 0.3 um: D 16.667, xi 0.610924
     rough = 2.5e-6 / 6 / RA_OVER_RQ  # Rz = 6 Ra
     contact = film_of(make_mesh, 0.3e-6, False, (rough, rough))
     assert contact.minimum_film == pytest.approx([0.3e-6], rel=1e-10)
@@ -240,7 +240,7 @@ def test_matsumoto_at_its_worked_value(make_mesh):
 
 
 def test_doleschel_at_its_worked_value(make_mesh):
-    # friction_research.md section 4: lambda 0.6 gives xi = 0.49
+    # worked out separately: lambda 0.6 gives xi = 0.49
     ra = 0.4e-6
     contact = film_of(make_mesh, 0.6 * ra, True, (ra / RA_OVER_RQ, ra / RA_OVER_RQ))
     assert mu_of("doleschel", contact) == pytest.approx([0.49 * 0.10 + 0.51 * 0.02], rel=1e-9)
@@ -316,7 +316,7 @@ def test_mixed_ehl_in_the_range_of_its_table_is_the_kernel(make_mesh):
 
 @pytest.mark.parametrize(
     ("celsius", "rpm", "mu", "watts"),
-    # literature.md section 9: ISO/TR 14179-2, T_PB 333.3 N m, X_L 1, Ra 0.32 um; per planet
+    # worked out separately: ISO/TR 14179-2, T_PB 333.3 N m, X_L 1, Ra 0.32 um; per planet
     [
         (90, 4000, (0.0386, 0.0346), (328, 173)),
         (90, 1000, (0.0509, 0.0457), (108, 57)),

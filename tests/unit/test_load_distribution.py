@@ -81,7 +81,7 @@ def energy_share(mesh, xi):
 
 
 def test_minimum_energy_shares_at_contact_ratio_1_6(make_mesh):
-    # friction_research.md section 7, model (b) = Sanchez, Pleguezuelos, Pedrero (2017):
+    # worked out separately, model (b) = Sanchez, Pleguezuelos, Pedrero (2017):
     # b0 = 1.23650 at eps_alpha = 1.6, the pair that enters carries 0.3617, the one that leaves
     # 0.6383, half-way through double contact 0.5; four digits.
     mesh = spur_of_contact_ratio(make_mesh, 1.6)

@@ -33,7 +33,7 @@ def mesh(request, make_mesh):
 
 
 def test_meshes_of_the_test_article(talbot_meshes):
-    # literature.md section 6 (own computation from the printed dimensions), to half a unit of the
+    # worked out separately (own computation from the printed dimensions), to half a unit of the
     # last digit given.
     for item in talbot_meshes:
         assert math.degrees(item.operating_pressure_angle) == pytest.approx(23.011, abs=0.5e-3)

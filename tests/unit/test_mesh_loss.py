@@ -90,8 +90,8 @@ def test_loss_factor_is_that_of_ohlendorf(make_mesh, shape):
 
 
 def test_loss_factors_of_the_test_article(talbot_meshes):
-    # literature.md section 9; half a unit of the last digit. Its internal value, 0.05650, is given
-    # as 0.05649 in friction_research.md: a whole unit there.
+    # worked out separately; half a unit of the last digit. Its internal value, 0.05650, is given
+    # as 0.05649 in a separate computation: a whole unit there.
     sun_mesh, ring_mesh = talbot_meshes
     assert ohlendorf_loss_factor(sun_mesh) == pytest.approx(0.09653, abs=0.5e-5)
     assert ohlendorf_loss_factor(ring_mesh) == pytest.approx(0.05650, abs=1e-5)
@@ -115,7 +115,7 @@ def with_tip_ratios(mesh, tip1, tip2):
 
 @pytest.mark.parametrize(
     ("tip1", "tip2", "bracket"),
-    # friction_research.md section 9: 2 int |s|/N(s) ds; Ohlendorf's bracket holds for the first
+    # worked out separately: 2 int |s|/N(s) ds; Ohlendorf's bracket holds for the first
     [(0.8, 0.8, 0.6800), (1.2, 0.4, 0.9600), (0.4, 1.2, 0.9600), (1.1, 1.2, 1.11667)],
 )
 @pytest.mark.parametrize("internal", [False, True])

@@ -1,4 +1,4 @@
-"""The mixed-EHL regressions against a transcription of their own, made from model.md alone."""
+"""The mixed-EHL regressions against a transcription made from the printed equations alone."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TRANSCRIPTION = 1e-12  # relative; sums of ten terms of up to 50 in the exponent
 STEEL = equivalent_modulus(207e9, 0.3, 207e9, 0.3)
 BLEND = math.exp(0.2)  # branches are blended within this factor of their limits in Lambda
 
-# --- transcription of model.md, sections 4 and 5 --------------------------------------------------
+# --- transcription of the printed equations --------------------------------------------------
 
 
 def mu_boundary(s, u, g, p, r, s_co, s_eq, lam):
@@ -126,7 +126,7 @@ def needle_loss(p_h, u_r, mu_d, alpha, r_eq, s_co, e_eq):
 
 
 def gear_groups(s, u_r, mu_d, alpha, radius, rough1, rough2, p_h):
-    """The groups of (5.8) and (5.10) from a contact, model.md section 4."""
+    """The groups of (5.8) and (5.10) from a contact Talbot (2012)."""
     load = line_load_at_pressure(p_h, radius, STEEL)
     speed = u_r * mu_d / (STEEL * radius)
     composite = math.hypot(rough1, rough2) / radius
@@ -311,7 +311,7 @@ def gear_grid(atf, pressure_viscosity):
 
 
 def literature_coefficient(oil):
-    """alpha by Roelands' link with z = 0.548: literature.md section 4, used for its figures."""
+    """alpha by Roelands' link with z = 0.548: worked out separately, used for its figures."""
     return 0.548 * (math.log(oil.dynamic_viscosity) + 9.67) / 1.96e8
 
 
@@ -326,7 +326,7 @@ def grid_friction(grid):
 
 
 def test_friction_over_the_whole_table_of_conditions(grid_friction):
-    # literature.md section 1.2: 0.002 to 0.112, half a unit of the last digit
+    # worked out separately: 0.002 to 0.112, half a unit of the last digit
     assert grid_friction.min() == pytest.approx(0.002, abs=0.5e-3)
     assert grid_friction.max() == pytest.approx(0.112, abs=0.5e-3)
 
@@ -344,7 +344,7 @@ def test_friction_over_the_whole_table_of_conditions(grid_friction):
 )
 def test_friction_falls_along_a_stribeck_curve(grid, grid_friction, low, high, median):
     lam = np.array([groups[-1] for groups in grid])
-    # literature.md section 1.2, medians without blends: these move the two bands next to 0.7 by up
+    # worked out separately, medians without blends: these move the two bands next to 0.7 by up
     # to 0.001; half a unit of the last digit besides
     found = np.median(grid_friction[(lam > low) & (lam <= high)])
     assert found == pytest.approx(median, abs=1.5e-3)
@@ -356,7 +356,7 @@ def test_friction_branches_nearly_meet(grid, limit, below, above):
     near = [groups for groups in grid if abs(math.log(groups[-1] / limit)) < 0.02]
     assert len(near) > 100
     jumps = [math.log(above(*at[:-1], limit) / below(*at[:-1], limit)) for at in near]
-    # literature.md section 1.2: rms of the logarithm 0.20 at 0.7 and 0.09-0.11 at 3; the points
+    # worked out separately: rms of the logarithm 0.20 at 0.7 and 0.09-0.11 at 3; the points
     # near the limit differ from those there
     assert np.sqrt(np.mean(np.square(jumps))) < 0.30
 
@@ -365,7 +365,7 @@ def test_rolling_branches_nearly_meet(grid):
     near = [g for g in grid if abs(math.log(g[-1])) < 0.02 and g[0] <= 0.75]
     assert len(near) > 100
     jumps = [math.log(rolling_film(*at[:-1], 1.0) / rolling_mixed(*at[:-1], 1.0)) for at in near]
-    # model.md section 4: mean 0.17-0.27 with the bases as there, 0.5-1.9 with b5 and b6 exchanged
+    # Talbot (2012) mean 0.17-0.27 with the bases as there, 0.5-1.9 with b5 and b6 exchanged
     assert abs(np.mean(jumps)) < 0.35
 
 
@@ -373,9 +373,9 @@ def test_friction_with_the_coefficients_of_the_package(atf):
     points = gear_grid(atf, lambda oil: oil.pressure_viscosity)
     mu = np.array([mixed_ehl.sliding_friction(*groups) for groups in points])
     assert mu.max() < 0.112
-    # The calibrated alphas are 12 % below those of literature.md. At 75 and 100 degC, 0.5 GPa and
-    # s = 0.025 that takes the regression below the 0.002 found there, 0.0007 at least, in 0.2 % of
-    # the conditions.
+    # The calibrated alphas are 12 % below those of the earlier estimate. At 75 and 100 degC,
+    # 0.5 GPa and s = 0.025 that takes the regression below the 0.002 found there, 0.0007 at
+    # least, in 0.2 % of the conditions.
     assert mu.min() > 0.0005
     assert np.mean(mu < 0.002) < 0.002
 
@@ -385,7 +385,7 @@ def test_friction_with_the_coefficients_of_the_package(atf):
 
 @pytest.mark.parametrize(
     ("celsius", "u_r", "p_h", "regression", "solved"),
-    # literature.md section 1.2: R_eq 1.75 mm; (3.5) in the smooth limit against own full solutions
+    # worked out separately: R_eq 1.75 mm; (3.5) in the smooth limit against own full solutions
     [
         (90, 5.0, 1e9, 259, 232),
         (40, 5.0, 1e9, 626, 562),

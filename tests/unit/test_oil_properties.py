@@ -36,7 +36,7 @@ def test_test_fluid_is_exact_at_its_points(atf, celsius, nu):
     [(25, 55.4, 0.1), (50, 20.97, 0.01), (75, 10.30, 0.01), (100, 5.99, 0.01)],
 )
 def test_test_fluid_between_and_beyond_its_points(atf, celsius, nu, digit):
-    # literature.md section 4: one straight line through all three points, log log(nu + 0.7) =
+    # worked out separately: one straight line through all three points, log log(nu + 0.7) =
     # 8.517997 - 3.344312 log T, fits them to 0.01 mm^2/s. Lines through neighbouring points leave
     # it by that at most, once more beyond them; plus half a unit of the last digit.
     log_log = 8.517997 - 3.344312 * math.log10(celsius + CELSIUS)
@@ -98,7 +98,7 @@ def test_mixture_density_grows_with_pressure_by_its_air_alone(atf):
 
 
 def test_density_falls_by_the_slope(atf):
-    # model.md section 2: -0.626 kg/m^3/K over 40 to 90 degC
+    # Talbot (2012) -0.626 kg/m^3/K over 40 to 90 degC
     slope = (atf(90).density - atf(40).density) / 50
     assert slope == pytest.approx(-0.626, abs=0.5e-3)
     oil = load("iso-vg-100-mineral")
@@ -115,7 +115,7 @@ def test_pressure_viscosity_of_roelands(talbot, atf):
         assert state.pressure_viscosity == pytest.approx(point.value, rel=ROUNDING)
         # alpha = z (ln(mu) + 9.67)/1.96e8, mu in Pa s
         indices.append(point.value * 1.96e8 / (math.log(state.dynamic_viscosity) + 9.67))
-    # model.md section 5: z = 0.486 for all three; its own alphas of 1.50, 1.32 and 1.12 scatter by
+    # Talbot (2012) z = 0.486 for all three; its own alphas of 1.50, 1.32 and 1.12 scatter by
     # 1 % about it, the calibrated ones by 1.4 %.
     assert indices == pytest.approx([0.486] * 3, rel=0.015)
     # between 60 and 90 degC z is linear, beyond the points constant
@@ -137,12 +137,12 @@ def test_pressure_viscosity_of_gold():
 
 @pytest.mark.parametrize(("celsius", "beta"), [(40, 0.037), (60, 0.029), (90, 0.021)])
 def test_thermoviscosity_of_the_test_fluid(atf, celsius, beta):
-    # literature.md section 4, from the Walther line; half a last digit
+    # worked out separately, from the Walther line; half a last digit
     assert atf(celsius).thermoviscosity == pytest.approx(beta, abs=0.5e-3)
 
 
 def test_dynamic_viscosity_is_kinematic_times_density(atf):
-    # model.md section 2, mPa s; from a density of one digit more, hence a whole last digit
+    # Talbot (2012), mPa s; from a density of one digit more, hence a whole last digit
     for celsius, mu in ((40, 25.46), (60, 12.97), (90, 6.03)):
         assert atf(celsius).dynamic_viscosity * 1e3 == pytest.approx(mu, abs=0.01)
 
@@ -187,8 +187,8 @@ def test_iso_grade_has_its_midpoint_viscosity(name):
         oil_state(load(name), celsius + CELSIUS).kinematic_viscosity * 1e6 for celsius in (40, 100)
     )
     assert nu40 == pytest.approx(grade, rel=1e-9)
-    # Slope n of log log(nu + 0.7) over log T. Wind-turbine oils of one grade, literature.md section
-    # 10.3: 3.473 mineral, 2.787 PAO; thin oils are steeper, here by up to 0.55.
+    # Slope n of log log(nu + 0.7) over log T. Wind-turbine oils of one grade, worked out
+    # separately: 10.3: 3.473 mineral, 2.787 PAO; thin oils are steeper, here by up to 0.55.
     slope = math.log10(math.log10(nu40 + 0.7) / math.log10(nu100 + 0.7)) / math.log10(
         (100 + CELSIUS) / (40 + CELSIUS)
     )

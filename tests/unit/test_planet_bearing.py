@@ -149,7 +149,7 @@ def test_losses_that_calibrate_the_oil(article, celsius, watts):
 
 def test_loss_of_smooth_needles(article, atf):
     bearing, loads = bearing_and_loads(article)
-    # model.md section 9: 89 W at S_co 0.063 um, 90 degC; the reading chosen met it to a few per
+    # Talbot (2012) 89 W at S_co 0.063 um, 90 degC; the reading chosen met it to a few per
     # cent, single bars of that chart can be read to some watts
     loss = mixed_ehl_rolling_loss(composite(bearing, 0.063), loads, BEARING_SPEED, atf(90)).loss
     assert loss == pytest.approx(89.0, rel=0.10)
@@ -161,12 +161,12 @@ def test_rough_needles_lose_three_times_as_much(article, atf):
         mixed_ehl_rolling_loss(composite(bearing, value), loads, BEARING_SPEED, atf(90)).loss
         for value in (0.063, 0.180)
     )
-    # model.md section 9: "nearly three times"
+    # Talbot (2012) "nearly three times"
     assert rough / smooth == pytest.approx(3.0, rel=0.10)
 
 
 def test_speed_of_the_test_article(article):
-    # literature.md section 7: 7090 rpm
+    # worked out separately: 7090 rpm
     assert BEARING_SPEED * 30 / math.pi == pytest.approx(7090, abs=0.5)
     figures = ep.solve(article).bearing
     assert figures.speed == pytest.approx(BEARING_SPEED, rel=1e-12)
@@ -257,7 +257,7 @@ def test_slices_converge(article, atf):
 
 
 def test_crown_height_matters_little(article, atf):
-    # The crown is an estimate. literature.md section 1.2 found less than 2 % over drops of 0 to
+    # The crown is an estimate. worked out separately found less than 2 % over drops of 0 to
     # 10 um, with a higher alpha and both races; as implemented, +3.8 and -6.4 % at 60 degC.
     losses = []
     for drop in (0, 3, 10):

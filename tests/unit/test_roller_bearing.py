@@ -95,7 +95,7 @@ def test_forces_and_moments_balance(bearing, load):
 @pytest.mark.parametrize("bearing", BEARINGS)
 @pytest.mark.parametrize("load", LOADS)
 def test_every_slice_follows_the_load_law_at_its_deflection(bearing, load):
-    """(3.3a) and the compatibility (3.2c) of model.md section 5, from the displacement alone."""
+    """(3.3a) and the compatibility (3.2c) of Talbot (2012), from the displacement alone."""
     loads = roller_loads(bearing, *load)
     dx, dy, tx, ty = loads.displacement
     width = bearing.slice_width
@@ -375,7 +375,7 @@ def test_slices_converge():
 def test_geometry_of_the_test_article():
     # Table 3.3: planet bore 34.025 mm follows from pin, rollers and clearance
     assert TALBOT.outer_diameter * 1e3 == pytest.approx(34.025, rel=1e-12)
-    # literature.md section 7
+    # worked out separately
     assert TALBOT.pitch_diameter * 1e3 == pytest.approx(30.008, rel=1e-12)
     assert TALBOT.half_width == pytest.approx(9.52e-3, rel=1e-12)
     # 1/R = 1/R_roller + 1/R_pin inside, - 1/R_bore outside

@@ -17,7 +17,7 @@ from epicyclic.lubricant.properties import OilState
 STEEL = 227.47e9
 MODELS = sorted(ROLLING_MODELS)
 
-# M, L and T_r of full EHL solutions, smooth and isothermal: literature.md section 5.2; T_r is the
+# M, L and T_r of full EHL solutions, smooth and isothermal: worked out separately; T_r is the
 # rolling traction of one surface over p_h b^2/R.
 SMOOTH = [(10, 10, 0.041801), (20, 10, 0.015548), (10, 15, 0.040074), (20, 15, 0.015048)]
 
@@ -88,7 +88,7 @@ def test_goksem_hargreaves_counts_both_surfaces(mesh):
     load, u_r, fluid = 3e5, 9.0, oil()
     contact = points(mesh, line_load=load, rolling=u_r, oil=fluid)
     speed, g, w = u_r * 10e-3 / (STEEL * 10e-3), 14e-9 * STEEL, load / (STEEL * 10e-3)
-    # literature.md section 5.4: F_r = 4.318 (G U)^0.658 W^0.0126 R/alpha of each surface, over
+    # worked out separately: F_r = 4.318 (G U)^0.658 W^0.0126 R/alpha of each surface, over
     # 1 + 0.29 L^0.78 with L = mu beta u^2/k; power 2 F_r u
     thermal = 10e-3 * 0.03 * u_r**2 / 0.14
     force = 4.318 * (g * speed) ** 0.658 * w**0.0126 * 10e-3 / 14e-9
@@ -111,7 +111,7 @@ def conditions(m, el, speed_number):
 @pytest.mark.parametrize("speed_number", [2e-11, 5e-11, 1e-10, 2e-10])
 @pytest.mark.parametrize("radius", [5e-3, 10e-3, 20e-3])
 def test_regression_agrees_with_smooth_contacts_within_a_factor_of_two(mesh, speed_number, radius):
-    """Thin but whole films on the smoothest flanks simulated: model.md section 4."""
+    """Thin but whole films on the smoothest flanks simulated: Talbot (2012)."""
     for m, el, traction in SMOOTH:
         g, w, pressure, half_width = conditions(m, el, speed_number)
         film = pan_hamrock_minimum_film(speed_number, g, w) * radius / (0.1e-6 * 2**0.5)
@@ -153,7 +153,7 @@ def test_goksem_hargreaves_agrees_with_smooth_contacts(mesh, speed_number):
         )  # fmt: skip
         solved = 2 * pressure * half_width**2 * traction * STEEL * 10e-3 * 10.0
         found = ROLLING_MODELS["goksem-hargreaves"].loss_density(contact)[0]
-        # literature.md section 5.4: within 15 % for M 3 to 60; measured here at U = 1e-11, the
+        # worked out separately: within 15 % for M 3 to 60; measured here at U = 1e-11, the
         # formula's W^0.0126 moves it by another 4 % over the speeds
         assert found / solved == pytest.approx(1.0, abs=0.20)
 
@@ -208,5 +208,5 @@ def test_regression_is_a_small_part_of_the_power(talbot, celsius):
     """With the prefactor printed in the source it would exceed the power passed on."""
     result = ep.solve(talbot.updated({"operation.oil_inlet_temperature": f"{celsius} degC"}))
     rolling = result.losses["sun_mesh_rolling"] + result.losses["ring_mesh_rolling"]
-    # model.md section 4: about 0.14 % of the power, two digits of "about"
+    # Talbot (2012) about 0.14 % of the power, two digits of "about"
     assert 100 * rolling / result.input_power == pytest.approx(0.14, abs=0.02)

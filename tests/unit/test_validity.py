@@ -24,17 +24,18 @@ TEMPERATURE = Range("temperature", "oil temperature", 25.0, 100.0, CELSIUS, "a t
 
 
 def test_ranges_are_those_of_the_source():
-    # model.md section 4, Table 5.1 of Talbot (2012)
+    # Talbot (2012), Table 5.1; viscosities of its fluid over the temperatures of the table
     found = {item.name: (item.low, item.high, item.unit.display) for item in TALBOT_GEAR_RANGES}
     assert found == {
         "temperature": (25.0, 100.0, "degC"),
+        "dynamic_viscosity": (4.9, 48.0, "mPa*s"),
         "radius": (5.0, 40.0, "mm"),
         "roughness": (0.1, 0.7, "um"),
         "hertz_pressure": (0.5, 2.5, "GPa"),
         "rolling_speed": (1.0, 20.0, "m/s"),
         "slide_to_roll_ratio": (0.025, 1.0, ""),
     }
-    # model.md section 5, Table 3.1
+    # Talbot (2012), Table 3.1
     found = {item.name: (item.low, item.high, item.unit.display) for item in NEEDLE_RANGES}
     assert found == {
         "temperature": (25.0, 100.0, "degC"),

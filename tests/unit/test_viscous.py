@@ -28,7 +28,7 @@ def mixture(nu=1.4e-4, rho=42.13):
 
 @pytest.mark.parametrize(
     ("rpm", "celsius", "watts"),
-    # literature.md section 7: (5.6) with f0 = 6 and d_m 30.008 mm, per planet
+    # worked out separately: (5.6) with f0 = 6 and d_m 30.008 mm, per planet
     [
         (4000, 40, 42.7),
         (4000, 60, 27.5),
@@ -49,7 +49,7 @@ def test_viscous_loss_of_the_test_article(talbot, rpm, celsius, watts):
 
 @pytest.mark.parametrize(
     ("factor", "nu", "rpm", "moment"),
-    # friction_research.md section 8, N mm: d_m 30 mm; upper and lower branch
+    # worked out separately, N mm: d_m 30 mm; upper and lower branch
     [(12.0, 10.0, 4000.0, 37.8953), (3.0, 10.0, 100.0, 1.2960)],
 )
 def test_harris_moment_at_its_worked_values(factor, nu, rpm, moment):
@@ -95,7 +95,7 @@ def test_viscous_loss_scales_as_its_powers():
 
 
 def test_drag_of_the_sun_of_the_test_article(talbot, atf):
-    # literature.md section 7: 54 W on the faces and 2 W on the rim at 4000 rpm, 90 degC; Re 1.4e4
+    # worked out separately: 54 W on the faces and 2 W on the rim at 4000 rpm, 90 degC; Re 1.4e4
     fluid = mixture_state(atf(90), 0.05, 101325.0)
     radius, width, speed = 139.23e-3 / 2, 30.9e-3, 4000 * RPM
     assert reynolds_number(radius, speed, fluid) == pytest.approx(1.4e4, rel=0.05)
@@ -122,7 +122,7 @@ def test_laminar_faces_against_von_karman(radius, speed):
     nu = fluid.kinematic_viscosity
     assert reynolds_number(radius, speed, fluid) < 3e5
     karman = laminar_disc_power(radius, speed, fluid.density, nu)
-    # von Karman: 1.935 rho nu^0.5 omega^2.5 r^4 (literature.md section 7)
+    # von Karman: 1.935 rho nu^0.5 omega^2.5 r^4 (worked out separately)
     closed = 1.935 * fluid.density * nu**0.5 * speed**2.5 * radius**4
     assert karman == pytest.approx(closed, rel=1e-12)
     # the source's plate formula is 0.41 pi/1.935 = 0.67 of it
@@ -132,7 +132,7 @@ def test_laminar_faces_against_von_karman(radius, speed):
 
 
 def test_turbulent_faces_against_von_karman():
-    # literature.md section 7: 2.4 times at Re = 5e5, 2.5 times at 1e6
+    # worked out separately: 2.4 times at Re = 5e5, 2.5 times at 1e6
     fluid = mixture(nu=1e-5, rho=10.0)
     for reynolds, ratio in ((5.0001e5, 2.4), (1e6, 2.5)):
         radius = 0.1
@@ -142,7 +142,7 @@ def test_turbulent_faces_against_von_karman():
 
 
 def test_transition_steps_up_as_in_the_source():
-    # literature.md section 7: the turbulent branch is 6.9 times the laminar one at Re = 5e5
+    # worked out separately: the turbulent branch is 6.9 times the laminar one at Re = 5e5
     fluid = mixture(nu=1e-5, rho=10.0)
     speed = 5e5 * fluid.kinematic_viscosity / 0.1**2
     laminar = disc_drag_loss(0.1, 0.0, speed * (1 - 1e-9), fluid)

@@ -49,6 +49,8 @@ CAGED_PALMGREN = 0.0003
 """f1 of a caged roller bearing, middle of 0.0002-0.0004. Talbot (2012), p. 56. [1]"""
 FULL_COMPLEMENT_PALMGREN = 0.00055
 """f1 of a full-complement roller bearing. Talbot (2012), p. 56. [1]"""
+VISCOUS_FACTOR_PER_ROW = 3.0
+"""f0 of one row of caged cylindrical rollers, middle of 2.2-4.0. Talbot (2012), p. 130. [1]"""
 VISCOUS_METHOD = "viscous moment after Palmgren and Harris"
 VISCOUS_SOURCE = "T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991); Talbot (2012), Eq. 5.6"
 DRAG_METHOD = "drag of a disc in the air-oil mixture"
@@ -214,7 +216,7 @@ def _solve_bearing(
         loss = BearingLoss(palmgren_loss(coefficient, load.force, bearing.pitch_diameter, speed))
         part = Part(case.planet.count * loss.loss, PALMGREN_METHOD, PALMGREN_SOURCE)
     viscous_loss = bearing_viscous_loss(
-        table.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
+        viscous_factor(table), oil.kinematic_viscosity, speed, bearing.pitch_diameter
     )
     return _BearingOutcome(
         {
@@ -223,6 +225,15 @@ def _solve_bearing(
         },
         _bearing_figures(bearing, loads, load, speed),
         loss.flags,
+    )
+
+
+def viscous_factor(table: PlanetBearing) -> float:
+    """f0 of the case, or that of caged cylindrical rollers for each row. [1]"""
+    return (
+        VISCOUS_FACTOR_PER_ROW * table.rows
+        if table.viscous_factor is None
+        else (table.viscous_factor)
     )
 
 

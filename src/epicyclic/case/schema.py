@@ -322,11 +322,12 @@ class PlanetBearing(Table):
     diametral_clearance: SmallLength
     roller_roughness: Roughness
     race_roughness: Roughness
-    viscous_factor: Number = Field(
-        default=3.0,
+    viscous_factor: Number | None = Field(
+        default=None,
         ge=0,
         le=100,
-        description="f0 of the viscous loss: caged cylindrical 2.2-4 a row, needle up to 12.",
+        description="f0 of the viscous loss, of the whole bearing: caged cylindrical 2.2-4 a row, "
+        "needle up to 12. Default: 3 a row.",
     )
     cage: Literal["caged", "full-complement"] = "caged"
     palmgren_coefficient: Number | None = Field(
@@ -479,8 +480,9 @@ class GearPairModels(Table):
         default="auto",
         description="auto: mixed-ehl for the fluid it was made for, else goksem-hargreaves.",
     )
-    load_distribution: Literal["uniform", "minimum-energy"] = Field(
-        default="uniform", description="Stiffness along the contact lines."
+    load_distribution: Literal["uniform", "minimum-energy", "compliance"] = Field(
+        default="uniform",
+        description="Along the contact lines: even, after a stiffness, or from elastic teeth.",
     )
     mesh: Literal["local", "loss-factor"] = Field(
         default="local",

@@ -26,7 +26,7 @@ __all__ = ["Elastic", "LoadedMesh", "MeshCompliance", "load_mesh_elastically", "
 FloatArray = NDArray[np.float64]
 
 FACE_TERMS_PER_HEIGHT = 2.5
-"""Polynomials along a tooth for each tooth height in its length: shorter waves decay at once. [1]"""
+"""Polynomials along a tooth for each tooth height in its length: shorter ones decay fast. [1]"""
 FACE_TERMS_LIMITS = (8, 40)
 TOLERANCE = 1e-9
 MAX_ITERATIONS = 60

@@ -107,8 +107,8 @@ class ToothPlate:
         height, inclination = self._place(curvature)
         thickness = np.interp(height, self.section_height, self.section_thickness)
         s = np.clip(2 * height / self.height - 1, -1.0, 1.0)
-        over_height = legendre.legvander(s, HEIGHT_TERMS - 1)
-        along = legendre.legvander(2 * face_position - 1, self.face_terms - 1)
+        over_height = _polynomials(s, HEIGHT_TERMS)
+        along = _polynomials(2 * face_position - 1, self.face_terms)
         shape = (over_height[:, :, None] * along[:, None, :]).reshape(len(height), -1)
         load = np.zeros((len(height), self.half_inverse.shape[0]))
         terms = shape.shape[1]
@@ -185,39 +185,33 @@ def _stiffness(
     """Stiffness matrix in (w, theta_s, theta_y), each of height by face terms. Theory (E1)."""
     nu = poisson_ratio
     top = float(height[-1])
-    points, weights = legendre.leggauss(HEIGHT_TERMS + QUADRATURE_MARGIN)
+    points, weights = _gauss(HEIGHT_TERMS + QUADRATURE_MARGIN)
     t = np.interp((points + 1) / 2 * top, height, thickness)
-    v = legendre.legvander(points, HEIGHT_TERMS - 1)
+    v = _polynomials(points, HEIGHT_TERMS)
     dv = _derivatives(points, HEIGHT_TERMS) * 2 / top
     bending = weights * top / 2 * elastic_modulus * t**3 / (12 * (1 - nu**2))
     shear = weights * top / 2 * SHEAR_FACTOR * elastic_modulus / (2 * (1 + nu)) * t
 
-    points, weights = legendre.leggauss(face_terms)
-    y = legendre.legvander(points, face_terms - 1)
+    points, weights = _gauss(face_terms)
+    y = _polynomials(points, face_terms)
     dy = _derivatives(points, face_terms) * 2 / length
     across = weights * length / 2
-    yy, dydy, ydy = (
-        y.T @ (across[:, None] * y), dy.T @ (across[:, None] * dy), y.T @ (across[:, None] * dy)
-    )  # fmt: skip
-
-    def over_height(a: FloatArray, b: FloatArray, density: FloatArray) -> FloatArray:
-        integral: FloatArray = a.T @ (density[:, None] * b)
-        return integral
-
+    yy, dydy = _integral(y, y, across), _integral(dy, dy, across)
+    ydy = _integral(y, dy, across)
     twist = bending * (1 - nu) / 2
     n = HEIGHT_TERMS * face_terms
     stiffness = np.zeros((3 * n, 3 * n))
     w, s, r = slice(0, n), slice(n, 2 * n), slice(2 * n, 3 * n)
-    stiffness[w, w] = np.kron(over_height(dv, dv, shear), yy)
-    stiffness[w, w] += np.kron(over_height(v, v, shear), dydy)
-    stiffness[s, s] = np.kron(over_height(dv, dv, bending) + over_height(v, v, shear), yy)
-    stiffness[s, s] += np.kron(over_height(v, v, twist), dydy)
-    stiffness[r, r] = np.kron(over_height(v, v, bending), dydy)
-    stiffness[r, r] += np.kron(over_height(dv, dv, twist) + over_height(v, v, shear), yy)
-    stiffness[s, w] = -np.kron(over_height(v, dv, shear), yy)
-    stiffness[r, w] = -np.kron(over_height(v, v, shear), ydy)
-    stiffness[r, s] = np.kron(over_height(v, dv, bending * nu), ydy.T)
-    stiffness[r, s] += np.kron(over_height(dv, v, twist), ydy)
+    stiffness[w, w] = _kron(_integral(dv, dv, shear), yy)
+    stiffness[w, w] += _kron(_integral(v, v, shear), dydy)
+    stiffness[s, s] = _kron(_integral(dv, dv, bending) + _integral(v, v, shear), yy)
+    stiffness[s, s] += _kron(_integral(v, v, twist), dydy)
+    stiffness[r, r] = _kron(_integral(v, v, bending), dydy)
+    stiffness[r, r] += _kron(_integral(dv, dv, twist) + _integral(v, v, shear), yy)
+    stiffness[s, w] = -_kron(_integral(v, dv, shear), yy)
+    stiffness[r, w] = -_kron(_integral(v, v, shear), ydy)
+    stiffness[r, s] = _kron(_integral(v, dv, bending * nu), ydy.T)
+    stiffness[r, s] += _kron(_integral(dv, v, twist), ydy)
     _add_foundation(stiffness, yy, float(thickness[0]), elastic_modulus, nu)
     for row, column in ((s, w), (r, w), (r, s)):
         stiffness[column, row] = stiffness[row, column].T
@@ -233,13 +227,34 @@ def _add_foundation(
     coupling = (1 - nu - 2 * nu**2) / (elastic_modulus * root)
     deflection = DEFLECTION_CONSTANT * (1 - nu**2) / elastic_modulus
     springs = np.linalg.inv(np.array([[deflection, coupling], [coupling, rotation]]))
-    at_root = legendre.legvander(np.array([-1.0]), HEIGHT_TERMS - 1)[0]
-    line = np.kron(np.outer(at_root, at_root), yy)
+    at_root = _polynomials(np.array([-1.0]), HEIGHT_TERMS)[0]
+    line = _kron(np.outer(at_root, at_root), yy)
     stiffness[:n, :n] += springs[0, 0] * line
     stiffness[n : 2 * n, n : 2 * n] += springs[1, 1] * line
     stiffness[n : 2 * n, :n] += springs[1, 0] * line
     # the foundation does not twist the root section along the tooth: theta_y follows w there
     stiffness[2 * n :, 2 * n :] += line / rotation
+
+
+def _integral(a: FloatArray, b: FloatArray, weights: FloatArray) -> FloatArray:
+    """Integrals of products of the columns of `a` and `b`, values at Gauss points."""
+    integral: FloatArray = a.T @ (weights[:, None] * b)
+    return integral
+
+
+def _kron(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(np.kron(a, b), dtype=np.float64)
+
+
+def _gauss(count: int) -> tuple[FloatArray, FloatArray]:
+    """Points and weights of Gauss's quadrature over -1 to 1."""
+    points, weights = legendre.leggauss(count)
+    return np.asarray(points, dtype=np.float64), np.asarray(weights, dtype=np.float64)
+
+
+def _polynomials(points: FloatArray, terms: int) -> FloatArray:
+    """Legendre polynomials, shape (points, terms)."""
+    return np.asarray(legendre.legvander(points, terms - 1), dtype=np.float64)
 
 
 def _derivatives(points: FloatArray, terms: int) -> FloatArray:

@@ -24,7 +24,7 @@ __all__ = ["solve_contact_loads"]
 FloatArray = NDArray[np.float64]
 
 LINEAR_SHARE = 1e-3
-"""Share of the mean line load below which delta_c is taken as linear: ln(q) has no value at 0. [1]"""
+"""Share of the mean line load below which delta_c is linear: ln(q) has no value at 0. [1]"""
 
 
 @kernel

@@ -156,6 +156,11 @@ class MeshContact:
         return self.oil.temperature
 
     @property
+    def dynamic_viscosity(self) -> float:
+        """Of the oil at the inlet of the contacts. [Pa s]"""
+        return self.oil.dynamic_viscosity
+
+    @property
     def roughness(self) -> tuple[float, float]:
         """rms roughness of both flanks. [m]"""
         return self.flanks.roughness1, self.flanks.roughness2

@@ -4,8 +4,8 @@ The simple models share the load in proportion to a stiffness per length k along
 
 .. math:: W'(x) = F_n\, k(x) \Big/ \int k\,\mathrm{d}l ,
 
-which balances the force exactly at every mesh position; ``compliance`` solves the contact of elastic
-teeth (`epicyclic.elasticity`).
+which balances the force exactly at every mesh position; ``compliance`` solves the contact of
+elastic teeth (`epicyclic.elasticity`).
 """
 
 from __future__ import annotations

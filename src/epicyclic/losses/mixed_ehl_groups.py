@@ -21,6 +21,7 @@ from epicyclic.losses.validity import (
     METRE_PER_SECOND,
     MICROMETRE,
     MILLIMETRE,
+    MILLIPASCAL_SECOND,
     NUMBER,
     Range,
 )
@@ -28,6 +29,7 @@ from epicyclic.losses.validity import (
 __all__ = [
     "MARGIN",
     "TALBOT_GEAR_RANGES",
+    "VISCOSITY_RANGE",
     "RegressionGroups",
     "held_in_range",
     "light_load_share",
@@ -44,10 +46,16 @@ _SOURCE = "Talbot (2012), Table 5.1"
 _PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SOURCE)
 _RADIUS = Range("radius", "equivalent radius", 5.0, 40.0, MILLIMETRE, _SOURCE)
 _SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SOURCE)
+VISCOSITY_RANGE = Range(
+    "dynamic_viscosity", "dynamic viscosity", 4.9, 48.0, MILLIPASCAL_SECOND,
+    "the fluid of Talbot (2012) at 100 and 25 degC",
+)  # fmt: skip
+"""Viscosities of the simulations: the fluid is that of `atf-talbot-2012`, Tables 3.1 and 5.1."""
 _ROUGHNESS = Range("roughness", "rms roughness", 0.1, 0.7, MICROMETRE, _SOURCE)
 
 TALBOT_GEAR_RANGES = (
     Range("temperature", "oil temperature", 25.0, 100.0, CELSIUS, _SOURCE),
+    VISCOSITY_RANGE,
     _RADIUS,
     _ROUGHNESS,
     _PRESSURE,
@@ -72,7 +80,7 @@ class RegressionGroups(NamedTuple):
 
 def regression_groups(contact: MeshContact) -> RegressionGroups:
     """Groups of Eq. 5.8 and 5.10 at every point of `contact`. Theory (F5)."""
-    flanks, oil = contact.flanks, contact.oil
+    flanks = contact.flanks
     e_eq = flanks.equivalent_modulus
     radius = held_in_range(contact.radius, _RADIUS)
     speed = held_in_range(contact.rolling_speed, _SPEED)
@@ -82,7 +90,8 @@ def regression_groups(contact: MeshContact) -> RegressionGroups:
 
     load = line_load_at_pressure(pressure, radius, e_eq)
     half_width = 2 * load / (np.pi * pressure)
-    speed_number = speed * oil.dynamic_viscosity / (e_eq * radius)
+    viscosity = held_in_range(contact.dynamic_viscosity, VISCOSITY_RANGE)
+    speed_number = speed * viscosity / (e_eq * radius)
     composite = np.hypot(rough1, rough2) / radius
     film = pan_hamrock_minimum_film(speed_number, contact.material_number, load / (e_eq * radius))
     return RegressionGroups(

@@ -17,7 +17,11 @@ from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.line_contact import hertz_pressure
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss_at
 from epicyclic.kernels.roller_bearing import solve_roller_loads
-from epicyclic.losses.mixed_ehl_groups import held_in_range, light_load_share
+from epicyclic.losses.mixed_ehl_groups import (
+    VISCOSITY_RANGE,
+    held_in_range,
+    light_load_share,
+)
 from epicyclic.losses.validity import (
     CELSIUS,
     GIGAPASCAL,
@@ -56,6 +60,7 @@ _ROLLER = Range(
 _SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SOURCE)
 NEEDLE_RANGES = (
     Range("temperature", "oil temperature", 25.0, 100.0, CELSIUS, _SOURCE),
+    VISCOSITY_RANGE,
     Range("radius", "equivalent radius", 0.5, 4.0, MILLIMETRE, _SOURCE),
     _RACE,
     _ROLLER,
@@ -255,9 +260,9 @@ def mixed_ehl_rolling_loss(
     Theory (B13), (B15).
 
     As printed, one evaluation for each loaded slice; with the radius of the outer race, the
-    reading that reproduces the published effects of roughness and size. Pressure, speed and
-    roughness far outside Table 3.1 are held as in `mixed_ehl_groups`; below the load or the speed
-    held there, the loss falls in proportion to it.
+    reading that reproduces the published effects of roughness and size. Pressure, speed,
+    viscosity and roughness far outside Table 3.1 are held as in `mixed_ehl_groups`; below the load
+    or the speed held there, the loss falls in proportion to it.
     """
     intensity = loads.intensity[loads.intensity > 0]
     if intensity.size == 0 or speed == 0:
@@ -269,7 +274,7 @@ def mixed_ehl_rolling_loss(
     density = needle_rolling_loss_at(
         held_in_range(pressure, _PRESSURE),
         held_speed,
-        oil.dynamic_viscosity,
+        held_in_range(oil.dynamic_viscosity, VISCOSITY_RANGE),
         oil.pressure_viscosity,
         bearing.outer_radius,
         math.hypot(
@@ -286,6 +291,7 @@ def mixed_ehl_rolling_loss(
     )
     values: dict[str, FloatArray | float] = {
         "temperature": oil.temperature,
+        "dynamic_viscosity": oil.dynamic_viscosity,
         "radius": bearing.outer_radius,
         "race_roughness": bearing.race_roughness,
         "roller_roughness": bearing.roller_roughness,

@@ -12,6 +12,8 @@ from epicyclic.kernels.mixed_ehl import rolling_loss_number_at
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.mixed_ehl_groups import (
     TALBOT_GEAR_RANGES,
+    VISCOSITY_RANGE,
+    held_in_range,
     light_load_share,
     regression_groups,
 )
@@ -43,7 +45,8 @@ def rolling_scale(contact: MeshContact) -> FloatArray:
     input power; mu u_r^2 is the only natural scale of the problem, reproduces the published
     totals, and agrees with smooth EHL solutions within about a factor of two.
     """
-    scale: FloatArray = contact.oil.dynamic_viscosity * contact.rolling_speed**2
+    viscosity = held_in_range(contact.dynamic_viscosity, VISCOSITY_RANGE)
+    scale: FloatArray = viscosity * contact.rolling_speed**2
     return scale
 
 

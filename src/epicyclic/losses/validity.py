@@ -19,6 +19,7 @@ SMALLEST_SHOWN_SHARE = 0.01
 GIGAPASCAL = Quantity("a pressure", "Pa", "GPa")
 MILLIMETRE = Quantity("a length", "m", "mm")
 MICROMETRE = Quantity("a length", "m", "um")
+MILLIPASCAL_SECOND = Quantity("a viscosity", "Pa*s", "mPa*s")
 METRE_PER_SECOND = Quantity("a speed", "m/s", "m/s")
 CELSIUS = Quantity("a temperature", "K", "degC")
 NUMBER = Quantity("a number", "", "")

@@ -17,6 +17,7 @@ from epicyclic.case.case import Case
 from epicyclic.case.fields import all_keys, find_field, is_whole_number, quantity_of
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.values import parse_value
+from epicyclic.case.wording import sentence
 from epicyclic.errors import InputError, Problem
 from epicyclic.units import Quantity, format_number
 
@@ -136,7 +137,7 @@ def _make_axis(case: Case, key: str, values: list[Any]) -> tuple[Axis | None, li
             coordinate.append(_coordinate(value, quantity))
         except PydanticCustomError as error:
             remedy = str((error.context or {}).get("remedy", ""))
-            problems.append(Problem(key, repr(value), f"{error.message()}.", f"{remedy}."))
+            problems.append(Problem(key, repr(value), f"{error.message()}.", sentence(remedy)))
     if not problems and len(set(coordinate)) < len(coordinate):
         problems.append(Problem(key, "", "has the same value twice.", "Give each value once."))
     if problems:
