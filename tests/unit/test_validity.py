@@ -39,6 +39,7 @@ def test_ranges_are_those_of_the_source():
     found = {item.name: (item.low, item.high, item.unit.display) for item in NEEDLE_RANGES}
     assert found == {
         "temperature": (25.0, 100.0, "degC"),
+        "dynamic_viscosity": (4.9, 48.0, "mPa*s"),
         "radius": (0.5, 4.0, "mm"),
         "race_roughness": (0.02, 0.10, "um"),
         "roller_roughness": (0.055, 0.165, "um"),
