@@ -6,7 +6,7 @@ gear set from outside, so that torque times speed is the power that enters throu
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 __all__ = [
@@ -52,8 +52,7 @@ class PowerFlow:
     members : mapping of str to MemberState
         The shafts; their powers sum to the loss.
     input_power : float
-        Power that enters: at the input member when it drives, else at the others, loss included.
-        [W]
+        Power that enters, at the members that would drive without losses. [W]
     efficiency : float or None
         Power that leaves over power that enters; 0 if the loss takes all of it; None if no power
         is passed on. [1]
@@ -75,8 +74,9 @@ def planetary_speeds(
     """
     factors = {"sun": teeth_sun, "ring": teeth_ring, "carrier": -(teeth_sun + teeth_ring)}
     (third,) = set(MEMBERS) - set(given)
-    rest = sum(factors[name] * speed for name, speed in given.items())
-    speeds = {**given, third: -rest / factors[third]}
+    (_, first), (other, second) = given.items()
+    # from the difference of the two: members that turn as one body do so exactly
+    speeds = {**given, third: first + (first - second) * factors[other] / factors[third]}
     return {name: speeds[name] for name in MEMBERS}
 
 
@@ -100,27 +100,32 @@ def lossless_torques(
 
 
 def planetary_power_flow(
+    teeth_sun: int,
+    teeth_ring: int,
     speeds: Mapping[str, float],
-    lossless: Mapping[str, float],
     given: str,
     held: str,
+    torque: float,
     loss: float,
     drags: Mapping[str, float] | None = None,
 ) -> PowerFlow:
     """Torques and powers with the losses, the torque of the member `given` being prescribed.
 
-    Theory (K5), (P5).
+    Theory (K5).
 
     The torques that the meshes pass balance, and their powers sum to the loss inside the gear set;
     each shaft carries besides the torque of its own drag against the housing.
 
     Parameters
     ----------
-    speeds, lossless : mapping of str to float
-        Speeds [rad/s] and lossless torques [N m] of the members.
+    teeth_sun, teeth_ring : int
+    speeds : mapping of str to float
+        Of the members. [rad/s]
     given, held : str
         The member of prescribed torque, and the fixed or second driven one; the third is the
         output.
+    torque : float
+        On the member `given`, from outside. [N m]
     loss : float
         Inside the gear set. [W]
     drags : mapping of str to float, optional
@@ -129,18 +134,16 @@ def planetary_power_flow(
     (output,) = set(MEMBERS) - {given, held}
     powers = dict.fromkeys(MEMBERS, 0.0) | dict(drags or {})
     drag = {name: powers[name] / speeds[name] if speeds[name] else 0.0 for name in MEMBERS}
-    torque = lossless[given] - drag[given]
     difference = speeds[output] - speeds[held]
-    passed = {given: torque}
-    if difference == 0.0:  # turning as one body: no relative motion, no loss inside
-        passed[output] = torque * lossless[output] / lossless[given] if lossless[given] else 0.0
-    else:
-        passed[output] = (loss - torque * (speeds[given] - speeds[held])) / difference
-    passed[held] = -torque - passed[output]
+    # without a difference they turn as one body: no relative motion, no loss inside
+    friction = loss / difference if difference else 0.0
+    passed = lossless_torques(teeth_sun, teeth_ring, given, torque - drag[given])
+    passed[output] += friction
+    passed[held] -= friction
     members = {name: MemberState(speeds[name], passed[name] + drag[name]) for name in MEMBERS}
-    transmitted = sum(max(0.0, lossless[name] * speeds[name]) for name in MEMBERS)
-    driving = lossless[given] * speeds[given] >= 0
-    return _flow(members, transmitted, driving, loss + sum(powers.values()))
+    lossless = lossless_torques(teeth_sun, teeth_ring, given, torque)
+    drivers = [name for name in MEMBERS if lossless[name] * speeds[name] > 0]
+    return _flow(members, drivers, loss + sum(powers.values()))
 
 
 def pair_power_flow(
@@ -151,16 +154,16 @@ def pair_power_flow(
     passed = torque * speed
     torque2 = (loss - passed) / speed2 if speed2 else -torque * ratio * (1 if internal else -1)
     members = {"pinion": MemberState(speed, torque), "gear": MemberState(speed2, torque2)}
-    return _flow(members, abs(passed), passed >= 0, loss)
+    drivers = [] if passed == 0.0 else ["pinion" if passed > 0 else "gear"]
+    return _flow(members, drivers, loss)
 
 
-def _flow(
-    members: Mapping[str, MemberState], passed: float, driving: bool, loss: float
-) -> PowerFlow:
-    """Input power and efficiency; `passed` is the power passed on without losses.
+def _flow(members: Mapping[str, MemberState], drivers: Collection[str], loss: float) -> PowerFlow:
+    """Input power and efficiency; `drivers` are the members that drive without losses.
 
-    Theory (P6), (P7).
+    Theory (P5), (P6), (P7).
     """
-    entering = passed if driving else passed + loss
-    efficiency = None if passed == 0.0 else max(0.0, 1 - loss / entering)
-    return PowerFlow(members, entering, efficiency)
+    if not drivers:
+        return PowerFlow(members, 0.0, None)
+    entering = max(0.0, sum(members[name].power for name in drivers))
+    return PowerFlow(members, entering, 1 - loss / entering if loss < entering else 0.0)

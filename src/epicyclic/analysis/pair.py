@@ -45,6 +45,7 @@ def solve_pair(case: GearPairCase) -> Result:
         flow=flow,
         meshes={duty.key: mesh.figures},
         bearing=None,
+        fluid=fluids.figures,
         models=resolve_models(case),
         flags=fluids.flags + mesh.flags,
         notes=general_notes(terms, flow.input_power, flow.efficiency) + fluid_notes(case),

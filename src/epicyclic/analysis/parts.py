@@ -11,6 +11,7 @@ from pydantic import BaseModel
 from epicyclic.analysis.result import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
+    FluidFigures,
     LossTerm,
     MeshFigures,
 )
@@ -68,6 +69,18 @@ class Fluids:
     oil: OilState
     mixture: MixtureState
     flags: tuple[ValidityFlag, ...]
+
+    @property
+    def figures(self) -> FluidFigures:
+        """The properties for the user."""
+        return FluidFigures(
+            kinematic_viscosity=self.oil.kinematic_viscosity,
+            dynamic_viscosity=self.oil.dynamic_viscosity,
+            density=self.oil.density,
+            pressure_viscosity=self.oil.pressure_viscosity,
+            mixture_density=self.mixture.density,
+            mixture_viscosity=self.mixture.dynamic_viscosity,
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -77,10 +77,12 @@ def solve_planetary(case: PlanetaryCase) -> Result:
     terms = loss_terms(parts, case.losses)
     drags = _housing_drags(case, terms)
     flow = planetary_power_flow(
+        case.sun.teeth,
+        case.ring.teeth,
         speeds,
-        _lossless(case),
         case.operation.input,
         _held_member(case),
+        case.operation.torque,
         sum(term.watts for term in terms) - sum(drags.values()),
         drags,
     )
@@ -92,6 +94,7 @@ def solve_planetary(case: PlanetaryCase) -> Result:
         flow=flow,
         meshes={key: mesh.figures for key, mesh in meshes.items()},
         bearing=bearing.figures,
+        fluid=fluids.figures,
         models=resolve_models(case),
         flags=flags + bearing.flags,
         notes=(
@@ -285,7 +288,7 @@ def _bearing_figures(
         speed=abs(speed),
         rollers_loaded=float(np.count_nonzero(rollers)),
         roller_load_max=float(rollers[row, most]),
-        roller_azimuth=float(loads.azimuth[most]),
+        roller_azimuth=math.remainder(float(loads.azimuth[most]), 2 * math.pi),
         hertz_pressure_max=pressure,
         loads=loads,
     )

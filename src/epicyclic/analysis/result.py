@@ -24,7 +24,15 @@ from epicyclic.units import Quantity
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = ["BearingFigures", "Figure", "LossTerm", "MeshFigures", "Result", "figures"]
+__all__ = [
+    "BearingFigures",
+    "Figure",
+    "FluidFigures",
+    "LossTerm",
+    "MeshFigures",
+    "Result",
+    "figures",
+]
 
 _DEGREE = Quantity("an angle", "rad", "deg")
 _NUMBER = Quantity("a number", "", "")
@@ -36,6 +44,12 @@ _NEWTON_PER_MM = Quantity("a line load", "N/m", "N/mm")
 _MILLIMETRE = Quantity("a length", "m", "mm")
 _RPM = Quantity("a rotational speed", "rad/s", "rpm")
 _WATT = Quantity("a power", "W", "W")
+_SQUARE_MM_PER_S = Quantity("a kinematic viscosity", "m^2/s", "mm^2/s")
+_MILLIPASCAL_SECOND = Quantity("a dynamic viscosity", "Pa*s", "mPa*s")
+_DENSITY = Quantity("a density", "kg/m^3", "kg/m^3")
+_PER_GIGAPASCAL = Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa")
+
+_POWERS = ("losses", "load_dependent", "load_independent", "total", "input_power")
 
 LOAD_DEPENDENT = "load-dependent"
 LOAD_INDEPENDENT = "load-independent"
@@ -128,6 +142,20 @@ class BearingFigures:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class FluidFigures:
+    """Properties of the oil at its inlet temperature, and of its mixture with air."""
+
+    kinematic_viscosity: float = _figure("kinematic viscosity of the oil", _SQUARE_MM_PER_S)
+    dynamic_viscosity: float = _figure("dynamic viscosity of the oil", _MILLIPASCAL_SECOND)
+    density: float = _figure("density of the oil", _DENSITY)
+    pressure_viscosity: float = _figure("pressure-viscosity coefficient", _PER_GIGAPASCAL)
+    mixture_density: float = _figure("density of the air-oil mixture", _DENSITY)
+    mixture_viscosity: float = _figure(
+        "dynamic viscosity of the air-oil mixture", _MILLIPASCAL_SECOND
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Result:
     """The losses of one case, where they arise, and how they were found.
 
@@ -141,6 +169,7 @@ class Result:
         Speeds, torques, powers, efficiency.
     meshes : mapping of str to MeshFigures
     bearing : BearingFigures or None
+    fluid : FluidFigures
     models : mapping of str to str
         The models used, defaults resolved.
     flags : tuple of ValidityFlag
@@ -162,6 +191,7 @@ class Result:
     flow: PowerFlow
     meshes: Mapping[str, MeshFigures]
     bearing: BearingFigures | None
+    fluid: FluidFigures
     models: Mapping[str, str]
     flags: tuple[ValidityFlag, ...]
     notes: tuple[str, ...]
@@ -219,7 +249,7 @@ class Result:
             speed = _RPM.to_display(member.speed)
             yield Figure(f"{name}_speed", f"speed of the {name}", speed, "rpm")
             yield Figure(f"{name}_torque", f"torque on the {name}", member.torque, "N*m")
-        parts: dict[str, DataclassInstance] = dict(self.meshes)
+        parts: dict[str, DataclassInstance] = {"fluid": self.fluid, **self.meshes}
         if self.bearing is not None:
             parts["planet_bearing"] = self.bearing
         for name, part in parts.items():
@@ -239,7 +269,7 @@ class Result:
             "total": self.total,
             "input_power": self.input_power,
             "efficiency": self.efficiency,
-            "units": {"losses": "W", "total": "W", "input_power": "W", "efficiency": "1"},
+            "units": dict.fromkeys(_POWERS, _WATT.display) | {"efficiency": "1"},
             "warnings": list(self.warnings),
             "not_included": {term.name: term.left_out for term in self.terms if term.left_out},
             "factors": {term.name: term.factor for term in self.terms if term.factor != 1.0},
@@ -255,6 +285,7 @@ class Result:
                 for name, member in self.flow.members.items()
             },
             "meshes": {name: _figures_dict(mesh) for name, mesh in self.meshes.items()},
+            "fluid": _figures_dict(self.fluid),
             "planet_bearing": None if self.bearing is None else _figures_dict(self.bearing),
             "planet_angles": {
                 "value": [_DEGREE.to_display(angle) for angle in self.planet_angles],

@@ -53,6 +53,7 @@ def result_tables(result: Result) -> RenderableType:
     parts += [_losses(result), _members(result), _meshes(result)]
     if result.bearing is not None:
         parts.append(_figure_table("Planet bearing", figures(result.bearing)))
+    parts.append(_figure_table("Oil", figures(result.fluid)))
     if result.planet_angles:
         angles = ", ".join(f"{math.degrees(angle):.4f}" for angle in result.planet_angles)
         parts.append(Text(f"Planets at {angles} deg"))
@@ -138,7 +139,7 @@ def _cell(item: Figure) -> str:
 
 
 def _unit(item: Figure) -> str:
-    return item.unit.replace("*", "·")
+    return item.unit.translate({ord("*"): "·"}).replace("^2", "²").replace("^3", "³")
 
 
 def _list(title: str, items: Sequence[str]) -> Group:
