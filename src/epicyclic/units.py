@@ -330,6 +330,7 @@ Number = Annotated[float, _Dimensionless()]
 
 Length = Annotated[float, Quantity("a length", "m", "mm", low=0.0, high=1e5, open_low=True)]
 SmallLength = Annotated[float, Quantity("a length", "m", "um", low=0.0, high=1e4)]
+Deviation = Annotated[float, Quantity("a deviation", "m", "um", low=-1e4, high=1e4)]
 Mass = Annotated[float, Quantity("a mass", "kg", "kg", low=0.0, high=1e6)]
 Angle = Annotated[float, Quantity("an angle", "rad", "deg", low=-360.0, high=360.0)]
 HelixAngle = Annotated[float, Quantity("a helix angle", "rad", "deg", low=0.0, high=45.0)]
@@ -341,6 +342,7 @@ Speed = Annotated[float, Quantity("a speed", "m/s", "m/s", low=0.0, high=1e4)]
 Temperature = Annotated[float, Quantity("a temperature", "K", "degC", low=-50.0, high=250.0)]
 Pressure = Annotated[float, Quantity("a pressure", "Pa", "bar", low=0.0, high=1e3, open_low=True)]
 HertzPressure = Annotated[float, Quantity("a pressure", "Pa", "GPa", low=0.0, high=100.0)]
+Stiffness = Annotated[float, Quantity("a stiffness", "N/m", "N/um", low=0.0, high=1e7)]
 Modulus = Annotated[float, Quantity("a modulus", "Pa", "GPa", low=0.0, high=2e3, open_low=True)]
 Density = Annotated[
     float, Quantity("a density", "kg/m^3", "kg/m^3", low=0.0, high=3e4, open_low=True)

@@ -26,7 +26,7 @@ def solve(case, **changes):
 
 def test_bearing_load_is_that_of_the_printed_equations(case):
     """Talbot (2012), Eq. 3.7 and 3.8, with operating radii."""
-    load = planet_load(planetary_duties(case), 0.0)
+    load = planet_load(planetary_duties(case, 1 / case.planet.count), 0.0)
     branch = 1000 / 3
     sun_radius = 0.09213 * 73 / 99
     planet_radius = 0.09213 * 26 / 99
@@ -39,7 +39,7 @@ def test_bearing_load_is_that_of_the_printed_equations(case):
 
 
 def test_centrifugal_force_turns_the_load_and_not_the_couple(case):
-    duties = planetary_duties(case)
+    duties = planetary_duties(case, 1 / case.planet.count)
     plain = planet_load(duties, 0.0)
     loaded = planet_load(duties, 5000.0)
     assert loaded.force == pytest.approx(math.hypot(plain.force, 5000.0), rel=1e-9)

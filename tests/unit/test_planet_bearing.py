@@ -35,7 +35,7 @@ def article(talbot):
 
 def bearing_and_loads(case):
     bearing = roller_bearing(case.planet_bearing, case.numerics.bearing_slices)
-    load = planet_load(planetary_duties(case), 0.0)
+    load = planet_load(planetary_duties(case, 1 / case.planet.count), 0.0)
     return bearing, roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
 
 
@@ -51,7 +51,7 @@ def composite(bearing, value):
 @pytest.mark.parametrize("torque", [42.0, 100.0, 333.0])
 def test_load_of_the_test_article(article, torque):
     case = article.updated({"operation.torque": f"{3 * torque} N*m"})
-    load = planet_load(planetary_duties(case), 0.0)
+    load = planet_load(planetary_duties(case, 1 / case.planet.count), 0.0)
     # Talbot (2012), Eq. 3.7 and 3.8, with operating pitch radii a z/(z_s + z_p)
     r_ps, r_pp = 92.13e-3 * 73 / 99, 92.13e-3 * 26 / 99
     assert load.force == pytest.approx(2 * torque / r_ps, rel=1e-12)

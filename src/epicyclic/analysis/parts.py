@@ -36,6 +36,7 @@ __all__ = [
     "MeshDuty",
     "MeshOutcome",
     "Part",
+    "elastic_constants",
     "fluid_notes",
     "fluids_of",
     "friction_settings",
@@ -180,9 +181,7 @@ def load_mesh(
     if duty.torque1 == 0 or duty.speed1 == 0:
         return None
     force = abs(duty.torque1) / duty.mesh.gear1.base_radius
-    one, two = (
-        Elastic(gear.material.elastic_modulus, gear.material.poisson_ratio) for gear in duty.gears
-    )
+    one, two = (elastic_constants(gear) for gear in duty.gears)
     lines, line_load = distribute_load(
         duty.mesh,
         models.load_distribution,
@@ -200,6 +199,11 @@ def load_mesh(
         oil=oil,
         flanks=_flanks(*duty.gears),
     )
+
+
+def elastic_constants(gear: GearTable) -> Elastic:
+    """Those of the gear's material."""
+    return Elastic(gear.material.elastic_modulus, gear.material.poisson_ratio)
 
 
 def _flanks(one: GearTable, two: GearTable) -> Flanks:

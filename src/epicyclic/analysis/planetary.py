@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from epicyclic.analysis.load_sharing import planet_shares
 from epicyclic.analysis.parts import (
     MeshDuty,
     Part,
@@ -19,7 +20,7 @@ from epicyclic.analysis.parts import (
     solve_mesh,
     used_sources,
 )
-from epicyclic.analysis.result import BearingFigures, LossTerm, Result
+from epicyclic.analysis.result import BearingFigures, LossTerm, MeshFigures, Result
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.schema import PlanetBearing
@@ -65,16 +66,15 @@ def solve_planetary(case: PlanetaryCase) -> Result:
     """The losses of a planetary gear set."""
     fluids = fluids_of(case)
     speeds = member_speeds(case)
-    duties = planetary_duties(case)
-    meshes = {duty.key: solve_mesh(case, duty, fluids.oil, case.planet.count) for duty in duties}
-    bearing = _solve_bearing(case, duties, fluids.oil, speeds)
-    parts = bearing.parts | _drags(case, speeds, fluids.mixture)
+    shares = planet_shares(case, planetary_duties(case, 1 / case.planet.count), _bearing(case))
+    branches = [
+        _solve_branch(case, share, shares.count(share), fluids.oil, speeds)
+        for share in sorted(set(shares), reverse=True)
+    ]
+    parts = _drags(case, speeds, fluids.mixture) | _sum_parts(branches)
     parts["thrust_bearing_viscous"] = _thrust_bearing(case, speeds, fluids.oil)
-    flags = fluids.flags
-    for mesh in meshes.values():
-        parts |= mesh.parts
-        flags += mesh.flags
     terms = loss_terms(parts, case.losses)
+    most_loaded = branches[0]
     drags = _housing_drags(case, terms)
     flow = planetary_power_flow(
         case.sun.teeth,
@@ -92,31 +92,33 @@ def solve_planetary(case: PlanetaryCase) -> Result:
         kind=case.kind,
         terms=terms,
         flow=flow,
-        meshes={key: mesh.figures for key, mesh in meshes.items()},
-        bearing=bearing.figures,
+        meshes=most_loaded.meshes,
+        bearing=most_loaded.bearing,
         fluid=fluids.figures,
         models=resolve_models(case),
-        flags=flags + bearing.flags,
+        flags=fluids.flags + _widest_flags(branches),
         notes=(
             *general_notes(terms, flow.input_power, flow.efficiency),
             *fluid_notes(case),
             *_planet_notes(case, angles),
+            *_share_notes(shares),
             *_ring_notes(case, speeds),
         ),
         sources=used_sources(terms),
         inputs=case.inputs(),
         planet_angles=angles,
+        planet_shares=shares,
     )
 
 
-def planetary_duties(case: PlanetaryCase) -> tuple[MeshDuty, MeshDuty]:
-    """Both meshes of one planet, each with its torque and speed relative to the carrier.
+def planetary_duties(case: PlanetaryCase, share: float) -> tuple[MeshDuty, MeshDuty]:
+    """Both meshes of a planet with `share` of the torque, and their speeds relative to the carrier.
 
     Theory (K4).
     """
     sun_mesh, ring_mesh = build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)
     speeds = member_speeds(case)
-    branch_torque = _lossless(case)["sun"] / case.planet.count
+    branch_torque = share * _lossless(case)["sun"]
     planet_torque = branch_torque * case.planet.teeth / case.sun.teeth
     sun_speed = speeds["sun"] - speeds["carrier"]
     own_speed = planet_speed(case.sun.teeth, case.planet.teeth, speeds)
@@ -146,7 +148,48 @@ def _lossless(case: PlanetaryCase) -> dict[str, float]:
     return lossless_torques(case.sun.teeth, case.ring.teeth, operation.input, operation.torque)
 
 
-# --- planet bearing -------------------------------------------------------------------------------
+# --- planets --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Branch:
+    """Losses of all planets that carry one and the same share, and the figures of one of them."""
+
+    parts: dict[str, Part]
+    meshes: dict[str, MeshFigures]
+    bearing: BearingFigures | None
+    flags: tuple[ValidityFlag, ...]
+
+
+def _solve_branch(
+    case: PlanetaryCase, share: float, count: int, oil: OilState, speeds: Mapping[str, float]
+) -> _Branch:
+    duties = planetary_duties(case, share)
+    meshes = {duty.key: solve_mesh(case, duty, oil, count) for duty in duties}
+    bearing = _solve_bearing(case, duties, count, oil, speeds)
+    parts, flags = dict(bearing.parts), bearing.flags
+    for mesh in meshes.values():
+        parts |= mesh.parts
+        flags = mesh.flags + flags
+    figures = {key: mesh.figures for key, mesh in meshes.items()}
+    return _Branch(parts, figures, bearing.figures, flags)
+
+
+def _sum_parts(branches: Sequence[_Branch]) -> dict[str, Part]:
+    """The losses of all planets together."""
+    return {
+        name: replace(part, watts=sum(branch.parts[name].watts for branch in branches))
+        for name, part in branches[0].parts.items()
+    }
+
+
+def _widest_flags(branches: Sequence[_Branch]) -> tuple[ValidityFlag, ...]:
+    """For each model and quantity the flag of the most loaded planet that raises one."""
+    flags: dict[tuple[str, str], ValidityFlag] = {}
+    for branch in branches:
+        for flag in branch.flags:
+            flags.setdefault((flag.model, flag.quantity), flag)
+    return tuple(flags.values())
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,32 +242,33 @@ def planet_load(duties: tuple[MeshDuty, MeshDuty], centrifugal: float) -> Planet
 def _solve_bearing(
     case: PlanetaryCase,
     duties: tuple[MeshDuty, MeshDuty],
+    count: int,
     oil: OilState,
     speeds: Mapping[str, float],
 ) -> _BearingOutcome:
-    table = case.planet_bearing
+    """Losses of `count` planet bearings under the same load."""
+    table, bearing = case.planet_bearing, _bearing(case)
     mechanical, viscous = "planet_bearing_mechanical", "planet_bearing_viscous"
-    if table is None:
+    if table is None or bearing is None:
         absent = Part(left_out="the case has no [planet_bearing]")
         return _BearingOutcome({mechanical: absent, viscous: absent})
-    bearing = roller_bearing(table, case.numerics.bearing_slices)
     speed = planet_speed(case.sun.teeth, case.planet.teeth, speeds)
     load = planet_load(duties, _centrifugal(case, speeds))
     loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
     if resolve_models(case)["bearing"] == "mixed-ehl":
         loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil)
-        part = Part(case.planet.count * loss.loss, BEARING_METHOD, BEARING_SOURCE)
+        part = Part(count * loss.loss, BEARING_METHOD, BEARING_SOURCE)
     else:
         coefficient = palmgren_coefficient(table)
         loss = BearingLoss(palmgren_loss(coefficient, load.force, bearing.pitch_diameter, speed))
-        part = Part(case.planet.count * loss.loss, PALMGREN_METHOD, PALMGREN_SOURCE)
+        part = Part(count * loss.loss, PALMGREN_METHOD, PALMGREN_SOURCE)
     viscous_loss = bearing_viscous_loss(
         viscous_factor(table), oil.kinematic_viscosity, speed, bearing.pitch_diameter
     )
     return _BearingOutcome(
         {
             mechanical: part,
-            viscous: Part(case.planet.count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE),
+            viscous: Part(count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE),
         },
         _bearing_figures(bearing, loads, load, speed),
         loss.flags,
@@ -245,6 +289,11 @@ def palmgren_coefficient(table: PlanetBearing) -> float:
     if table.palmgren_coefficient is not None:
         return table.palmgren_coefficient
     return CAGED_PALMGREN if table.cage == "caged" else FULL_COMPLEMENT_PALMGREN
+
+
+def _bearing(case: PlanetaryCase) -> RollerBearing | None:
+    table = case.planet_bearing
+    return None if table is None else roller_bearing(table, case.numerics.bearing_slices)
 
 
 def roller_bearing(table: PlanetBearing, slices: int) -> RollerBearing:
@@ -354,6 +403,13 @@ def _planet_notes(case: PlanetaryCase, angles: tuple[float, ...]) -> tuple[str, 
         f"{count} planets cannot be equally spaced, because ({case.sun.teeth} + "
         f"{case.ring.teeth})/{count} is no integer; they stand at {placed} deg.",
     )
+
+
+def _share_notes(shares: tuple[float, ...]) -> tuple[str, ...]:
+    if len(set(shares)) == 1:
+        return ()
+    most = shares.index(max(shares)) + 1
+    return (f"Meshes and bearing are those of planet {most}, the most loaded one.",)
 
 
 def _ring_notes(case: PlanetaryCase, speeds: Mapping[str, float]) -> tuple[str, ...]:

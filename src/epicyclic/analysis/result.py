@@ -182,6 +182,8 @@ class Result:
         The case, defaults included, as a case file has it.
     planet_angles : tuple of float
         Positions of the planets; empty for a pair. [rad]
+    planet_shares : tuple of float
+        Share of the torque that each planet carries; their sum is 1. [1]
     status : Status
     """
 
@@ -198,6 +200,7 @@ class Result:
     sources: tuple[str, ...]
     inputs: Mapping[str, Any]
     planet_angles: tuple[float, ...] = ()
+    planet_shares: tuple[float, ...] = ()
     status: Status = Status.CONVERGED
 
     @property
@@ -219,6 +222,11 @@ class Result:
     def total(self) -> float:
         """Total loss. Theory (P3). [W]"""
         return self.load_dependent + self.load_independent
+
+    @property
+    def mesh_load_factor(self) -> float:
+        """Load of the most loaded planet over the mean, K_gamma; 1 for a pair. Theory (S1). [1]"""
+        return max(self.planet_shares, default=1.0) * max(1, len(self.planet_shares))
 
     @property
     def input_power(self) -> float:
@@ -245,6 +253,8 @@ class Result:
         yield Figure("input_power", "input power", self.input_power, "W")
         efficiency = float("nan") if self.efficiency is None else self.efficiency
         yield Figure("efficiency", "efficiency", efficiency, "")
+        if self.planet_shares:
+            yield Figure("mesh_load_factor", "mesh load factor", self.mesh_load_factor, "")
         for name, member in self.flow.members.items():
             speed = _RPM.to_display(member.speed)
             yield Figure(f"{name}_speed", f"speed of the {name}", speed, "rpm")
@@ -291,6 +301,7 @@ class Result:
                 "value": [_DEGREE.to_display(angle) for angle in self.planet_angles],
                 "unit": "deg",
             },
+            "planet_shares": {"value": list(self.planet_shares), "unit": "1"},
             "sources": list(self.sources),
             "inputs": dict(self.inputs),
             "versions": versions(),

@@ -50,6 +50,10 @@ def solve(case: Case) -> Result:
 def mesh_contacts(case: Case) -> dict[str, MeshContact]:
     """Conditions along the contact lines of every mesh of a case; empty without load or motion."""
     oil = fluids_of(case).oil
-    duties = planetary_duties(case) if isinstance(case, PlanetaryCase) else (pair_duty(case),)
+    duties = (
+        planetary_duties(case, 1 / case.planet.count)
+        if isinstance(case, PlanetaryCase)
+        else (pair_duty(case),)
+    )
     contacts = {duty.key: load_mesh(duty, case.models, case.numerics, oil) for duty in duties}
     return {key: contact for key, contact in contacts.items() if contact is not None}

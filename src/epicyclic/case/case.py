@@ -24,6 +24,7 @@ from epicyclic.case.schema import (
     GearPairOperation,
     Gears,
     GearTable,
+    LoadSharing,
     Lubricant,
     Numerics,
     PairGear,
@@ -107,6 +108,7 @@ class PlanetaryCase(_CaseTable):
     planet: Planet
     ring: Ring
     planet_bearing: PlanetBearing | None = None
+    load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None
     lubricant: Lubricant

@@ -17,10 +17,13 @@ from epicyclic.case.schema import (
     GearPairModels,
     GearPairOperation,
     Gears,
+    GearTable,
+    LoadSharing,
     Planet,
     PlanetaryModels,
     PlanetaryOperation,
     PlanetBearing,
+    Ring,
     Table,
 )
 from epicyclic.errors import Problem
@@ -112,6 +115,69 @@ def _check_bearing_model(bearing: PlanetBearing, models: PlanetaryModels) -> lis
     ]
 
 
+def _check_load_sharing(
+    sharing: LoadSharing, sun: GearTable, planet: Planet, ring: Ring
+) -> list[Problem]:
+    problems = []
+    if sharing.mesh_load_factor > planet.count:
+        problems.append(
+            Problem(
+                "load_sharing.mesh_load_factor",
+                f"{sharing.mesh_load_factor:g}",
+                f"must be at most planet.count, {planet.count}: then one planet has all the load.",
+                "Take a smaller factor.",
+            )
+        )
+    if len(sharing.position_errors or ()) not in (0, planet.count):
+        problems.append(
+            Problem(
+                "load_sharing.position_errors",
+                f"{len(sharing.position_errors or ())} values",
+                f"must have one value for each of the {planet.count} planets.",
+                "Give as many values as there are planets.",
+            )
+        )
+    if sharing.method == "closed-form":
+        problems += _check_closed_form(sharing, sun, planet, ring)
+    if sharing.method == "direct" and planet.count == 1 and sharing.floating_member != "none":
+        problems.append(
+            Problem(
+                "load_sharing.floating_member",
+                f'"{sharing.floating_member}"',
+                "must be supported: one planet cannot hold it in place.",
+                'Write floating_member = "none".',
+            )
+        )
+    return problems
+
+
+def _check_closed_form(
+    sharing: LoadSharing, sun: GearTable, planet: Planet, ring: Ring
+) -> list[Problem]:
+    angles = build.planet_angles(sun, planet, ring)
+    step = 2 * math.pi / planet.count
+    even = all(
+        math.isclose(math.remainder(angle - angles[0] - k * step, 2 * math.pi), 0.0, abs_tol=1e-9)
+        for k, angle in enumerate(angles)
+    )
+    reasons = []
+    if planet.count < 3:
+        reasons.append("three or more planets")
+    if not even:
+        reasons.append("equally spaced planets")
+    if sharing.floating_member != "none" and sharing.support_stiffness > 0:
+        reasons.append("a member that floats freely or none")
+    return [
+        Problem(
+            "load_sharing.method",
+            '"closed-form"',
+            f"needs {reason}.",
+            'Write method = "direct".',
+        )
+        for reason in reasons
+    ]
+
+
 def _check_friction_table(table: FrictionTable) -> list[Problem]:
     axes = table.axes()
     known = ", ".join(FrictionTable.AXES)
@@ -167,5 +233,6 @@ _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_bearing, ("planet_bearing",)),
     (_check_bearing_room, ("gears", "planet", "planet_bearing")),
     (_check_bearing_model, ("planet_bearing", "models")),
+    (_check_load_sharing, ("load_sharing", "sun", "planet", "ring")),
     (_check_friction_table, ("friction_table",)),
 )

@@ -28,6 +28,7 @@ from epicyclic.lubricant.oil import Oil
 from epicyclic.units import (
     Angle,
     Density,
+    Deviation,
     HelixAngle,
     HertzPressure,
     Length,
@@ -39,6 +40,7 @@ from epicyclic.units import (
     RotationalSpeed,
     SmallLength,
     Speed,
+    Stiffness,
     Temperature,
     Torque,
 )
@@ -101,6 +103,9 @@ class _Roughness(Quantity):
 
 Roughness = Annotated[
     float, _Roughness("an rms roughness", "m", "um", low=0.0, high=100.0, open_low=True)
+]
+_PinStiffness = Annotated[
+    float, Quantity("a stiffness", "N/m", "N/um", low=0.0, high=1e7, open_low=True)
 ]
 _ShortLength = Annotated[float, Quantity("a length", "m", "mm", low=0.0, high=1e5)]
 
@@ -364,6 +369,38 @@ class ThrustBearing(Table):
     ] = Field(default="carrier-housing", description="The two parts whose speeds differ.")
     viscous_factor: Number = Field(default=3.5, ge=0, le=100, description="f0 (Harris).")
     count: int = Field(default=1, ge=1, le=10)
+
+
+class LoadSharing(Table):
+    """How the planets share the load."""
+
+    method: Literal["equal", "mesh-load-factor", "closed-form", "direct"] = Field(
+        default="equal",
+        description="mesh-load-factor: one planet takes more; closed-form, direct: from "
+        "position_errors and stiffness.",
+    )
+    mesh_load_factor: Number = Field(
+        default=1.0,
+        ge=1,
+        le=24,
+        description="K_gamma: load of the most loaded planet over the mean, at most planet.count.",
+    )
+    position_errors: tuple[Deviation, ...] | None = Field(
+        default=None,
+        description="Of each planet pin, against the sense in which a positive torque of the sun "
+        "pushes it: a positive error loads its planet more.",
+    )
+    floating_member: Literal["sun", "ring", "carrier", "none"] = Field(
+        default="sun", description="The member that gives way in the transverse plane."
+    )
+    support_stiffness: Stiffness = Field(
+        default=_as_text("0 N/um"), description="Radial, of the floating member; 0: it floats."
+    )
+    pin_stiffness: _PinStiffness | None = Field(
+        default=None,
+        description="Radial, of one planet pin in the carrier, in series with the planet bearing. "
+        "Default: rigid.",
+    )
 
 
 class Lubricant(Table):

@@ -40,6 +40,7 @@ __all__ = [
     "RollerLoads",
     "mixed_ehl_rolling_loss",
     "palmgren_loss",
+    "radial_stiffness",
     "roller_loads",
 ]
 
@@ -48,6 +49,8 @@ FloatArray = NDArray[np.float64]
 TOLERANCE = 1e-9
 """Residual force over the largest load at which the balance counts as met. [1]"""
 MAX_ITERATIONS = 100
+STIFFNESS_STEP = 0.01
+"""Relative step of the force in `radial_stiffness`. [1]"""
 FIRST_APPROACH = 1e-5
 """Displacement beyond the clearance at which the iteration starts. [m]"""
 
@@ -241,6 +244,15 @@ def roller_loads(
     for array in (azimuth, intensity, state):
         array.flags.writeable = False
     return RollerLoads(azimuth, intensity, state, iterations)
+
+
+def radial_stiffness(bearing: RollerBearing, force: float) -> float:
+    """Stiffness dF/ddelta of a bearing under `force` without moment. Theory (S7). [N/m]"""
+    low, high = ((1 + sign * STIFFNESS_STEP) * force for sign in (-1, 1))
+    closer, farther = (
+        roller_loads(bearing, load, 0.0, 0.0, 0.0).displacement[0] for load in (low, high)
+    )
+    return float((high - low) / (farther - closer))
 
 
 def _start(bearing: RollerBearing, load: FloatArray) -> FloatArray:

@@ -57,6 +57,9 @@ def result_tables(result: Result) -> RenderableType:
     if result.planet_angles:
         angles = ", ".join(f"{math.degrees(angle):.4f}" for angle in result.planet_angles)
         parts.append(Text(f"Planets at {angles} deg"))
+    if len(set(result.planet_shares)) > 1:
+        shares = ", ".join(f"{share:.2%}" for share in result.planet_shares)
+        parts.append(Text(f"Their shares of the torque: {shares}"))
     parts.append(_methods(result))
     parts += [_list("Warnings", result.warnings), _list("Sources", result.sources)]
     return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))

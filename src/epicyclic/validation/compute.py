@@ -81,7 +81,7 @@ def _loaded_rollers(branch_torque: int, couple: bool) -> NDArray[np.bool_]:
     case = _case(operation__torque=f"{3 * branch_torque} N*m")
     assert case.planet_bearing is not None
     bearing = roller_bearing(case.planet_bearing, case.numerics.bearing_slices)
-    load = planet_load(planetary_duties(case), 0.0)
+    load = planet_load(planetary_duties(case, 1 / case.planet.count), 0.0)
     moments = (load.moment_x, load.moment_y) if couple else (0.0, 0.0)
     loads = roller_loads(bearing, load.force, 0.0, *moments)
     loaded: NDArray[np.bool_] = loads.intensity.sum(axis=(0, 2)) > 0

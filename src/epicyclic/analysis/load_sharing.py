@@ -1,0 +1,112 @@
+"""The share of the load that each planet of a case carries."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from epicyclic.analysis.parts import MeshDuty, elastic_constants
+from epicyclic.case import build
+from epicyclic.case.case import PlanetaryCase
+from epicyclic.case.schema import Numerics
+from epicyclic.elasticity.mesh_compliance import load_mesh_elastically
+from epicyclic.elasticity.planet_sharing import (
+    Branches,
+    branch_directions,
+    closed_form_branch_forces,
+    mesh_load_factor_shares,
+    solve_branch_forces,
+)
+from epicyclic.errors import ConvergenceError
+from epicyclic.losses.planet_bearing import RollerBearing, radial_stiffness
+
+__all__ = ["planet_shares"]
+
+STIFFNESS_STEP = 0.01
+"""Relative step of the force in the slope of a mesh's approach over its force. [1]"""
+
+
+def planet_shares(
+    case: PlanetaryCase, duties: tuple[MeshDuty, MeshDuty], bearing: RollerBearing | None
+) -> tuple[float, ...]:
+    """Share of the sun's torque that each planet carries; their sum is 1. Theory (S1).
+
+    Parameters
+    ----------
+    case : PlanetaryCase
+    duties : tuple of MeshDuty
+        Of both meshes of a planet under the mean load.
+    bearing : RollerBearing or None
+        Of one planet; None: rigid.
+
+    Raises
+    ------
+    ConvergenceError
+        If no loads of the planets balance, or the closed form does not hold.
+    """
+    count, sharing = case.planet.count, case.load_sharing
+    if sharing.method == "mesh-load-factor":
+        return mesh_load_factor_shares(count, sharing.mesh_load_factor)
+    if sharing.method == "equal" or duties[0].torque1 == 0:
+        return (1 / count,) * count
+    branches = _branches(case, duties, bearing)
+    floats = sharing.floating_member != "none"
+    force = count * _mesh_force(duties[0])
+    if sharing.method == "closed-form":
+        forces = closed_form_branch_forces(force, branches, floating=floats)
+        if forces.min() < 0:
+            raise ConvergenceError(
+                "a planet loses contact, which the closed form of load sharing cannot show; "
+                "use load_sharing.method 'direct'."
+            )
+    else:
+        directions = branch_directions(
+            branches.angles, *(duty.mesh.operating_pressure_angle for duty in duties)
+        )
+        supports: dict[str, float] = (
+            {sharing.floating_member: sharing.support_stiffness} if floats else {}
+        )
+        forces = solve_branch_forces(force, branches, directions, supports)
+    return tuple(float(share) for share in forces / forces.sum())
+
+
+def _branches(
+    case: PlanetaryCase, duties: tuple[MeshDuty, MeshDuty], bearing: RollerBearing | None
+) -> Branches:
+    """The branches of all planets. Theory (S6)."""
+    sun_mesh = duties[0]
+    angles = np.array(build.planet_angles(case.sun, case.planet, case.ring))
+    # the branch force reaches the pin through both meshes
+    through_pin = sum(math.cos(duty.mesh.operating_pressure_angle) for duty in duties)
+    pin_force = through_pin * _mesh_force(sun_mesh)
+    pin_compliance = 0.0 if bearing is None else 1 / radial_stiffness(bearing, pin_force)
+    if case.load_sharing.pin_stiffness is not None:
+        pin_compliance += 1 / case.load_sharing.pin_stiffness
+    compliance = sum(_mesh_compliance(duty, case.numerics) for duty in duties)
+    errors = np.array(case.load_sharing.position_errors or np.zeros(case.planet.count))
+    return Branches(
+        angles,
+        compliance + through_pin**2 * pin_compliance,
+        math.copysign(through_pin, sun_mesh.torque1) * errors,
+    )
+
+
+def _mesh_force(duty: MeshDuty) -> float:
+    """Along the transverse line of action. [N]"""
+    return abs(duty.torque1) / duty.mesh.gear1.base_radius
+
+
+def _mesh_compliance(duty: MeshDuty, numerics: Numerics) -> float:
+    """Slope of the mean approach over the force, both along the transverse line. [m/N]"""
+    mesh, force = duty.mesh, _mesh_force(duty)
+    one, two = (elastic_constants(gear) for gear in duty.gears)
+    low, high = ((1 + sign * STIFFNESS_STEP) * force for sign in (-1, 1))
+    closer, farther = (
+        load_mesh_elastically(
+            mesh, one, two, numerics.mesh_positions, numerics.contact_segments, load
+        ).approach.mean()
+        for load in (low, high)
+    )
+    slope = float((farther - closer) / (high - low))
+    return slope / math.cos(mesh.gear1.rack.base_helix_angle)
