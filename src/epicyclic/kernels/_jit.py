@@ -23,24 +23,37 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def cache_directory(kernel_folder: Path) -> Path:
-    """Folder for the machine code of the kernels now in `kernel_folder`."""
+_USER = os.getuid() if hasattr(os, "getuid") else None
+"""Number of the user; None where temporary folders are those of one user anyway (Windows)."""
+
+
+def cache_directory(kernel_folder: Path) -> Path | None:
+    """Folder for the machine code of the kernels now in `kernel_folder`; None if there is none."""
     digest = hashlib.sha256()
     for source in sorted(kernel_folder.glob("*.py")):
         digest.update(source.read_bytes())
     name = f"kernels-{digest.hexdigest()[:16]}"
     folder = Path(platformdirs.user_cache_dir("epicyclic")) / name
+    # without a home that can be written to: compile once for each start of the machine
+    temporary = Path(tempfile.gettempdir()) / f"epicyclic-{_USER}" / name
+    return folder if _is_own(folder) else temporary if _is_own(temporary) else None
+
+
+def _is_own(folder: Path) -> bool:
+    """True if nobody else can have put machine code into `folder`, made if need be."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:  # a home that cannot be written to: compile once for each start of the machine
-        folder = Path(tempfile.gettempdir()) / f"epicyclic-{name}"
-    return folder
+        folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, exist_ok=True)
+        owners = {path.stat().st_uid for path in (folder, folder.parent)}
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK) and (_USER is None or owners == {_USER})
 
 
 _CACHE_DIR = (
-    os.environ["NUMBA_CACHE_DIR"]
+    Path(os.environ["NUMBA_CACHE_DIR"])
     if "NUMBA_CACHE_DIR" in os.environ
-    else str(cache_directory(Path(__file__).parent))
+    else cache_directory(Path(__file__).parent)
 )
 
 
@@ -52,10 +65,10 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """
     config: Any = numba.config
     previous = config.CACHE_DIR
-    config.CACHE_DIR = _CACHE_DIR
+    config.CACHE_DIR = str(_CACHE_DIR or "")
     try:
         compiled: Callable[P, R] = numba.njit(
-            cache=True, fastmath=False, error_model="numpy", nogil=True
+            cache=_CACHE_DIR is not None, fastmath=False, error_model="numpy", nogil=True
         )(function)
     finally:
         config.CACHE_DIR = previous
