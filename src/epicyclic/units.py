@@ -22,6 +22,22 @@ if TYPE_CHECKING:
     from pint import Unit, UnitRegistry
 
 __all__ = [
+    "CELSIUS",
+    "DEGREE",
+    "GIGAPASCAL",
+    "KILOGRAM_PER_CUBIC_METRE",
+    "METRE_PER_SECOND",
+    "MICROMETRE",
+    "MILLIMETRE",
+    "MILLIPASCAL_SECOND",
+    "NEWTON",
+    "NEWTON_METRE",
+    "NEWTON_PER_MM",
+    "NUMBER",
+    "PER_GIGAPASCAL",
+    "RPM",
+    "SQUARE_MM_PER_SECOND",
+    "WATT",
     "Angle",
     "Density",
     "HelixAngle",
@@ -319,6 +335,25 @@ def _convert_back(value: float, si: str, display: str) -> float:
     return float(f"{converted:.14g}")
 
 
+# Kinds of values that are only shown; a case does not read them, so that they have no bounds.
+CELSIUS = Quantity("a temperature", "K", "degC")
+DEGREE = Quantity("an angle", "rad", "deg")
+GIGAPASCAL = Quantity("a pressure", "Pa", "GPa")
+KILOGRAM_PER_CUBIC_METRE = Quantity("a density", "kg/m^3", "kg/m^3")
+METRE_PER_SECOND = Quantity("a speed", "m/s", "m/s")
+MICROMETRE = Quantity("a length", "m", "um")
+MILLIMETRE = Quantity("a length", "m", "mm")
+MILLIPASCAL_SECOND = Quantity("a viscosity", "Pa*s", "mPa*s")
+NEWTON = Quantity("a force", "N", "N")
+NEWTON_METRE = Quantity("a moment", "N*m", "N*m")
+NEWTON_PER_MM = Quantity("a line load", "N/m", "N/mm")
+NUMBER = Quantity("a number", "", "")
+PER_GIGAPASCAL = Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa")
+RPM = Quantity("a rotational speed", "rad/s", "rpm")
+SQUARE_MM_PER_SECOND = Quantity("a viscosity", "m^2/s", "mm^2/s")
+WATT = Quantity("a power", "W", "W")
+
+
 class _Dimensionless:
     """Marks a number as one that has no unit because it has no dimension."""
 
@@ -349,8 +384,9 @@ Density = Annotated[
 ]
 KinematicViscosity = Annotated[
     float,
-    Quantity("a kinematic viscosity", "m^2/s", "mm^2/s", low=0.0, high=1e7, open_low=True),
+    Quantity("a kinematic viscosity", "m^2/s", "mm^2/s", low=0.3, high=1e7, open_low=True),
 ]
+"""ASTM D341 takes the logarithm of a logarithm of the value in mm^2/s plus 0.7."""
 PressureViscosity = Annotated[
     float, Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa", low=1.0, high=60.0)
 ]

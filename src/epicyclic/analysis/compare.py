@@ -67,7 +67,9 @@ def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
                 mean_friction={key: mesh.friction_mean for key, mesh in local.meshes.items()},
                 sliding=_sliding(local),
                 quick=_sliding(quick),
-                flagged=any(flag.model.startswith(model.title) for flag in local.flags),
+                flagged=any(
+                    (flag.use.role, flag.use.model) == ("friction", name) for flag in local.flags
+                ),
             )
         )
     return tuple(rows)

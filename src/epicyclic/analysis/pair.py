@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from epicyclic.analysis.parts import (
+    Body,
     MeshDuty,
-    Part,
+    drag_part,
     fluid_notes,
     fluids_of,
     general_notes,
@@ -13,13 +14,10 @@ from epicyclic.analysis.parts import (
     solve_mesh,
     used_sources,
 )
-from epicyclic.analysis.planetary import DRAG_METHOD, DRAG_SOURCE
 from epicyclic.analysis.result import Result
 from epicyclic.case import build
 from epicyclic.case.case import GearPairCase
 from epicyclic.kinematics import pair_power_flow
-from epicyclic.losses.viscous import disc_drag_loss
-from epicyclic.lubricant.properties import MixtureState
 
 __all__ = ["pair_duty", "solve_pair"]
 
@@ -29,7 +27,7 @@ def solve_pair(case: GearPairCase) -> Result:
     fluids = fluids_of(case)
     duty = pair_duty(case)
     mesh = solve_mesh(case, duty, fluids.oil, 1)
-    drag = Part(_drag(case, duty, fluids.mixture), DRAG_METHOD, DRAG_SOURCE)
+    drag, drag_flags = drag_part(_bodies(case, duty), fluids.mixture)
     terms = loss_terms(mesh.parts | {"drag": drag}, case.losses)
     flow = pair_power_flow(
         duty.mesh.ratio,
@@ -47,7 +45,7 @@ def solve_pair(case: GearPairCase) -> Result:
         bearing=None,
         fluid=fluids.figures,
         models=resolve_models(case),
-        flags=fluids.flags + mesh.flags,
+        flags=fluids.flags + mesh.flags + drag_flags,
         notes=general_notes(terms, flow.input_power, flow.efficiency) + fluid_notes(case),
         sources=used_sources(terms),
         inputs=case.inputs(),
@@ -61,13 +59,11 @@ def pair_duty(case: GearPairCase) -> MeshDuty:
     return MeshDuty("mesh", mesh, (case.pinion, case.gear), operation.torque, operation.speed)
 
 
-def _drag(case: GearPairCase, duty: MeshDuty, mixture: MixtureState) -> float:
-    mesh = duty.mesh
-    bodies = (
-        (mesh.gear1, case.pinion, duty.speed1),
-        (mesh.gear2, case.gear, duty.speed1 / mesh.ratio),
-    )
-    return sum(
-        disc_drag_loss(build.outside_radius(gear, table), gear.face_width, speed, mixture)
-        for gear, table, speed in bodies
+def _bodies(case: GearPairCase, duty: MeshDuty) -> tuple[Body, Body]:
+    gear1, gear2 = duty.mesh.gear1, duty.mesh.gear2
+    radius1 = build.outside_radius(gear1, case.pinion)
+    radius2 = build.outside_radius(gear2, case.gear)
+    return (
+        Body("pinion", radius1, gear1.face_width, duty.speed1),
+        Body("gear", radius2, gear2.face_width, duty.speed1 / duty.mesh.ratio),
     )

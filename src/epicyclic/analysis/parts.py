@@ -25,17 +25,27 @@ from epicyclic.losses.friction import FrictionSettings, friction_model
 from epicyclic.losses.friction.user import FrictionMap
 from epicyclic.losses.load_distribution import distribute_load
 from epicyclic.losses.mesh import MeshLoss, local_loss, loss_factor_loss, ohlendorf_loss_factor
+from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.losses.rolling import ROLLING_MODELS
-from epicyclic.losses.validity import CELSIUS, Range, ValidityFlag, check_ranges
+from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
+from epicyclic.losses.viscous import DRAG_METHOD, DRAG_SOURCE, disc_drag, disc_drag_flags
 from epicyclic.lubricant.oil import Oil
-from epicyclic.lubricant.properties import MixtureState, OilState, mixture_state, oil_state
-from epicyclic.units import Quantity
+from epicyclic.lubricant.properties import (
+    MixtureState,
+    OilState,
+    extrapolated_viscosity,
+    mixture_state,
+    oil_state,
+)
+from epicyclic.units import CELSIUS, SQUARE_MM_PER_SECOND
 
 __all__ = [
+    "Body",
     "Fluids",
     "MeshDuty",
     "MeshOutcome",
     "Part",
+    "drag_part",
     "elastic_constants",
     "fluid_notes",
     "fluids_of",
@@ -50,17 +60,11 @@ __all__ = [
 
 NO_POCKETING = "pocketing is not modelled yet"
 OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
-LOAD_DEPENDENT_WORDS = ("sliding", "rolling", "mechanical")
-"""Last words of the names of load-dependent terms."""
 
 _VISCOSITY = Range(
-    "kinematic_viscosity",
-    "kinematic viscosity",
-    2.0,
-    2e7,
-    Quantity("a viscosity", "m^2/s", "mm^2/s"),
+    "kinematic_viscosity", "kinematic viscosity", 2.0, 2e7, SQUARE_MM_PER_SECOND,
     "ASTM D341, form for 2 mm^2/s and more",
-)
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +90,21 @@ class Fluids:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A loss before the user's options: watts and where they come from, or why it is missing."""
+    """A loss before the user's options: watts and where they come from, or why it is missing.
 
+    Attributes
+    ----------
+    group : str
+        `LOAD_DEPENDENT` or `LOAD_INDEPENDENT`.
+    watts : float
+        [W]
+    method, source : str
+        The model and where it is printed.
+    left_out : str
+        Why there is no such loss; empty if there is.
+    """
+
+    group: str
     watts: float = 0.0
     method: str = ""
     source: str = ""
@@ -129,7 +146,7 @@ class MeshOutcome:
 
 def resolve_models(case: Case) -> dict[str, str]:
     """The models of a case by key, ``auto`` replaced by what it stands for."""
-    own = case.lubricant.oil.friction_regression is not None
+    own = case.lubricant.oil.friction_regression == TALBOT_FLUID.key
     models = case.models
     automatic = {
         "friction": "mixed-ehl" if own else "schlenk",
@@ -150,10 +167,11 @@ def fluids_of(case: Case) -> Fluids:
     temperature = case.operation.oil_inlet_temperature
     oil = oil_state(case.lubricant.oil, temperature)
     mixture = mixture_state(oil, case.surroundings.oil_air_ratio, case.surroundings.pressure)
+    viscosity = extrapolated_viscosity(case.lubricant.oil, temperature)
     flags = check_ranges(
-        f"oil {case.lubricant.oil.name}",
+        ModelUse("oil", case.lubricant.oil.name, "properties"),
         (_temperature_range(case.lubricant.oil), _VISCOSITY),
-        {"temperature": temperature, "kinematic_viscosity": oil.kinematic_viscosity},
+        {"temperature": temperature, "kinematic_viscosity": viscosity},
     )
     return Fluids(oil, mixture, flags)
 
@@ -229,20 +247,16 @@ def solve_mesh(case: Case, duty: MeshDuty, oil: OilState, count: int) -> MeshOut
         loss = loss_factor_loss(contact, friction)
     else:
         loss = local_loss(contact, friction, rolling)
-    parts = {
-        f"{duty.key}_sliding": Part(count * loss.sliding, friction.title, friction.source),
-        f"{duty.key}_rolling": Part(count * loss.rolling, rolling.title, rolling.source),
-        f"{duty.key}_pocketing": Part(left_out=NO_POCKETING),
-    }
+    method, source = friction.title, friction.source
+    rolling_part = Part(LOAD_DEPENDENT, count * loss.rolling, rolling.title, rolling.source)
     if quick:
-        parts |= {
-            f"{duty.key}_sliding": Part(
-                count * loss.sliding,
-                f"{friction.title} times the loss factor",
-                f"{friction.source}; {OHLENDORF_SOURCE}",
-            ),
-            f"{duty.key}_rolling": Part(left_out="the loss-factor method has no rolling loss"),
-        }
+        method, source = f"{method} times the loss factor", f"{source}; {OHLENDORF_SOURCE}"
+        rolling_part = Part(LOAD_DEPENDENT, left_out="the loss-factor method has no rolling loss")
+    parts = {
+        f"{duty.key}_sliding": Part(LOAD_DEPENDENT, count * loss.sliding, method, source),
+        f"{duty.key}_rolling": rolling_part,
+        f"{duty.key}_pocketing": Part(LOAD_INDEPENDENT, left_out=NO_POCKETING),
+    }
     return MeshOutcome(parts, _mesh_figures(duty, contact, loss.mean_friction), loss.flags)
 
 
@@ -281,33 +295,59 @@ def loss_terms(parts: Mapping[str, Part], options: BaseModel) -> tuple[LossTerm,
 
 def _term(name: str, part: Part, option: LossOption) -> LossTerm:
     """One loss term with the user's options. Theory (P4)."""
-    loaded = name.rpartition("_")[2] in LOAD_DEPENDENT_WORDS
-    group = LOAD_DEPENDENT if loaded else LOAD_INDEPENDENT
     reason = part.left_out or ("" if option.include else "left out by the case")
     if reason:
-        return LossTerm(name, 0.0, group, "", "", left_out=reason)
+        return LossTerm(name, 0.0, part.group, "", "", left_out=reason)
     watts = option.factor * part.watts
-    return LossTerm(name, watts, group, part.method, part.source, factor=option.factor)
+    return LossTerm(name, watts, part.group, part.method, part.source, factor=option.factor)
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A body that turns in the mixture, as a disc.
+
+    Attributes
+    ----------
+    where : str
+    radius, width : float
+        [m]
+    speed : float
+        Against the housing. [rad/s]
+    """
+
+    where: str
+    radius: float
+    width: float
+    speed: float
+
+
+def drag_part(
+    bodies: Iterable[Body], mixture: MixtureState
+) -> tuple[Part, tuple[ValidityFlag, ...]]:
+    """The drag of `bodies` together, and its flags."""
+    watts = 0.0
+    flags: tuple[ValidityFlag, ...] = ()
+    for body in bodies:
+        drag = disc_drag(body.radius, body.width, body.speed, mixture)
+        watts += drag.total
+        flags += disc_drag_flags(body.where, body.radius, drag, body.speed, mixture)
+    return Part(LOAD_INDEPENDENT, watts, DRAG_METHOD, DRAG_SOURCE), flags
 
 
 def fluid_notes(case: Case) -> tuple[str, ...]:
     """A note for every regression that was made for another oil than that of the case."""
-    oil = case.lubricant.oil
-    models = resolve_models(case)
-    notes = []
-    if oil.friction_regression is None:
-        keys = [key for key in ("friction", "rolling", "bearing") if models.get(key) == "mixed-ehl"]
-        notes += [
-            f"models.{key}: the mixed-EHL regression was made for the oil atf-talbot-2012, not for "
-            f"{oil.name}."
-            for key in keys
-        ]
-    if models["friction"] == "xu-2007" and oil.name != "75w-90-gear-oil":
-        notes.append(
-            f"models.friction: the regression xu-2007 was made for a 75W-90 gear oil, not for "
-            f"{oil.name}; it knows no mixed lubrication."
-        )
-    return tuple(notes)
+    oil, models = case.lubricant.oil, resolve_models(case)
+    fluids = {
+        "friction": friction_model(models["friction"], friction_settings(case)).made_for,
+        "rolling": ROLLING_MODELS[models["rolling"]].made_for,
+        "bearing": TALBOT_FLUID if models.get("bearing") == "mixed-ehl" else None,
+    }
+    return tuple(
+        f"models.{key}: the regression {models[key]} was made for {fluid.title}, not for "
+        f"{oil.name}."
+        for key, fluid in fluids.items()
+        if fluid is not None and fluid.key != oil.friction_regression
+    )
 
 
 def used_sources(terms: Iterable[LossTerm], *more: str) -> tuple[str, ...]:

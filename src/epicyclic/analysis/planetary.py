@@ -10,8 +10,10 @@ import numpy as np
 
 from epicyclic.analysis.load_sharing import planet_shares
 from epicyclic.analysis.parts import (
+    Body,
     MeshDuty,
     Part,
+    drag_part,
     fluid_notes,
     fluids_of,
     general_notes,
@@ -20,7 +22,14 @@ from epicyclic.analysis.parts import (
     solve_mesh,
     used_sources,
 )
-from epicyclic.analysis.result import BearingFigures, LossTerm, MeshFigures, Result
+from epicyclic.analysis.result import (
+    LOAD_DEPENDENT,
+    LOAD_INDEPENDENT,
+    BearingFigures,
+    LossTerm,
+    MeshFigures,
+    Result,
+)
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.schema import PlanetBearing
@@ -37,11 +46,17 @@ from epicyclic.losses.planet_bearing import (
     RollerBearing,
     RollerLoads,
     mixed_ehl_rolling_loss,
+    palmgren_flags,
     palmgren_loss,
     roller_loads,
 )
-from epicyclic.losses.validity import ValidityFlag
-from epicyclic.losses.viscous import bearing_viscous_loss, disc_drag_loss
+from epicyclic.losses.validity import ModelUse, ValidityFlag
+from epicyclic.losses.viscous import (
+    VISCOUS_METHOD,
+    VISCOUS_SOURCE,
+    bearing_viscous_loss,
+    viscous_flags,
+)
 from epicyclic.lubricant.properties import MixtureState, OilState
 
 __all__ = ["planetary_duties", "solve_planetary"]
@@ -52,10 +67,6 @@ FULL_COMPLEMENT_PALMGREN = 0.00055
 """f1 of a full-complement roller bearing. Talbot (2012), p. 56. [1]"""
 VISCOUS_FACTOR_PER_ROW = 3.0
 """f0 of one row of caged cylindrical rollers, middle of 2.2-4.0. Talbot (2012), p. 130. [1]"""
-VISCOUS_METHOD = "viscous moment after Palmgren and Harris"
-VISCOUS_SOURCE = "T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991); Talbot (2012), Eq. 5.6"
-DRAG_METHOD = "drag of a disc in the air-oil mixture"
-DRAG_SOURCE = "Seetharaman and Kahraman, Tribol. Trans. 53 (2010) 473; Talbot (2012), Eq. 5.4, 5.5"
 BEARING_METHOD = "mixed-EHL rolling-loss regression, slice by slice"
 BEARING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), Eq. 3.2 to 3.6"
 PALMGREN_METHOD = "friction coefficient f1 of Palmgren"
@@ -71,8 +82,9 @@ def solve_planetary(case: PlanetaryCase) -> Result:
         _solve_branch(case, share, shares.count(share), fluids.oil, speeds)
         for share in sorted(set(shares), reverse=True)
     ]
-    parts = _drags(case, speeds, fluids.mixture) | _sum_parts(branches)
-    parts["thrust_bearing_viscous"] = _thrust_bearing(case, speeds, fluids.oil)
+    drag_parts, drag_flags = _drag_parts(case, speeds, fluids.mixture)
+    thrust, thrust_flags = _thrust_bearing(case, speeds, fluids.oil)
+    parts = drag_parts | _sum_parts(branches) | {"thrust_bearing_viscous": thrust}
     terms = loss_terms(parts, case.losses)
     most_loaded = branches[0]
     drags = _housing_drags(case, terms)
@@ -96,7 +108,7 @@ def solve_planetary(case: PlanetaryCase) -> Result:
         bearing=most_loaded.bearing,
         fluid=fluids.figures,
         models=resolve_models(case),
-        flags=fluids.flags + _widest_flags(branches),
+        flags=fluids.flags + _widest_flags(branches) + drag_flags + thrust_flags,
         notes=(
             *general_notes(terms, flow.input_power, flow.efficiency),
             *fluid_notes(case),
@@ -185,10 +197,10 @@ def _sum_parts(branches: Sequence[_Branch]) -> dict[str, Part]:
 
 def _widest_flags(branches: Sequence[_Branch]) -> tuple[ValidityFlag, ...]:
     """For each model and quantity the flag of the most loaded planet that raises one."""
-    flags: dict[tuple[str, str], ValidityFlag] = {}
+    flags: dict[tuple[ModelUse, str, str], ValidityFlag] = {}
     for branch in branches:
         for flag in branch.flags:
-            flags.setdefault((flag.model, flag.quantity), flag)
+            flags.setdefault((flag.use, flag.quantity, flag.source), flag)
     return tuple(flags.values())
 
 
@@ -250,28 +262,35 @@ def _solve_bearing(
     table, bearing = case.planet_bearing, _bearing(case)
     mechanical, viscous = "planet_bearing_mechanical", "planet_bearing_viscous"
     if table is None or bearing is None:
-        absent = Part(left_out="the case has no [planet_bearing]")
-        return _BearingOutcome({mechanical: absent, viscous: absent})
+        reason = "the case has no [planet_bearing]"
+        return _BearingOutcome(
+            {
+                mechanical: Part(LOAD_DEPENDENT, left_out=reason),
+                viscous: Part(LOAD_INDEPENDENT, left_out=reason),
+            }
+        )
     speed = planet_speed(case.sun.teeth, case.planet.teeth, speeds)
     load = planet_load(duties, _centrifugal(case, speeds))
     loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
     if resolve_models(case)["bearing"] == "mixed-ehl":
         loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil)
-        part = Part(count * loss.loss, BEARING_METHOD, BEARING_SOURCE)
+        method, source = BEARING_METHOD, BEARING_SOURCE
     else:
-        coefficient = palmgren_coefficient(table)
-        loss = BearingLoss(palmgren_loss(coefficient, load.force, bearing.pitch_diameter, speed))
-        part = Part(count * loss.loss, PALMGREN_METHOD, PALMGREN_SOURCE)
+        watts = palmgren_loss(
+            palmgren_coefficient(table), load.force, bearing.pitch_diameter, speed
+        )
+        loss = BearingLoss(watts, palmgren_flags(bearing, loads, speed))
+        method, source = PALMGREN_METHOD, PALMGREN_SOURCE
     viscous_loss = bearing_viscous_loss(
         viscous_factor(table), oil.kinematic_viscosity, speed, bearing.pitch_diameter
     )
     return _BearingOutcome(
         {
-            mechanical: part,
-            viscous: Part(count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE),
+            mechanical: Part(LOAD_DEPENDENT, count * loss.loss, method, source),
+            viscous: Part(LOAD_INDEPENDENT, count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE),
         },
         _bearing_figures(bearing, loads, load, speed),
-        loss.flags,
+        loss.flags + viscous_flags("planet bearing", speed, bearing.pitch_diameter),
     )
 
 
@@ -346,22 +365,24 @@ def _bearing_figures(
 # --- drag and thrust bearing ----------------------------------------------------------------------
 
 
-def _drags(
+def _drag_parts(
     case: PlanetaryCase, speeds: Mapping[str, float], mixture: MixtureState
-) -> dict[str, Part]:
+) -> tuple[dict[str, Part], tuple[ValidityFlag, ...]]:
     sun = build.gear("sun", case.sun, case.gears)
     ring = build.gear("ring", case.ring, case.gears)
-    bodies = {
+    discs = {
         "sun": (sun.tip_radius, sun.face_width),
         "ring": (build.outside_radius(ring, case.ring), ring.face_width),
     }
     if case.carrier is not None:
-        bodies["carrier"] = (case.carrier.outer_diameter / 2, case.carrier.width)
-    parts = {"carrier_drag": Part(left_out="the case has no [carrier]")}
-    for name, (radius, width) in bodies.items():
-        loss = disc_drag_loss(radius, width, speeds[name], mixture)
-        parts[f"{name}_drag"] = Part(loss, DRAG_METHOD, DRAG_SOURCE)
-    return parts
+        discs["carrier"] = (case.carrier.outer_diameter / 2, case.carrier.width)
+    parts = {"carrier_drag": Part(LOAD_INDEPENDENT, left_out="the case has no [carrier]")}
+    flags: tuple[ValidityFlag, ...] = ()
+    for name, (radius, width) in discs.items():
+        body = Body(name, radius, width, speeds[name])
+        parts[f"{name}_drag"], found = drag_part((body,), mixture)
+        flags += found
+    return parts, flags
 
 
 def _housing_drags(case: PlanetaryCase, terms: Iterable[LossTerm]) -> dict[str, float]:
@@ -375,20 +396,21 @@ def _housing_drags(case: PlanetaryCase, terms: Iterable[LossTerm]) -> dict[str, 
     return drags
 
 
-def _thrust_bearing(case: PlanetaryCase, speeds: Mapping[str, float], oil: OilState) -> Part:
+def _thrust_bearing(
+    case: PlanetaryCase, speeds: Mapping[str, float], oil: OilState
+) -> tuple[Part, tuple[ValidityFlag, ...]]:
     """Viscous loss of all thrust bearings. Theory (V2)."""
     bearing = case.thrust_bearing
     if bearing is None:
-        return Part(left_out="the case has no [thrust_bearing]")
+        return Part(LOAD_INDEPENDENT, left_out="the case has no [thrust_bearing]"), ()
     absolute = {**speeds, "housing": 0.0}
     one, two = bearing.between.split("-")
+    speed = absolute[one] - absolute[two]
     loss = bearing_viscous_loss(
-        bearing.viscous_factor,
-        oil.kinematic_viscosity,
-        absolute[one] - absolute[two],
-        bearing.mean_diameter,
+        bearing.viscous_factor, oil.kinematic_viscosity, speed, bearing.mean_diameter
     )
-    return Part(bearing.count * loss, VISCOUS_METHOD, VISCOUS_SOURCE)
+    part = Part(LOAD_INDEPENDENT, bearing.count * loss, VISCOUS_METHOD, VISCOUS_SOURCE)
+    return part, viscous_flags("thrust bearing", speed, bearing.mean_diameter)
 
 
 # --- notes ----------------------------------------------------------------------------------------

@@ -19,7 +19,23 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.losses.validity import ValidityFlag, describe_flags
 from epicyclic.status import Status
-from epicyclic.units import Quantity
+from epicyclic.units import (
+    DEGREE,
+    GIGAPASCAL,
+    KILOGRAM_PER_CUBIC_METRE,
+    METRE_PER_SECOND,
+    MILLIMETRE,
+    MILLIPASCAL_SECOND,
+    NEWTON,
+    NEWTON_METRE,
+    NEWTON_PER_MM,
+    NUMBER,
+    PER_GIGAPASCAL,
+    RPM,
+    SQUARE_MM_PER_SECOND,
+    WATT,
+    Quantity,
+)
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -33,21 +49,6 @@ __all__ = [
     "Result",
     "figures",
 ]
-
-_DEGREE = Quantity("an angle", "rad", "deg")
-_NUMBER = Quantity("a number", "", "")
-_METRE_PER_SECOND = Quantity("a speed", "m/s", "m/s")
-_GIGAPASCAL = Quantity("a pressure", "Pa", "GPa")
-_NEWTON = Quantity("a force", "N", "N")
-_NEWTON_METRE = Quantity("a moment", "N*m", "N*m")
-_NEWTON_PER_MM = Quantity("a line load", "N/m", "N/mm")
-_MILLIMETRE = Quantity("a length", "m", "mm")
-_RPM = Quantity("a rotational speed", "rad/s", "rpm")
-_WATT = Quantity("a power", "W", "W")
-_SQUARE_MM_PER_S = Quantity("a kinematic viscosity", "m^2/s", "mm^2/s")
-_MILLIPASCAL_SECOND = Quantity("a dynamic viscosity", "Pa*s", "mPa*s")
-_DENSITY = Quantity("a density", "kg/m^3", "kg/m^3")
-_PER_GIGAPASCAL = Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa")
 
 _POWERS = ("losses", "load_dependent", "load_independent", "total", "input_power")
 
@@ -113,18 +114,18 @@ class MeshFigures:
     """What an engineer checks by eye on a mesh; NaN where there is no load or no motion."""
 
     contact: MeshContact | None
-    pressure_angle: float = _figure("operating pressure angle, transverse", _DEGREE)
-    transverse_contact_ratio: float = _figure("transverse contact ratio", _NUMBER)
-    overlap_ratio: float = _figure("overlap ratio", _NUMBER)
-    backlash: float = _figure("circumferential backlash", _MILLIMETRE)
-    pitch_line_speed: float = _figure("pitch-line speed, relative to carrier", _METRE_PER_SECOND)
-    sliding_speed_max: float = _figure("largest sliding speed", _METRE_PER_SECOND)
-    line_load_max: float = _figure("largest line load", _NEWTON_PER_MM)
-    hertz_pressure_max: float = _figure("largest Hertz pressure", _GIGAPASCAL)
-    film_ratio_min: float = _figure("film ratio, smallest", _NUMBER)
-    film_ratio_max: float = _figure("film ratio, largest", _NUMBER)
-    friction_mean: float = _figure("mean coefficient of friction", _NUMBER)
-    loss_factor: float = _figure("loss factor H_V (Ohlendorf)", _NUMBER)
+    pressure_angle: float = _figure("operating pressure angle, transverse", DEGREE)
+    transverse_contact_ratio: float = _figure("transverse contact ratio", NUMBER)
+    overlap_ratio: float = _figure("overlap ratio", NUMBER)
+    backlash: float = _figure("circumferential backlash", MILLIMETRE)
+    pitch_line_speed: float = _figure("pitch-line speed, relative to carrier", METRE_PER_SECOND)
+    sliding_speed_max: float = _figure("largest sliding speed", METRE_PER_SECOND)
+    line_load_max: float = _figure("largest line load", NEWTON_PER_MM)
+    hertz_pressure_max: float = _figure("largest Hertz pressure", GIGAPASCAL)
+    film_ratio_min: float = _figure("film ratio, smallest", NUMBER)
+    film_ratio_max: float = _figure("film ratio, largest", NUMBER)
+    friction_mean: float = _figure("mean coefficient of friction", NUMBER)
+    loss_factor: float = _figure("loss factor H_V (Ohlendorf)", NUMBER)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -132,26 +133,26 @@ class BearingFigures:
     """What an engineer checks by eye on the planet bearing."""
 
     loads: RollerLoads | None
-    radial_force: float = _figure("radial force", _NEWTON)
-    moment: float = _figure("tilting moment", _NEWTON_METRE)
-    speed: float = _figure("speed relative to carrier", _RPM)
-    rollers_loaded: float = _figure("loaded rollers, all rows", _NUMBER)
-    roller_load_max: float = _figure("most loaded roller", _NEWTON)
-    roller_azimuth: float = _figure("azimuth of that roller from the load", _DEGREE)
-    hertz_pressure_max: float = _figure("largest Hertz pressure, inner race", _GIGAPASCAL)
+    radial_force: float = _figure("radial force", NEWTON)
+    moment: float = _figure("tilting moment", NEWTON_METRE)
+    speed: float = _figure("speed relative to carrier", RPM)
+    rollers_loaded: float = _figure("loaded rollers, all rows", NUMBER)
+    roller_load_max: float = _figure("most loaded roller", NEWTON)
+    roller_azimuth: float = _figure("azimuth of that roller from the load", DEGREE)
+    hertz_pressure_max: float = _figure("largest Hertz pressure, inner race", GIGAPASCAL)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FluidFigures:
     """Properties of the oil at its inlet temperature, and of its mixture with air."""
 
-    kinematic_viscosity: float = _figure("kinematic viscosity of the oil", _SQUARE_MM_PER_S)
-    dynamic_viscosity: float = _figure("dynamic viscosity of the oil", _MILLIPASCAL_SECOND)
-    density: float = _figure("density of the oil", _DENSITY)
-    pressure_viscosity: float = _figure("pressure-viscosity coefficient", _PER_GIGAPASCAL)
-    mixture_density: float = _figure("density of the air-oil mixture", _DENSITY)
+    kinematic_viscosity: float = _figure("kinematic viscosity of the oil", SQUARE_MM_PER_SECOND)
+    dynamic_viscosity: float = _figure("dynamic viscosity of the oil", MILLIPASCAL_SECOND)
+    density: float = _figure("density of the oil", KILOGRAM_PER_CUBIC_METRE)
+    pressure_viscosity: float = _figure("pressure-viscosity coefficient", PER_GIGAPASCAL)
+    mixture_density: float = _figure("density of the air-oil mixture", KILOGRAM_PER_CUBIC_METRE)
     mixture_viscosity: float = _figure(
-        "dynamic viscosity of the air-oil mixture", _MILLIPASCAL_SECOND
+        "dynamic viscosity of the air-oil mixture", MILLIPASCAL_SECOND
     )
 
 
@@ -246,7 +247,7 @@ class Result:
     def numbers(self) -> Iterator[Figure]:
         """Every number of the result with key, label and unit, as sweeps store them."""
         for term in self.terms:
-            yield Figure(term.name, term.name.replace("_", " "), term.watts, _WATT.display)
+            yield Figure(term.name, term.name.replace("_", " "), term.watts, WATT.display)
         yield Figure("load_dependent", "load-dependent loss", self.load_dependent, "W")
         yield Figure("load_independent", "load-independent loss", self.load_independent, "W")
         yield Figure("total", "total loss", self.total, "W")
@@ -256,7 +257,7 @@ class Result:
         if self.planet_shares:
             yield Figure("mesh_load_factor", "mesh load factor", self.mesh_load_factor, "")
         for name, member in self.flow.members.items():
-            speed = _RPM.to_display(member.speed)
+            speed = RPM.to_display(member.speed)
             yield Figure(f"{name}_speed", f"speed of the {name}", speed, "rpm")
             yield Figure(f"{name}_torque", f"torque on the {name}", member.torque, "N*m")
         parts: dict[str, DataclassInstance] = {"fluid": self.fluid, **self.meshes}
@@ -279,7 +280,7 @@ class Result:
             "total": self.total,
             "input_power": self.input_power,
             "efficiency": self.efficiency,
-            "units": dict.fromkeys(_POWERS, _WATT.display) | {"efficiency": "1"},
+            "units": dict.fromkeys(_POWERS, WATT.display) | {"efficiency": "1"},
             "warnings": list(self.warnings),
             "not_included": {term.name: term.left_out for term in self.terms if term.left_out},
             "factors": {term.name: term.factor for term in self.terms if term.factor != 1.0},
@@ -288,7 +289,7 @@ class Result:
             "validity": [dataclasses.asdict(flag) for flag in self.flags],
             "members": {
                 name: {
-                    "speed": {"value": _RPM.to_display(member.speed), "unit": "rpm"},
+                    "speed": {"value": RPM.to_display(member.speed), "unit": "rpm"},
                     "torque": {"value": member.torque, "unit": "N*m"},
                     "power": {"value": member.power, "unit": "W"},
                 }
@@ -298,7 +299,7 @@ class Result:
             "fluid": _figures_dict(self.fluid),
             "planet_bearing": None if self.bearing is None else _figures_dict(self.bearing),
             "planet_angles": {
-                "value": [_DEGREE.to_display(angle) for angle in self.planet_angles],
+                "value": [DEGREE.to_display(angle) for angle in self.planet_angles],
                 "unit": "deg",
             },
             "planet_shares": {"value": list(self.planet_shares), "unit": "1"},

@@ -18,6 +18,7 @@ __all__ = [
     "hertz_half_width",
     "hertz_pressure",
     "line_load_at_pressure",
+    "martin_force",
     "pan_hamrock_central_film",
     "pan_hamrock_minimum_film",
 ]
@@ -85,4 +86,21 @@ def goksem_hargreaves_force(u: Real, g: float, w: Real, thermal_load: Real) -> R
     """
     inlet_heating = 1 / (1 + 0.29 * thermal_load**0.78)
     force: Real = 4.318 * (g * u) ** 0.658 * w**0.0126 * inlet_heating
+    return force
+
+
+MARTIN_FORCE = 2.0796
+"""F_r/sqrt(mu u W') of rigid cylinders, by quadrature of Martin's pressure. [1]"""
+
+
+def martin_force(w: Real, speed: Real, viscosity: float) -> Real:
+    """Rolling force per length of one surface of rigid cylinders at constant viscosity. [N/m]
+
+    Theory (R9).
+
+    F_r = 2.080 sqrt(mu u W'), from the pressure of H. M. Martin, Engineering 102 (1916) 119, with
+    the film h_0 = 4.895 mu u R/W'. `w` line load [N/m], `speed` mean surface speed [m/s],
+    `viscosity` [Pa s].
+    """
+    force: Real = MARTIN_FORCE * (viscosity * speed * w) ** 0.5
     return force

@@ -162,7 +162,7 @@ def rolling_loss_number(
 
     Theory (R3).
 
-    The prefactor printed in the source, 1e5 W/m, is left out: see `losses.mesh.rolling_scale`.
+    The prefactor printed in the source, 1e5 W/m, is left out: see `losses.rolling.rolling_scale`.
     """
     film = blend_weight(lam, ROLLING_LIMIT)
     log_loss = 0.0

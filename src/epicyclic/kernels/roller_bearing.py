@@ -43,6 +43,12 @@ ROUNDING = 16 * 2.2e-16
 LENGTH_UPDATES = 25
 """Substitutions of the loaded lengths. They contract by 0.1 each, but for bearings of few rollers
 that have hardly any stiffness in one direction; there the last lengths are kept."""
+LARGEST_GROWTH = 10.0
+"""Largest Newton step over the displacement, and over the clearance, that it starts from. [1]"""
+FLATTER = 0.5
+"""Share of the gradient to which a step must bring it where the energy is rounding noise. [1]"""
+SMALLEST_LENGTH = 1e-6
+"""Size of a deflection where there is no clearance to compare it with. [m]"""
 NEWTON_SHIFT = 1e-12
 """Share of the reference stiffness added to the Hessian, which is singular without contact. [1]"""
 
@@ -188,7 +194,7 @@ def minimise(
         step = np.linalg.solve(hessian, -gradient)
         # without contact the Newton step is as long as the shift makes it: start small
         length = np.abs(step).max()
-        largest = max(10.0 * np.abs(d).max(), 10.0 * clearance_length(clearance))
+        largest = LARGEST_GROWTH * max(np.abs(d).max(), clearance_length(clearance))
         if length > largest:
             step *= largest / length
         slope = np.dot(gradient, step)
@@ -202,7 +208,7 @@ def minimise(
             )  # fmt: skip
             decrease = SUFFICIENT_DECREASE * factor * slope
             # near the minimum the energy is rounding noise: then the gradient decides
-            flatter = np.abs(trial_gradient).max() < 0.5 * np.abs(gradient).max()
+            flatter = np.abs(trial_gradient).max() < FLATTER * np.abs(gradient).max()
             if trial_energy <= energy + decrease or flatter:
                 accepted = True
                 break
@@ -219,7 +225,7 @@ def minimise(
 @kernel
 def clearance_length(clearance: float) -> float:
     """A length of the size of clearances and deflections, at least 1 um. [m]"""
-    return max(clearance, 1e-6)
+    return max(clearance, SMALLEST_LENGTH)
 
 
 @kernel

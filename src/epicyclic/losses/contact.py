@@ -8,7 +8,7 @@ of the helicoid, rho_n = rho_t/cos(beta_b).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -21,6 +21,7 @@ from epicyclic.kernels.line_contact import (
     hertz_pressure,
     pan_hamrock_minimum_film,
 )
+from epicyclic.losses.validity import Range, held_in_range
 from epicyclic.lubricant.properties import OilState
 
 __all__ = ["Flanks", "MeshContact", "mesh_contact"]
@@ -53,6 +54,14 @@ class Flanks:
     def reduced_roughness(self) -> float:
         """Rq1 Rq2/(Rq1 + Rq2). Talbot (2012), p. 137. Theory (C13). [m]"""
         return self.roughness1 * self.roughness2 / (self.roughness1 + self.roughness2)
+
+    def held_in(self, roughness: Range) -> Flanks:
+        """The same with the roughness of each flank held in a range. Theory (F5)."""
+        return replace(
+            self,
+            roughness1=held_in_range(self.roughness1, roughness),
+            roughness2=held_in_range(self.roughness2, roughness),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,6 +168,11 @@ class MeshContact:
     def dynamic_viscosity(self) -> float:
         """Of the oil at the inlet of the contacts. [Pa s]"""
         return self.oil.dynamic_viscosity
+
+    @property
+    def pressure_viscosity(self) -> float:
+        """Of the oil. [1/Pa]"""
+        return self.oil.pressure_viscosity
 
     @property
     def roughness(self) -> tuple[float, float]:

@@ -20,7 +20,7 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.friction.base import FrictionModel
 from epicyclic.losses.rolling import RollingModel
-from epicyclic.losses.validity import Range, ValidityFlag, check_ranges
+from epicyclic.losses.validity import ModelUse, ValidityFlag, check_ranges
 
 __all__ = ["MeshLoss", "local_loss", "loss_factor_loss", "ohlendorf_loss_factor"]
 
@@ -55,13 +55,12 @@ def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingMo
     local_sliding = friction.coefficient(contact) * sliding_power
     local_rolling = rolling.loss_density(contact) * contact.weight
     sliding = float(local_sliding.sum())
-    where = contact.mesh.name
     return MeshLoss(
         sliding=sliding,
         rolling=float(local_rolling.sum()),
         mean_friction=sliding / float(sliding_power.sum()),
-        flags=_flags(f"{friction.title} ({where})", friction.ranges, contact, local_sliding)
-        + _flags(f"{rolling.title} ({where})", rolling.ranges, contact, local_rolling),
+        flags=_flags("friction", friction, contact, local_sliding)
+        + _flags("rolling", rolling, contact, local_rolling),
     )
 
 
@@ -79,9 +78,7 @@ def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
         sliding=contact.input_power * mean * ohlendorf_loss_factor(contact.mesh),
         rolling=0.0,
         mean_friction=mean,
-        flags=_flags(
-            f"{friction.title} ({contact.mesh.name})", friction.ranges, contact, local_sliding
-        ),
+        flags=_flags("friction", friction, contact, local_sliding),
     )
 
 
@@ -116,12 +113,13 @@ def _sliding_integral(tip1: float, tip2: float) -> float:
 
 
 def _flags(
-    model: str, ranges: tuple[Range, ...], contact: MeshContact, weight: FloatArray
+    role: str, model: FrictionModel | RollingModel, contact: MeshContact, weight: FloatArray
 ) -> tuple[ValidityFlag, ...]:
     """Range check of `contact`; local quantities count with the loss where they occur."""
+    use = ModelUse(role, model.name, contact.mesh.name)
     flags: tuple[ValidityFlag, ...] = ()
-    for item in ranges:
-        values = np.asarray(getattr(contact, item.name))
+    for item in model.ranges:
+        values = item.found_in(contact)
         weights = weight if values.shape == weight.shape else np.ones(values.shape)
-        flags += check_ranges(model, (item,), {item.name: values}, weights)
+        flags += check_ranges(use, (item,), {item.name: values}, weights)
     return flags

@@ -1,9 +1,11 @@
-"""The dimensionless groups of Talbot's gear regressions, kept near the range they were made in.
+"""The dimensionless groups of Talbot's gear regressions, kept in the range they were made in.
 
 Powers and exponentials of a regression run away outside its data: at a fifth of the lowest
-simulated Hertz pressure Eq. 5.8 gives coefficients of friction above 1. The conditions are
-therefore held at the limits of Table 5.1 widened by `MARGIN`; below the load held there, rolling
-losses fall in proportion to the load. Every use outside Table 5.1 itself is flagged.
+simulated Hertz pressure Eq. 5.8 gives coefficients of friction above 1, and with pressure, radius,
+roughness and viscosity each a factor of two outside Table 5.1, Eq. 5.10 gives rolling losses a
+million times the power passed on. The conditions are therefore held at the limits of Table 5.1.
+Beyond a held load or speed, rolling losses go on as `beyond_data` says. Every use outside Table 5.1
+is flagged.
 """
 
 from __future__ import annotations
@@ -15,7 +17,8 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels.line_contact import line_load_at_pressure, pan_hamrock_minimum_film
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.validity import (
+from epicyclic.losses.validity import Range, RegressionFluid, held_in_range
+from epicyclic.units import (
     CELSIUS,
     GIGAPASCAL,
     METRE_PER_SECOND,
@@ -23,39 +26,49 @@ from epicyclic.losses.validity import (
     MILLIMETRE,
     MILLIPASCAL_SECOND,
     NUMBER,
-    Range,
+    PER_GIGAPASCAL,
 )
 
 __all__ = [
-    "MARGIN",
+    "PRESSURE_VISCOSITY_RANGE",
+    "TALBOT_FLUID",
     "TALBOT_GEAR_RANGES",
     "VISCOSITY_RANGE",
     "RegressionGroups",
-    "held_in_range",
-    "light_load_share",
+    "beyond_data",
+    "held_line_load",
+    "held_speed",
     "regression_groups",
 ]
 
 FloatArray = NDArray[np.float64]
 Real = TypeVar("Real", float, FloatArray)
 
-MARGIN = 2.0
-"""Factor by which the formulas are followed beyond the range of their simulations. [1]"""
+
+TALBOT_FLUID = RegressionFluid(
+    "talbot-2012", "the automatic transmission fluid of Talbot (2012), atf-talbot-2012"
+)
 
 _SOURCE = "Talbot (2012), Table 5.1"
+_FLUID_SOURCE = "the fluid of Talbot (2012) at 100 and 25 degC"
 _PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SOURCE)
 _RADIUS = Range("radius", "equivalent radius", 5.0, 40.0, MILLIMETRE, _SOURCE)
 _SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SOURCE)
 VISCOSITY_RANGE = Range(
-    "dynamic_viscosity", "dynamic viscosity", 4.9, 48.0, MILLIPASCAL_SECOND,
-    "the fluid of Talbot (2012) at 100 and 25 degC",
-)  # fmt: skip
+    "dynamic_viscosity", "dynamic viscosity", 4.9, 48.0, MILLIPASCAL_SECOND, _FLUID_SOURCE
+)
 """Viscosities of the simulations: the fluid is that of `atf-talbot-2012`, Tables 3.1 and 5.1."""
+PRESSURE_VISCOSITY_RANGE = Range(
+    "pressure_viscosity", "pressure-viscosity coefficient", 10.6, 16.5, PER_GIGAPASCAL,
+    f"{_FLUID_SOURCE}, calibrated",
+)  # fmt: skip
+"""As calibrated for that fluid. The regressions contain exp(G) and are the most sensitive to it."""
 _ROUGHNESS = Range("roughness", "rms roughness", 0.1, 0.7, MICROMETRE, _SOURCE)
 
 TALBOT_GEAR_RANGES = (
     Range("temperature", "oil temperature", 25.0, 100.0, CELSIUS, _SOURCE),
     VISCOSITY_RANGE,
+    PRESSURE_VISCOSITY_RANGE,
     _RADIUS,
     _ROUGHNESS,
     _PRESSURE,
@@ -80,44 +93,53 @@ class RegressionGroups(NamedTuple):
 
 def regression_groups(contact: MeshContact) -> RegressionGroups:
     """Groups of Eq. 5.8 and 5.10 at every point of `contact`. Theory (F5)."""
-    flanks = contact.flanks
-    e_eq = flanks.equivalent_modulus
+    e_eq = contact.flanks.equivalent_modulus
     radius = held_in_range(contact.radius, _RADIUS)
-    speed = held_in_range(contact.rolling_speed, _SPEED)
-    rough1 = held_in_range(flanks.roughness1, _ROUGHNESS)
-    rough2 = held_in_range(flanks.roughness2, _ROUGHNESS)
+    flanks = contact.flanks.held_in(_ROUGHNESS)
     pressure = held_in_range(contact.hertz_pressure, _PRESSURE)
 
     load = line_load_at_pressure(pressure, radius, e_eq)
     half_width = 2 * load / (np.pi * pressure)
     viscosity = held_in_range(contact.dynamic_viscosity, VISCOSITY_RANGE)
-    speed_number = speed * viscosity / (e_eq * radius)
-    composite = np.hypot(rough1, rough2) / radius
-    film = pan_hamrock_minimum_film(speed_number, contact.material_number, load / (e_eq * radius))
+    speed_number = held_speed(contact) * viscosity / (e_eq * radius)
+    material = held_in_range(contact.pressure_viscosity, PRESSURE_VISCOSITY_RANGE) * e_eq
+    composite = flanks.composite_roughness / radius
+    film = pan_hamrock_minimum_film(speed_number, material, load / (e_eq * radius))
     return RegressionGroups(
         slide_to_roll_ratio=contact.slide_to_roll_ratio,
         speed=speed_number,
-        material=contact.material_number,
+        material=material,
         pressure=pressure / e_eq,
         radius=radius / half_width,
         composite_roughness=composite,
-        reduced_roughness=rough1 * rough2 / (rough1 + rough2) / radius,
+        reduced_roughness=flanks.reduced_roughness / radius,
         film_ratio=film / composite,
     )
 
 
-def light_load_share(pressure: FloatArray, item: Range = _PRESSURE) -> FloatArray:
-    """Line load over the line load held for it: below 1 where the contact is held at its limit.
+def held_speed(contact: MeshContact) -> FloatArray:
+    """u_r within Table 5.1. Theory (F5). [m/s]"""
+    return held_in_range(contact.rolling_speed, _SPEED)
+
+
+def held_line_load(contact: MeshContact) -> FloatArray:
+    """W' at the held pressure and radius. Theory (F5). [N/m]"""
+    return line_load_at_pressure(
+        held_in_range(contact.hertz_pressure, _PRESSURE),
+        held_in_range(contact.radius, _RADIUS),
+        contact.flanks.equivalent_modulus,
+    )
+
+
+def beyond_data(
+    line_load: FloatArray, held_load: FloatArray, speed: Real, held: Real
+) -> FloatArray:
+    """Rolling loss over the rolling loss at the held line load and the `held` speed. [1]
 
     Theory (R5).
+
+    Below the held load the loss falls with the load, so that it vanishes with it; above, it is
+    that of the held load. Beyond the held speed the rolling force is that of the held speed.
     """
-    lowest = item.low / item.unit.to_display(1.0) / MARGIN
-    share: FloatArray = np.minimum(1.0, pressure / lowest) ** 2
+    share: FloatArray = np.minimum(1.0, line_load / held_load) * (speed / held)
     return share
-
-
-def held_in_range(value: Real, item: Range) -> Real:
-    """`value` within the range of `item`, widened by `MARGIN`. Theory (F5)."""
-    scale = 1 / item.unit.to_display(1.0)
-    held: Real = np.clip(value, item.low * scale / MARGIN, item.high * scale * MARGIN)
-    return held

@@ -14,31 +14,37 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.errors import ConvergenceError
-from epicyclic.kernels.line_contact import hertz_pressure
+from epicyclic.kernels.line_contact import hertz_pressure, line_load_at_pressure
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss_at
 from epicyclic.kernels.roller_bearing import solve_roller_loads
 from epicyclic.losses.mixed_ehl_groups import (
+    PRESSURE_VISCOSITY_RANGE,
     VISCOSITY_RANGE,
-    held_in_range,
-    light_load_share,
+    beyond_data,
 )
 from epicyclic.losses.validity import (
+    ModelUse,
+    Range,
+    ValidityFlag,
+    check_ranges,
+    held_in_range,
+)
+from epicyclic.losses.viscous import SPEED_PARAMETER, speed_parameter
+from epicyclic.lubricant.properties import OilState
+from epicyclic.units import (
     CELSIUS,
     GIGAPASCAL,
     METRE_PER_SECOND,
     MICROMETRE,
     MILLIMETRE,
-    Range,
-    ValidityFlag,
-    check_ranges,
 )
-from epicyclic.lubricant.properties import OilState
 
 __all__ = [
     "BearingLoss",
     "RollerBearing",
     "RollerLoads",
     "mixed_ehl_rolling_loss",
+    "palmgren_flags",
     "palmgren_loss",
     "radial_stiffness",
     "roller_loads",
@@ -60,16 +66,30 @@ _RACE = Range("race_roughness", "rms roughness of the races", 0.02, 0.10, MICROM
 _ROLLER = Range(
     "roller_roughness", "rms roughness of the rollers", 0.055, 0.165, MICROMETRE, _SOURCE
 )
+_COMPOSITE = Range(
+    "composite_roughness", "composite rms roughness", math.hypot(0.02, 0.055),
+    math.hypot(0.10, 0.165), MICROMETRE, _SOURCE,
+)  # fmt: skip
+_RADIUS = Range("radius", "equivalent radius", 0.5, 4.0, MILLIMETRE, _SOURCE)
 _SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SOURCE)
 NEEDLE_RANGES = (
     Range("temperature", "oil temperature", 25.0, 100.0, CELSIUS, _SOURCE),
     VISCOSITY_RANGE,
-    Range("radius", "equivalent radius", 0.5, 4.0, MILLIMETRE, _SOURCE),
+    PRESSURE_VISCOSITY_RANGE,
+    _RADIUS,
     _RACE,
     _ROLLER,
     _SPEED,
 )
 """Ranges of the 2,880 simulations behind Eq. 3.5, with `_PRESSURE`."""
+PALMGREN_RANGES = (
+    Range(
+        "hertz_pressure", "Hertz pressure", None, 4.0, GIGAPASCAL,
+        "static load rating of roller bearings, ISO 76",
+    ),
+    SPEED_PARAMETER,
+)  # fmt: skip
+"""Of the coefficient f1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +152,11 @@ class RollerBearing:
         """Equivalent radius of the contact at the outer race. Theory (B5). [m]"""
         roller, race = self.roller_diameter / 2, self.outer_diameter / 2
         return roller * race / (race - roller)
+
+    @property
+    def composite_roughness(self) -> float:
+        """Of roller and race, rms. Theory (B13). [m]"""
+        return math.hypot(self.race_roughness, self.roller_roughness)
 
     @property
     def slice_width(self) -> float:
@@ -272,46 +297,42 @@ def mixed_ehl_rolling_loss(
     Theory (B13), (B15).
 
     As printed, one evaluation for each loaded slice; with the radius of the outer race, the
-    reading that reproduces the published effects of roughness and size. Pressure, speed,
-    viscosity and roughness far outside Table 3.1 are held as in `mixed_ehl_groups`; below the load
-    or the speed held there, the loss falls in proportion to it.
+    reading that reproduces the published effects of roughness and size. Conditions outside
+    Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`.
     """
     intensity = loads.intensity[loads.intensity > 0]
     if intensity.size == 0 or speed == 0:
         return BearingLoss(0.0)
-    radius = np.full_like(intensity, bearing.outer_radius)
-    pressure = hertz_pressure(intensity, radius, bearing.equivalent_modulus)
+    e_eq, radius = bearing.equivalent_modulus, bearing.outer_radius
+    pressure = hertz_pressure(intensity, np.full_like(intensity, radius), e_eq)
     rolling_speed = bearing.rolling_speed(speed)
+    held_pressure, held_radius = held_in_range(pressure, _PRESSURE), held_in_range(radius, _RADIUS)
     held_speed = held_in_range(rolling_speed, _SPEED)
     density = needle_rolling_loss_at(
-        held_in_range(pressure, _PRESSURE),
+        held_pressure,
         held_speed,
         held_in_range(oil.dynamic_viscosity, VISCOSITY_RANGE),
-        oil.pressure_viscosity,
-        bearing.outer_radius,
-        math.hypot(
-            held_in_range(bearing.race_roughness, _RACE),
-            held_in_range(bearing.roller_roughness, _ROLLER),
-        ),
-        bearing.equivalent_modulus,
+        held_in_range(oil.pressure_viscosity, PRESSURE_VISCOSITY_RANGE),
+        held_radius,
+        held_in_range(bearing.composite_roughness, _COMPOSITE),
+        e_eq,
     )
+    held_load = line_load_at_pressure(held_pressure, np.full_like(pressure, held_radius), e_eq)
     local = (
-        bearing.slice_width
-        * density
-        * light_load_share(pressure, _PRESSURE)
-        * min(1.0, rolling_speed / held_speed)
+        bearing.slice_width * density * beyond_data(intensity, held_load, rolling_speed, held_speed)
     )
     values: dict[str, FloatArray | float] = {
         "temperature": oil.temperature,
         "dynamic_viscosity": oil.dynamic_viscosity,
-        "radius": bearing.outer_radius,
+        "pressure_viscosity": oil.pressure_viscosity,
+        "radius": radius,
         "race_roughness": bearing.race_roughness,
         "roller_roughness": bearing.roller_roughness,
         "rolling_speed": rolling_speed,
     }
-    name = "mixed-EHL rolling-loss regression (planet bearing)"
-    flags = check_ranges(name, NEEDLE_RANGES, values)
-    flags += check_ranges(name, (_PRESSURE,), {"hertz_pressure": pressure}, local)
+    use = ModelUse("bearing", "mixed-ehl", "planet bearing")
+    flags = check_ranges(use, NEEDLE_RANGES, values)
+    flags += check_ranges(use, (_PRESSURE,), {"hertz_pressure": pressure}, local)
     return BearingLoss(float(local.sum()), flags)
 
 
@@ -321,3 +342,17 @@ def palmgren_loss(coefficient: float, force: float, pitch_diameter: float, speed
     Theory (B16).
     """
     return coefficient * force * pitch_diameter * abs(speed)
+
+
+def palmgren_flags(
+    bearing: RollerBearing, loads: RollerLoads, speed: float
+) -> tuple[ValidityFlag, ...]:
+    """Flags of `palmgren_loss` on the most loaded slice, at the inner race."""
+    if speed == 0:
+        return ()
+    highest = float(loads.intensity.max())
+    values: dict[str, FloatArray | float] = {
+        "hertz_pressure": hertz_pressure(highest, bearing.inner_radius, bearing.equivalent_modulus),
+        "speed_parameter": speed_parameter(speed, bearing.pitch_diameter),
+    }
+    return check_ranges(ModelUse("bearing", "palmgren", "planet bearing"), PALMGREN_RANGES, values)

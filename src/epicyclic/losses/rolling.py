@@ -7,17 +7,20 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.kernels.line_contact import goksem_hargreaves_force
+from epicyclic.kernels.line_contact import goksem_hargreaves_force, martin_force
 from epicyclic.kernels.mixed_ehl import rolling_loss_number_at
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.mixed_ehl_groups import (
+    TALBOT_FLUID,
     TALBOT_GEAR_RANGES,
     VISCOSITY_RANGE,
-    held_in_range,
-    light_load_share,
+    beyond_data,
+    held_line_load,
+    held_speed,
     regression_groups,
 )
-from epicyclic.losses.validity import Range
+from epicyclic.losses.validity import Range, RegressionFluid, held_in_range
+from epicyclic.units import NUMBER
 
 __all__ = ["ROLLING_MODELS", "RollingModel", "rolling_scale"]
 
@@ -25,10 +28,12 @@ FloatArray = NDArray[np.float64]
 
 
 class RollingModel(Protocol):
-    """A way to the rolling loss per contact length."""
+    """A way to the rolling loss per contact length; attributes as those of `FrictionModel`."""
 
+    name: ClassVar[str]
     title: ClassVar[str]
     source: ClassVar[str]
+    made_for: ClassVar[RegressionFluid | None]
     ranges: ClassVar[tuple[Range, ...]]
 
     def loss_density(self, contact: MeshContact) -> FloatArray:
@@ -37,7 +42,7 @@ class RollingModel(Protocol):
 
 
 def rolling_scale(contact: MeshContact) -> FloatArray:
-    """mu u_r^2: the power per length that turns the number of Eq. 5.10 into W/m.
+    """mu u_r^2, both held: the power per length that turns the number of Eq. 5.10 into W/m.
 
     Theory (R4).
 
@@ -46,7 +51,7 @@ def rolling_scale(contact: MeshContact) -> FloatArray:
     totals, and agrees with smooth EHL solutions within about a factor of two.
     """
     viscosity = held_in_range(contact.dynamic_viscosity, VISCOSITY_RANGE)
-    scale: FloatArray = viscosity * contact.rolling_speed**2
+    scale: FloatArray = viscosity * held_speed(contact) ** 2
     return scale
 
 
@@ -58,25 +63,51 @@ class MixedEhlRolling:
     Talbot (2012), Eq. 5.10 and Table 5.2(b), in the scale of `rolling_scale`.
     """
 
+    name: ClassVar = "mixed-ehl"
     title: ClassVar = "mixed-EHL rolling-loss regression"
     source: ClassVar = "D. C. Talbot, PhD dissertation, Ohio State (2012), Eq. 5.10"
+    made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
     ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
 
     def loss_density(self, contact: MeshContact) -> FloatArray:
         """See the class. [W/m]"""
         number = rolling_loss_number_at(*regression_groups(contact))
-        density: FloatArray = (
-            rolling_scale(contact) * number * light_load_share(contact.hertz_pressure)
+        share = beyond_data(
+            contact.line_load, held_line_load(contact), contact.rolling_speed, held_speed(contact)
         )
+        density: FloatArray = rolling_scale(contact) * number * share
         return density
 
 
-class GoksemHargreaves:
-    """Rolling force of both surfaces of a smooth, fully flooded contact, times u_r. Theory (R7)."""
+def moes_load(contact: MeshContact) -> FloatArray:
+    """M = W/sqrt(2 U), the load parameter of Moes. Theory (R8). [1]"""
+    parameter: FloatArray = contact.load_number / np.sqrt(2 * contact.speed_number)
+    return parameter
 
+
+class GoksemHargreaves:
+    """Rolling force of both surfaces of a smooth, fully flooded contact, times u_r.
+
+    Theory (R7), (R10).
+
+    The formula belongs to elastic contacts, and its force does not vanish with the load. That of
+    rigid cylinders and an oil of constant viscosity does; where it is smaller, it takes over.
+    """
+
+    name: ClassVar = "goksem-hargreaves"
     title: ClassVar = "rolling loss of Goksem and Hargreaves"
-    source: ClassVar = "Goksem and Hargreaves, J. Lubr. Technol. 100 (1978) 346"
-    ranges: ClassVar[tuple[Range, ...]] = ()
+    source: ClassVar = (
+        "Goksem and Hargreaves, J. Lubr. Technol. 100 (1978) 346; light load: H. M. Martin, "
+        "Engineering 102 (1916) 119"
+    )
+    made_for: ClassVar[RegressionFluid | None] = None
+    ranges: ClassVar[tuple[Range, ...]] = (
+        Range(
+            "moes_load", "load parameter M of Moes", 3.0, 200.0, NUMBER,
+            "numerical solutions of the smooth line contact", moes_load,
+        ),
+        Range("film_ratio", "film ratio", 1.0, None, NUMBER, "the formula is for full films"),
+    )  # fmt: skip
 
     def loss_density(self, contact: MeshContact) -> FloatArray:
         """See the class. [W/m]"""
@@ -93,12 +124,11 @@ class GoksemHargreaves:
             contact.load_number,
             heating,
         )
-        force = number * contact.radius / oil.pressure_viscosity
-        density: FloatArray = 2 * force * contact.rolling_speed
+        elastic = number * contact.radius / oil.pressure_viscosity
+        rigid = martin_force(contact.line_load, contact.rolling_speed, oil.dynamic_viscosity)
+        density: FloatArray = 2 * np.minimum(elastic, rigid) * contact.rolling_speed
         return density
 
 
-ROLLING_MODELS: dict[str, RollingModel] = {
-    "mixed-ehl": MixedEhlRolling(),
-    "goksem-hargreaves": GoksemHargreaves(),
-}
+_MODELS: tuple[RollingModel, ...] = (MixedEhlRolling(), GoksemHargreaves())
+ROLLING_MODELS = {model.name: model for model in _MODELS}

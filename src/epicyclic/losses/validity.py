@@ -1,28 +1,33 @@
-"""Ranges in which models were made, and the flag raised when a result leaves one."""
+"""Ranges in which models were made: values held in them, and flags for what leaves them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.units import Quantity, format_number
 
-__all__ = ["Range", "ValidityFlag", "check_ranges", "describe_flags"]
+__all__ = [
+    "OF_THIS_PACKAGE",
+    "ModelUse",
+    "Range",
+    "RegressionFluid",
+    "ValidityFlag",
+    "check_ranges",
+    "describe_flags",
+    "held_in_range",
+]
 
 FloatArray = NDArray[np.float64]
+Real = TypeVar("Real", float, FloatArray)
 
 SMALLEST_SHOWN_SHARE = 0.01
-
-GIGAPASCAL = Quantity("a pressure", "Pa", "GPa")
-MILLIMETRE = Quantity("a length", "m", "mm")
-MICROMETRE = Quantity("a length", "m", "um")
-MILLIPASCAL_SECOND = Quantity("a viscosity", "Pa*s", "mPa*s")
-METRE_PER_SECOND = Quantity("a speed", "m/s", "m/s")
-CELSIUS = Quantity("a temperature", "K", "degC")
-NUMBER = Quantity("a number", "", "")
+OF_THIS_PACKAGE = "limit of this package; none is in print"
+"""Source of a range that no publication states."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,19 +40,70 @@ class Range:
         Name of the quantity among the values handed to `check_ranges`.
     label : str
         The same in words.
-    low, high : float
-        In the display unit of `unit`.
+    low, high : float or None
+        In the display unit of `unit`; None where there is no such limit.
     unit : Quantity
     source : str
         Where the range is printed.
+    of : callable or None
+        From the conditions to the quantity, where these have no attribute `name`.
     """
 
     name: str
     label: str
-    low: float
-    high: float
+    low: float | None
+    high: float | None
     unit: Quantity
     source: str
+    of: Callable[[Any], FloatArray | float] | None = None
+
+    def found_in(self, conditions: object) -> FloatArray:
+        """The quantity in `conditions`, in SI."""
+        found = getattr(conditions, self.name) if self.of is None else self.of(conditions)
+        return np.asarray(found, dtype=float)
+
+    def limits(self) -> tuple[float | None, float | None]:
+        """`low` and `high` in SI."""
+        scale, offset = _display(self.unit)
+        low = None if self.low is None else (self.low - offset) / scale
+        high = None if self.high is None else (self.high - offset) / scale
+        return low, high
+
+
+class RegressionFluid(NamedTuple):
+    """The fluid of the simulations behind a regression.
+
+    Attributes
+    ----------
+    key : str
+        What an oil states as its `friction_regression` if it is this fluid.
+    title : str
+    """
+
+    key: str
+    title: str
+
+
+@dataclass(frozen=True, slots=True)
+class ModelUse:
+    """A model and what it was used for.
+
+    Attributes
+    ----------
+    role : str
+        Key of the case under which the model is chosen: ``"friction"``.
+    model : str
+        Its name there: ``"mixed-ehl"``.
+    where : str
+        ``"sun mesh"``.
+    """
+
+    role: str
+    model: str
+    where: str
+
+    def __str__(self) -> str:
+        return f"{self.role.replace('_', ' ')} {self.model} ({self.where})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,31 +112,40 @@ class ValidityFlag:
 
     Attributes
     ----------
-    model : str
+    use : ModelUse
         The model and where it was used.
     quantity : str
-    found_low, found_high, low, high : float
-        Values found and the range left, in `unit`.
+    found_low, found_high : float
+        Values found, in `unit`.
+    low, high : float or None
+        The range left, in `unit`.
     unit : str
     share : float
         Part of the loss, or of the contact, that lies outside. [1]
     source : str
     """
 
-    model: str
+    use: ModelUse
     quantity: str
     found_low: float
     found_high: float
-    low: float
-    high: float
+    low: float | None
+    high: float | None
     unit: str
     share: float
     source: str
 
 
+def held_in_range(value: Real, item: Range) -> Real:
+    """`value`, in SI, or the limit of `item` that it leaves. Theory (F5)."""
+    low, high = item.limits()
+    held: Real = np.clip(value, low, high)
+    return held
+
+
 def describe_flags(flags: Iterable[ValidityFlag]) -> tuple[str, ...]:
     """One sentence for each quantity and range left, naming every model that left it."""
-    groups: dict[tuple[str, str, float, float, str], list[ValidityFlag]] = {}
+    groups: dict[tuple[object, ...], list[ValidityFlag]] = {}
     for flag in flags:
         key = (flag.quantity, flag.unit, flag.low, flag.high, flag.source)
         groups.setdefault(key, []).append(flag)
@@ -93,12 +158,19 @@ def _sentence(group: list[ValidityFlag]) -> str:
     high = format_number(max(flag.found_high for flag in group), 3)
     found = low if low == high else f"{low} to {high}"
     unit = f" {first.unit}" if first.unit else ""
-    models = ", ".join(f"{flag.model} {_percent(flag.share)}" for flag in group)
+    models = ", ".join(f"{flag.use} {_percent(flag.share)}" for flag in group)
     return (
-        f"Out of range, extrapolated: {first.quantity} {found}{unit}; range "
-        f"{format_number(first.low)} to {format_number(first.high)}{unit} ({first.source}). "
-        f"Share of the loss: {models}."
+        f"Out of range: {first.quantity} {found}{unit}; range {_limits(first)}{unit} "
+        f"({first.source}). Share of the loss: {models}."
     )
+
+
+def _limits(flag: ValidityFlag) -> str:
+    if flag.high is None:
+        return f"from {format_number(flag.low or 0.0)}"
+    if flag.low is None:
+        return f"up to {format_number(flag.high)}"
+    return f"{format_number(flag.low)} to {format_number(flag.high)}"
 
 
 def _percent(share: float) -> str:
@@ -106,22 +178,33 @@ def _percent(share: float) -> str:
 
 
 def check_ranges(
-    model: str,
+    use: ModelUse,
     ranges: Iterable[Range],
     values: Mapping[str, FloatArray | float],
     weight: FloatArray | float = 1.0,
+    part: float = 1.0,
 ) -> tuple[ValidityFlag, ...]:
-    """Flags for every quantity that leaves its range; `weight` is the loss at each value.
+    """Flags for every quantity that leaves its range.
 
     Theory (P8).
+
+    Parameters
+    ----------
+    use : ModelUse
+    ranges : iterable of Range
+    values : mapping of str to float or ndarray
+        The quantities, in SI, by the names of their ranges.
+    weight : ndarray or float
+        The loss at each value.
+    part : float
+        Part of the whole loss that the model is asked for here. [1]
     """
     flags = []
     for item in ranges:
         value = np.atleast_1d(np.asarray(values[item.name], dtype=float))
         scale, offset = _display(item.unit)
         shown = value * scale + offset
-        slack = 1e-9 * max(abs(item.low), abs(item.high))
-        outside = (shown < item.low - slack) | (shown > item.high + slack)
+        outside = _outside(shown, item)
         if not outside.any():
             continue
         weights = np.broadcast_to(np.asarray(weight, dtype=float), value.shape)
@@ -129,11 +212,21 @@ def check_ranges(
         share = float(weights[outside].sum()) / total if total > 0 else 1.0
         flags.append(
             ValidityFlag(
-                model, item.label, float(shown.min()), float(shown.max()),
-                item.low, item.high, item.unit.display, share, item.source,
+                use, item.label, float(shown.min()), float(shown.max()),
+                item.low, item.high, item.unit.display, part * min(share, 1.0), item.source,
             )
         )  # fmt: skip
     return tuple(flags)
+
+
+def _outside(shown: FloatArray, item: Range) -> NDArray[np.bool_]:
+    slack = 1e-9 * max(abs(limit) for limit in (item.low, item.high) if limit is not None)
+    outside = np.zeros(shown.shape, dtype=bool)
+    if item.low is not None:
+        outside |= shown < item.low - slack
+    if item.high is not None:
+        outside |= shown > item.high + slack
+    return outside
 
 
 def _display(unit: Quantity) -> tuple[float, float]:

@@ -3,10 +3,36 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
+from epicyclic.losses.validity import (
+    OF_THIS_PACKAGE,
+    ModelUse,
+    Range,
+    ValidityFlag,
+    check_ranges,
+)
 from epicyclic.lubricant.properties import MixtureState
+from epicyclic.units import NUMBER
 
-__all__ = ["bearing_viscous_loss", "disc_drag_loss"]
+__all__ = [
+    "DRAG_METHOD",
+    "DRAG_SOURCE",
+    "SPEED_PARAMETER",
+    "VISCOUS_METHOD",
+    "VISCOUS_SOURCE",
+    "DiscDrag",
+    "bearing_viscous_loss",
+    "disc_drag",
+    "disc_drag_flags",
+    "speed_parameter",
+    "viscous_flags",
+]
+
+VISCOUS_METHOD = "viscous moment after Palmgren and Harris"
+VISCOUS_SOURCE = "T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991); Talbot (2012), Eq. 5.6"
+DRAG_METHOD = "drag of a disc in the air-oil mixture"
+DRAG_SOURCE = "Seetharaman and Kahraman, Tribol. Trans. 53 (2010) 473; Talbot (2012), Eq. 5.4, 5.5"
 
 LOW_SPEED_LIMIT = 2000.0
 """nu n in mm^2/s times rpm below which the friction moment is constant (Palmgren)."""
@@ -14,6 +40,23 @@ TRANSITION_REYNOLDS = 5e5
 """omega r^2/nu at which the flow on the faces turns turbulent, Talbot (2012), Eq. 5.5. [1]"""
 RPM = math.pi / 30
 """1 rpm in rad/s."""
+
+SPEED_PARAMETER = Range(
+    "speed_parameter", "speed times pitch diameter, rpm mm", None, 1e6, NUMBER, OF_THIS_PACKAGE
+)
+"""Of the formulas of Palmgren and Harris, which come from tests at moderate speed."""
+_FACES = Range(
+    "reynolds_number", "Reynolds number of the faces", None, 1e7, NUMBER,
+    "one-seventh power law of the flat plate, Schlichting, Boundary-Layer Theory",
+)  # fmt: skip
+_CREEPING = Range(
+    "reynolds_number", "Reynolds number of the faces", 70.0, None, NUMBER,
+    "below, a disc in creeping flow, 32/3 mu omega r^3, drags more: Lamb, Hydrodynamics",
+)  # fmt: skip
+_RIM = Range(
+    "reynolds_number", "Reynolds number of the rim", None, 60.0, NUMBER,
+    "laminar flow around a cylinder, Theodorsen and Regier, NACA Report 793 (1944)",
+)  # fmt: skip
 
 
 def bearing_viscous_loss(
@@ -45,13 +88,44 @@ def bearing_viscous_loss(
     return moment * abs(speed)
 
 
-def disc_drag_loss(radius: float, width: float, speed: float, mixture: MixtureState) -> float:
-    """Drag of a disc in the mixture: rim (Eq. 5.4) and both faces (Eq. 5.5). [W]
+def viscous_flags(where: str, speed: float, pitch_diameter: float) -> tuple[ValidityFlag, ...]:
+    """Flags of `bearing_viscous_loss` in the bearing called `where`."""
+    values = {"speed_parameter": speed_parameter(speed, pitch_diameter)}
+    return check_ranges(ModelUse("bearing_viscous", "harris", where), (SPEED_PARAMETER,), values)
 
-    Theory (V3), (V4).
 
-    Seetharaman and Kahraman (2010), Talbot (2012), p. 130. The face formula jumps at its
-    transition, by about a factor of seven: that is the source's.
+def speed_parameter(speed: float, pitch_diameter: float) -> float:
+    """n d_m of a bearing, in rpm mm."""
+    return abs(speed) / RPM * pitch_diameter * 1e3
+
+
+@dataclass(frozen=True, slots=True)
+class DiscDrag:
+    """Drag of a disc.
+
+    Attributes
+    ----------
+    rim, faces : float
+        Of the rim and of both faces. [W]
+    """
+
+    rim: float
+    faces: float
+
+    @property
+    def total(self) -> float:
+        """Theory (V5a). [W]"""
+        return self.rim + self.faces
+
+
+def disc_drag(radius: float, width: float, speed: float, mixture: MixtureState) -> DiscDrag:
+    """Drag of a disc in the mixture: rim (Eq. 5.4) and both faces (Eq. 5.5).
+
+    Theory (V3), (V6).
+
+    Seetharaman and Kahraman (2010), Talbot (2012), p. 130. The branches of the face formula do not
+    meet; here the flow is laminar within the radius at which it turns turbulent, and the turbulent
+    branch counts outside that radius only, after Prandtl.
 
     Parameters
     ----------
@@ -63,12 +137,40 @@ def disc_drag_loss(radius: float, width: float, speed: float, mixture: MixtureSt
     """
     omega = abs(speed)
     rim = 4 * math.pi * mixture.dynamic_viscosity * width * radius**2 * omega**2
-    nu = mixture.kinematic_viscosity
-    if reynolds_number(radius, omega, mixture) < TRANSITION_REYNOLDS:
-        face = 0.41 * math.sqrt(nu) * math.pow(omega, 2.5) * radius**4
-    else:
-        face = 0.025 * math.pow(nu, 0.14) * math.pow(omega, 2.86) * math.pow(radius, 4.72)
-    return rim + math.pi * mixture.density * face
+    if reynolds_number(radius, omega, mixture) <= TRANSITION_REYNOLDS:
+        return DiscDrag(rim, _laminar_faces(radius, omega, mixture))
+    laminar = math.sqrt(TRANSITION_REYNOLDS * mixture.kinematic_viscosity / omega)
+    faces = (
+        _laminar_faces(laminar, omega, mixture)
+        + _turbulent_faces(radius, omega, mixture)
+        - _turbulent_faces(laminar, omega, mixture)
+    )
+    return DiscDrag(rim, faces)
+
+
+def _laminar_faces(radius: float, omega: float, mixture: MixtureState) -> float:
+    """First branch of Talbot (2012), Eq. 5.5. Theory (V4). [W]"""
+    group = math.sqrt(mixture.kinematic_viscosity) * math.pow(omega, 2.5)
+    return 0.41 * math.pi * mixture.density * group * radius**4
+
+
+def _turbulent_faces(radius: float, omega: float, mixture: MixtureState) -> float:
+    """Second branch of Talbot (2012), Eq. 5.5. Theory (V4). [W]"""
+    group = math.pow(mixture.kinematic_viscosity, 0.14) * math.pow(omega, 2.86)
+    return 0.025 * math.pi * mixture.density * group * math.pow(radius, 4.72)
+
+
+def disc_drag_flags(
+    where: str, radius: float, drag: DiscDrag, speed: float, mixture: MixtureState
+) -> tuple[ValidityFlag, ...]:
+    """Flags of the `drag` of the body called `where`, each with the part of it that it concerns."""
+    if drag.total == 0:
+        return ()
+    use = ModelUse("drag", "seetharaman-kahraman", where)
+    values = {"reynolds_number": reynolds_number(radius, speed, mixture)}
+    return check_ranges(use, (_RIM,), values, part=drag.rim / drag.total) + check_ranges(
+        use, (_FACES, _CREEPING), values, part=drag.faces / drag.total
+    )
 
 
 def reynolds_number(radius: float, speed: float, mixture: MixtureState) -> float:

@@ -2,15 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import pairwise
 from typing import Annotated, Any, Literal, cast
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from epicyclic.units import Density, KinematicViscosity, PressureViscosity, Quantity, Temperature
+from epicyclic.units import (
+    CELSIUS,
+    SQUARE_MM_PER_SECOND,
+    KinematicViscosity,
+    Number,
+    PressureViscosity,
+    Quantity,
+    Temperature,
+)
 
 __all__ = ["Oil"]
+
+
+STEEPEST_DENSITY = -2.0
+"""Oils lose 0.6 to 0.8 kg/m^3 for each kelvin; steeper lines may end below zero. [kg/(m^3 K)]"""
+
+OilDensity = Annotated[
+    float, Quantity("a density of an oil", "kg/m^3", "kg/m^3", low=600.0, high=3000.0)
+]
 
 
 class _Data(BaseModel):
@@ -31,7 +48,7 @@ class DensityPoint(_Data):
     """Density at one temperature."""
 
     temperature: Temperature
-    value: Density
+    value: OilDensity
     source: str = ""
 
 
@@ -42,10 +59,17 @@ class PressureViscosityPoint(_Data):
     value: PressureViscosity
 
 
-class SourcedNumber(_Data):
-    """A plain number with its source."""
+class DensitySlope(_Data):
+    """Change of the density with temperature, in kg/(m^3 K), with its source."""
 
-    value: float
+    value: Number = Field(ge=STEEPEST_DENSITY, le=0)
+    source: str = ""
+
+
+class LubricantFactor(_Data):
+    """X_L of the mean friction of gear tests, with its source."""
+
+    value: Number = Field(gt=0, le=2)
     source: str = ""
 
 
@@ -53,8 +77,8 @@ class GoldLaw(_Data):
     """alpha = s nu^t with nu in mm^2/s and alpha in 1/GPa (Gold et al. 2001). Theory (L4)."""
 
     law: Literal["gold"]
-    s: float = Field(gt=0)
-    t: float = Field(ge=0)
+    s: Number = Field(gt=0, le=60)
+    t: Number = Field(ge=0, le=1)
     calibrated: bool = False
     source: str = ""
 
@@ -109,33 +133,87 @@ class Oil(_Data):
     )
     kinematic_viscosity: tuple[ViscosityPoint, ...] = Field(min_length=2)
     density: tuple[DensityPoint, ...] = Field(min_length=1)
-    density_slope: SourcedNumber = Field(
-        default=SourcedNumber(value=-0.65, source="typical of mineral oils and PAO"),
+    density_slope: DensitySlope = Field(
+        default=DensitySlope(value=-0.65, source="typical of mineral oils and PAO"),
         description="d(density)/dT in kg/(m^3 K), used with a single density.",
     )
     pressure_viscosity: PressureViscosityLaw
-    lubricant_factor: SourcedNumber = Field(
-        default=SourcedNumber(value=1.0, source="X_L of ISO/TR 14179-2, mineral oil"),
+    lubricant_factor: LubricantFactor = Field(
+        default=LubricantFactor(value=1.0, source="X_L of ISO/TR 14179-2, mineral oil"),
         description="X_L of the friction model of ISO/TR 14179-2.",
     )
-    friction_regression: Literal["talbot-2012"] | None = Field(
-        default=None, description="The mixed-EHL regression that was made for this oil."
+    friction_regression: Literal["talbot-2012", "xu-2007"] | None = Field(
+        default=None,
+        description="The regressions that were made for this oil, or for one of its grade.",
     )
     thermal_conductivity: SourcedConductivity | None = None
     specific_heat_capacity: SourcedHeatCapacity | None = None
 
     @model_validator(mode="after")
     def _check_points(self) -> Oil:
-        viscosity = sorted(self.kinematic_viscosity, key=lambda point: point.temperature)
-        for colder, warmer in pairwise(viscosity):
-            if warmer.temperature == colder.temperature:
-                raise PydanticCustomError(
-                    "oil", "kinematic_viscosity has two values at one temperature"
-                )
-            if warmer.value >= colder.value:
-                raise PydanticCustomError(
-                    "oil", "kinematic_viscosity must fall with rising temperature"
-                )
-        if self.temperature_range[0] >= self.temperature_range[1]:
-            raise PydanticCustomError("oil", "temperature_range must rise")
+        faults = [*self._viscosity_faults(), *self._density_faults(), *self._range_faults()]
+        if faults:
+            raise ValidationError.from_exception_data(self.name, faults)
         return self
+
+    def _viscosity_faults(self) -> Iterator[InitErrorDetails]:
+        order = sorted(
+            range(len(self.kinematic_viscosity)),
+            key=lambda index: self.kinematic_viscosity[index].temperature,
+        )
+        for first, second in pairwise(order):
+            colder, warmer = self.kinematic_viscosity[first], self.kinematic_viscosity[second]
+            place = ("kinematic_viscosity", second)
+            if warmer.temperature == colder.temperature:
+                yield _fault(
+                    (*place, "temperature"),
+                    CELSIUS.text(warmer.temperature),
+                    f"is that of kinematic_viscosity[{first}] too",
+                    "give one value for each temperature",
+                )
+            elif warmer.value >= colder.value:
+                yield _fault(
+                    (*place, "value"),
+                    SQUARE_MM_PER_SECOND.text(warmer.value),
+                    "must fall with rising temperature; at "
+                    f"{CELSIUS.text(colder.temperature)} it is "
+                    f"{SQUARE_MM_PER_SECOND.text(colder.value)}",
+                    "correct one of the two points",
+                )
+
+    def _density_faults(self) -> Iterator[InitErrorDetails]:
+        order = sorted(range(len(self.density)), key=lambda index: self.density[index].temperature)
+        for first, second in pairwise(order):
+            colder, warmer = self.density[first], self.density[second]
+            place = ("density", second)
+            if warmer.temperature == colder.temperature:
+                yield _fault(
+                    (*place, "temperature"),
+                    CELSIUS.text(warmer.temperature),
+                    f"is that of density[{first}] too",
+                    "give one value for each temperature",
+                )
+                continue
+            slope = (warmer.value - colder.value) / (warmer.temperature - colder.temperature)
+            if not STEEPEST_DENSITY <= slope <= 0:
+                yield _fault(
+                    (*place, "value"),
+                    f"{warmer.value:g} kg/m^3",
+                    "must fall with rising temperature, by 2 kg/(m^3 K) at most",
+                    "correct one of the two points",
+                )
+
+    def _range_faults(self) -> Iterator[InitErrorDetails]:
+        low, high = self.temperature_range
+        if low >= high:
+            yield _fault(
+                ("temperature_range",),
+                f"{CELSIUS.text(low)} to {CELSIUS.text(high)}",
+                "must rise",
+                "give the lower temperature first",
+            )
+
+
+def _fault(place: tuple[str | int, ...], given: str, what: str, remedy: str) -> InitErrorDetails:
+    error = PydanticCustomError("oil", "{what}", {"what": what, "remedy": remedy})
+    return InitErrorDetails(type=error, loc=place, input=given)

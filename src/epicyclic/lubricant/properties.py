@@ -21,7 +21,7 @@ import numpy as np
 
 from epicyclic.lubricant.oil import GoldLaw, Oil, RoelandsLaw
 
-__all__ = ["MixtureState", "OilState", "mixture_state", "oil_state"]
+__all__ = ["MixtureState", "OilState", "extrapolated_viscosity", "mixture_state", "oil_state"]
 
 ROELANDS_PRESSURE = 1.96e8
 """Pole pressure of Roelands' viscosity law. [Pa]"""
@@ -35,6 +35,10 @@ SUTHERLAND_TEMPERATURE = 110.4
 """S in Sutherland's law for air (ISO 2533). [K]"""
 D341_OFFSET = 0.7
 """Constant added to the viscosity in mm^2/s; D341 adds further terms below 2 mm^2/s. [mm^2/s]"""
+D341_HIGHEST = 2e7
+"""Largest viscosity of D341. Colder oil, which hardly flows, keeps it. [mm^2/s]"""
+LARGEST_EXPONENT = 2.0
+"""10^(10^2) mm^2/s: far beyond what is held, and still a number that can be written."""
 MM2_PER_S = 1e-6
 """1 mm^2/s in m^2/s."""
 DEFAULT_CONDUCTIVITY = 0.14
@@ -145,12 +149,17 @@ def air_viscosity(temperature: float) -> float:
 
 
 def _kinematic_viscosity(oil: Oil, temperature: float) -> float:
+    """`extrapolated_viscosity`, held at the largest one of D341. Theory (L1). [m^2/s]"""
+    return min(extrapolated_viscosity(oil, temperature), D341_HIGHEST * MM2_PER_S)
+
+
+def extrapolated_viscosity(oil: Oil, temperature: float) -> float:
     """ASTM D341 between neighbouring points, and beyond the outermost two. Theory (L1). [m^2/s]"""
     points = sorted(oil.kinematic_viscosity, key=lambda point: point.temperature)
     log_t = [math.log10(point.temperature) for point in points]
     ordinate = [math.log10(math.log10(point.value / MM2_PER_S + D341_OFFSET)) for point in points]
     y = _piecewise_line(math.log10(temperature), log_t, ordinate)
-    return float((10 ** (10**y) - D341_OFFSET) * MM2_PER_S)
+    return float((10 ** (10 ** min(y, LARGEST_EXPONENT)) - D341_OFFSET) * MM2_PER_S)
 
 
 def _thermoviscosity(oil: Oil, temperature: float) -> float:

@@ -55,15 +55,15 @@ def _table(settings: FrictionSettings) -> FrictionModel:
 
 
 FRICTION_MODELS: dict[str, Callable[[FrictionSettings], FrictionModel]] = {
-    "mixed-ehl": lambda _: MixedEhl(),
-    "xu-2007": lambda _: Xu2007(),
-    "benedict-kelley": lambda _: BenedictKelley(),
-    "matsumoto": lambda settings: Matsumoto(settings.boundary, settings.fluid),
-    "doleschel": lambda settings: Doleschel(settings.boundary, settings.fluid),
-    "schlenk": lambda _: Schlenk(),
-    "niemann-winter": lambda _: NiemannWinter(),
-    "constant": lambda settings: Constant(settings.constant),
-    "table": _table,
+    MixedEhl.name: lambda _: MixedEhl(),
+    Xu2007.name: lambda _: Xu2007(),
+    BenedictKelley.name: lambda _: BenedictKelley(),
+    Matsumoto.name: lambda settings: Matsumoto(settings.boundary, settings.fluid),
+    Doleschel.name: lambda settings: Doleschel(settings.boundary, settings.fluid),
+    Schlenk.name: lambda _: Schlenk(),
+    NiemannWinter.name: lambda _: NiemannWinter(),
+    Constant.name: lambda settings: Constant(settings.constant),
+    FrictionMap.name: _table,
 }
 
 

@@ -8,13 +8,15 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.kernels.line_contact import hertz_pressure
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.validity import Range
+from epicyclic.losses.validity import Range, RegressionFluid
 
 __all__ = [
     "RA_OVER_RQ",
     "FrictionModel",
     "mean_roughness_ra",
+    "pitch_point_pressure",
     "pitch_point_radius",
     "pitch_point_sum_speed",
     "specific_load",
@@ -31,15 +33,23 @@ class FrictionModel(Protocol):
 
     Attributes
     ----------
+    name : str
+        Under which a case chooses it.
     title, source : str
         For reports.
-    ranges : tuple of Range
-        Ranges of the quantities in `values`.
+    made_for : RegressionFluid or None
+        The fluid that it was made for, if it holds for no other.
     """
 
+    name: ClassVar[str]
     title: ClassVar[str]
     source: ClassVar[str]
-    ranges: ClassVar[tuple[Range, ...]]
+    made_for: ClassVar[RegressionFluid | None]
+
+    @property
+    def ranges(self) -> tuple[Range, ...]:
+        """Where the model was made; leaving it is flagged."""
+        ...
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """Coefficient of friction at each point of `contact`, shape (n,). [1]"""
@@ -65,6 +75,13 @@ def pitch_point_radius(contact: MeshContact) -> float:
     rho1 = mesh.pitch_point
     rho2 = mesh.curvature2(rho1)
     return rho1 * rho2 / ((rho2 + mesh.side * rho1) * math.cos(mesh.gear1.rack.base_helix_angle))
+
+
+def pitch_point_pressure(contact: MeshContact) -> float:
+    """Hertz pressure of F_bt/b on rho_redC. Theory (F18). [Pa]"""
+    return hertz_pressure(
+        specific_load(contact), pitch_point_radius(contact), contact.flanks.equivalent_modulus
+    )
 
 
 def mean_roughness_ra(contact: MeshContact) -> float:

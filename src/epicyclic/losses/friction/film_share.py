@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from epicyclic.kernels.line_contact import pan_hamrock_central_film
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.friction.base import RA_OVER_RQ, mean_roughness_ra
-from epicyclic.losses.validity import Range
+from epicyclic.losses.validity import Range, RegressionFluid
+from epicyclic.units import NUMBER
 
 __all__ = ["Doleschel", "Matsumoto"]
 
@@ -24,6 +25,14 @@ FloatArray = NDArray[np.float64]
 
 RZ_OVER_RA = 6.0
 """Rz/Ra, DIN 3991 approximation. [1]"""
+
+_FILM_SOURCE = "films of Pan and Hamrock, J. Tribol. 111 (1989) 246"
+FILM_RANGES = (
+    Range("load_number", "load number W", 2.045e-5, 5.0e-4, NUMBER, _FILM_SOURCE),
+    Range("speed_number", "speed number U", 1e-12, 5.03e-10, NUMBER, _FILM_SOURCE),
+    Range("material_number", "material number G", 2504.0, 15027.0, NUMBER, _FILM_SOURCE),
+)
+"""Of the film formulas. The shares themselves are within 0 to 1 everywhere. Theory (F8)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,9 +42,11 @@ class Doleschel:
     Theory (F8), (F9).
     """
 
+    name: ClassVar = "doleschel"
     title: ClassVar = "film share of Doleschel"
     source: ClassVar = "A. Doleschel, Diss. TU Muenchen (2002)"
-    ranges: ClassVar[tuple[Range, ...]] = ()
+    made_for: ClassVar[RegressionFluid | None] = None
+    ranges: ClassVar[tuple[Range, ...]] = FILM_RANGES
 
     boundary: float
     fluid: float
@@ -55,9 +66,11 @@ class Doleschel:
 class Matsumoto:
     """xi = log10(D)/2 within 0 to 1, D = (Rz1 + Rz2)/h_min. Theory (F8), (F10)."""
 
+    name: ClassVar = "matsumoto"
     title: ClassVar = "film share of Matsumoto and Morikawa"
     source: ClassVar = "S. Matsumoto and K. Morikawa, Int. Gear Conf. Lyon (2014) 1078"
-    ranges: ClassVar[tuple[Range, ...]] = ()
+    made_for: ClassVar[RegressionFluid | None] = None
+    ranges: ClassVar[tuple[Range, ...]] = FILM_RANGES
 
     boundary: float
     fluid: float

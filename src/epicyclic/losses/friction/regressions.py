@@ -9,8 +9,20 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels.mixed_ehl import sliding_friction_at
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.mixed_ehl_groups import TALBOT_GEAR_RANGES, regression_groups
-from epicyclic.losses.validity import MICROMETRE, Range
+from epicyclic.losses.mixed_ehl_groups import (
+    TALBOT_FLUID,
+    TALBOT_GEAR_RANGES,
+    regression_groups,
+)
+from epicyclic.losses.validity import OF_THIS_PACKAGE, Range, RegressionFluid, held_in_range
+from epicyclic.units import (
+    GIGAPASCAL,
+    METRE_PER_SECOND,
+    MICROMETRE,
+    MILLIMETRE,
+    MILLIPASCAL_SECOND,
+    NUMBER,
+)
 
 __all__ = ["MixedEhl", "Xu2007"]
 
@@ -20,17 +32,32 @@ FloatArray = NDArray[np.float64]
 class MixedEhl:
     """Regression of 33,600 mixed-EHL simulations of an automatic transmission fluid.
 
-    Talbot (2012), Eq. 5.8 and Table 5.2(a); branches in the film ratio blended, conditions far
-    outside Table 5.1 held at its widened limits (`mixed_ehl_groups`).
+    Talbot (2012), Eq. 5.8 and Table 5.2(a); branches in the film ratio blended, conditions
+    outside Table 5.1 held at its limits (`mixed_ehl_groups`).
     """
 
+    name: ClassVar = "mixed-ehl"
     title: ClassVar = "mixed-EHL friction regression"
     source: ClassVar = "D. C. Talbot, PhD dissertation, Ohio State (2012), Eq. 5.8"
+    made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
     ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
         return sliding_friction_at(*regression_groups(contact))
+
+
+_SUCCESSOR = "none is in print; that of the later regression, Talbot (2012), Table 5.1"
+_PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SUCCESSOR)
+_SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SUCCESSOR)
+_RADIUS = Range("radius", "equivalent radius", 5.0, 40.0, MILLIMETRE, _SUCCESSOR)
+_VISCOSITY = Range(
+    "dynamic_viscosity", "dynamic viscosity", 5.0, 180.0, MILLIPASCAL_SECOND,
+    "none is in print; a 75W-90 gear oil from 150 to 25 degC",
+)  # fmt: skip
+_ROUGHNESS = Range(
+    "composite_roughness", "composite rms roughness", None, 1.0, MICROMETRE, OF_THIS_PACKAGE
+)
 
 
 class Xu2007:
@@ -40,23 +67,21 @@ class Xu2007:
 
     Xu, Kahraman, Anderson and Maddock, J. Mech. Des. 129 (2007) 58: with p_h in GPa, u_r in m/s,
     dynamic viscosity in mPa s, composite rms roughness S in um, radius in m. The range of the
-    regression was not found in print; exp(b9 exp(S)) runs away on rough flanks, so that S is held
-    at `LARGEST_ROUGHNESS`, which is flagged.
+    regression was not found in print; conditions are held in the ranges assumed here, because
+    exp(b9 exp(S)) and the powers run away.
     """
 
+    name: ClassVar = "xu-2007"
     title: ClassVar = "EHL friction regression of Xu et al."
     source: ClassVar = "Xu, Kahraman, Anderson, Maddock, J. Mech. Des. 129 (2007) 58"
-    LARGEST_ROUGHNESS: ClassVar = 1e-6
-    """Composite rms roughness up to which the formula is followed. [m]"""
+    made_for: ClassVar[RegressionFluid | None] = RegressionFluid("xu-2007", "a 75W-90 gear oil")
     ranges: ClassVar[tuple[Range, ...]] = (
-        Range(
-            "composite_roughness",
-            "composite rms roughness",
-            0.0,
-            LARGEST_ROUGHNESS * 1e6,
-            MICROMETRE,
-            "limit of this package; none is in print",
-        ),
+        _PRESSURE,
+        _SPEED,
+        _RADIUS,
+        _VISCOSITY,
+        _ROUGHNESS,
+        Range("film_ratio", "film ratio", 1.0, None, NUMBER, "the regression is for full films"),
     )
 
     B: ClassVar = (
@@ -67,18 +92,18 @@ class Xu2007:
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
         b1, b2, b3, b4, b5, b6, b7, b8, b9 = self.B
-        pressure = contact.hertz_pressure * 1e-9
+        pressure = held_in_range(contact.hertz_pressure, _PRESSURE) * 1e-9
         slip = np.maximum(contact.slide_to_roll_ratio, self.SMALLEST_SLIDE_TO_ROLL)
-        viscosity = contact.oil.dynamic_viscosity * 1e3
-        roughness = min(contact.flanks.composite_roughness, self.LARGEST_ROUGHNESS) * 1e6
+        viscosity = held_in_range(contact.dynamic_viscosity, _VISCOSITY) * 1e3
+        roughness = held_in_range(contact.composite_roughness, _ROUGHNESS) * 1e6
         group = slip * pressure * np.log10(viscosity)
         f = b1 + b4 * group + b5 * np.exp(-group) + b9 * np.exp(roughness)
         mu: FloatArray = (
             np.exp(f)
             * pressure**b2
             * slip**b3
-            * contact.rolling_speed**b6
+            * held_in_range(contact.rolling_speed, _SPEED) ** b6
             * viscosity**b7
-            * contact.radius**b8
+            * held_in_range(contact.radius, _RADIUS) ** b8
         )
         return mu

@@ -9,19 +9,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.validity import Range
+from epicyclic.losses.validity import Range, RegressionFluid
+from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, NUMBER, Quantity
 
 __all__ = ["Constant", "FrictionMap"]
 
 FloatArray = NDArray[np.float64]
+
+_AXES: dict[str, tuple[str, Quantity]] = {
+    "slide_to_roll_ratio": ("slide-to-roll ratio", NUMBER),
+    "film_ratio": ("film ratio", NUMBER),
+    "hertz_pressure": ("Hertz pressure", GIGAPASCAL),
+    "rolling_speed": ("rolling speed", METRE_PER_SECOND),
+}
+"""Label and display unit of the quantities that a table may have as axes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Constant:
     """The same coefficient everywhere."""
 
+    name: ClassVar = "constant"
     title: ClassVar = "constant friction"
     source: ClassVar = "the case"
+    made_for: ClassVar[RegressionFluid | None] = None
     ranges: ClassVar[tuple[Range, ...]] = ()
 
     value: float
@@ -45,12 +56,25 @@ class FrictionMap:
         Coefficients, one (nested) entry for each point.
     """
 
+    name: ClassVar = "table"
     title: ClassVar = "friction table"
     source: ClassVar = "the case"
-    ranges: ClassVar[tuple[Range, ...]] = ()
+    made_for: ClassVar[RegressionFluid | None] = None
 
     axes: tuple[tuple[str, tuple[float, ...]], ...]
     values: tuple[float, ...] | tuple[tuple[float, ...], ...]
+
+    @property
+    def ranges(self) -> tuple[Range, ...]:
+        """From the first to the last point of every axis."""
+        return tuple(
+            Range(
+                name, label, _shown(points[0], unit), _shown(points[-1], unit), unit,
+                "[friction_table] of the case",
+            )
+            for name, points in self.axes
+            for label, unit in (_AXES[name],)
+        )  # fmt: skip
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
@@ -61,3 +85,7 @@ class FrictionMap:
         where = [np.clip(getattr(contact, name), axis[0], axis[-1]) for name, axis in self.axes]
         mu: FloatArray = table(np.column_stack(where))
         return mu
+
+
+def _shown(value: float, unit: Quantity) -> float:
+    return unit.to_display(value) if unit.si else value
