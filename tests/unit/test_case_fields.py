@@ -25,7 +25,7 @@ from epicyclic.case.nearest import did_you_mean, misspelt
 from epicyclic.case.values import parse_value
 from epicyclic.case.wording import dotted, path_of, written
 from epicyclic.library import builtin_case
-from epicyclic.lubricant.oil import GoldLaw, RoelandsLaw, SourcedNumber
+from epicyclic.lubricant.oil import DensitySlope, GoldLaw, RoelandsLaw
 from epicyclic.units import Number, Quantity
 
 CASES = (PlanetaryCase, GearPairCase)
@@ -35,7 +35,7 @@ DIMENSIONLESS = Number.__metadata__[0]
 UNMARKED = {
     (GoldLaw, "s"): "constant of a law between a viscosity and a pressure coefficient",
     (GoldLaw, "t"): "exponent",
-    (SourcedNumber, "value"): "of keys that say their unit, or that have none",
+    (DensitySlope, "value"): "its unit is a quotient of units, which the key states",
 }
 """Plain numbers outside the tables of the case, and why they carry neither unit nor mark."""
 

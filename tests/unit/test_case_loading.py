@@ -496,12 +496,44 @@ def test_problems_of_a_law(law, key, words):
 
 def test_data_of_an_oil_that_cannot_be():
     tables = load_case("talbot-2012").inputs()
-    points = tables["lubricant"]["oil"]["kinematic_viscosity"]
+    oil = tables["lubricant"]["oil"]
+    points = oil["kinematic_viscosity"]  # 40, 60, 90 degC
     points[0]["value"], points[1]["value"] = points[1]["value"], points[0]["value"]
-    problem = only(problems_of(load_case, tables))
-    assert problem.key == "lubricant.oil"
-    assert "must fall with rising temperature" in problem.allowed
-    assert problem.remedy
+    points[2]["value"] = "40 mm^2/s"
+    oil["density"][1]["temperature"] = oil["density"][0]["temperature"]
+    oil["density"][2]["value"] = "900 kg/m^3"
+    oil["temperature_range"] = ["50 degC", "20 degC"]
+    found = {problem.key: problem for problem in problems_of(load_case, tables).problems}
+    assert set(found) == {
+        "lubricant.oil.kinematic_viscosity[1].value",
+        "lubricant.oil.kinematic_viscosity[2].value",
+        "lubricant.oil.density[1].temperature",
+        "lubricant.oil.density[2].value",
+        "lubricant.oil.temperature_range",
+    }
+    falls = found["lubricant.oil.kinematic_viscosity[1].value"]
+    assert "must fall with rising temperature" in falls.allowed
+    assert "29.77" in falls.value
+    assert all(problem.remedy for problem in found.values())
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("density_slope", {"value": 0.5}),
+        ("density_slope", {"value": -5.0}),
+        ("lubricant_factor", {"value": 0.0}),
+        ("lubricant_factor", {"value": -1.0}),
+        ("kinematic_viscosity", [{"temperature": "40 degC", "value": "0.2 mm^2/s"}] * 2),
+        ("density", [{"temperature": "40 degC", "value": "5 kg/m^3"}]),
+    ],
+)
+def test_numbers_of_an_oil_have_bounds(key, value):
+    tables = load_case("talbot-2012").inputs()
+    tables["lubricant"]["oil"][key] = value
+    problems = problems_of(load_case, tables).problems
+    assert problems
+    assert all(problem.key.startswith(f"lubricant.oil.{key}") for problem in problems)
 
 
 @pytest.mark.parametrize(

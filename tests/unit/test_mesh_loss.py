@@ -278,7 +278,7 @@ def test_mean_friction_is_weighted_with_the_sliding_power(make_mesh, atf):
     class Half:
         """Friction on the recess side only."""
 
-        title, source, ranges = "half", "test", ()
+        name, title, source, made_for, ranges = "half", "half", "test", None, ()
 
         def coefficient(self, contact):
             return np.where(contact.path > 0, 0.1, 0.0)

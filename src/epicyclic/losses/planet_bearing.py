@@ -155,7 +155,7 @@ class RollerBearing:
 
     @property
     def composite_roughness(self) -> float:
-        """Of roller and race, rms. Theory (B13). [m]"""
+        """Of roller and race, rms. [m]"""
         return math.hypot(self.race_roughness, self.roller_roughness)
 
     @property

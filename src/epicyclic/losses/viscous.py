@@ -114,7 +114,7 @@ class DiscDrag:
 
     @property
     def total(self) -> float:
-        """Theory (V5a). [W]"""
+        """Of the whole disc. [W]"""
         return self.rim + self.faces
 
 

@@ -62,7 +62,7 @@ class PressureViscosityPoint(_Data):
 class DensitySlope(_Data):
     """Change of the density with temperature, in kg/(m^3 K), with its source."""
 
-    value: Number = Field(ge=STEEPEST_DENSITY, le=0)
+    value: float = Field(ge=STEEPEST_DENSITY, le=0)
     source: str = ""
 
 
@@ -77,8 +77,8 @@ class GoldLaw(_Data):
     """alpha = s nu^t with nu in mm^2/s and alpha in 1/GPa (Gold et al. 2001). Theory (L4)."""
 
     law: Literal["gold"]
-    s: Number = Field(gt=0, le=60)
-    t: Number = Field(ge=0, le=1)
+    s: float = Field(gt=0, le=60)
+    t: float = Field(ge=0, le=1)
     calibrated: bool = False
     source: str = ""
 
