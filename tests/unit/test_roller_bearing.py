@@ -9,7 +9,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.roller_bearing import solve_roller_loads
+from epicyclic.losses import planet_bearing
 from epicyclic.losses.planet_bearing import RollerBearing, roller_loads
 from epicyclic.reference.roller_bearing import aligned_roller_loads, radial_load_integral
 
@@ -339,6 +341,13 @@ def test_a_tilt_without_stiffness_is_no_obstacle(rollers, force, arm):
     found = resultant(bearing, loads)
     # the last lengths are kept when they have not settled: a hundredth of the solver's digits less
     assert found == pytest.approx([force, 0.0, 0.0, arm * force], abs=1e-6 * force)
+
+
+def test_an_iteration_that_does_not_end_says_so(monkeypatch):
+    monkeypatch.setattr(planet_bearing, "MAX_ITERATIONS", 1)
+    bearing = replace(TALBOT, diametral_clearance=3.21e-5)  # in no cache yet
+    with pytest.raises(ConvergenceError, match="planet bearing was not found under 1235 N"):
+        roller_loads(bearing, 1234.5, 0.0, 0.0, 7.0)
 
 
 # --- behaviour ------------------------------------------------------------------------------------
