@@ -47,7 +47,7 @@ def test_run_prints_where_the_watts_go(epicyclic):
         "tilting moment",
         "most loaded roller",
         "pocketing is not modelled yet",
-        "Out of range, extrapolated",
+        "Out of range: ",
         "Sources",
     ):
         assert words in done.stdout, words

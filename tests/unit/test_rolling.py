@@ -6,9 +6,15 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
 
 import epicyclic as ep
-from epicyclic.kernels.line_contact import hertz_half_width, pan_hamrock_minimum_film
+from epicyclic.kernels.line_contact import (
+    hertz_half_width,
+    martin_force,
+    pan_hamrock_minimum_film,
+)
 from epicyclic.kernels.mixed_ehl import rolling_loss_number
 from epicyclic.losses.contact import Flanks, MeshContact
 from epicyclic.losses.rolling import ROLLING_MODELS, rolling_scale
@@ -156,6 +162,48 @@ def test_goksem_hargreaves_agrees_with_smooth_contacts(mesh, speed_number):
         # worked out separately: within 15 % for M 3 to 60; measured here at U = 1e-11, the
         # formula's W^0.0126 moves it by another 4 % over the speeds
         assert found / solved == pytest.approx(1.0, abs=0.20)
+
+
+def martin_by_quadrature():
+    """h_0 W'/(mu u R) and F_r/sqrt(mu u W') of rigid cylinders, from Reynolds' equation.
+
+    With x = sqrt(2 R h_0) tan t the film is h_0/cos^2 t, and the pressure ends where it is h*.
+    """
+
+    def slope(t, ratio):
+        return np.cos(t) ** 2 - ratio * np.cos(t) ** 4
+
+    def pressure_at_exit(t):
+        return quad(slope, -math.pi / 2, t, args=(1 / math.cos(t) ** 2,))[0]
+
+    exit_angle = brentq(pressure_at_exit, 0.1, 1.0)
+    ratio = 1 / math.cos(exit_angle) ** 2
+    moment, _ = quad(lambda t: math.tan(t) * slope(t, ratio), -math.pi / 2, exit_angle)
+    force, _ = quad(lambda t: 1 - ratio * math.cos(t) ** 2, -math.pi / 2, exit_angle)
+    load = -24 * moment
+    return load, 6 * math.sqrt(2) * force / math.sqrt(load)
+
+
+def test_force_of_rigid_cylinders_is_that_of_martin():
+    film, force = martin_by_quadrature()
+    assert film == pytest.approx(4.9, abs=0.05)  # as printed in textbooks
+    # the constant has five digits
+    assert martin_force(2e3, 5.0, 0.1) == pytest.approx(
+        force * math.sqrt(0.1 * 5.0 * 2e3), rel=2e-5
+    )
+
+
+def test_goksem_hargreaves_goes_over_to_rigid_cylinders(mesh):
+    """Light load on thick oil; the loss is continuous and falls with the root of the load."""
+    loads = np.geomspace(1e-3, 1e5, 400)
+    contact = points(mesh, line_load=loads, rolling=5.0, oil=oil(0.1, 20e-9))
+    density = ROLLING_MODELS["goksem-hargreaves"].loss_density(contact)
+    slopes = np.diff(np.log(density)) / np.diff(np.log(loads))
+    # exponents of both forces, 1/2 and 0.0126, and one step between them
+    assert np.all((slopes > 0.0126 - 1e-9) & (slopes < 0.5 + 1e-9))
+    assert slopes[0] == pytest.approx(0.5, rel=1e-9)
+    assert slopes[-1] == pytest.approx(0.0126, rel=1e-6)
+    assert np.sum((slopes > 0.013) & (slopes < 0.499)) <= 1
 
 
 @pytest.mark.parametrize("name", MODELS)
