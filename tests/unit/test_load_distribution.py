@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from epicyclic.geometry.contact_lines import contact_lines
-from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS, load_shape
+from epicyclic.losses.load_distribution import STIFFNESS_SHAPES, load_shape
 
 MESHES = [
     pytest.param({"teeth1": 20, "teeth2": 41}, id="spur"),
@@ -28,7 +28,7 @@ def mesh(request, make_mesh):
     return make_mesh(**request.param)
 
 
-@pytest.fixture(params=sorted(LOAD_DISTRIBUTIONS))
+@pytest.fixture(params=sorted(STIFFNESS_SHAPES))
 def model(request):
     return request.param
 
@@ -76,7 +76,7 @@ def energy_share(mesh, xi):
     lines = contact_lines(mesh, 4, 2)
     curvature = mesh.path_start + np.array([xi, xi + 1.0]) * pitch
     points = replace(lines, curvature1=curvature)
-    stiffness = LOAD_DISTRIBUTIONS["minimum-energy"](mesh, points)
+    stiffness = STIFFNESS_SHAPES["minimum-energy"](mesh, points)
     return float(stiffness[0] / stiffness.sum())
 
 
@@ -91,7 +91,7 @@ def test_minimum_energy_shares_at_contact_ratio_1_6(make_mesh):
     pitch = mesh.gear1.rack.transverse_base_pitch
     middle = (mesh.path_start + mesh.path_end) / 2
     points = replace(contact_lines(mesh, 4, 2), curvature1=np.array([middle, middle + 0.5 * pitch]))
-    at_middle, away = LOAD_DISTRIBUTIONS["minimum-energy"](mesh, points)
+    at_middle, away = STIFFNESS_SHAPES["minimum-energy"](mesh, points)
     assert math.acos(away / at_middle) / 0.5 == pytest.approx(1.23650, abs=0.5e-5)
 
 
@@ -108,7 +108,7 @@ def test_minimum_energy_is_symmetric_about_the_middle_of_the_path(mesh):
     lines = contact_lines(mesh, 4, 2)
     middle = (mesh.path_start + mesh.path_end) / 2
     away = np.linspace(0.0, (mesh.path_end - mesh.path_start) / 2, 9)
-    model = LOAD_DISTRIBUTIONS["minimum-energy"]
+    model = STIFFNESS_SHAPES["minimum-energy"]
     before = model(mesh, replace(lines, curvature1=middle - away))
     after = model(mesh, replace(lines, curvature1=middle + away))
     assert before == pytest.approx(after, rel=1e-10)
@@ -121,7 +121,7 @@ def test_minimum_energy_is_continuous_at_the_ends_of_its_range(make_mesh, ratio)
         mesh = spur_of_contact_ratio(make_mesh, value)
         lines = contact_lines(mesh, 4, 2)
         end = replace(lines, curvature1=np.array([mesh.path_end]))
-        return float(LOAD_DISTRIBUTIONS["minimum-energy"](mesh, end)[0])
+        return float(STIFFNESS_SHAPES["minimum-energy"](mesh, end)[0])
 
     below, above = middle_load(ratio - 1e-6), middle_load(ratio + 1e-6)
     assert below == pytest.approx(above, abs=1e-5)

@@ -1,4 +1,4 @@
-"""Influence coefficients of a mesh, and the load that elastic teeth put on their contact lines.
+"""Influence coefficients of a mesh.
 
 The coefficients depend on geometry and materials only; every load is solved with the same ones.
 """
@@ -12,32 +12,45 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.elasticity.rim import Rim, rim_coupling
 from epicyclic.elasticity.tooth_plate import ToothPlate, tooth_plate
 from epicyclic.errors import ConvergenceError
 from epicyclic.geometry.contact_lines import ContactLines, contact_lines
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import default_tool
-from epicyclic.kernels.contact_load import solve_contact_loads
-from epicyclic.kernels.line_contact import equivalent_modulus
+from epicyclic.geometry.outline import Tool, default_tool
+from epicyclic.kernels.line_contact import equivalent_modulus, hertz_half_width
 
-__all__ = ["Elastic", "LoadedMesh", "MeshCompliance", "load_mesh_elastically", "mesh_compliance"]
+__all__ = ["GearBody", "MeshCompliance", "mesh_compliance"]
 
 FloatArray = NDArray[np.float64]
 
 FACE_TERMS_PER_HEIGHT = 2.5
 """Polynomials along a tooth for each tooth height in its length: shorter ones decay fast. [1]"""
 FACE_TERMS_LIMITS = (8, 40)
-TOLERANCE = 1e-9
-MAX_ITERATIONS = 60
+KEPT_MESHES = 32
+"""Meshes whose coefficients are kept: those of a sweep over a few gear sets. One takes 0.25 MB with
+the default resolution; it grows with the mesh positions and the square of the segments."""
 
 
 @dataclass(frozen=True, slots=True)
-class Elastic:
-    """Elastic constants of a gear: modulus [Pa] and Poisson's ratio [1]."""
+class GearBody:
+    """What makes a gear yield beside its geometry.
+
+    Attributes
+    ----------
+    modulus, poisson_ratio : float
+        [Pa], [1]
+    tool : RackTool, ShaperTool or None
+        The tool that leaves the root fillet; None for `default_tool`.
+    rim : Rim or None
+        Of a ring gear; None for a body that only yields under each tooth.
+    """
 
     modulus: float
     poisson_ratio: float
+    tool: Tool | None = None
+    rim: Rim | None = None
 
     @property
     def surface_compliance(self) -> float:
@@ -53,7 +66,9 @@ class MeshCompliance:
     ----------
     lines : ContactLines
     influence : ndarray, shape (positions, lines, segments, segments)
-        Approach at one segment under unit force on another, both teeth. [m/N]
+        Approach at one segment under unit force on another of its line, both teeth. [m/N]
+    coupling : ndarray, shape (positions, lines, lines)
+        Approach at one line under unit force on another, from the rim. [m/N]
     local_a : ndarray, shape (positions, lines, segments)
         A of the local deflection q (A - B ln(q)/2), q in N/m. [m^2/N]
     local_b : float
@@ -62,31 +77,14 @@ class MeshCompliance:
 
     lines: ContactLines
     influence: FloatArray
+    coupling: FloatArray
     local_a: FloatArray
     local_b: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LoadedMesh:
-    """A mesh under load.
-
-    Attributes
-    ----------
-    lines : ContactLines
-    line_load : ndarray, shape (positions, lines, segments)
-        [N/m]
-    approach : ndarray, shape (positions,)
-        Of the gears along the common normal: the loaded transmission error. [m]
-    """
-
-    lines: ContactLines
-    line_load: FloatArray
-    approach: FloatArray
-
-
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=KEPT_MESHES)
 def mesh_compliance(
-    mesh: Mesh, elastic1: Elastic, elastic2: Elastic, positions: int, segments: int
+    mesh: Mesh, body1: GearBody, body2: GearBody, positions: int, segments: int
 ) -> MeshCompliance:
     """Influence coefficients of `mesh`, shared by all loads.
 
@@ -95,94 +93,60 @@ def mesh_compliance(
     Parameters
     ----------
     mesh : Mesh
-    elastic1, elastic2 : Elastic
-        Materials of both members.
+    body1, body2 : GearBody
     positions, segments : int
         As for `contact_lines`.
-    """
-    lines = contact_lines(mesh, positions, segments)
-    shape = lines.length.shape
-    influence = np.zeros((*shape, segments))
-    beta_b = mesh.gear1.rack.base_helix_angle
-    # lines that are not in contact lie beyond the path of contact: any place on it serves for them
-    rho1 = np.clip(lines.curvature1, mesh.path_start, mesh.path_end)
-    rho2 = mesh.line_of_action - mesh.side * rho1
-    radius = rho1 * rho2 / ((rho2 + mesh.side * rho1) * math.cos(beta_b))
-    modulus = equivalent_modulus(
-        elastic1.modulus, elastic1.poisson_ratio, elastic2.modulus, elastic2.poisson_ratio
-    )
-    log_width = 0.5 * np.log(8 * radius / (math.pi * modulus))
-    local_a = np.zeros(shape)
-    members = ((mesh.gear1, elastic1, rho1), (mesh.gear2, elastic2, rho2))
-    for gear, elastic, curvature in members:
-        plate = _plate(gear, elastic)
-        overhang = (gear.face_width - mesh.face_width) / 2
-        face = (lines.face_position + overhang) / gear.face_width
-        amplitudes = plate.amplitudes(curvature.ravel(), face.ravel()).reshape(*shape, -1)
-        influence += amplitudes @ amplitudes.swapaxes(-1, -2)
-        nu = elastic.poisson_ratio
-        depth = plate.depth(curvature.ravel()).reshape(shape)
-        local_a += elastic.surface_compliance * (
-            np.log(2 * depth) - log_width - nu / (2 * (1 - nu))
-        )
-    local_b = elastic1.surface_compliance + elastic2.surface_compliance
-    for array in (influence, local_a):
-        array.flags.writeable = False
-    return MeshCompliance(lines, influence, local_a, local_b)
-
-
-def _plate(gear: Gear, elastic: Elastic) -> ToothPlate:
-    depth = abs(gear.tip_radius - gear.root_radius)
-    terms = round(FACE_TERMS_PER_HEIGHT * gear.face_width / depth)
-    low, high = FACE_TERMS_LIMITS
-    return tooth_plate(
-        gear,
-        elastic.modulus,
-        elastic.poisson_ratio,
-        min(max(terms, low), high),
-        default_tool(gear),
-    )
-
-
-@lru_cache(maxsize=256)
-def load_mesh_elastically(
-    mesh: Mesh,
-    elastic1: Elastic,
-    elastic2: Elastic,
-    positions: int,
-    segments: int,
-    force: float,
-) -> LoadedMesh:
-    """Line loads of all segments under the transverse `force` of the mesh.
-
-    Other parameters as for `mesh_compliance`.
 
     Raises
     ------
     ConvergenceError
-        If the set of loaded segments does not settle.
+        If the stiffness of a tooth cannot be inverted.
+    ValueError
+        If no tool generates a tooth.
     """
-    compliance = mesh_compliance(mesh, elastic1, elastic2, positions, segments)
-    lines = compliance.lines
-    normal = force / math.cos(mesh.gear1.rack.base_helix_angle)
-    line_load = np.zeros(lines.length.shape)
-    approach = np.empty(len(lines.position))
-    for m in range(len(lines.position)):
-        forces, approach[m], iterations = solve_contact_loads(
-            normal,
-            compliance.influence[m],
-            lines.length[m],
-            compliance.local_a[m],
-            compliance.local_b,
-            TOLERANCE,
-            MAX_ITERATIONS,
+    lines = contact_lines(mesh, positions, segments)
+    shape = lines.length.shape
+    influence = np.zeros((*shape, segments))
+    # lines that are not in contact lie beyond the path of contact: any place on it serves for them
+    rho1 = np.clip(lines.curvature1, mesh.path_start, mesh.path_end)
+    modulus = equivalent_modulus(
+        body1.modulus, body1.poisson_ratio, body2.modulus, body2.poisson_ratio
+    )
+    log_width = np.log(hertz_half_width(np.ones(shape), mesh.equivalent_radius(rho1), modulus))
+    local_a = np.zeros(shape)
+    members = ((mesh.gear1, body1, rho1), (mesh.gear2, body2, mesh.curvature2(rho1)))
+    for gear, body, curvature in members:
+        plate = _plate(gear, body)
+        overhang = (gear.face_width - mesh.face_width) / 2
+        face = (lines.face_position + overhang) / gear.face_width
+        amplitudes = plate.amplitudes(curvature.ravel(), face.ravel()).reshape(*shape, -1)
+        influence += amplitudes @ amplitudes.swapaxes(-1, -2)
+        nu = body.poisson_ratio
+        depth = plate.depth(curvature.ravel()).reshape(shape)
+        local_a += body.surface_compliance * (np.log(2 * depth) - log_width - nu / (2 * (1 - nu)))
+    local_b = body1.surface_compliance + body2.surface_compliance
+    coupling = np.zeros((*shape[:2], shape[1]))
+    if body2.rim is not None:
+        coupling += rim_coupling(mesh, lines, body2.rim, body2.modulus, body2.poisson_ratio)
+    for array in (influence, coupling, local_a):
+        array.flags.writeable = False
+    return MeshCompliance(lines, influence, coupling, local_a, local_b)
+
+
+def _plate(gear: Gear, body: GearBody) -> ToothPlate:
+    depth = abs(gear.tip_radius - gear.root_radius)
+    terms = round(FACE_TERMS_PER_HEIGHT * gear.face_width / depth)
+    low, high = FACE_TERMS_LIMITS
+    try:
+        return tooth_plate(
+            gear,
+            body.modulus,
+            body.poisson_ratio,
+            min(max(terms, low), high),
+            default_tool(gear) if body.tool is None else body.tool,
         )
-        if iterations < 0:
-            raise ConvergenceError(
-                f"the load distribution of the {mesh.name} was not found at "
-                f"{normal:.4g} N; use the load distribution 'uniform'."
-            )
-        np.divide(forces, lines.length[m], out=line_load[m], where=lines.length[m] > 0)
-    line_load.flags.writeable = False
-    approach.flags.writeable = False
-    return LoadedMesh(lines, line_load, approach)
+    except np.linalg.LinAlgError as error:
+        raise ConvergenceError(
+            f"the stiffness of a tooth of the {gear.name} cannot be inverted; use "
+            'models.load_distribution = "uniform".'
+        ) from error

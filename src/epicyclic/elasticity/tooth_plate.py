@@ -122,9 +122,7 @@ class ToothPlate:
         gear = self.gear
         radius = np.hypot(gear.base_radius, curvature)
         pressure_angle = np.arctan2(curvature, gear.base_radius)
-        involute = np.tan(pressure_angle) - pressure_angle
-        base = gear.half_angle_at(gear.base_radius)
-        half_angle = base + involute if gear.internal else base - involute
+        half_angle = gear.half_angles_at(curvature)
         outward = -1.0 if gear.internal else 1.0
         height = outward * (radius * np.cos(half_angle) - gear.root_radius) - self.root_offset
         transverse = pressure_angle - outward * half_angle

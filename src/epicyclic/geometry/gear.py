@@ -9,6 +9,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 __all__ = ["BasicRack", "Gear", "involute"]
 
 
@@ -120,6 +123,15 @@ class Gear:
         change = involute(self.pressure_angle_at(radius)) - involute(
             self.rack.transverse_pressure_angle
         )
+        return self.thickness_half_angle + (change if self.internal else -change)
+
+    def half_angles_at(self, curvature: NDArray[np.float64]) -> NDArray[np.float64]:
+        """`half_angle_at` of the points where the involute has these radii of curvature.
+
+        Theory (G10).
+        """
+        roll = curvature / self.base_radius
+        change = roll - np.arctan(roll) - involute(self.rack.transverse_pressure_angle)
         return self.thickness_half_angle + (change if self.internal else -change)
 
     def thickness_at(self, radius: float) -> float:

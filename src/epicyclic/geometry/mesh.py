@@ -9,10 +9,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from epicyclic.geometry.gear import Gear, involute
 
 __all__ = ["Mesh"]
+
+Real = TypeVar("Real", float, NDArray[np.float64])
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,12 +86,25 @@ class Mesh:
         """
         return self.center_distance * math.sin(self.operating_pressure_angle)
 
-    def curvature2(self, curvature1: float) -> float:
+    def curvature2(self, curvature1: Real) -> Real:
         """Transverse radius of curvature of member 2 where member 1 has `curvature1`. [m]
 
         Theory (G16).
         """
         return self.line_of_action - self.side * curvature1
+
+    def equivalent_radius(self, curvature1: Real) -> Real:
+        """Equivalent radius of curvature in the normal section. [m]
+
+        Theory (C3).
+
+        Litvin and Fuentes, Gear Geometry and Applied Theory: the curvature of an involute helicoid
+        across its contact line is that of the transverse section times cos(beta_b).
+        """
+        curvature2 = self.curvature2(curvature1)
+        transverse = curvature1 * curvature2 / (curvature2 + self.side * curvature1)
+        radius: Real = transverse / math.cos(self.gear1.rack.base_helix_angle)
+        return radius
 
     @property
     def path_start(self) -> float:

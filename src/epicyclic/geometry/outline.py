@@ -597,7 +597,7 @@ def _check_trimming(gear: Gear, cut: _ShaperCut) -> None:
     # is the arc between them on it.
     base = gear.base_radius
     curvature = np.sqrt(np.maximum(0.0, radius**2 - base**2))
-    space = math.pi / gear.teeth - _half_angles(gear, curvature)
+    space = math.pi / gear.teeth - gear.half_angles_at(curvature)
     to_flank = base * (space - angle)
     on_flank = (radius >= base) & (curvature + to_flank >= gear.tip_involute_length)
     corner = math.pi / gear.teeth - gear.half_angle_at(gear.tip_radius)
@@ -689,19 +689,12 @@ def _fillet(
     return radius, half_angle
 
 
-def _half_angles(gear: Gear, curvature: Floats) -> Floats:
-    """`Gear.half_angle_at` of the involute points with these radii of curvature."""
-    roll = curvature / gear.base_radius
-    change = roll - np.arctan(roll) - involute(gear.rack.transverse_pressure_angle)
-    return gear.thickness_half_angle + (change if gear.internal else -change)
-
-
 def _involute(gear: Gear, start_radius: float, points: int) -> tuple[Floats, Floats]:
     """Radii and half angles of the involute by even steps of roll angle, the first left out."""
     base = gear.base_radius
     start = math.sqrt(max(0.0, start_radius**2 - base**2))
     curvature = _steps(start, gear.tip_involute_length, points)
-    half_angle = _half_angles(gear, curvature)
+    half_angle = gear.half_angles_at(curvature)
     radius = np.hypot(base, curvature)
     radius[-1] = gear.tip_radius
     half_angle[-1] = gear.half_angle_at(gear.tip_radius)

@@ -1,15 +1,18 @@
 """Load along the contact lines of elastic teeth at one mesh position.
 
-Unilateral contact: every segment of every line carries F >= 0, its teeth approach each other by
-C F + delta_c(F), and where F > 0 this equals the rigid approach of the gears, the same everywhere;
-the forces sum to the force of the mesh (T. F. Conry and A. Seireg, J. Eng. Ind. 95 (1973) 1115).
-C couples the segments of one line, which lie on one pair of teeth. The local deflection of a
-segment of length l under q = F/l is (C. Weber and K. Banaschek, 1953)
+Unilateral contact: every segment of every line carries F >= 0; the surfaces approach each other by
+C F + delta_c(F) and have the separation s to close first. Where F > 0 both together equal the rigid
+approach of the gears, the same everywhere; the forces sum to the force of the mesh (T. F. Conry and
+A. Seireg, J. Eng. Ind. 95 (1973) 1115). C couples the segments of one line, which lie on one pair
+of teeth; G couples the total forces of the lines, whose teeth stand on one rim. The local
+deflection of a segment of length l under q = F/l is (C. Weber and K. Banaschek, 1953)
 
     delta_c = q [A - B ln(q)/2] .
 
-C is positive definite and delta_c rises with q, so that the solution is unique; a Newton iteration
-on the set of loaded segments finds it.
+C and G are positive (semi)definite and delta_c rises with q, so that the solution is unique: it is
+the least of a convex energy. Newton's method on the set of loaded segments finds it in a few steps.
+Should that set not settle, a second method goes on, which never increases the energy and so cannot
+run in circles. Nothing is returned as a solution that does not satisfy the conditions above.
 """
 
 from __future__ import annotations
@@ -19,41 +22,302 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = ["solve_contact_loads"]
+__all__ = ["solve_all_positions", "solve_contact_loads"]
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 LINEAR_SHARE = 1e-3
-"""Share of the mean line load below which delta_c is linear: ln(q) has no value at 0. [1]"""
+"""Share of the mean line load below which delta_c is a parabola: ln(q) has no value at 0. [1]"""
+LEAST_SLOPE = 0.5
+"""Slope of delta_c over B below which it is continued as a straight line: the formula would let
+the teeth part again under a growing load. It is reached where b_h is about 0.6 d. [1]"""
+QUICK_STEPS = 30
+"""Newton steps before the careful method takes over; usual are five."""
+ENOUGH_DESCENT = 0.1
+"""A step is short enough when the slope of the energy has fallen to this part of its start. [1]"""
+MOST_HALVINGS = 30
 
 
 @kernel
-def local_deflection(q: float, a: float, b: float, floor: float) -> float:
-    """delta_c of a segment. Theory (E4). [m]"""
-    deflection: float = q * (a - 0.5 * b * np.log(max(q, floor)))
-    return deflection
+def local_law(q: float, a: float, b: float, floor: float) -> tuple[float, float]:
+    """delta_c of a segment [m] and its derivative in q [m^2/N]. Theory (E4).
+
+    A parabola through zero below `floor` and a straight line beyond the load of `LEAST_SLOPE`, both
+    with the slope of the law where they meet it.
+    """
+    top = np.exp(2.0 * (a / b - LEAST_SLOPE) - 1.0)
+    low = min(floor, top)
+    if q < low:
+        start = a - 0.5 * b * np.log(low) + 0.5 * b
+        if q < 0.0:
+            return q * start, start
+        return q * (start - 0.5 * b * q / low), start - b * q / low
+    if q > top:
+        slope = LEAST_SLOPE * b
+        return top * (a - 0.5 * b * np.log(top)) + slope * (q - top), slope
+    return q * (a - 0.5 * b * np.log(q)), a - 0.5 * b * np.log(q) - 0.5 * b
 
 
 @kernel
-def local_compliance(q: float, a: float, b: float, floor: float) -> float:
-    """Derivative of `local_deflection` in q. [m^2/N]"""
-    if q > floor:
-        compliance: float = a - 0.5 * b * np.log(q) - 0.5 * b
-        return compliance
-    secant: float = a - 0.5 * b * np.log(floor)
-    return secant
+def deflections(
+    forces: FloatArray,
+    compliance: FloatArray,
+    coupling: FloatArray,
+    separation: FloatArray,
+    length: FloatArray,
+    local_a: FloatArray,
+    local_b: float,
+    floor: float,
+) -> tuple[FloatArray, FloatArray]:
+    """s + C F + G F + delta_c of every segment [m], and the slope of delta_c over F [m/N]."""
+    lines, segments = length.shape
+    closed = np.zeros((lines, segments))
+    slope = np.zeros((lines, segments))
+    rim = coupling @ forces.sum(axis=1)
+    for line in range(lines):
+        if length[line, 0] <= 0.0:
+            continue
+        closed[line] = separation[line] + compliance[line] @ forces[line] + rim[line]
+        for k in range(segments):
+            w = length[line, k]
+            law, law_slope = local_law(forces[line, k] / w, local_a[line, k], local_b, floor)
+            closed[line, k] += law
+            slope[line, k] = law_slope / w
+    return closed, slope
+
+
+@kernel
+def newton_step(
+    force: float,
+    forces: FloatArray,
+    loaded: BoolArray,
+    closed: FloatArray,
+    slope: FloatArray,
+    compliance: FloatArray,
+    coupling: FloatArray,
+) -> tuple[FloatArray, float, float]:
+    """Newton's step on the loaded segments to the total `force`.
+
+    Each line is solved by itself; a system of the size of the lines joins them.
+
+    Returns
+    -------
+    step : ndarray, shape (lines, segments)
+        [N]
+    approach : float
+        [m]
+    stiffness : float
+        Of the total force against the approach. [N/m]
+    """
+    lines, segments = loaded.shape
+    unit = np.zeros((lines, segments))
+    back = np.zeros((lines, segments))
+    for line in range(lines):
+        index = np.nonzero(loaded[line])[0]
+        n = index.size
+        if n == 0:
+            continue
+        jacobian = np.empty((n, n))
+        sides = np.ones((n, 2))
+        for i in range(n):
+            k = index[i]
+            for j in range(n):
+                jacobian[i, j] = compliance[line, k, index[j]]
+            jacobian[i, i] += slope[line, k]
+            sides[i, 1] = closed[line, k]
+        solved = np.linalg.solve(jacobian, sides)
+        for i in range(n):
+            unit[line, index[i]] = solved[i, 0]
+            back[line, index[i]] = solved[i, 1]
+    # change P of the total of a line: P = u (D - G P) - h, so that (1 + U G) P = u D - h
+    u, h = unit.sum(axis=1), back.sum(axis=1)
+    system = np.eye(lines)
+    sides = np.empty((lines, 2))
+    for i in range(lines):
+        sides[i, 0] = u[i]
+        sides[i, 1] = h[i]
+        for j in range(lines):
+            system[i, j] += u[i] * coupling[i, j]
+    totals = np.linalg.solve(system, sides)
+    stiffness = totals[:, 0].sum()
+    approach = (force - forces.sum() + totals[:, 1].sum()) / stiffness
+    rim = coupling @ (totals[:, 0] * approach - totals[:, 1])
+    step = np.empty((lines, segments))
+    for line in range(lines):
+        step[line] = unit[line] * (approach - rim[line]) - back[line]
+    return step, approach, stiffness
+
+
+@kernel
+def is_solution(
+    force: float,
+    forces: FloatArray,
+    approach: float,
+    closed: FloatArray,
+    length: FloatArray,
+    tolerance: float,
+) -> bool:
+    """True if nothing pulls, nothing penetrates, contact is closed and the force is balanced.
+
+    Comparisons with NaN are false, so that NaN is no solution.
+    """
+    lines, segments = length.shape
+    limit = tolerance * abs(approach)
+    for line in range(lines):
+        for k in range(segments):
+            gap = closed[line, k] - approach
+            touching = forces[line, k] > 0.0 and gap <= limit
+            free = forces[line, k] == 0.0
+            if length[line, k] > 0.0 and not ((touching or free) and gap >= -limit):
+                return False
+    balanced: bool = abs(forces.sum() - force) <= tolerance * force
+    return balanced
+
+
+@kernel
+def quick_update(forces: FloatArray, step: FloatArray, loaded: BoolArray) -> None:
+    """Take the whole step, and let go of all segments that it would make pull."""
+    lines, segments = forces.shape
+    for line in range(lines):
+        for k in range(segments):
+            if loaded[line, k]:
+                forces[line, k] += step[line, k]
+                if not forces[line, k] > 0.0:
+                    forces[line, k] = 0.0
+                    loaded[line, k] = False
+
+
+@kernel
+def load_touching(
+    loaded: BoolArray, closed: FloatArray, length: FloatArray, approach: float, tolerance: float
+) -> None:
+    """Add all free segments that penetrate to the loaded ones."""
+    lines, segments = loaded.shape
+    for line in range(lines):
+        for k in range(segments):
+            if length[line, k] > 0.0 and closed[line, k] - approach < -tolerance * abs(approach):
+                loaded[line, k] = True
+
+
+@kernel
+def load_deepest(
+    loaded: BoolArray, closed: FloatArray, length: FloatArray, approach: float
+) -> None:
+    """Add the one free segment that penetrates most."""
+    lines, segments = loaded.shape
+    deepest, where, which = approach, -1, -1
+    for line in range(lines):
+        for k in range(segments):
+            if length[line, k] > 0.0 and not loaded[line, k] and closed[line, k] < deepest:
+                deepest, where, which = closed[line, k], line, k
+    if where >= 0:
+        loaded[where, which] = True
+
+
+@kernel
+def share_until_release(forces: FloatArray, step: FloatArray, loaded: BoolArray) -> float:
+    """Largest part of the step, at most 1, at which nothing pulls. [1]"""
+    share = 1.0
+    lines, segments = forces.shape
+    for line in range(lines):
+        for k in range(segments):
+            if loaded[line, k] and forces[line, k] + share * step[line, k] < 0.0:
+                share = -forces[line, k] / step[line, k]
+    return share
+
+
+@kernel
+def let_go(forces: FloatArray, loaded: BoolArray, limit: float) -> None:
+    """Release the loaded segments whose force does not exceed `limit`."""
+    lines, segments = forces.shape
+    for line in range(lines):
+        for k in range(segments):
+            if loaded[line, k] and forces[line, k] <= limit:
+                forces[line, k] = 0.0
+                loaded[line, k] = False
+
+
+@kernel
+def is_even(closed: FloatArray, loaded: BoolArray, approach: float, tolerance: float) -> bool:
+    """True if contact is closed on all loaded segments: their energy is the least."""
+    lines, segments = closed.shape
+    for line in range(lines):
+        for k in range(segments):
+            gap = closed[line, k] - approach
+            if loaded[line, k] and not abs(gap) <= tolerance * abs(approach):
+                return False
+    return True
+
+
+@kernel
+def careful_solution(
+    force: float,
+    compliance: FloatArray,
+    coupling: FloatArray,
+    separation: FloatArray,
+    length: FloatArray,
+    local_a: FloatArray,
+    local_b: float,
+    floor: float,
+    tolerance: float,
+    max_iterations: int,
+) -> tuple[FloatArray, float, float, int]:
+    """The solution by steps that keep the balance and never increase the energy.
+
+    A step ends where the first segment would pull; a free segment joins only at the least energy
+    of the loaded ones. No set of loaded segments comes back, so that the method ends.
+
+    Parameters and returns as for `solve_contact_loads`.
+    """
+    forces = force * length / length.sum()
+    loaded = length > 0.0
+    closed, slope = deflections(
+        forces, compliance, coupling, separation, length, local_a, local_b, floor
+    )
+    for iteration in range(max_iterations):
+        step, approach, stiffness = newton_step(
+            force, forces, loaded, closed, slope, compliance, coupling
+        )
+        share = share_until_release(forces, step, loaded)
+        blocked = share < 1.0
+        descent = -(step * closed).sum()
+        # as near to the least energy as this, its slope is lost in rounding and the step is right
+        enough = max(ENOUGH_DESCENT * descent, tolerance * force * abs(approach))
+        start = forces
+        for _ in range(MOST_HALVINGS):
+            forces = start + share * step
+            closed, slope = deflections(
+                forces, compliance, coupling, separation, length, local_a, local_b, floor
+            )
+            if (step * closed).sum() <= enough:
+                break
+            share *= 0.5
+            blocked = False
+        if blocked:
+            let_go(forces, loaded, tolerance * force / length.size)
+            closed, slope = deflections(
+                forces, compliance, coupling, separation, length, local_a, local_b, floor
+            )
+        elif is_solution(force, forces, approach, closed, length, tolerance):
+            return forces, approach, stiffness, iteration + 1
+        elif is_even(closed, loaded, approach, tolerance):
+            load_deepest(loaded, closed, length, approach)
+    return forces, np.nan, np.nan, -1
 
 
 @kernel
 def solve_contact_loads(
     force: float,
     compliance: FloatArray,
+    coupling: FloatArray,
+    separation: FloatArray,
     length: FloatArray,
     local_a: FloatArray,
     local_b: float,
     tolerance: float,
     max_iterations: int,
-) -> tuple[FloatArray, float, int]:
+) -> tuple[FloatArray, float, float, int]:
     """Forces on all segments of all lines.
 
     Theory (E5).
@@ -63,7 +327,11 @@ def solve_contact_loads(
     force : float
         Normal force of the mesh. [N]
     compliance : ndarray, shape (lines, segments, segments)
-        Influence coefficients of both teeth. [m/N]
+        C: influence coefficients of both teeth. [m/N]
+    coupling : ndarray, shape (lines, lines)
+        G: deflection of each line under a unit total force on each. [m/N]
+    separation : ndarray, shape (lines, segments)
+        s: gap of the unloaded flanks along the common normal. [m]
     length : ndarray, shape (lines, segments)
         Of the segments; zero where a line is not in contact. [m]
     local_a : ndarray, shape (lines, segments)
@@ -71,71 +339,88 @@ def solve_contact_loads(
     local_b : float
         B of delta_c. [m^2/N]
     tolerance : float
-        Largest change of a segment's force in the last step over the mean force. [1]
+        Largest gap or penetration at loaded segments over the approach, and largest error of the
+        balance over the force. [1]
     max_iterations : int
+        Of the careful method, for which one segment may leave or join at a time.
 
     Returns
     -------
     forces : ndarray, shape (lines, segments)
         [N]
     approach : float
-        Normal approach of the gears. [m]
+        Of the gears along the common normal, from where unmodified flanks touch. [m]
+    stiffness : float
+        Of the total normal force against the approach. [N/m]
     iterations : int
-        Newton steps, or -1 without convergence.
+        Newton steps, or -1 without a solution.
     """
-    lines, segments = length.shape
+    loaded = length > 0.0
+    nearest = np.inf
+    for line in range(length.shape[0]):
+        for k in range(length.shape[1]):
+            if loaded[line, k]:
+                nearest = min(nearest, separation[line, k])
+    gap = separation - nearest
     floor = LINEAR_SHARE * force / length.sum()
     forces = force * length / length.sum()
-    mean = force / np.count_nonzero(length)
-    loaded = length > 0.0
-    approach = 0.0
-    for iteration in range(max_iterations):
-        unit = np.zeros((lines, segments))
-        shortfall = np.zeros((lines, segments))
-        for line in range(lines):
-            index = np.nonzero(loaded[line])[0]
-            n = index.size
-            if n == 0:
-                continue
-            jacobian = np.empty((n, n))
-            sides = np.ones((n, 2))
-            for i in range(n):
-                k = index[i]
-                q = forces[line, k] / length[line, k]
-                deflection = local_deflection(q, local_a[line, k], local_b, floor)
-                for j in range(n):
-                    jacobian[i, j] = compliance[line, k, index[j]]
-                    deflection += compliance[line, k, index[j]] * forces[line, index[j]]
-                slope = local_compliance(q, local_a[line, k], local_b, floor)
-                jacobian[i, i] += slope / length[line, k]
-                sides[i, 1] = deflection
-            solved = np.linalg.solve(jacobian, sides)
-            for i in range(n):
-                unit[line, index[i]] = solved[i, 0]
-                shortfall[line, index[i]] = solved[i, 1]
-        approach = (force - forces.sum() + shortfall.sum()) / unit.sum()
-        change = 0.0
-        settled = True
-        for line in range(lines):
-            for k in range(segments):
-                if not loaded[line, k]:
-                    continue
-                step = approach * unit[line, k] - shortfall[line, k]
-                if forces[line, k] + step <= 0.0:
-                    step = -forces[line, k]
-                    loaded[line, k] = False
-                    settled = False
-                forces[line, k] += step
-                change = max(change, abs(step))
-        for line in range(lines):
-            for k in range(segments):
-                if length[line, k] > 0.0 and not loaded[line, k]:
-                    gap = -approach
-                    for j in range(segments):
-                        gap += compliance[line, k, j] * forces[line, j]
-                    if gap < -1e-12 * approach:
-                        loaded[line, k] = True
-                        settled = False
-        if settled and change <= tolerance * mean:
-            return forces, approach, iteration + 1
-    return forces, approach, -1
+    approach = stiffness = np.nan
+    for iteration in range(QUICK_STEPS):
+        closed, slope = deflections(
+            forces, compliance, coupling, gap, length, local_a, local_b, floor
+        )
+        if is_solution(force, forces, approach, closed, length, tolerance):
+            return forces, approach + nearest, stiffness, iteration
+        load_touching(loaded, closed, length, approach, tolerance)
+        step, approach, stiffness = newton_step(
+            force, forces, loaded, closed, slope, compliance, coupling
+        )
+        quick_update(forces, step, loaded)
+    forces, approach, stiffness, iterations = careful_solution(
+        force,
+        compliance,
+        coupling,
+        gap,
+        length,
+        local_a,
+        local_b,
+        floor,
+        tolerance,
+        max_iterations,
+    )
+    if iterations > 0:
+        iterations += QUICK_STEPS
+    return forces, approach + nearest, stiffness, iterations
+
+
+@kernel
+def solve_all_positions(
+    force: float,
+    compliance: FloatArray,
+    coupling: FloatArray,
+    separation: FloatArray,
+    length: FloatArray,
+    local_a: FloatArray,
+    local_b: float,
+    tolerance: float,
+    max_iterations: int,
+) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.int64]]:
+    """`solve_contact_loads` for arrays with mesh positions as their first axis."""
+    positions = length.shape[0]
+    forces = np.zeros(length.shape)
+    approach = np.empty(positions)
+    stiffness = np.empty(positions)
+    iterations = np.empty(positions, dtype=np.int64)
+    for m in range(positions):
+        forces[m], approach[m], stiffness[m], iterations[m] = solve_contact_loads(
+            force,
+            compliance[m],
+            coupling[m],
+            separation[m],
+            length[m],
+            local_a[m],
+            local_b,
+            tolerance,
+            max_iterations,
+        )
+    return forces, approach, stiffness, iterations

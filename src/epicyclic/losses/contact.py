@@ -207,7 +207,7 @@ def mesh_contact(
 ) -> MeshContact:
     """Conditions at the loaded segments of `lines`.
 
-    Theory (C2), (C3).
+    Theory (C2).
 
     Parameters
     ----------
@@ -226,7 +226,6 @@ def mesh_contact(
     speed2 = speed1 / mesh.ratio
     rho1, rho2 = lines.curvature1[loaded], lines.curvature2[loaded]
     u1, u2 = speed1 * rho1, speed2 * rho2
-    transverse_radius = rho1 * rho2 / (rho2 + mesh.side * rho1)
     return MeshContact(
         mesh=mesh,
         oil=oil,
@@ -237,7 +236,7 @@ def mesh_contact(
         weight=(lines.weight[:, None, None] * lines.length)[loaded],
         line_load=line_load[loaded],
         path=rho1 - mesh.pitch_point,
-        radius=transverse_radius / math.cos(mesh.gear1.rack.base_helix_angle),
+        radius=mesh.equivalent_radius(rho1),
         rolling_speed=(u1 + u2) / 2,
         sliding_speed=u1 - u2,
     )

@@ -1,6 +1,6 @@
 r"""Load along the contact lines.
 
-The simple models share the load in proportion to a stiffness per length k along the contact lines,
+Two simple models share the load in proportion to a stiffness per length k along the contact lines,
 
 .. math:: W'(x) = F_n\, k(x) \Big/ \int k\,\mathrm{d}l ,
 
@@ -12,18 +12,82 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.elasticity.mesh_compliance import Elastic, load_mesh_elastically
+from epicyclic.elasticity.loaded_mesh import UNMODIFIED, LoadedMesh, load_mesh_elastically
+from epicyclic.elasticity.mesh_compliance import GearBody
 from epicyclic.geometry.contact_lines import ContactLines, contact_lines
 from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.micro_geometry import FlankDeviations
 
-__all__ = ["LOAD_DISTRIBUTIONS", "distribute_load", "load_shape"]
+__all__ = [
+    "LOAD_DISTRIBUTIONS",
+    "STIFFNESS_SHAPES",
+    "LineLoads",
+    "LoadDistribution",
+    "MeshLoad",
+    "load_shape",
+]
 
 FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class MeshLoad:
+    """A mesh and the force on it.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    force : float
+        Transverse, tangent to the base circles. [N]
+    bodies : tuple of GearBody
+        Both members.
+    deviations : FlankDeviations
+    """
+
+    mesh: Mesh
+    force: float
+    bodies: tuple[GearBody, GearBody]
+    deviations: FlankDeviations = UNMODIFIED
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LineLoads:
+    """Contact lines and the load on them.
+
+    Attributes
+    ----------
+    lines : ContactLines
+    line_load : ndarray, shape (positions, lines, segments)
+        [N/m]
+    elastic : LoadedMesh or None
+        Approach and stiffness, from a model that knows them.
+    """
+
+    lines: ContactLines
+    line_load: FloatArray
+    elastic: LoadedMesh | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LoadDistribution:
+    """A model of the load along the contact lines.
+
+    Attributes
+    ----------
+    distribute : callable
+        From a `MeshLoad`, mesh positions and contact segments to `LineLoads`.
+    takes_deviations : bool
+        False if micro-geometry and misalignment do not matter to it.
+    """
+
+    distribute: Callable[[MeshLoad, int, int], LineLoads]
+    takes_deviations: bool = False
 
 
 def _uniform(mesh: Mesh, lines: ContactLines) -> FloatArray:
@@ -49,54 +113,28 @@ def _minimum_energy(mesh: Mesh, lines: ContactLines) -> FloatArray:
     return stiffness
 
 
-def distribute_load(
-    mesh: Mesh,
-    model: str,
-    force: float,
-    elastic: tuple[Elastic, Elastic],
-    positions: int,
-    segments: int,
-) -> tuple[ContactLines, FloatArray]:
-    """Contact lines of `mesh` and the load on them.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    model : str
-        ``"compliance"``, or a key of `LOAD_DISTRIBUTIONS`.
-    force : float
-        Transverse, tangent to the base circles. [N]
-    elastic : tuple of Elastic
-        Materials of both members.
-    positions, segments : int
-        As for `contact_lines`.
-
-    Returns
-    -------
-    lines : ContactLines
-    line_load : ndarray, shape (positions, lines, segments)
-        [N/m]
-    """
-    if model == "compliance":
-        loaded = load_mesh_elastically(mesh, *elastic, positions, segments, force)
-        return loaded.lines, loaded.line_load
-    lines, shape = load_shape(mesh, model, positions, segments)
-    return lines, force * shape
-
-
-LOAD_DISTRIBUTIONS: dict[str, Callable[[Mesh, ContactLines], FloatArray]] = {
+STIFFNESS_SHAPES: dict[str, Callable[[Mesh, ContactLines], FloatArray]] = {
     "uniform": _uniform,
     "minimum-energy": _minimum_energy,
 }
+"""k of the simple models."""
 
 
 @lru_cache(maxsize=64)
 def load_shape(
-    mesh: Mesh, model: str, positions: int, segments: int
+    mesh: Mesh, name: str, positions: int, segments: int
 ) -> tuple[ContactLines, FloatArray]:
     """Contact lines, and the line load on them for a unit transverse force.
 
     Theory (D2).
+
+    Parameters
+    ----------
+    mesh : Mesh
+    name : str
+        A key of `STIFFNESS_SHAPES`.
+    positions, segments : int
+        As for `contact_lines`.
 
     Returns
     -------
@@ -105,8 +143,26 @@ def load_shape(
         W'/F_bt; the normal force F_bt/cos(beta_b) is its integral along the lines. [1/m]
     """
     lines = contact_lines(mesh, positions, segments)
-    stiffness = LOAD_DISTRIBUTIONS[model](mesh, lines)
+    stiffness = STIFFNESS_SHAPES[name](mesh, lines)
     total = (stiffness * lines.length).sum(axis=(1, 2))[:, None, None]
     shape = stiffness / (total * math.cos(mesh.gear1.rack.base_helix_angle))
     shape.flags.writeable = False
     return lines, shape
+
+
+def _in_proportion(name: str, load: MeshLoad, positions: int, segments: int) -> LineLoads:
+    lines, shape = load_shape(load.mesh, name, positions, segments)
+    return LineLoads(lines, load.force * shape)
+
+
+def _elastic(load: MeshLoad, positions: int, segments: int) -> LineLoads:
+    loaded = load_mesh_elastically(
+        load.mesh, *load.bodies, positions, segments, load.force, load.deviations
+    )
+    return LineLoads(loaded.lines, loaded.line_load, loaded)
+
+
+LOAD_DISTRIBUTIONS: dict[str, LoadDistribution] = {
+    **{name: LoadDistribution(partial(_in_proportion, name)) for name in STIFFNESS_SHAPES},
+    "compliance": LoadDistribution(_elastic, takes_deviations=True),
+}
