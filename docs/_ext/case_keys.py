@@ -24,6 +24,7 @@ PAGE = "how-to/case-file.md"
 ROW = re.compile(r"^\| `(?P<key>[\w.<>]+)` \| (?P<default>[^|]*) \|", re.MULTILINE)
 GEARS = ("sun", "planet", "ring", "pinion", "gear")
 WITH_PAGES_OF_THEIR_OWN = ("material", "oil")
+DESCRIBED_ELSEWHERE = ("micro_geometry_ring_side",)  # has the keys of another table
 
 logger = logging.getLogger(__name__)
 
@@ -38,7 +39,7 @@ def keys_of_schema() -> dict[str, str]:
                 found[table] = ""
                 continue
             for key, default in _fields(inner):
-                shared = table in GEARS and key in GearTable.model_fields
+                shared = table in GEARS and key.partition(".")[0] in GearTable.model_fields
                 found[f"<gear>.{key}" if shared else f"{table}.{key}"] = default
     found["losses.<term>.include"], found["losses.<term>.factor"] = "true", "1"
     found.pop("losses")
@@ -48,8 +49,9 @@ def keys_of_schema() -> dict[str, str]:
 def _fields(table: type[BaseModel]) -> Iterator[tuple[str, str]]:
     for name, field in table.model_fields.items():
         inner = table_of(field.annotation)
-        if inner is not None and name not in WITH_PAGES_OF_THEIR_OWN:
-            raise TypeError(f"{table.__name__}.{name}: nested tables are not described yet")
+        if inner is not None and name not in WITH_PAGES_OF_THEIR_OWN + DESCRIBED_ELSEWHERE:
+            yield from ((f"{name}.{key}", default) for key, default in _fields(inner))
+            continue
         default = None if field.is_required() else field.default
         yield name, _text(default, quantity_of(field.annotation, tuple(field.metadata)))
 

@@ -40,6 +40,7 @@ __all__ = [
     "WATT",
     "Angle",
     "Density",
+    "Deviation",
     "HelixAngle",
     "HertzPressure",
     "KinematicViscosity",

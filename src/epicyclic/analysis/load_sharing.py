@@ -6,11 +6,10 @@ import math
 
 import numpy as np
 
-from epicyclic.analysis.parts import MeshDuty, elastic_constants
+from epicyclic.analysis.parts import MeshDuty, elastic_loads
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.schema import Numerics
-from epicyclic.elasticity.mesh_compliance import load_mesh_elastically
 from epicyclic.elasticity.planet_sharing import (
     Branches,
     branch_directions,
@@ -22,9 +21,6 @@ from epicyclic.errors import ConvergenceError
 from epicyclic.losses.planet_bearing import RollerBearing, radial_stiffness
 
 __all__ = ["planet_shares"]
-
-STIFFNESS_STEP = 0.01
-"""Relative step of the force in the slope of a mesh's approach over its force. [1]"""
 
 
 def planet_shares(
@@ -98,15 +94,6 @@ def _mesh_force(duty: MeshDuty) -> float:
 
 
 def _mesh_compliance(duty: MeshDuty, numerics: Numerics) -> float:
-    """Slope of the mean approach over the force, both along the transverse line. [m/N]"""
-    mesh, force = duty.mesh, _mesh_force(duty)
-    one, two = (elastic_constants(gear) for gear in duty.gears)
-    low, high = ((1 + sign * STIFFNESS_STEP) * force for sign in (-1, 1))
-    closer, farther = (
-        load_mesh_elastically(
-            mesh, one, two, numerics.mesh_positions, numerics.contact_segments, load
-        ).approach.mean()
-        for load in (low, high)
-    )
-    slope = float((farther - closer) / (high - low))
-    return slope / math.cos(mesh.gear1.rack.base_helix_angle)
+    """Slope of the transmission error over the force, mean of the mesh period. [m/N]"""
+    loaded = elastic_loads(duty, numerics)
+    return loaded.mean(1 / loaded.tangent_stiffness)

@@ -9,6 +9,7 @@ from epicyclic.analysis.parts import (
     fluid_notes,
     fluids_of,
     general_notes,
+    load_notes,
     loss_terms,
     resolve_models,
     solve_mesh,
@@ -46,7 +47,11 @@ def solve_pair(case: GearPairCase) -> Result:
         fluid=fluids.figures,
         models=resolve_models(case),
         flags=fluids.flags + mesh.flags + drag_flags,
-        notes=general_notes(terms, flow.input_power, flow.efficiency) + fluid_notes(case),
+        notes=(
+            *general_notes(terms, flow.input_power, flow.efficiency),
+            *fluid_notes(case),
+            *load_notes(case),
+        ),
         sources=used_sources(terms),
         inputs=case.inputs(),
     )
@@ -56,7 +61,14 @@ def pair_duty(case: GearPairCase) -> MeshDuty:
     """The mesh of the pair with its torque and speed."""
     mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
     operation = case.operation
-    return MeshDuty("mesh", mesh, (case.pinion, case.gear), operation.torque, operation.speed)
+    return MeshDuty(
+        "mesh",
+        mesh,
+        (case.pinion, case.gear),
+        operation.torque,
+        operation.speed,
+        case.mesh.misalignment,
+    )
 
 
 def _bodies(case: GearPairCase, duty: MeshDuty) -> tuple[Body, Body]:

@@ -15,15 +15,16 @@ from epicyclic.analysis.result import (
     LossTerm,
     MeshFigures,
 )
+from epicyclic.case import build, flanks
 from epicyclic.case.case import Case, PlanetaryCase
-from epicyclic.case.schema import GearPairModels, GearTable, LossOption, Numerics
-from epicyclic.elasticity.mesh_compliance import Elastic
+from epicyclic.case.schema import GearPairModels, GearTable, LossOption, MeshTable, Numerics
+from epicyclic.elasticity.loaded_mesh import LoadedMesh, load_mesh_elastically
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.contact import Flanks, MeshContact, mesh_contact
 from epicyclic.losses.friction import FrictionSettings, friction_model
 from epicyclic.losses.friction.user import FrictionMap
-from epicyclic.losses.load_distribution import distribute_load
+from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS, LineLoads, MeshLoad
 from epicyclic.losses.mesh import MeshLoss, local_loss, loss_factor_loss, ohlendorf_loss_factor
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.losses.rolling import ROLLING_MODELS
@@ -45,13 +46,15 @@ __all__ = [
     "MeshDuty",
     "MeshOutcome",
     "Part",
+    "distribute_load",
     "drag_part",
-    "elastic_constants",
+    "elastic_loads",
     "fluid_notes",
     "fluids_of",
     "friction_settings",
     "general_notes",
     "load_mesh",
+    "load_notes",
     "loss_terms",
     "resolve_models",
     "solve_mesh",
@@ -126,6 +129,8 @@ class MeshDuty:
         On member 1. [N m]
     speed1 : float
         Of member 1. [rad/s]
+    misalignment : float
+        F_beta_x. [m]
     """
 
     key: str
@@ -133,6 +138,7 @@ class MeshDuty:
     gears: tuple[GearTable, GearTable]
     torque1: float
     speed1: float
+    misalignment: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,36 +198,51 @@ def friction_settings(case: Case) -> FrictionSettings:
     )
 
 
+def distribute_load(duty: MeshDuty, models: GearPairModels, numerics: Numerics) -> LineLoads:
+    """Contact lines of a mesh and the load on them under the torque of its duty."""
+    model = LOAD_DISTRIBUTIONS[models.load_distribution]
+    return model.distribute(_mesh_load(duty), numerics.mesh_positions, numerics.contact_segments)
+
+
+def elastic_loads(duty: MeshDuty, numerics: Numerics) -> LoadedMesh:
+    """The mesh under the torque of its duty with elastic teeth, whatever distributes the load."""
+    load = _mesh_load(duty)
+    return load_mesh_elastically(
+        load.mesh,
+        *load.bodies,
+        numerics.mesh_positions,
+        numerics.contact_segments,
+        load.force,
+        load.deviations,
+    )
+
+
+def _mesh_load(duty: MeshDuty) -> MeshLoad:
+    """Force, bodies and flanks of a mesh. Theory (D1)."""
+    return MeshLoad(
+        duty.mesh,
+        abs(duty.torque1) / duty.mesh.gear1.base_radius,
+        flanks.gear_bodies(duty.mesh, duty.gears),
+        flanks.flank_deviations(duty.mesh, duty.gears, duty.misalignment),
+    )
+
+
 def load_mesh(
     duty: MeshDuty, models: GearPairModels, numerics: Numerics, oil: OilState
 ) -> MeshContact | None:
-    """Conditions along the contact lines; None without load or motion. Theory (D1)."""
+    """Conditions along the contact lines; None without load or motion."""
     if duty.torque1 == 0 or duty.speed1 == 0:
         return None
-    force = abs(duty.torque1) / duty.mesh.gear1.base_radius
-    one, two = (elastic_constants(gear) for gear in duty.gears)
-    lines, line_load = distribute_load(
-        duty.mesh,
-        models.load_distribution,
-        force,
-        (one, two),
-        numerics.mesh_positions,
-        numerics.contact_segments,
-    )
+    loads = distribute_load(duty, models, numerics)
     return mesh_contact(
         duty.mesh,
-        lines,
-        line_load,
-        force=force,
+        loads.lines,
+        loads.line_load,
+        force=abs(duty.torque1) / duty.mesh.gear1.base_radius,
         speed1=abs(duty.speed1),
         oil=oil,
         flanks=_flanks(*duty.gears),
     )
-
-
-def elastic_constants(gear: GearTable) -> Elastic:
-    """Those of the gear's material."""
-    return Elastic(gear.material.elastic_modulus, gear.material.poisson_ratio)
 
 
 def _flanks(one: GearTable, two: GearTable) -> Flanks:
@@ -348,6 +369,36 @@ def fluid_notes(case: Case) -> tuple[str, ...]:
         for key, fluid in fluids.items()
         if fluid is not None and fluid.key != oil.friction_regression
     )
+
+
+def load_notes(case: Case) -> tuple[str, ...]:
+    """Notes on deviations that the load distribution ignores, and on a rim that is too thin."""
+    notes = []
+    model = case.models.load_distribution
+    if _states_deviations(case) and not LOAD_DISTRIBUTIONS[model].takes_deviations:
+        notes.append(
+            f"models.load_distribution = {model} ignores micro-geometry and misalignment; "
+            "compliance takes them into account."
+        )
+    if isinstance(case, PlanetaryCase) and case.ring.rim_thickness is not None:
+        ring = build.gear("ring", case.ring, case.gears)
+        height = ring.root_radius - ring.tip_radius
+        if case.ring.rim_thickness < height:
+            notes.append(
+                f"ring.rim_thickness is less than the height of the teeth, {1e3 * height:.4g} mm: "
+                "the deflection of so thin a rim is outside what the compliance is made for."
+            )
+    return tuple(notes)
+
+
+def _states_deviations(case: Case) -> bool:
+    gears: tuple[GearTable, ...]
+    if isinstance(case, PlanetaryCase):
+        gears = (case.sun, case.planet, case.ring)
+        meshes: tuple[MeshTable, ...] = (case.sun_mesh, case.ring_mesh)
+    else:
+        gears, meshes = (case.pinion, case.gear), (case.mesh,)
+    return any(mesh.misalignment for mesh in meshes) or any(map(flanks.micro_geometries, gears))
 
 
 def used_sources(terms: Iterable[LossTerm], *more: str) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from epicyclic.analysis.parts import (
     fluid_notes,
     fluids_of,
     general_notes,
+    load_notes,
     loss_terms,
     resolve_models,
     solve_mesh,
@@ -112,6 +113,7 @@ def solve_planetary(case: PlanetaryCase) -> Result:
         notes=(
             *general_notes(terms, flow.input_power, flow.efficiency),
             *fluid_notes(case),
+            *load_notes(case),
             *_planet_notes(case, angles),
             *_share_notes(shares),
             *_ring_notes(case, speeds),
@@ -135,8 +137,22 @@ def planetary_duties(case: PlanetaryCase, share: float) -> tuple[MeshDuty, MeshD
     sun_speed = speeds["sun"] - speeds["carrier"]
     own_speed = planet_speed(case.sun.teeth, case.planet.teeth, speeds)
     return (
-        MeshDuty("sun_mesh", sun_mesh, (case.sun, case.planet), branch_torque, sun_speed),
-        MeshDuty("ring_mesh", ring_mesh, (case.planet, case.ring), planet_torque, own_speed),
+        MeshDuty(
+            "sun_mesh",
+            sun_mesh,
+            (case.sun, case.planet),
+            branch_torque,
+            sun_speed,
+            case.sun_mesh.misalignment,
+        ),
+        MeshDuty(
+            "ring_mesh",
+            ring_mesh,
+            (case.planet, case.ring),
+            planet_torque,
+            own_speed,
+            case.ring_mesh.misalignment,
+        ),
     )
 
 

@@ -17,6 +17,7 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import (
     RackTool,
     ShaperTool,
+    Tool,
     default_tool,
     form_radius,
     tooth_outline,
@@ -24,12 +25,14 @@ from epicyclic.geometry.outline import (
 
 __all__ = [
     "basic_rack",
+    "cutting_tool",
     "gear",
     "longest_involute",
     "outside_radius",
     "pair_mesh",
     "planet_angles",
     "planetary_meshes",
+    "stated_tool",
 ]
 
 DEFAULT_RIM_THICKNESS = 3.0
@@ -127,24 +130,63 @@ def longest_involute(gear: Gear, table: GearTable) -> float:
     ValueError
         If no tool generates the tooth.
     """
+    stated = stated_tool(gear, table)
     if not gear.internal:
-        tool = _kindest_rack(gear, table)
+        tool = _kindest_rack(gear) if stated is None else stated
         if _sharp_undercut(gear) > 0:
             tooth_outline(gear, tool, points=8)  # raises if undercut severs the teeth
         return form_radius(gear, tool)
+    if stated is not None:
+        return form_radius(gear, stated)
     shaper = default_tool(gear)
     assert isinstance(shaper, ShaperTool)
-    if table.tool_tip_radius is not None:
-        return form_radius(gear, ShaperTool(shaper.teeth, table.tool_tip_radius))
     try:
         return form_radius(gear, ShaperTool(shaper.teeth, 0.0))
     except ValueError:
         return form_radius(gear, shaper)
 
 
-def _kindest_rack(gear: Gear, table: GearTable) -> RackTool:
-    if table.tool_tip_radius is not None:
+def stated_tool(gear: Gear, table: GearTable) -> Tool | None:
+    """The tool that cuts `gear` with the tip rounding of the case; None if the case has none.
+
+    Raises
+    ------
+    ValueError
+        If no default shaper cutter generates a ring.
+    """
+    if table.tool_tip_radius is None:
+        return None
+    if not gear.internal:
         return RackTool(table.tool_tip_radius)
+    shaper = default_tool(gear)
+    assert isinstance(shaper, ShaperTool)
+    return ShaperTool(shaper.teeth, table.tool_tip_radius)
+
+
+def cutting_tool(gear: Gear, table: GearTable) -> Tool:
+    """The tool that leaves the root fillet: of the case, or the default one if it cuts the tooth.
+
+    If that one does not, it is the tool that leaves the longest involute.
+
+    Raises
+    ------
+    ValueError
+        If no tool generates the tooth.
+    """
+    stated = stated_tool(gear, table)
+    if stated is not None:
+        return stated
+    tool = default_tool(gear)
+    try:
+        tooth_outline(gear, tool)
+    except ValueError:
+        if gear.internal:
+            raise
+        return _kindest_rack(gear)
+    return tool
+
+
+def _kindest_rack(gear: Gear) -> RackTool:
     sine = math.sin(gear.rack.normal_pressure_angle)
     return RackTool(max(0.0, _sharp_undercut(gear)) / (1 - sine))
 

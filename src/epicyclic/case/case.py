@@ -26,6 +26,7 @@ from epicyclic.case.schema import (
     GearTable,
     LoadSharing,
     Lubricant,
+    MeshTable,
     Numerics,
     PairGear,
     Planet,
@@ -107,6 +108,8 @@ class PlanetaryCase(_CaseTable):
     sun: GearTable
     planet: Planet
     ring: Ring
+    sun_mesh: MeshTable = MeshTable()
+    ring_mesh: MeshTable = MeshTable()
     planet_bearing: PlanetBearing | None = None
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
@@ -128,6 +131,7 @@ class GearPairCase(_CaseTable):
     gears: Gears
     pinion: GearTable
     gear: PairGear
+    mesh: MeshTable = MeshTable()
     lubricant: Lubricant
     surroundings: Surroundings = Surroundings()
     friction_table: FrictionTable | None = None

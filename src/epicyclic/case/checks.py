@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Mapping
 from itertools import pairwise
 
 from epicyclic.case import build
-from epicyclic.case.gear_checks import check_pair, check_planetary, millimetres
+from epicyclic.case.gear_checks import check_pair, check_planetary
 from epicyclic.case.schema import (
     FrictionTable,
     GearPairModels,
@@ -19,6 +19,7 @@ from epicyclic.case.schema import (
     Gears,
     GearTable,
     LoadSharing,
+    Numerics,
     Planet,
     PlanetaryModels,
     PlanetaryOperation,
@@ -26,9 +27,13 @@ from epicyclic.case.schema import (
     Ring,
     Table,
 )
+from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 
 __all__ = ["cross_check"]
+
+MOST_COEFFICIENTS = 10_000_000
+"""Largest number of influence coefficients for each contact line: 80 MB."""
 
 
 def cross_check(sections: Mapping[str, Table], given: Collection[str]) -> list[Problem]:
@@ -226,6 +231,23 @@ def _check_friction_model(models: GearPairModels, given: Collection[str]) -> lis
     ]
 
 
+def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Problem]:
+    """Influence coefficients of all positions must fit into memory."""
+    positions, segments = numerics.mesh_positions, numerics.contact_segments
+    if models.load_distribution != "compliance" or positions * segments**2 <= MOST_COEFFICIENTS:
+        return []
+    fitting = max(2, math.isqrt(MOST_COEFFICIENTS // positions))
+    return [
+        Problem(
+            "numerics.contact_segments",
+            str(segments),
+            f"with {positions} mesh positions the influence coefficients of "
+            'models.load_distribution = "compliance" would not fit into memory.',
+            f"Take {fitting} or fewer; 30 are enough for 0.1 %.",
+        )
+    ]
+
+
 _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_operation, ("operation",)),
     (check_planetary, ("gears", "sun", "planet", "ring")),
@@ -235,4 +257,5 @@ _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_bearing_model, ("planet_bearing", "models")),
     (_check_load_sharing, ("load_sharing", "sun", "planet", "ring")),
     (_check_friction_table, ("friction_table",)),
+    (_check_resolution, ("models", "numerics")),
 )

@@ -10,13 +10,15 @@ import math
 from collections.abc import Mapping
 
 from epicyclic.case import build
+from epicyclic.case.flank_checks import check_flanks
 from epicyclic.case.schema import Gears, GearTable, PairGear, Planet, Ring
+from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 from epicyclic.geometry.assembly import nearest_admissible_angle, smallest_planet_gap
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = ["check_pair", "check_planetary", "millimetres"]
+__all__ = ["check_pair", "check_planetary"]
 
 ANGLE_TOLERANCE = math.radians(0.01)
 """Given planet positions may differ by this from an admissible one: drawing precision. [rad]"""
@@ -48,11 +50,6 @@ def check_pair(gears: Gears, pinion: GearTable, gear: PairGear) -> list[Problem]
     if len(sound) == 2:
         problems += _check_mesh(build.pair_mesh(gears, pinion, gear), tables)
     return problems
-
-
-def millimetres(value: float) -> str:
-    """A length in metres as text for a message."""
-    return f"{value * 1e3:.5g} mm"
 
 
 def _check_gears(gears: Gears, tables: Tables) -> tuple[dict[str, Gear], list[Problem]]:
@@ -179,12 +176,13 @@ def _check_mesh(mesh: Mesh, tables: Tables) -> list[Problem]:
             # rings whose tips reach too far for the planet are out of reach of cutters too
             if not (root.internal and ends):
                 ends.append(_no_tool(root, tables[root.name], str(error)))
-    return [
-        *problems,
+    problems += [
         *ends,
         *_check_contact_ratio(mesh, tables),
         *_check_tip_passage(mesh, tables),
     ]
+    # where the teeth do not mesh the limits of the active profile mean nothing
+    return problems or check_flanks(mesh, (tables[one.name], tables[two.name]))
 
 
 def _reference_distance(mesh: Mesh) -> str:

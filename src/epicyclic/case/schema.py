@@ -234,6 +234,63 @@ class Gears(Table):
     )
 
 
+ReliefShape = Literal["linear", "parabolic"]
+
+
+class TopographyTable(Table):
+    """Measured deviations of a flank, positive where material is missing."""
+
+    diameter: tuple[Length, ...] = Field(description="Two or more, rising.")
+    face_position: tuple[_ShortLength, ...] = Field(
+        description="Two or more, rising, from the end of the face where contact begins."
+    )
+    deviation: tuple[tuple[Deviation, ...], ...] = Field(
+        description="One row for each diameter, with one value for each face position."
+    )
+
+
+class MicroGeometryTable(Table):
+    """Modifications and deviations of the working flanks, positive where material is missing."""
+
+    tip_relief: SmallLength = Field(default=_as_text("0 um"), description="At the tip.")
+    tip_relief_roll_length: Length | None = Field(
+        default=None, description="Roll length from the tip to the start of the relief."
+    )
+    tip_relief_diameter: Length | None = Field(
+        default=None, description="Instead of it: the diameter where the relief starts."
+    )
+    tip_relief_shape: ReliefShape = "linear"
+    root_relief: SmallLength = Field(
+        default=_as_text("0 um"), description="At the start of the active profile."
+    )
+    root_relief_roll_length: Length | None = Field(
+        default=None, description="Roll length from the start of the active profile."
+    )
+    root_relief_diameter: Length | None = Field(
+        default=None, description="Instead of it: the diameter where the relief starts."
+    )
+    root_relief_shape: ReliefShape = "linear"
+    profile_crown: Deviation = Field(
+        default=_as_text("0 um"), description="Parabola over the active profile."
+    )
+    profile_slope: Deviation = Field(
+        default=_as_text("0 um"), description="Positive: material is missing at the tip."
+    )
+    lead_crown: Deviation = Field(
+        default=_as_text("0 um"), description="Parabola over the face width of the gear."
+    )
+    lead_slope: Deviation = Field(
+        default=_as_text("0 um"),
+        description="Positive: material is missing at the end where contact ends.",
+    )
+    end_relief: SmallLength = Field(default=_as_text("0 um"), description="At both ends.")
+    end_relief_length: Length | None = Field(default=None, description="From each end.")
+    end_relief_shape: ReliefShape = "linear"
+    topography: TopographyTable | None = Field(
+        default=None, description="Deviations over the flank, added to the others."
+    )
+
+
 class GearTable(Table):
     """One gear."""
 
@@ -241,6 +298,7 @@ class GearTable(Table):
         "roughness": "1 um",
         "material": None,
         "tool_tip_radius": None,
+        "micro_geometry": None,
     }
     EXACTLY_ONE = (("tooth_thickness+thickness_diameter", "profile_shift_coefficient"),)
 
@@ -266,6 +324,9 @@ class GearTable(Table):
         description="Rounding of the cutting tool's tip, which leaves the root fillet. Default: "
         "0.38 m_n (rack) or 0.2 m_n (shaper), or less where the mate needs the involute.",
     )
+    micro_geometry: MicroGeometryTable | None = Field(
+        default=None, description="Modifications and deviations of the flanks."
+    )
 
 
 class PairGear(GearTable):
@@ -277,7 +338,11 @@ class PairGear(GearTable):
 class Planet(GearTable):
     """The planets, all alike."""
 
-    STAND_INS = GearTable.STAND_INS | {"angles": None, "mass": None}
+    STAND_INS = GearTable.STAND_INS | {
+        "angles": None,
+        "mass": None,
+        "micro_geometry_ring_side": None,
+    }
 
     count: int = Field(ge=1, le=24, description="Number of planets.")
     angles: tuple[Angle, ...] | None = Field(
@@ -290,6 +355,11 @@ class Planet(GearTable):
         description="Of one planet with its rollers. If given, its centrifugal force loads the "
         "planet bearing.",
     )
+    micro_geometry_ring_side: MicroGeometryTable | None = Field(
+        default=None,
+        description="Of the flanks that work against the ring. Default: micro_geometry holds on "
+        "both sides.",
+    )
 
 
 class Ring(GearTable):
@@ -298,7 +368,21 @@ class Ring(GearTable):
     STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
 
     rim_thickness: Length | None = Field(
-        default=None, description="From root to outside. Default: 3 normal modules (estimate)."
+        default=None,
+        description="From root to outside. Default: 3 normal modules (estimate) for the drag, and "
+        "a rim that is held on its outside and does not bend.",
+    )
+
+
+class MeshTable(Table):
+    """What belongs to a mesh and to none of its gears."""
+
+    STAND_INS: ClassVar[dict[str, object]] = {"misalignment": None}
+
+    misalignment: Deviation = Field(
+        default=_as_text("0 um"),
+        description="F_beta_x over the common face width, in the plane of action; positive: the "
+        "flanks open towards the end where contact ends.",
     )
 
 
@@ -518,7 +602,7 @@ class GearPairModels(Table):
         description="auto: mixed-ehl for the fluid it was made for, else goksem-hargreaves.",
     )
     load_distribution: Literal["uniform", "minimum-energy", "compliance"] = Field(
-        default="uniform",
+        default="compliance",
         description="Along the contact lines: even, after a stiffness, or from elastic teeth.",
     )
     mesh: Literal["local", "loss-factor"] = Field(

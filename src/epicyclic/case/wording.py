@@ -77,3 +77,8 @@ def sentence(text: str, *, capital: bool = True) -> str:
     """`text` with a full stop, and with a capital letter at its start unless told otherwise."""
     start = text[:1].upper() if capital else text[:1]
     return f"{start}{text[1:]}" + ("" if text.endswith((".", "?")) else ".")
+
+
+def millimetres(value: float) -> str:
+    """A length in metres as text for a message."""
+    return f"{value * 1e3:.5g} mm"

@@ -19,6 +19,8 @@ _EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {
     "gear_pair": ("talbot-2012-pair", GearPairCase),
 }
 COMMENT_COLUMN = 44
+_SPELT_OUT = ("micro_geometry", "topography")
+"""Tables within a table whose keys are listed."""
 
 
 def case_template(kind: str) -> str:
@@ -45,23 +47,34 @@ def _table_lines(
     mark = "" if values or field.is_required() else "# "
     lines = ["", f"{mark}[{key}]".ljust(COMMENT_COLUMN) + f"# {about}"]
     for name, inner in table.model_fields.items():
-        subtable = table_of(inner.annotation)
-        if subtable is not None and name not in values:
-            if key == "losses":
-                lines.append(_line(f"# {name} = {{ include = true, factor = 1.0 }}", ""))
-                continue
-            if inner.default == "steel":
-                lines.append(_line('# material = "steel"', _about(inner)))
-            continue
-        if name in values:
-            lines.append(_line(f"{name} = {_toml(values[name])}", _about(inner)))
-        else:
-            lines.append(_line(f"# {name} = {_default(inner)}", _about(inner)))
+        lines += _field_lines(key, name, inner, values)
     return lines
 
 
+def _field_lines(
+    key: str, name: str, field: FieldInfo, values: dict[str, Any], prefix: str = ""
+) -> list[str]:
+    """Lines of one key of table `key`; a table within it appears as dotted keys."""
+    subtable = table_of(field.annotation)
+    if name in values:
+        return [_line(f"{prefix}{name} = {_toml(values[name])}", _about(field))]
+    if subtable is None:
+        return [_line(f"# {prefix}{name} = {_default(field)}", _about(field))]
+    if key == "losses":
+        return [_line(f"# {name} = {{ include = true, factor = 1.0 }}", "")]
+    if isinstance(field.default, str):
+        return [_line(f"# {name} = {_toml(field.default)}", _about(field))]
+    if field.default is None and name not in _SPELT_OUT:
+        return [_line(f"# {prefix}{name} = {{ ... }}", _about(field))]
+    return [
+        line
+        for inner, below in subtable.model_fields.items()
+        for line in _field_lines(key, inner, below, {}, f"{prefix}{name}.")
+    ]
+
+
 def _line(text: str, about: str) -> str:
-    return f"{text.ljust(COMMENT_COLUMN)}# {about}" if about else text
+    return f"{text.ljust(COMMENT_COLUMN - 1)} # {about}" if about else text
 
 
 def _about(field: FieldInfo) -> str:

@@ -1,0 +1,134 @@
+"""From the tables of a case to the elastic bodies of its gears and the deviations of its flanks."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Literal
+
+from epicyclic.case import build
+from epicyclic.case.schema import GearTable, MicroGeometryTable, Planet, Ring, TopographyTable
+from epicyclic.elasticity.mesh_compliance import GearBody
+from epicyclic.elasticity.rim import Rim
+from epicyclic.geometry.gear import Gear
+from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.micro_geometry import (
+    FlankDeviations,
+    MicroGeometry,
+    Relief,
+    Topography,
+    active_profile,
+)
+
+__all__ = [
+    "flank_deviations",
+    "gear_bodies",
+    "micro_geometries",
+    "roll_length_at",
+    "working_flank",
+]
+
+Tables = tuple[GearTable, GearTable]
+
+
+@lru_cache(maxsize=256)
+def gear_bodies(mesh: Mesh, tables: Tables) -> tuple[GearBody, GearBody]:
+    """Materials, root fillets and rims of both members of a mesh."""
+    one, two = tables
+    planets = one.count if isinstance(one, Planet) else 1
+    return _body(mesh.gear1, one, 1), _body(mesh.gear2, two, planets)
+
+
+def _body(gear: Gear, table: GearTable, loads: int) -> GearBody:
+    thickness = table.rim_thickness if isinstance(table, Ring) else None
+    return GearBody(
+        table.material.elastic_modulus,
+        table.material.poisson_ratio,
+        build.cutting_tool(gear, table),
+        None if thickness is None else Rim(thickness, loads),
+    )
+
+
+def micro_geometries(table: GearTable) -> tuple[MicroGeometryTable, ...]:
+    """The tables of micro-geometry that a gear has."""
+    ring_side = table.micro_geometry_ring_side if isinstance(table, Planet) else None
+    return tuple(one for one in (table.micro_geometry, ring_side) if one is not None)
+
+
+@lru_cache(maxsize=256)
+def flank_deviations(mesh: Mesh, tables: Tables, misalignment: float) -> FlankDeviations:
+    """The deviations of both working flanks of a mesh."""
+    one, two = (_of_member(mesh, member, tables[member - 1]) for member in (1, 2))
+    return FlankDeviations(one, two, misalignment)
+
+
+def working_flank(mesh: Mesh, member: int, table: GearTable) -> MicroGeometryTable | None:
+    """The table of the flank of a member that works in `mesh`.
+
+    A planet's other flank works against the ring, where the planet is member 1.
+    """
+    if member == 1 and isinstance(table, Planet) and table.micro_geometry_ring_side is not None:
+        return table.micro_geometry_ring_side
+    return table.micro_geometry
+
+
+def _of_member(mesh: Mesh, member: int, table: GearTable) -> MicroGeometry:
+    flank = working_flank(mesh, member, table)
+    if flank is None:
+        return MicroGeometry()
+    gear = (mesh.gear1, mesh.gear2)[member - 1]
+    root, tip = active_profile(mesh, member)
+    return MicroGeometry(
+        tip_relief=_profile_relief(
+            gear,
+            tip,
+            flank.tip_relief,
+            flank.tip_relief_roll_length,
+            flank.tip_relief_diameter,
+            flank.tip_relief_shape,
+        ),
+        root_relief=_profile_relief(
+            gear,
+            root,
+            flank.root_relief,
+            flank.root_relief_roll_length,
+            flank.root_relief_diameter,
+            flank.root_relief_shape,
+        ),
+        end_relief=None
+        if flank.end_relief == 0 or flank.end_relief_length is None
+        else Relief(flank.end_relief, flank.end_relief_length, flank.end_relief_shape),
+        profile_crown=flank.profile_crown,
+        profile_slope=flank.profile_slope,
+        lead_crown=flank.lead_crown,
+        lead_slope=flank.lead_slope,
+        topography=None if flank.topography is None else _topography(gear, flank.topography),
+    )
+
+
+def _profile_relief(
+    gear: Gear,
+    end: float,
+    amount: float,
+    roll_length: float | None,
+    diameter: float | None,
+    shape: Literal["linear", "parabolic"],
+) -> Relief | None:
+    if diameter is not None:
+        roll_length = abs(roll_length_at(gear, diameter / 2) - end)
+    if amount == 0 or roll_length is None:
+        return None
+    return Relief(amount, roll_length, shape)
+
+
+def roll_length_at(gear: Gear, radius: float) -> float:
+    """Transverse radius of curvature of the involute at `radius`; 0 inside the base circle. [m]"""
+    return math.sqrt(max(0.0, radius**2 - gear.base_radius**2))
+
+
+def _topography(gear: Gear, table: TopographyTable) -> Topography:
+    return Topography(
+        tuple(roll_length_at(gear, diameter / 2) for diameter in table.diameter),
+        table.face_position,
+        table.deviation,
+    )
