@@ -12,11 +12,20 @@ import epicyclic as ep
 from epicyclic.case import build
 from epicyclic.elasticity.loaded_mesh import load_mesh_elastically
 from epicyclic.elasticity.mesh_compliance import GearBody, mesh_compliance
+from epicyclic.elasticity.rim import ElasticRing, Rim
 from epicyclic.elasticity.tooth_plate import _stiffness, tooth_plate
 from epicyclic.geometry.gear import BasicRack, Gear, half_angle_from_profile_shift
 from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.micro_geometry import FlankDeviations, MicroGeometry, Relief, Topography
 from epicyclic.geometry.outline import default_tool
-from epicyclic.kernels.contact_load import solve_contact_loads
+from epicyclic.kernels.contact_load import (
+    LEAST_SLOPE,
+    LINEAR_SHARE,
+    careful_solution,
+    deflections,
+    local_law,
+    solve_contact_loads,
+)
 
 STEEL = GearBody(206e9, 0.3)
 
@@ -151,6 +160,140 @@ def test_contact_opens_where_teeth_cannot_follow():
     assert forces.sum() == pytest.approx(100.0, rel=1e-12)
 
 
+def springs(force, wedge, segments=400):
+    """One line of independent springs, 40 mm long, under a wedge-shaped gap."""
+    length = np.full((1, segments), 40e-3 / segments)
+    gap = wedge * (np.arange(segments) + 0.5)[None] / segments
+    forces, approach, _, iterations = solve(
+        force, np.zeros((1, segments, segments)), length, 2e-11, 1e-25, separation=gap
+    )
+    assert iterations > 0
+    return forces[0] / length[0], approach
+
+
+@pytest.mark.parametrize("wedge", [1e-6, 5e-6, 20e-6, 100e-6])
+def test_misaligned_springs_have_the_load_factor_of_iso_6336(wedge):
+    """K_Hbeta of independent springs: 1 + F c/(2 w), and sqrt(2 F c/w) once contact is partial.
+
+    ISO 6336-1, face load factor: F the misalignment, c the stiffness, w the mean load per width.
+    """
+    stiffness, mean = 1 / 2e-11, 100e3
+    load, approach = springs(mean * 40e-3, wedge)
+    ratio = wedge * stiffness / mean
+    expected = 1 + ratio / 2 if ratio <= 2 else math.sqrt(2 * ratio)
+    # the first segment's middle is half a segment from the end; partial contact ends in a segment
+    assert load.max() / mean == pytest.approx(expected, rel=1e-2)
+    assert approach == pytest.approx(expected * mean / stiffness, rel=1e-2)
+    assert (load > 0).mean() == pytest.approx(min(1.0, math.sqrt(2 / ratio)), abs=5e-3)
+
+
+def random_problem(rng, kind):
+    """Compliances of the size of gear teeth; loads over 11 and gaps over 6 orders of magnitude."""
+    lines, n = 3, 20
+    y = np.arange(n)
+    compliance = np.empty((lines, n, n))
+    for line in range(lines):
+        shape = np.exp(-np.abs(y[:, None] - y) / rng.uniform(1, 15))
+        compliance[line] = rng.uniform(0.3, 2) * 3e-9 * shape
+    if kind % 3 == 0:  # coupling of either sign
+        lever = rng.normal(size=(n, n))
+        compliance += 3e-10 * lever @ lever.T / math.sqrt(n)
+    rim = rng.normal(size=(lines, lines))
+    length = np.full((lines, n), 1e-3)
+    if kind % 5 == 0:
+        length[2] = 0.0
+    gap = 10 ** rng.uniform(-8, -2) * rng.uniform(-1, 1, size=(lines, n))
+    if kind % 2:
+        gap = np.cumsum(gap, axis=1) / 5
+    return {
+        "force": 10 ** rng.uniform(-3, 8),
+        "compliance": compliance,
+        "length": length,
+        "local_a": rng.uniform(5e-11, 7e-11),
+        "local_b": 5.6e-12,
+        "separation": gap,
+        "coupling": rim @ rim.T * 1e-10 * (kind % 4),
+    }
+
+
+def test_any_load_and_any_gap_are_solved_and_the_solution_fulfils_the_conditions():
+    rng = np.random.default_rng(3)
+    for kind in range(200):
+        problem = random_problem(rng, kind)
+        forces, approach, stiffness, iterations = solve(**problem)
+        assert iterations > 0
+        length, force = problem["length"], problem["force"]
+        closed, _ = deflections(
+            forces,
+            problem["compliance"],
+            problem["coupling"],
+            problem["separation"],
+            length,
+            np.full_like(length, problem["local_a"]),
+            problem["local_b"],
+            LINEAR_SHARE * force / length.sum(),
+        )
+        used = length > 0
+        scale = approach - problem["separation"][used].min()
+        gap = (closed - approach)[used] / scale
+        carrying = forces[used] > 0
+        assert np.abs(gap[carrying]).max() < 1e-8  # ten times the tolerance: other rounding
+        assert gap.min() > -1e-8
+        assert forces.min() >= 0
+        assert not forces[~used].any()
+        assert forces.sum() == pytest.approx(force, rel=1e-8)
+        # of the force against the approach: positive, and below that of the local law alone
+        assert 0 < stiffness < (length[used] / (LEAST_SLOPE * problem["local_b"])).sum()
+
+
+def test_the_careful_method_finds_the_same_solution():
+    rng = np.random.default_rng(4)
+    for kind in range(40):
+        problem = random_problem(rng, kind)
+        forces, approach, _, _ = solve(**problem)
+        length, gap = problem["length"], problem["separation"]
+        nearest = gap[length > 0].min()
+        careful, same_approach, _, iterations = careful_solution(
+            problem["force"],
+            problem["compliance"],
+            problem["coupling"],
+            gap - nearest,
+            length,
+            np.full_like(length, problem["local_a"]),
+            problem["local_b"],
+            LINEAR_SHARE * problem["force"] / length.sum(),
+            1e-9,
+            1000,
+        )
+        assert iterations > 0
+        # both are solutions to 1e-9 of the approach
+        assert np.abs(careful - forces).max() < 1e-7 * problem["force"]
+        assert same_approach + nearest == pytest.approx(approach, rel=1e-8)
+
+
+def test_the_local_law_rises_for_any_load_and_has_no_kink():
+    a, b, floor = 6e-11, 5.6e-12, 1e2
+    top = math.exp(2 * a / b - 2)
+    q = np.concatenate([[-1e3, -1.0], np.geomspace(1e-3, 1e4 * top, 4000)])
+    law = np.array([local_law(value, a, b, floor) for value in q])
+    assert (np.diff(law[:, 0]) > 0).all()
+    assert law[:, 1].min() == pytest.approx(LEAST_SLOPE * b, rel=1e-12)
+    for joint in (0.0, floor, top):
+        below, above = (
+            local_law(joint * f - d, a, b, floor) for f, d in ((1 - 1e-9, 1e-9), (1 + 1e-9, -1e-9))
+        )
+        assert above == pytest.approx(below, rel=1e-6, abs=1e-17)
+    slope = np.gradient(law[100:-100, 0], q[100:-100])
+    np.testing.assert_allclose(slope, law[100:-100, 1], rtol=2e-2)  # differences, not the limit
+
+
+def test_nan_is_no_solution():
+    _, _, _, iterations = solve(
+        100.0, np.full((1, 3, 3), np.nan), np.full((1, 3), 1e-3), 1e-11, 1e-12
+    )
+    assert iterations == -1
+
+
 def test_spur_pair_carries_alone_between_its_double_contacts():
     mesh = standard_mesh(30, 60)
     loaded = load_mesh_elastically(mesh, STEEL, STEEL, 40, 9, 4000.0)
@@ -197,6 +340,153 @@ def test_refinement_converges(talbot_meshes):
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert orders.min() > 1.8
     assert errors[1] < 1.5e-3
+
+
+# --- deviations -----------------------------------------------------------------------------------
+
+
+def relieved(mesh, amount, share):
+    """Linear tip relief on both gears of a mesh, over a share of the path of contact."""
+    length = share * (mesh.path_end - mesh.path_start)
+    flank = MicroGeometry(tip_relief=Relief(amount, length))
+    return FlankDeviations(flank, flank)
+
+
+def test_relief_beyond_the_deflection_takes_a_pair_out_of_contact():
+    """The other one carries the whole force as if it were alone."""
+    mesh = standard_mesh(30, 60)
+    relief = relieved(mesh, 1e-3, 0.3)
+    plain = load_mesh_elastically(mesh, STEEL, STEEL, 40, 9, 4000.0)
+    deep = load_mesh_elastically(mesh, STEEL, STEEL, 40, 9, 4000.0, relief)
+    used = plain.lines.length[:, :, 0] > 0
+    gap = np.where(used, relief.separation(mesh, plain.lines)[:, :, 0], np.inf)
+    single = used.sum(axis=1) == 1
+    softest = plain.normal_approach.max()
+    alone = ~single & (np.diff(np.sort(gap, axis=1)[:, :2], axis=1)[:, 0] > 1.5 * softest)
+    assert alone.sum() > 5
+    np.testing.assert_allclose(deep.pair_force[single | alone].max(axis=1), 4000.0, rtol=1e-9)
+    assert ((deep.pair_force[alone] > 0).sum(axis=1) == 1).all()
+    assert (deep.pair_force[alone].argmax(axis=1) == gap[alone].argmin(axis=1)).all()
+    # contact on fewer pairs is as soft as between the double contacts
+    lone = deep.tangent_stiffness[alone]
+    assert lone.max() < 1.1 * plain.tangent_stiffness[single].max()
+    assert lone.max() < 0.8 * plain.tangent_stiffness[alone].min()
+
+
+def test_small_relief_takes_load_from_the_tips_and_evens_the_transmission_error():
+    mesh = standard_mesh(30, 60)
+    plain = load_mesh_elastically(mesh, STEEL, STEEL, 60, 5, 12000.0)
+    eased = load_mesh_elastically(mesh, STEEL, STEEL, 60, 5, 12000.0, relieved(mesh, 10e-6, 0.3))
+    at_start = plain.lines.curvature1 < mesh.path_start + 0.1 * (mesh.path_end - mesh.path_start)
+    assert eased.line_load[at_start].max() < 0.7 * plain.line_load[at_start].max()
+    assert eased.transmission_error_range < plain.transmission_error_range
+
+
+def test_misalignment_opens_one_end_and_larger_loads_close_it(talbot_meshes):
+    mesh = talbot_meshes[1]
+    tilted = FlankDeviations(misalignment=40e-6)
+    shares = []
+    for force in (500.0, 2000.0, 8000.0):
+        loaded = load_mesh_elastically(mesh, STEEL, STEEL, 20, 20, force, tilted)
+        force_at = (loaded.line_load * loaded.lines.length).ravel()
+        where = loaded.lines.face_position.ravel() / mesh.face_width
+        shares.append(float(force_at @ where / force_at.sum()))
+        assert loaded.pattern.sum() < (loaded.lines.length > 0).sum() or force > 5000
+    assert shares == sorted(shares)  # the load moves back towards the middle of the face
+    assert 0 < shares[0] < shares[-1] < 0.5
+
+
+def test_a_constant_gap_only_adds_to_the_approach(talbot_meshes):
+    mesh = talbot_meshes[0]
+    plain = load_mesh_elastically(mesh, STEEL, STEEL, 10, 10, 3000.0)
+    table = Topography((0.0, 1.0), (0.0, 1.0), ((7e-6, 7e-6), (7e-6, 7e-6)))
+    shifted = load_mesh_elastically(
+        mesh, STEEL, STEEL, 10, 10, 3000.0, FlankDeviations(MicroGeometry(topography=table))
+    )
+    np.testing.assert_allclose(shifted.line_load, plain.line_load, rtol=1e-7)
+    np.testing.assert_allclose(
+        shifted.transmission_error - plain.transmission_error, 7e-6, rtol=1e-7
+    )
+
+
+def test_tangent_stiffness_is_the_slope_of_the_force():
+    mesh = standard_mesh(30, 60, helix=15.0)
+    dev = relieved(mesh, 8e-6, 0.3)
+    low, middle, high = (
+        load_mesh_elastically(mesh, STEEL, STEEL, 12, 9, force, dev)
+        for force in (3995.0, 4000.0, 4005.0)
+    )
+    slope = 10.0 / (high.transmission_error - low.transmission_error)
+    np.testing.assert_allclose(middle.tangent_stiffness, slope, rtol=1e-3)  # differences
+    np.testing.assert_allclose(middle.secant_stiffness, 4000.0 / middle.transmission_error)
+    assert (middle.secant_stiffness < middle.tangent_stiffness).all()
+
+
+def test_pair_forces_sum_to_the_normal_force(talbot_meshes):
+    loaded = load_mesh_elastically(talbot_meshes[1], STEEL, STEEL, 20, 20, 5000.0)
+    normal = 5000.0 / math.cos(talbot_meshes[1].gear1.rack.base_helix_angle)
+    np.testing.assert_allclose(loaded.pair_force.sum(axis=1), normal, rtol=1e-8)
+
+
+# --- the rim of a ring gear -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("count", [2, 3, 4, 6])
+def test_thin_ring_under_equal_radial_forces_is_the_closed_form(count):
+    """w = F R^3/(2 E I) [(th/2 + s c/2)/s^2 - 1/th], th = pi/n: thin rings, Roark, table of rings.
+
+    For two forces it is the well-known 0.0744 F R^3/(E I) at each.
+    """
+    radius, thickness, width, modulus = 0.1, 0.1e-3, 10e-3, 207e9
+    ring = ElasticRing(radius, thickness, width, modulus, 0.3)
+    half = math.pi / count
+    sine, cosine = math.sin(half), math.cos(half)
+    bending = modulus * width * thickness**3 / 12
+    expected = radius**3 / (2 * bending)
+    expected *= (half / 2 + sine * cosine / 2) / sine**2 - 1 / half
+    found = ring.influence(np.array(0.0), count)[0, 0]
+    assert found == pytest.approx(expected, rel=1e-4)  # stretch and shear: (h/R)^2
+    if count == 2:
+        assert found == pytest.approx(0.0744 * radius**3 / bending, rel=1e-3)
+
+
+def test_ring_is_reciprocal_and_gives_way():
+    ring = ElasticRing(0.1, 8e-3, 20e-3, 207e9, 0.3)
+    angle = np.linspace(-0.4, 0.4, 9)
+    influence = ring.influence(angle, 3)
+    np.testing.assert_allclose(influence, influence[::-1].swapaxes(1, 2), rtol=1e-12)
+    joined = np.block([[ring.influence(np.array(a - b), 3) for b in angle] for a in angle])
+    eigenvalues = np.linalg.eigvalsh(joined)
+    assert eigenvalues.min() > -1e-12 * eigenvalues.max()
+
+
+def test_thinner_rims_and_fewer_planets_soften_the_mesh_and_thick_ones_do_not(talbot_meshes):
+    """The stiffness falls with the rim and with the span between the loads."""
+    mesh = talbot_meshes[1]
+
+    def stiffness(thickness, planets):
+        body = replace(STEEL, rim=Rim(thickness, planets))
+        loaded = load_mesh_elastically(mesh, STEEL, body, 10, 10, 5000.0)
+        return loaded.mean(loaded.tangent_stiffness)
+
+    rigid = load_mesh_elastically(mesh, STEEL, STEEL, 10, 10, 5000.0)
+    falling = [stiffness(h * 1e-3, 3) for h in (200, 60, 30, 20, 12, 8)]
+    assert falling == sorted(falling, reverse=True)
+    assert falling[0] < rigid.mean(rigid.tangent_stiffness)
+    assert falling[0] == pytest.approx(rigid.mean(rigid.tangent_stiffness), rel=0.15)
+    spans = [stiffness(12e-3, count) for count in (2, 3, 4, 6)]
+    assert spans == sorted(spans)
+
+
+def test_the_rim_couples_the_pairs_of_teeth(talbot_meshes):
+    """The load changes sides as the rim turns under the teeth, but not the sum."""
+    mesh = talbot_meshes[1]
+    body = replace(STEEL, rim=Rim(10e-3, 3))
+    rigid = load_mesh_elastically(mesh, STEEL, STEEL, 20, 20, 5000.0)
+    soft = load_mesh_elastically(mesh, STEEL, body, 20, 20, 5000.0)
+    np.testing.assert_allclose(soft.pair_force.sum(axis=1), rigid.pair_force.sum(axis=1), rtol=1e-8)
+    change = np.abs(soft.pair_force - rigid.pair_force).max() / rigid.pair_force.max()
+    assert 0.01 < change < 0.2
 
 
 # --- against published stiffness ------------------------------------------------------------------

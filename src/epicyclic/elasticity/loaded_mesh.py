@@ -136,22 +136,26 @@ def load_mesh_elastically(
     compliance = mesh_compliance(mesh, body1, body2, positions, segments)
     lines = compliance.lines
     normal = force / math.cos(mesh.gear1.rack.base_helix_angle)
-    forces, approach, stiffness, iterations = solve_all_positions(
-        normal,
-        compliance.influence,
-        compliance.coupling,
-        deviations.separation(mesh, lines),
-        lines.length,
-        compliance.local_a,
-        compliance.local_b,
-        TOLERANCE,
-        STEPS_PER_SEGMENT * lines.length[0].size,
+    not_found = ConvergenceError(
+        f"the load distribution of the {mesh.name} was not found at {normal:.4g} N; use "
+        'models.load_distribution = "uniform".'
     )
-    if iterations.min() < 0:
-        raise ConvergenceError(
-            f"the load distribution of the {mesh.name} was not found at {normal:.4g} N; use "
-            'models.load_distribution = "uniform".'
+    try:
+        forces, approach, stiffness, iterations = solve_all_positions(
+            normal,
+            compliance.influence,
+            compliance.coupling,
+            deviations.separation(mesh, lines),
+            lines.length,
+            compliance.local_a,
+            compliance.local_b,
+            TOLERANCE,
+            STEPS_PER_SEGMENT * lines.length[0].size,
         )
+    except np.linalg.LinAlgError as error:
+        raise not_found from error
+    if iterations.min() < 0:
+        raise not_found
     line_load = np.divide(forces, lines.length, out=np.zeros_like(forces), where=lines.length > 0)
     for array in (line_load, approach, stiffness):
         array.flags.writeable = False

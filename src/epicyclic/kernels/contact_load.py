@@ -355,6 +355,10 @@ def solve_contact_loads(
     iterations : int
         Newton steps, or -1 without a solution.
     """
+    approach = stiffness = np.nan
+    given = compliance.sum() + coupling.sum() + separation.sum() + local_a.sum() + force
+    if not np.isfinite(given):
+        return np.zeros(length.shape), approach, stiffness, -1
     loaded = length > 0.0
     nearest = np.inf
     for line in range(length.shape[0]):
@@ -364,7 +368,6 @@ def solve_contact_loads(
     gap = separation - nearest
     floor = LINEAR_SHARE * force / length.sum()
     forces = force * length / length.sum()
-    approach = stiffness = np.nan
     for iteration in range(QUICK_STEPS):
         closed, slope = deflections(
             forces, compliance, coupling, gap, length, local_a, local_b, floor
