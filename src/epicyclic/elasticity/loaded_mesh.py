@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.elasticity.mesh_compliance import GearBody, mesh_compliance
+from epicyclic.elasticity.threads import one_thread
 from epicyclic.errors import ConvergenceError
 from epicyclic.geometry.contact_lines import ContactLines
 from epicyclic.geometry.mesh import Mesh
@@ -140,18 +141,20 @@ def load_mesh_elastically(
         f"the load distribution of the {mesh.name} was not found at {normal:.4g} N; use "
         'models.load_distribution = "uniform".'
     )
+    separation = deviations.separation(mesh, lines)
     try:
-        forces, approach, stiffness, iterations = solve_all_positions(
-            normal,
-            compliance.influence,
-            compliance.coupling,
-            deviations.separation(mesh, lines),
-            lines.length,
-            compliance.local_a,
-            compliance.local_b,
-            TOLERANCE,
-            STEPS_PER_SEGMENT * lines.length[0].size,
-        )
+        with one_thread():
+            forces, approach, stiffness, iterations = solve_all_positions(
+                normal,
+                compliance.influence,
+                compliance.coupling,
+                separation,
+                lines.length,
+                compliance.local_a,
+                compliance.local_b,
+                TOLERANCE,
+                STEPS_PER_SEGMENT * lines.length[0].size,
+            )
     except np.linalg.LinAlgError as error:
         raise not_found from error
     if iterations.min() < 0:

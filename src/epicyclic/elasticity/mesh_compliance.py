@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.elasticity.rim import Rim, rim_coupling
+from epicyclic.elasticity.threads import one_thread
 from epicyclic.elasticity.tooth_plate import ToothPlate, tooth_plate
 from epicyclic.errors import ConvergenceError
 from epicyclic.geometry.contact_lines import ContactLines, contact_lines
@@ -104,9 +105,15 @@ def mesh_compliance(
     ValueError
         If no tool generates a tooth.
     """
-    lines = contact_lines(mesh, positions, segments)
+    with one_thread():
+        return _coefficients(mesh, body1, body2, contact_lines(mesh, positions, segments))
+
+
+def _coefficients(
+    mesh: Mesh, body1: GearBody, body2: GearBody, lines: ContactLines
+) -> MeshCompliance:
     shape = lines.length.shape
-    influence = np.zeros((*shape, segments))
+    influence = np.zeros((*shape, shape[-1]))
     # lines that are not in contact lie beyond the path of contact: any place on it serves for them
     rho1 = np.clip(lines.curvature1, mesh.path_start, mesh.path_end)
     modulus = equivalent_modulus(

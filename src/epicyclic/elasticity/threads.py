@@ -1,0 +1,27 @@
+"""Linear algebra on one thread.
+
+The matrices here are small: threads cost more than they save. More than one would also round
+differently, so that a sweep in many processes would not give the bits of one process.
+"""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from functools import cache
+
+from threadpoolctl import ThreadpoolController
+
+__all__ = ["one_thread"]
+
+
+def one_thread() -> AbstractContextManager[object]:
+    """A context in which matrix products and decompositions use one thread."""
+    context: AbstractContextManager[object] = _controller().limit(limits=1, user_api="blas")
+    return context
+
+
+@cache
+def _controller() -> ThreadpoolController:
+    import scipy.linalg  # noqa: F401  compiled kernels call its library, which must be loaded first
+
+    return ThreadpoolController()
