@@ -75,7 +75,8 @@ def matrix(jobs: int | None) -> None:
 
 
 def clear_caches() -> None:
-    from epicyclic.case import build
+    from epicyclic.case import build, flanks
+    from epicyclic.elasticity import loaded_mesh, mesh_compliance, tooth_plate
     from epicyclic.geometry import contact_lines
     from epicyclic.losses import load_distribution, planet_bearing
 
@@ -83,11 +84,50 @@ def clear_caches() -> None:
         build.basic_rack,
         build.gear,
         build.planetary_meshes,
+        flanks.gear_bodies,
+        flanks.flank_deviations,
+        tooth_plate.tooth_plate,
+        mesh_compliance.mesh_compliance,
+        loaded_mesh.load_mesh_elastically,
         contact_lines.contact_lines,
         load_distribution.load_shape,
         planet_bearing.roller_loads,
     ):
         function.cache_clear()
+
+
+def compliance_seconds(segments: int) -> tuple[float, float]:
+    """Elastic teeth at 20 mesh positions, warm.
+
+    Returns
+    -------
+    coefficients : float
+        Influence coefficients of the ring mesh, nothing shared with other meshes. [s]
+    loads : float
+        Load of both meshes at one operating point. [s]
+    """
+    from epicyclic.case import build, flanks
+    from epicyclic.elasticity.loaded_mesh import load_mesh_elastically
+    from epicyclic.elasticity.mesh_compliance import mesh_compliance
+
+    case = ep.load_case("talbot-2012")
+    meshes = build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)
+    tables = ((case.sun, case.planet), (case.planet, case.ring))
+    bodies = [flanks.gear_bodies(mesh, pair) for mesh, pair in zip(meshes, tables, strict=True)]
+    force = itertools.count(5000.0)
+
+    def coefficients() -> None:
+        clear_caches()
+        mesh_compliance(meshes[1], *bodies[1], 20, segments)
+
+    def loads() -> None:
+        for mesh, pair in zip(meshes, bodies, strict=True):
+            load_mesh_elastically(mesh, *pair, 20, segments, next(force))
+
+    coefficients()
+    building = median_seconds(coefficients)
+    loads()
+    return building, median_seconds(loads, repeats=20)
 
 
 def main() -> None:
@@ -106,6 +146,9 @@ def main() -> None:
         ep.solve(next(batch))
 
     alone = median_seconds(unshared, repeats=20)
+    segments = (10, 20, 30, 60, 120)
+    elastic = {count: compliance_seconds(count) for count in segments}
+    ep.solve(case)
     matrix_seconds = median_seconds(lambda: matrix(None), repeats=3)
     here = str(Path(__file__).resolve().parent)
     command = "import benchmark; benchmark.matrix(None)"
@@ -125,6 +168,10 @@ def main() -> None:
          "starting Python"),
         ("one operating point, warm", f"{1e3 * point:.2f} ms", "20 ms", f"{alone / point:.1f}",
          "times faster than without shared work"),
+        ("influence coefficients of a mesh, 30 segments", f"{elastic[30][0]:.3f} s", "0.3 s",
+         f"{elastic[30][0] / elastic[30][1]:.0f}", "loading both meshes"),
+        ("loading both meshes, 30 segments", f"{1e3 * elastic[30][1]:.2f} ms", "30 ms",
+         f"{elastic[30][1] / point:.2f}", "one operating point"),
         ("test matrix, 300 points", f"{matrix_seconds:.2f} s", "10 s",
          f"{matrix_seconds / (300 * point):.2f}", "300 single points"),
         ("the same in a new process", f"{matrix_process:.2f} s", "10 s",
@@ -132,7 +179,13 @@ def main() -> None:
         ("largest memory of a process", f"{peak:.0f} MB", "500 MB", "", ""),
     ):  # fmt: skip
         table.add_row(*row)
-    Console().print(table)
+    cost = Table(title="Elastic teeth against segments", title_justify="left")
+    for column in ("segments", "coefficients of a mesh", "loading both meshes"):
+        cost.add_column(column, justify="right")
+    for count, (building, loading) in elastic.items():
+        cost.add_row(str(count), f"{1e3 * building:.0f} ms", f"{1e3 * loading:.2f} ms")
+    for shown in (table, cost):
+        Console().print(shown)
 
 
 if __name__ == "__main__":

@@ -133,7 +133,7 @@ def quantities(result):
 def test_test_article_hardly_leaves_the_ranges_made_for_it(talbot):
     result = ep.solve(talbot)
     # At the pitch point it slides less, under the ends of the rollers it is pressed less, and at
-    # the root of the planet it is curved more than simulated: 14 % of one loss at most.
+    # the root of the planet it is curved more than simulated: 17 % of one loss at most.
     # The rims turn too fast for the laminar flow that their drag is computed with.
     assert quantities(result) == {
         "equivalent radius",
@@ -142,7 +142,7 @@ def test_test_article_hardly_leaves_the_ranges_made_for_it(talbot):
         "Reynolds number of the rim",
     }
     for flag in result.flags:
-        assert 0 <= flag.share < 0.15
+        assert 0 <= flag.share < 0.18
 
 
 @pytest.mark.parametrize(

@@ -122,7 +122,8 @@ def test_load_dependent_losses_grow_with_the_planets_at_the_same_branch_torque(t
 
 
 def test_more_planets_at_the_same_torque_lower_the_pressures(talbot):
-    three, six = (ep.solve(talbot.updated({"planet.count": count})) for count in (3, 6))
+    even = talbot.updated({"models.load_distribution": "uniform"})
+    three, six = (ep.solve(even.updated({"planet.count": count})) for count in (3, 6))
     ratio = three.meshes["sun_mesh"].hertz_pressure_max / six.meshes["sun_mesh"].hertz_pressure_max
     assert ratio == pytest.approx(math.sqrt(2), rel=ROUNDING)
     assert six.bearing.radial_force == pytest.approx(three.bearing.radial_force / 2, rel=ROUNDING)
@@ -279,7 +280,11 @@ def test_local_method_on_a_spur_set_is_the_textbook():
             "planet": {"count": 4, "teeth": 30, **gear},
             "ring": {"teeth": 90, **gear},
             "lubricant": {"oil": "iso-vg-100-mineral"},
-            "models": {"friction": "constant", "constant_friction": 0.05},
+            "models": {
+                "friction": "constant",
+                "constant_friction": 0.05,
+                "load_distribution": "uniform",
+            },
             "losses": {name: {"include": "sliding" in name} for name in ALL_LOSSES},
         }
     )
@@ -300,12 +305,22 @@ def test_local_method_on_a_spur_set_is_the_textbook():
 
 
 def test_sliding_loss_is_linear_in_the_torque_for_constant_friction(talbot):
-    case = talbot.updated({"models.friction": "constant"})
+    case = talbot.updated({"models.friction": "constant", "models.load_distribution": "uniform"})
     one, five = (
         ep.solve(case.updated({"operation.torque": f"{torque} N*m"})) for torque in (200, 1000)
     )
     for name in ("sun_mesh_sliding", "ring_mesh_sliding"):
         assert five.losses[name] == pytest.approx(5 * one.losses[name], rel=ROUNDING)
+
+
+def test_elastic_teeth_change_the_loss_of_a_helical_set_little(talbot):
+    """Elastic teeth load the long contact lines of a helical set nearly evenly, but for their ends:
+    the sliding loss stays that of the even load within 1 %, as the overlap ratio is near 1."""
+    even = ep.solve(talbot.updated({"models.load_distribution": "uniform"}))
+    elastic = ep.solve(talbot)
+    for name in ("sun_mesh_sliding", "ring_mesh_sliding"):
+        assert elastic.losses[name] == pytest.approx(even.losses[name], rel=0.01)
+        assert elastic.losses[name] != even.losses[name]
 
 
 @pytest.mark.parametrize("celsius", [40, 90])
@@ -334,15 +349,16 @@ def test_resolution_of_the_default_is_enough(talbot):
     fine = ep.solve(
         talbot.updated(
             {
-                "numerics.mesh_positions": 200,
-                "numerics.contact_segments": 200,
+                "numerics.mesh_positions": 100,
+                "numerics.contact_segments": 100,
                 "numerics.bearing_slices": 200,
             }
         )
     ).losses
-    # measured: meshes 0.05 %, bearing 0.16 % (kinks of load and crown within a slice); times 1.5
+    # measured: meshes 0.13 % (load peaks at the ends of the lines), bearing 0.16 % (kinks of load
+    # and crown within a slice); times 1.5
     for name in PER_PLANET[:4]:
-        assert coarse[name] == pytest.approx(fine[name], rel=8e-4)
+        assert coarse[name] == pytest.approx(fine[name], rel=2e-3)
     assert coarse["planet_bearing_mechanical"] == pytest.approx(
         fine["planet_bearing_mechanical"], rel=2.4e-3
     )
