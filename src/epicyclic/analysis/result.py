@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 import platform
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache, partial
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
-from epicyclic.kinematics import PowerFlow
+from epicyclic.case.schema import GearPairLosses, PlanetaryLosses
+from epicyclic.kinematics import MEMBERS, PowerFlow
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.losses.validity import ValidityFlag, describe_flags
@@ -46,8 +49,11 @@ __all__ = [
     "FluidFigures",
     "LossTerm",
     "MeshFigures",
+    "NumberField",
     "Result",
     "figures",
+    "number_fields",
+    "versions",
 ]
 
 _POWERS = ("losses", "load_dependent", "load_independent", "total", "input_power")
@@ -62,7 +68,7 @@ def _figure(label: str, unit: Quantity) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One number for the user, in its display unit."""
+    """One number for the user, in its display unit; the unit of a pure number is ``"1"``."""
 
     key: str
     label: str
@@ -74,10 +80,15 @@ def figures(source: DataclassInstance) -> Iterator[Figure]:
     """The labelled numbers of a dataclass."""
     for field in dataclasses.fields(source):
         if "label" in field.metadata:
-            unit: Quantity = field.metadata["unit"]
-            value = getattr(source, field.name)
-            shown = unit.to_display(value) if unit.si else value
-            yield Figure(field.name, field.metadata["label"], shown, unit.display)
+            label, unit = field.metadata["label"], field.metadata["unit"]
+            yield Figure(field.name, label, _shown(source, field), unit.display or "1")
+
+
+def _shown(source: DataclassInstance, field: dataclasses.Field[Any]) -> float:
+    """A labelled number of a dataclass in its display unit."""
+    unit: Quantity = field.metadata["unit"]
+    value: float = getattr(source, field.name)
+    return unit.to_display(value) if unit.si else value
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,28 +256,13 @@ class Result:
         return (*self.notes, *describe_flags(self.flags))
 
     def numbers(self) -> Iterator[Figure]:
-        """Every number of the result with key, label and unit, as sweeps store them."""
-        for term in self.terms:
-            yield Figure(term.name, term.name.replace("_", " "), term.watts, WATT.display)
-        yield Figure("load_dependent", "load-dependent loss", self.load_dependent, "W")
-        yield Figure("load_independent", "load-independent loss", self.load_independent, "W")
-        yield Figure("total", "total loss", self.total, "W")
-        yield Figure("input_power", "input power", self.input_power, "W")
-        efficiency = float("nan") if self.efficiency is None else self.efficiency
-        yield Figure("efficiency", "efficiency", efficiency, "")
-        if self.planet_shares:
-            yield Figure("mesh_load_factor", "mesh load factor", self.mesh_load_factor, "")
-        for name, member in self.flow.members.items():
-            speed = RPM.to_display(member.speed)
-            yield Figure(f"{name}_speed", f"speed of the {name}", speed, "rpm")
-            yield Figure(f"{name}_torque", f"torque on the {name}", member.torque, "N*m")
-        parts: dict[str, DataclassInstance] = {"fluid": self.fluid, **self.meshes}
-        if self.bearing is not None:
-            parts["planet_bearing"] = self.bearing
-        for name, part in parts.items():
-            for item in figures(part):
-                label = f"{name.replace('_', ' ')}: {item.label}"
-                yield Figure(f"{name}_{item.key}", label, item.value, item.unit)
+        """Every number of the result with key, label and unit, as sweeps store them.
+
+        The keys are those of every result of this kind; NaN stands where there is no such number.
+        """
+        for field in number_fields(self.kind):
+            value = field.read(self) + 0.0  # no -0.0
+            yield Figure(field.key, field.label, value, field.unit)
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers and text, in W and in the units stated beside them."""
@@ -307,7 +303,7 @@ class Result:
             "inputs": dict(self.inputs),
             "versions": versions(),
         }
-        clean: dict[str, Any] = _without_nan(result)
+        clean: dict[str, Any] = _json_value(result)
         return clean
 
     def to_json(self) -> str:
@@ -325,12 +321,139 @@ def _figures_dict(source: DataclassInstance) -> dict[str, Any]:
     return {item.key: {"value": item.value, "unit": item.unit} for item in figures(source)}
 
 
-def _without_nan(value: Any) -> Any:
-    """`value` with None for every NaN, which JSON does not know."""
+def _json_value(value: Any) -> Any:
+    """`value` with None for every NaN, which JSON does not know, and 0.0 for every -0.0."""
     if isinstance(value, dict):
-        return {key: _without_nan(item) for key, item in value.items()}
+        return {key: _json_value(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_without_nan(item) for item in value]
-    if isinstance(value, float) and value != value:
-        return None
+        return [_json_value(item) for item in value]
+    if isinstance(value, float):
+        return None if math.isnan(value) else value + 0.0
     return value
+
+
+# --- the numbers of every result of a kind --------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class NumberField:
+    """One number that every result of a kind has.
+
+    Attributes
+    ----------
+    key, label, unit : str
+        As in `Figure`.
+    read : callable
+        Takes it from a result; NaN where there is none.
+    """
+
+    key: str
+    label: str
+    unit: str
+    read: Callable[[Result], float]
+
+
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """What the results of one kind consist of."""
+
+    losses: type[PlanetaryLosses] | type[GearPairLosses]
+    members: tuple[str, ...]
+    meshes: tuple[str, ...]
+    bearings: tuple[str, ...] = ()
+    more: tuple[NumberField, ...] = ()
+
+
+_LAYOUTS = {
+    "planetary": _Layout(
+        PlanetaryLosses,
+        MEMBERS,
+        ("sun_mesh", "ring_mesh"),
+        ("planet_bearing",),
+        (NumberField("mesh_load_factor", "mesh load factor", "1", lambda it: it.mesh_load_factor),),
+    ),
+    "gear_pair": _Layout(GearPairLosses, ("pinion", "gear"), ("mesh",)),
+}
+
+
+@cache
+def number_fields(kind: str) -> tuple[NumberField, ...]:
+    """The numbers that every result of `kind` has, ``"planetary"`` or ``"gear_pair"``."""
+    layout = _LAYOUTS[kind]
+    watt = WATT.display
+    fields = [
+        NumberField(name, name.replace("_", " "), watt, partial(_loss, name))
+        for name in layout.losses.model_fields
+    ]
+    fields += [
+        NumberField("load_dependent", "load-dependent loss", watt, lambda it: it.load_dependent),
+        NumberField(
+            "load_independent", "load-independent loss", watt, lambda it: it.load_independent
+        ),
+        NumberField("total", "total loss", watt, lambda it: it.total),
+        NumberField("input_power", "input power", watt, lambda it: it.input_power),
+        NumberField("efficiency", "efficiency", "1", _efficiency),
+    ]
+    fields += layout.more
+    for name in layout.members:
+        fields += [
+            NumberField(
+                f"{name}_speed", f"speed of the {name}", RPM.display, partial(_speed, name)
+            ),
+            NumberField(
+                f"{name}_torque",
+                f"torque on the {name}",
+                NEWTON_METRE.display,
+                partial(_torque, name),
+            ),
+        ]
+    fields += _part_fields("fluid", FluidFigures, lambda it: it.fluid)
+    for name in layout.meshes:
+        fields += _part_fields(name, MeshFigures, partial(_mesh, name))
+    for name in layout.bearings:
+        fields += _part_fields(name, BearingFigures, lambda it: it.bearing)
+    return tuple(fields)
+
+
+def _part_fields(
+    name: str,
+    kind: type[DataclassInstance],
+    part: Callable[[Result], DataclassInstance | None],
+) -> Iterator[NumberField]:
+    for field in dataclasses.fields(kind):
+        if "label" in field.metadata:
+            yield NumberField(
+                f"{name}_{field.name}",
+                f"{name.replace('_', ' ')}: {field.metadata['label']}",
+                field.metadata["unit"].display or "1",
+                partial(_part_number, part, field),
+            )
+
+
+def _part_number(
+    part: Callable[[Result], DataclassInstance | None],
+    field: dataclasses.Field[Any],
+    result: Result,
+) -> float:
+    source = part(result)
+    return math.nan if source is None else _shown(source, field)
+
+
+def _loss(name: str, result: Result) -> float:
+    return result.losses[name]
+
+
+def _efficiency(result: Result) -> float:
+    return math.nan if result.efficiency is None else result.efficiency
+
+
+def _speed(name: str, result: Result) -> float:
+    return RPM.to_display(result.flow.members[name].speed)
+
+
+def _torque(name: str, result: Result) -> float:
+    return result.flow.members[name].torque
+
+
+def _mesh(name: str, result: Result) -> MeshFigures:
+    return result.meshes[name]
