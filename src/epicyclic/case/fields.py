@@ -23,6 +23,8 @@ __all__ = [
     "choices_of",
     "describe",
     "find_field",
+    "is_array",
+    "is_named",
     "is_whole_number",
     "locate",
     "quantity_of",
@@ -107,6 +109,17 @@ def tables_in(annotation: Any) -> Iterator[type[BaseModel]]:
 def is_whole_number(annotation: Any) -> bool:
     """True for keys that count."""
     return annotation is int
+
+
+def is_array(annotation: Any) -> bool:
+    """True for keys that hold several values."""
+    members = map(_without_metadata, _members(annotation))
+    return any(typing.get_origin(member) is tuple for member in members)
+
+
+def is_named(metadata: Sequence[Any]) -> bool:
+    """True for tables that may also be given by name."""
+    return any(isinstance(item, Named) for item in metadata)
 
 
 def describe(annotation: Any, metadata: Sequence[Any] = ()) -> str:

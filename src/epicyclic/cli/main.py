@@ -1,23 +1,31 @@
 """The command ``epicyclic``: parses, calls the library, prints.
 
-Exit codes: 0 done, 2 bad input, 3 no solution found, 4 a sweep with failed cases, 130 interrupted.
+Exit codes: 0 done, 1 an error of the program, 2 bad input, 3 no solution found, 4 a sweep with
+failed points, 130 interrupted. ``EPICYCLIC_TRACEBACK=1`` shows where in the program an error arose.
 """
 
 from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.status import Status
+
+if TYPE_CHECKING:
+    from epicyclic.sweeps.journal import Journal
+    from epicyclic.sweeps.plan import Plan
 
 __all__ = ["main"]
 
-EXIT_INPUT, EXIT_NO_SOLUTION, EXIT_FAILED_CASES = 2, 3, 4
+EXIT_ERROR, EXIT_INPUT, EXIT_NO_SOLUTION, EXIT_FAILED_POINTS = 1, 2, 3, 4
 EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
 SHOWN_FAILURES = 10
 
@@ -49,7 +57,14 @@ def cli() -> None:
 @cli.command()
 @case_argument
 @set_option
-@click.option("--json", "json_file", metavar="FILE", help="Write the result as JSON; - for stdout.")
+@click.option(
+    "--json",
+    "json_file",
+    metavar="[FILE]",
+    is_flag=False,
+    flag_value="-",
+    help="Write the result as JSON, to standard output if no FILE or - is given.",
+)
 def run(case: str, changes: tuple[str, ...], json_file: str | None) -> None:
     """Compute the losses of a case and print them by component."""
     from epicyclic.analysis.solve import solve
@@ -155,28 +170,69 @@ def sweep(
 ) -> None:
     """Compute the full product of the values of some keys.
 
-    Finished cases are kept in OUTPUT.partial, so that an interrupted sweep goes on where it
-    stopped when the same command is given again.
+    Finished points are kept in a file beside OUTPUT that ends in .partial, so that an interrupted
+    sweep goes on where it stopped when the same command is given again.
     """
     from epicyclic.cli.progress import progress_bar
-    from epicyclic.sweeps.dataset import check_output, write_dataset
-    from epicyclic.sweeps.plan import parse_vary
-    from epicyclic.sweeps.run import sweep as run_sweep
+    from epicyclic.sweeps.dataset import check_output, to_dataset, write_dataset
+    from epicyclic.sweeps.plan import make_plan, parse_vary
+    from epicyclic.sweeps.run import run_plan
 
     loaded = _load(case, changes)
     check_output(output)
-    journal = output.with_name(f"{output.name}.partial")
-    values = parse_vary(loaded, vary)
-    with progress_bar("cases") as progress:
-        dataset = run_sweep(loaded, values, jobs=jobs, journal=journal, progress=progress)
-    write_dataset(dataset, output)
-    journal.unlink(missing_ok=True)
-    failed = _count_failures(dataset)
-    count = dataset["status"].size
-    outcome = f", {failed} of them failed." if failed else "."
-    click.echo(f"Wrote {count} cases to {output}{outcome}")
-    if failed:
-        sys.exit(EXIT_FAILED_CASES)
+    plan = make_plan(loaded, parse_vary(loaded, vary))
+    journal = _open_journal(plan, output)
+    with _kept_in(journal, plan.size):
+        with progress_bar("points") as progress:
+            rows = run_plan(plan, jobs=jobs, journal=journal, progress=progress)
+        write_dataset(to_dataset(plan, rows), output)
+    journal.remove()
+    reasons = [row.message for row in rows if row.status == Status.FAILED]
+    _print_failures(reasons)
+    outcome = f", {len(reasons)} of them failed." if reasons else "."
+    click.echo(f"Wrote {plan.size} point{'' if plan.size == 1 else 's'} to {output}{outcome}")
+    if reasons:
+        sys.exit(EXIT_FAILED_POINTS)
+
+
+def _open_journal(plan: Plan, output: Path) -> Journal:
+    """The journal of `plan` beside `output`; says what is there from interrupted sweeps."""
+    from epicyclic.sweeps.journal import Journal
+
+    fingerprint = plan.fingerprint()
+    journal = Journal(output.with_name(f"{output.name}.{fingerprint}.partial"), fingerprint)
+    others = [
+        path
+        for path in output.parent.iterdir()
+        if path.name.startswith(f"{output.name}.") and path.suffix == journal.path.suffix
+        if path.name != journal.path.name
+    ]
+    for path in sorted(others):
+        click.echo(
+            f"{path} holds points of an interrupted sweep of another case or other values; it is "
+            "kept. Delete it if you do not need it.",
+            err=True,
+        )
+    kept = len(journal.read())
+    if kept:
+        click.echo(f"Going on from {kept} of {plan.size} points in {journal.path}.", err=True)
+    return journal
+
+
+@contextmanager
+def _kept_in(journal: Journal, size: int) -> Iterator[None]:
+    """Say what is left of a sweep that does not reach its end."""
+    try:
+        yield
+    except (KeyboardInterrupt, Exception):
+        kept = len(journal.read())
+        if kept:
+            click.echo(
+                f"{kept} of {size} points kept in {journal.path}; give the same command again to "
+                "go on.",
+                err=True,
+            )
+        raise
 
 
 @cli.command()
@@ -232,16 +288,13 @@ def _write(path: Path, text: str) -> None:
         raise InputError([problem], "the command") from None
 
 
-def _count_failures(dataset: Any) -> int:
-    """Number of failed cases; prints each reason once."""
-    failed = dataset["status"].values.ravel() == "failed"
-    reasons = dataset["message"].values.ravel()[failed]
-    unique = dict.fromkeys(str(reason) for reason in reasons)
-    for reason in list(unique)[:SHOWN_FAILURES]:
-        click.echo(f"{int((reasons == reason).sum())} failed: {reason}", err=True)
-    if len(unique) > SHOWN_FAILURES:
-        click.echo(f"... and {len(unique) - SHOWN_FAILURES} other reasons.", err=True)
-    return int(failed.sum())
+def _print_failures(reasons: Sequence[str]) -> None:
+    """Each reason once, with the number of points that failed for it."""
+    counts = Counter(reasons)
+    for reason, count in list(counts.items())[:SHOWN_FAILURES]:
+        click.echo(f"{count} failed: {reason}", err=True)
+    if len(counts) > SHOWN_FAILURES:
+        click.echo(f"... and {len(counts) - SHOWN_FAILURES} other reasons.", err=True)
 
 
 def main() -> None:
@@ -263,3 +316,12 @@ def main() -> None:
     except (KeyboardInterrupt, click.Abort):
         click.echo("Interrupted.", err=True)
         sys.exit(EXIT_INTERRUPTED)
+    except Exception as error:
+        if os.environ.get("EPICYCLIC_TRACEBACK") == "1":
+            raise
+        click.echo(
+            f"Error of the program: {type(error).__name__}: {error}\n"
+            "Set EPICYCLIC_TRACEBACK=1 to see where it arose.",
+            err=True,
+        )
+        sys.exit(EXIT_ERROR)

@@ -7,13 +7,12 @@ import math
 import os
 import tempfile
 from collections.abc import Sequence
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from epicyclic.analysis.result import Figure
+from epicyclic.analysis.result import number_fields, versions
 from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.journal import Row
 from epicyclic.sweeps.plan import Plan
@@ -27,38 +26,45 @@ __all__ = ["FORMATS", "check_output", "to_dataset", "write_dataset"]
 FORMATS = (".nc", ".csv", ".parquet")
 
 
-def to_dataset(plan: Plan, rows: Sequence[Row], described: Sequence[Figure]) -> xr.Dataset:
-    """The rows of all cases of `plan` over its axes; `described` names their numbers."""
+def to_dataset(plan: Plan, rows: Sequence[Row]) -> xr.Dataset:
+    """The rows of all points of `plan` over its axes."""
     import xarray as xr
 
     dims = tuple(axis.key for axis in plan.axes)
     coords = {
-        axis.key: (axis.key, np.array(axis.coordinate), {"units": axis.unit, "long_name": axis.key})
+        axis.key: (axis.key, np.array(axis.coordinate), _about(axis.key, axis.unit))
         for axis in plan.axes
     }
     variables = {
         item.key: (
             dims,
-            np.array([row["numbers"].get(item.key, math.nan) for row in rows]).reshape(plan.shape),
-            {"units": item.unit or "1", "long_name": item.label},
+            np.array([row.numbers.get(item.key, math.nan) for row in rows]).reshape(plan.shape),
+            _about(item.label, item.unit),
         )
-        for item in described
+        for item in number_fields(plan.case.kind)
     }
     texts = {
-        "status": "how the case ended",
-        "message": "why the case failed",
-        "warnings": "warnings of the case",
+        "status": ("how the point ended", [row.status for row in rows]),
+        "message": ("why the point failed", [row.message for row in rows]),
+        "warnings": ("warnings of the point", [row.warnings for row in rows]),
     }
-    for key, label in texts.items():
-        values = np.array([row[key] for row in rows], dtype=object).reshape(plan.shape)
-        variables[key] = (dims, values, {"long_name": label})
+    for key, (label, values) in texts.items():
+        column = np.array(values, dtype=object).reshape(plan.shape)
+        variables[key] = (dims, column, _about(label, ""))
     return xr.Dataset(variables, coords, _attributes(plan))
 
 
+def _about(label: str, unit: str) -> dict[str, str]:
+    """Attributes of a variable; names and text have no unit."""
+    return {"long_name": label} | ({"units": unit} if unit else {})
+
+
 def _attributes(plan: Plan) -> dict[str, str]:
+    used = versions()
     return {
         "title": plan.case.title,
-        "source": f"epicyclic {metadata.version('epicyclic')}",
+        "source": f"epicyclic {used['epicyclic']}",
+        "versions": json.dumps(used),
         "case": json.dumps(plan.case.inputs()),
         "conventions": "losses in W of the whole gear set, summed over planets; "
         "torque and speed of the input member",
@@ -99,7 +105,7 @@ def write_dataset(dataset: xr.Dataset, path: Path) -> None:
 
 
 def to_table(dataset: xr.Dataset) -> pd.DataFrame:
-    """One row for each case, units in the column names."""
+    """One row for each point, units in the column names."""
     table = dataset.to_dataframe().reset_index()
     columns = {**dataset.coords, **dataset.data_vars}
     units = {str(name): str(array.attrs.get("units", "")) for name, array in columns.items()}

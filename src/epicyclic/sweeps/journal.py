@@ -1,76 +1,111 @@
-"""The journal of an unfinished sweep: one line for each finished case, written as it finishes.
+"""The journal of an unfinished sweep: one line for each finished point, written as it finishes.
 
-A sweep that is interrupted leaves its journal beside the output, and the same sweep goes on from
-there. A line cut short by the interruption is ignored.
+A sweep that is interrupted leaves its journal behind, and the same sweep goes on from there. Every
+line names the sweep it belongs to, and nothing is ever overwritten: a file that holds anything else
+is refused. Lines that cannot be read, such as one cut short, are computed again.
 """
 
 from __future__ import annotations
 
-import json
-import os
-from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
-__all__ = ["Journal"]
+from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-Row = dict[str, Any]
+from epicyclic.errors import InputError, Problem
+
+__all__ = ["Journal", "Row"]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One finished point of a sweep.
+
+    Attributes
+    ----------
+    status, message, warnings : str
+        How it ended, why it failed, what to know.
+    numbers : dict of str to float
+        As `Result.numbers` names them; empty if it failed.
+    """
+
+    status: str
+    message: str = ""
+    warnings: str = ""
+    numbers: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class _Record:
+    __pydantic_config__ = ConfigDict(ser_json_inf_nan="constants")
+
+    sweep: str
+    point: int
+    row: Row
+
+
+_RECORD = TypeAdapter(_Record)
 
 
 @dataclass(frozen=True, slots=True)
 class Journal:
-    """Finished rows on disk.
+    """Finished points on disk.
 
     Attributes
     ----------
     path : Path
     fingerprint : str
-        Of the plan; rows of another plan are not taken over.
+        Of the plan; a journal of another plan is not touched.
     """
 
     path: Path
     fingerprint: str
 
     def read(self) -> dict[int, Row]:
-        """Rows of the same plan by case number; starts a new journal if there are none."""
-        rows: dict[int, Row] = {}
-        lines = self.path.read_text(encoding="utf-8").splitlines() if self.path.exists() else []
-        if not lines or _parse(lines[0]) != {"fingerprint": self.fingerprint}:
-            self.path.write_text(json.dumps({"fingerprint": self.fingerprint}) + "\n")
-            return rows
-        for line in lines[1:]:
+        """Finished points by number; none if there is no file.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read or holds something else than points of this sweep.
+        """
+        try:
+            lines = self.path.read_bytes().split(b"\n")
+        except FileNotFoundError:
+            return {}
+        except OSError as error:
+            raise self._error(f"cannot be read: {error.strerror}.") from None
+        rows = {}
+        for line in lines:
             record = _parse(line)
-            if record is not None:
-                rows[record["case"]] = record["row"]
+            if record is not None and record.sweep == self.fingerprint:
+                rows[record.point] = record.row
+        if not rows and not all(map(self._may_be_cut_short, lines)):
+            raise self._error("holds something else than points of this sweep.")
         return rows
 
-    def append(self, rows: Iterable[tuple[int, Row]]) -> None:
-        """Add finished rows; they are on disk when this returns."""
-        text = "".join(json.dumps({"case": case, "row": row}) + "\n" for case, row in rows)
-        with self.path.open("a", encoding="utf-8") as file:
-            # after an interruption the last line may lack its end
-            if not self._ends_with_newline():
-                file.write("\n")
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
+    def append(self, point: int, row: Row) -> None:
+        """Add a finished point; it outlives this process when this returns."""
+        record = _RECORD.dump_json(_Record(self.fingerprint, point, row))
+        with self.path.open("ab", buffering=0) as file:  # one write: workers share the file
+            file.write(b"\n" + record)  # first the end of a line that may have been cut short
 
     def remove(self) -> None:
         """Delete the journal of a finished sweep."""
         self.path.unlink(missing_ok=True)
 
-    def _ends_with_newline(self) -> bool:
-        with self.path.open("rb") as file:
-            file.seek(0, os.SEEK_END)
-            if file.tell() == 0:
-                return True
-            file.seek(-1, os.SEEK_END)
-            return file.read(1) == b"\n"
+    def _may_be_cut_short(self, line: bytes) -> bool:
+        """True for the start of a line of this sweep."""
+        mark = b'{"sweep":"%s"' % self.fingerprint.encode()
+        return line.startswith(mark) or mark.startswith(line)
+
+    def _error(self, allowed: str) -> InputError:
+        remedy = "Move it away or delete it, and give the command again."
+        return InputError([Problem("journal", str(self.path), allowed, remedy)], "the sweep")
 
 
-def _parse(line: str) -> Any:
+def _parse(line: bytes) -> _Record | None:
     try:
-        return json.loads(line)
-    except json.JSONDecodeError:
+        return _RECORD.validate_json(line)
+    except ValidationError:
         return None

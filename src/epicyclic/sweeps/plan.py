@@ -4,20 +4,30 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case
-from epicyclic.case.fields import all_keys, find_field, is_whole_number, quantity_of
+from epicyclic.case.fields import (
+    all_keys,
+    find_field,
+    is_array,
+    is_named,
+    is_whole_number,
+    quantity_of,
+    table_of,
+)
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.values import parse_value
-from epicyclic.case.wording import sentence
+from epicyclic.case.wording import sentence, written
 from epicyclic.errors import InputError, Problem
 from epicyclic.units import Quantity, format_number
 
@@ -27,6 +37,11 @@ _RANGE = re.compile(
     r"\s*(?P<start>[^:,]+?)\s*:\s*(?P<stop>[^:,]+?)\s*:\s*(?P<count>\d+)\s*(?P<unit>[^:,\d][^:,]*)?"
 )
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+
+_MOST_POINTS = 1_000_000
+"""Rows of more points do not fit into memory."""
+_LARGEST_WHOLE = 2**53
+"""Larger whole numbers are no exact coordinates."""
 
 # Tables whose keys leave geometry alone: varied innermost, so that geometry is built once.
 _OPERATING_TABLES = ("operation", "lubricant", "surroundings", "models", "losses")
@@ -45,7 +60,7 @@ class Axis:
     coordinate : tuple of float or str
         The same as numbers in `unit`, or as names.
     unit : str
-        Display unit; empty for numbers without one and for names.
+        Display unit; ``"1"`` for pure numbers, empty for names.
     """
 
     key: str
@@ -84,13 +99,13 @@ class Plan:
         return [int(index) for index in numbers.transpose(by_cost).ravel()]
 
     def fingerprint(self) -> str:
-        """Changes with the case, the axes and the version: results of equal ones are equal."""
+        """Follows the case, the axes and the version: results of equal ones are equal."""
         content = {
             "case": self.case.inputs(),
             "axes": [[axis.key, axis.coordinate] for axis in self.axes],
             "version": metadata.version("epicyclic"),
         }
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 
 
 def make_plan(case: Case, vary: Mapping[str, Iterable[Any]]) -> Plan:
@@ -112,13 +127,31 @@ def make_plan(case: Case, vary: Mapping[str, Iterable[Any]]) -> Plan:
     if not vary:
         problems.append(Problem("vary", "", "is empty.", "Give at least one key and its values."))
     for key, values in vary.items():
-        axis, found = _make_axis(case, key, [values] if isinstance(values, str) else list(values))
+        axis, found = _make_axis(case, str(key), _listed(values))
         problems += found
         if axis is not None:
             axes.append(axis)
+    size = math.prod(len(axis.values) for axis in axes)
+    if size > _MOST_POINTS:
+        problems.append(_too_many("vary", size))
     if problems:
         raise InputError(problems, "the sweep")
     return Plan(case, tuple(axes))
+
+
+def _listed(values: Any) -> list[Any]:
+    """`values` as a list; anything that is one value by itself as a list of it."""
+    if isinstance(values, str | Mapping):
+        return [values]
+    try:
+        return list(values)
+    except TypeError:
+        return [values]
+
+
+def _too_many(key: str, count: int) -> Problem:
+    allowed = f"must have {_MOST_POINTS} points or fewer, not {count}."
+    return Problem(key, "", allowed, "Give fewer values.")
 
 
 def _make_axis(case: Case, key: str, values: list[Any]) -> tuple[Axis | None, list[Problem]]:
@@ -127,6 +160,9 @@ def _make_axis(case: Case, key: str, values: list[Any]) -> tuple[Axis | None, li
         known = list(all_keys(type(case)))
         remedy = did_you_mean(key, known) or "See 'epicyclic init' for the keys."
         return None, [Problem(key, "", "is not a known key.", remedy)]
+    unsuitable = _unsuitable(key, *field)
+    if unsuitable is not None:
+        return None, [unsuitable]
     if not values:
         return None, [Problem(key, "", "has no values.", "Give at least one.")]
     quantity = quantity_of(*field)
@@ -137,23 +173,52 @@ def _make_axis(case: Case, key: str, values: list[Any]) -> tuple[Axis | None, li
             coordinate.append(_coordinate(value, quantity))
         except PydanticCustomError as error:
             remedy = str((error.context or {}).get("remedy", ""))
-            problems.append(Problem(key, repr(value), f"{error.message()}.", sentence(remedy)))
+            problems.append(
+                Problem(key, written(value), sentence(error.message(), capital=False),
+                        sentence(remedy))
+            )  # fmt: skip
     if not problems and len(set(coordinate)) < len(coordinate):
         problems.append(Problem(key, "", "has the same value twice.", "Give each value once."))
     if problems:
         return None, problems
     if any(isinstance(item, str) for item in coordinate):
         coordinate = [str(item) for item in coordinate]
-    unit = "" if quantity is None else quantity.display
+        unit = ""
+    else:
+        unit = "1" if quantity is None else quantity.display
     return Axis(key, tuple(values), tuple(coordinate), unit), []
+
+
+def _unsuitable(key: str, annotation: Any, metadata: tuple[Any, ...]) -> Problem | None:
+    """Why a key cannot be an axis: it holds several values."""
+    if is_array(annotation):
+        allowed = "is a list; a sweep varies keys that hold one value."
+        return Problem(key, "", allowed, "Set it in the case, and run a sweep for each list.")
+    table = table_of(annotation)
+    if table is None or is_named(metadata):
+        return None
+    allowed = "is a table; a sweep varies keys that hold one value."
+    return Problem(
+        key, "", allowed, f"Vary keys of it, such as {next(all_keys(table, f'{key}.'))}."
+    )
 
 
 def _coordinate(value: Any, quantity: Quantity | None) -> float | str:
     if quantity is not None:
         return quantity.to_display(quantity.parse(value))
-    if isinstance(value, int | float | np.number) and not isinstance(value, bool):
-        return value if isinstance(value, int) else float(value)
-    return str(value)
+    if isinstance(value, bool | np.bool):
+        return str(bool(value)).lower()
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Integral):
+        whole = int(value)
+        if abs(whole) <= _LARGEST_WHOLE:
+            return whole
+    elif isinstance(value, Real):
+        return float(value)
+    raise PydanticCustomError(
+        "axis", "is no value of one key", {"remedy": "give numbers, text or names"}
+    )
 
 
 def parse_vary(case: Case, options: Sequence[str]) -> dict[str, list[Any]]:
@@ -213,6 +278,8 @@ def _range(case: Case, key: str, match: re.Match[str]) -> Iterator[Any]:
     count = int(match["count"])
     if count < 1:
         raise ValueError("the count must be 1 or more")
+    if count > _MOST_POINTS:
+        raise ValueError(f"the count must be {_MOST_POINTS} or less")
     units = {unit for unit in (start[2], stop[2], (match["unit"] or "").strip()) if unit}
     if len(units) > 1:
         raise ValueError(f"the units {' and '.join(sorted(units))} differ")

@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from epicyclic.analysis.result import Figure
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case
 from epicyclic.errors import EpicyclicError, InputError
+from epicyclic.status import Status
 from epicyclic.sweeps.dataset import to_dataset
 from epicyclic.sweeps.journal import Journal, Row
 from epicyclic.sweeps.plan import Plan, make_plan
@@ -23,9 +23,13 @@ __all__ = ["run_plan", "sweep"]
 Progress = Callable[[int, int], None]
 
 BATCH = 16
-"""Cases computed between two entries in the journal."""
+"""Largest number of points that a worker is given at once, which share geometry where they can."""
+BATCHES_PER_WORKER = 4
+"""Fewer would leave workers idle at the end."""
 WORKER_START_SECONDS = 4.0
 """Work left, in seconds on one core, below which starting worker processes does not pay."""
+TRIAL_POINTS, TRIAL_SECONDS = 16, 2.0
+"""Points computed, or time spent on them, before the work left is estimated."""
 
 
 def sweep(
@@ -48,33 +52,28 @@ def sweep(
     jobs : int, optional
         Worker processes. Default: one for each core if the work is worth it, else none.
     journal : str or Path, optional
-        File that keeps finished cases, so that an interrupted sweep goes on where it stopped.
+        File that keeps finished points, so that an interrupted sweep goes on where it stopped.
+        It stays when the sweep is done, and is refused by another sweep.
     progress : callable, optional
-        Called with the number of finished cases and of all cases.
+        Called with the number of finished points and of all points.
 
     Returns
     -------
     xarray.Dataset
-        One dimension for each key, every variable with its unit; cases that failed have NaN, the
-        status ``"failed"`` and the reason in ``message``.
+        One dimension for each key, every number with its unit; points that failed have NaN, the
+        status ``"failed"`` and the reason in ``message``. Which variables there are depends on
+        the kind of the case only.
 
     Raises
     ------
     InputError
-        If a key cannot be varied or a value cannot be read.
+        If a key cannot be varied, a value cannot be read, or the journal is that of another
+        sweep.
     """
     plan = make_plan(case, vary)
-    kept = None if journal is None else Journal(Path(journal), plan.fingerprint())
-    rows = run_plan(plan, jobs=jobs, journal=kept, progress=progress)
-    return to_dataset(plan, rows, _describe(plan, rows))
-
-
-def _describe(plan: Plan, rows: Sequence[Row]) -> list[Figure]:
-    """Label and unit of every number of the rows: those of one case, computed once more."""
-    for index, row in enumerate(rows):
-        if row["numbers"]:
-            return list(solve(plan.case.updated(plan.changes(index))).numbers())
-    return []
+    # absolute, because workers may have been started in another folder
+    kept = None if journal is None else Journal(Path(journal).absolute(), plan.fingerprint())
+    return to_dataset(plan, run_plan(plan, jobs=jobs, journal=kept, progress=progress))
 
 
 def run_plan(
@@ -84,14 +83,12 @@ def run_plan(
     journal: Journal | None = None,
     progress: Progress | None = None,
 ) -> list[Row]:
-    """Rows of all cases of `plan`, in their order. Parameters as for `sweep`."""
+    """Rows of all points of `plan`, in their order. Parameters as for `sweep`."""
     rows = {} if journal is None else journal.read()
     left = [index for index in plan.order() if index not in rows]
     if progress is not None:
         progress(len(rows), plan.size)
-    for batch in _run_batches(plan, left, jobs):
-        if journal is not None:
-            journal.append(batch)
+    for batch in _run_batches(plan, left, jobs, journal):
         rows.update(batch)
         if progress is not None:
             progress(len(rows), plan.size)
@@ -99,49 +96,71 @@ def run_plan(
 
 
 def _run_batches(
-    plan: Plan, indices: list[int], jobs: int | None
+    plan: Plan, indices: list[int], jobs: int | None, journal: Journal | None
 ) -> Iterator[list[tuple[int, Row]]]:
-    """Finished batches, in any order."""
-    batches = [indices[i : i + BATCH] for i in range(0, len(indices), BATCH)]
-    if jobs is None:
-        start = time.perf_counter()
-        timed = 0
-        while batches and timed < 2:  # the first batch also pays for compilation and caches
-            if timed == 1:
-                start = time.perf_counter()
-            yield _solve_batch(plan, batches.pop(0))
-            timed += 1
-        left = (time.perf_counter() - start) * len(batches)
-        jobs = 1 if left < WORKER_START_SECONDS else -1
-    if jobs == 1:
-        for batch in batches:
-            yield _solve_batch(plan, batch)
-        return
-    from joblib import Parallel, delayed
+    """Finished points, in any order: here as long as that pays, then in worker processes."""
+    start = time.perf_counter()
+    for done, index in enumerate(indices):
+        if done == 1:  # the first point also pays for compilation
+            start = time.perf_counter()
+        workers_pay = jobs is None and _workers_pay(
+            done - 1, time.perf_counter() - start, len(indices) - done
+        )
+        if workers_pay or jobs not in (None, 1):
+            yield from _run_in_workers(plan, indices[done:], jobs or -1, journal)
+            return
+        yield _solve_batch(plan, [index], journal)
 
+
+def _workers_pay(done: int, seconds: float, left: int) -> bool:
+    """Whether to start workers for the points `left`, `done` having taken `seconds`."""
+    if done < 1 or (done < TRIAL_POINTS and seconds < TRIAL_SECONDS):
+        return False
+    return left * seconds / done > WORKER_START_SECONDS
+
+
+def _run_in_workers(
+    plan: Plan, indices: list[int], jobs: int, journal: Journal | None
+) -> Iterator[list[tuple[int, Row]]]:
+    from joblib import Parallel, delayed, effective_n_jobs
+
+    share = len(indices) // (BATCHES_PER_WORKER * effective_n_jobs(jobs))
+    size = min(BATCH, max(1, share))
     workers = Parallel(n_jobs=jobs, return_as="generator_unordered", inner_max_num_threads=1)
-    yield from workers(delayed(_solve_batch)(plan, batch) for batch in batches)
+    yield from workers(
+        delayed(_solve_batch)(plan, indices[i : i + size], journal)
+        for i in range(0, len(indices), size)
+    )
 
 
-def _solve_batch(plan: Plan, indices: Sequence[int]) -> list[tuple[int, Row]]:
-    return [(index, solve_row(plan, index)) for index in indices]
+def _solve_batch(
+    plan: Plan, indices: Sequence[int], journal: Journal | None
+) -> list[tuple[int, Row]]:
+    rows = []
+    for index in indices:
+        row = _solve_point(plan, index)
+        if journal is not None:
+            journal.append(index, row)
+        rows.append((index, row))
+    return rows
 
 
-def solve_row(plan: Plan, index: int) -> Row:
-    """One case of `plan` as a flat record; a case that fails becomes a row with its reason."""
+def _solve_point(plan: Plan, index: int) -> Row:
+    """One point of `plan` as a flat record; one that fails becomes a row with its reason."""
     try:
         result = solve(plan.case.updated(plan.changes(index)))
     except InputError as error:
         return _failed("; ".join(str(problem) for problem in error.problems))
-    except (EpicyclicError, ArithmeticError) as error:
+    except EpicyclicError as error:
         return _failed(str(error))
-    return {
-        "status": str(result.status),
-        "message": "",
-        "warnings": " | ".join(result.warnings),
-        "numbers": {item.key: item.value for item in result.numbers()},
-    }
+    except Exception as error:  # whatever it is, the other points do not suffer
+        return _failed(f"{type(error).__name__}: {error}")
+    return Row(
+        status=str(result.status),
+        warnings=" | ".join(result.warnings),
+        numbers={item.key: item.value for item in result.numbers()},
+    )
 
 
 def _failed(message: str) -> Row:
-    return {"status": "failed", "message": message, "warnings": "", "numbers": {}}
+    return Row(str(Status.FAILED), message)
