@@ -7,14 +7,18 @@ from rich.text import Text
 
 from epicyclic import library
 from epicyclic.lubricant.oil import Oil
-from epicyclic.lubricant.properties import oil_state
+from epicyclic.lubricant.properties import OilState, oil_state
+from epicyclic.report.shown import shown, unit_text
 from epicyclic.report.tables import plain_table
-from epicyclic.units import format_number
+from epicyclic.units import (
+    CELSIUS,
+    KILOGRAM_PER_CUBIC_METRE,
+    PER_GIGAPASCAL,
+    SQUARE_MM_PER_SECOND,
+    Quantity,
+)
 
 __all__ = ["case_table", "oil_sheet", "oil_table"]
-
-CELSIUS_40 = 313.15
-CELSIUS_100 = 373.15
 
 
 def case_table() -> RenderableType:
@@ -36,20 +40,30 @@ def oil_table() -> RenderableType:
     table = plain_table("Built-in oils")
     table.add_column("name", no_wrap=True)
     table.add_column("kind")
-    for column in ("ν 40 °C\nmm²/s", "ν 100 °C\nmm²/s", "ρ 40 °C\nkg/m³", "α 40 °C\n1/GPa"):
+    viscosity = unit_text(SQUARE_MM_PER_SECOND.display)
+    for column in (
+        f"ν 40 °C\n{viscosity}",
+        f"ν 100 °C\n{viscosity}",
+        f"ρ 40 °C\n{unit_text(KILOGRAM_PER_CUBIC_METRE.display)}",
+        f"α 40 °C\n{unit_text(PER_GIGAPASCAL.display)}",
+    ):
         table.add_column(column, justify="right")
     for name in sorted(library.oil_names(), key=_by_grade):
         oil = Oil.model_validate(library.oil_table(name))
-        warm, hot = oil_state(oil, CELSIUS_40), oil_state(oil, CELSIUS_100)
+        warm, hot = _state(oil, "40 degC"), _state(oil, "100 degC")
         table.add_row(
             name,
             oil.kind,
-            format_number(warm.kinematic_viscosity * 1e6, 4),
-            format_number(hot.kinematic_viscosity * 1e6, 4),
-            format_number(warm.density, 4),
-            format_number(warm.pressure_viscosity * 1e9, 3),
+            shown(SQUARE_MM_PER_SECOND.to_display(warm.kinematic_viscosity)),
+            shown(SQUARE_MM_PER_SECOND.to_display(hot.kinematic_viscosity)),
+            shown(KILOGRAM_PER_CUBIC_METRE.to_display(warm.density)),
+            shown(PER_GIGAPASCAL.to_display(warm.pressure_viscosity), 3),
         )
     return Group(table, Text("Sources of the values: epicyclic oils NAME"))
+
+
+def _state(oil: Oil, temperature: str) -> OilState:
+    return oil_state(oil, CELSIUS.parse(temperature))
 
 
 def _by_grade(name: str) -> list[tuple[bool, int, str]]:
@@ -65,20 +79,29 @@ def oil_sheet(name: str) -> RenderableType:
     table.add_column("value", justify="right", no_wrap=True)
     table.add_column("source")
     for point in oil.kinematic_viscosity:
-        celsius = format_number(point.temperature - 273.15, 4)
-        value = f"{format_number(point.value * 1e6)} mm²/s"
-        table.add_row(f"kinematic viscosity at {celsius} °C", value, point.source)
+        table.add_row(
+            f"kinematic viscosity at {_text(CELSIUS, point.temperature, 4)}",
+            _text(SQUARE_MM_PER_SECOND, point.value),
+            point.source,
+        )
     for density in oil.density:
-        celsius = format_number(density.temperature - 273.15, 4)
-        table.add_row(f"density at {celsius} °C", f"{density.value:g} kg/m³", density.source)
+        table.add_row(
+            f"density at {_text(CELSIUS, density.temperature, 4)}",
+            _text(KILOGRAM_PER_CUBIC_METRE, density.value),
+            density.source,
+        )
     law = oil.pressure_viscosity
     calibrated = " (calibrated)" if law.calibrated else ""
-    alpha = oil_state(oil, CELSIUS_40).pressure_viscosity * 1e9
     table.add_row(
         f"pressure-viscosity coefficient at 40 °C, {law.law} law{calibrated}",
-        f"{format_number(alpha, 4)} 1/GPa",
+        _text(PER_GIGAPASCAL, _state(oil, "40 degC").pressure_viscosity, 4),
         law.source,
     )
     factor = oil.lubricant_factor
     table.add_row("lubricant factor X_L", f"{factor.value:g}", factor.source)
     return Group(Text(oil.description), table)
+
+
+def _text(kind: Quantity, value: float, digits: int = 6) -> str:
+    """An SI `value` with its unit, as tables show them."""
+    return f"{shown(kind.to_display(value), digits)} {unit_text(kind.display)}"

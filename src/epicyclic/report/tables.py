@@ -21,7 +21,8 @@ from epicyclic.analysis.result import (
     Result,
     figures,
 )
-from epicyclic.units import format_number, registry
+from epicyclic.report.shown import MISSING, shown, unit_text
+from epicyclic.units import DEGREE, NEWTON_METRE, RPM
 
 __all__ = ["friction_table", "plain_table", "result_tables", "terminal"]
 
@@ -55,8 +56,8 @@ def result_tables(result: Result) -> RenderableType:
         parts.append(_figure_table("Planet bearing", figures(result.bearing)))
     parts.append(_figure_table("Oil", figures(result.fluid)))
     if result.planet_angles:
-        angles = ", ".join(f"{math.degrees(angle):.4f}" for angle in result.planet_angles)
-        parts.append(Text(f"Planets at {angles} deg"))
+        angles = ", ".join(f"{DEGREE.to_display(angle):z.4f}" for angle in result.planet_angles)
+        parts.append(Text(f"Planets at {angles} {DEGREE.display}"))
     if len(set(result.planet_shares)) > 1:
         shares = ", ".join(f"{share:.2%}" for share in result.planet_shares)
         parts.append(Text(f"Their shares of the torque: {shares}"))
@@ -82,7 +83,7 @@ def _losses(result: Result) -> Table:
         watts = result.load_dependent if group == LOAD_DEPENDENT else result.load_independent
         table.add_row(group, *_shares(result, watts), style="bold", end_section=True)
     table.add_row("total", *_shares(result, result.total), style="bold", end_section=True)
-    table.add_row("input power", f"{result.input_power:.1f}", "", "")
+    table.add_row("input power", f"{result.input_power:z.1f}", "", "")
     efficiency = "undefined" if result.efficiency is None else f"{result.efficiency:.3%}"
     table.add_row("efficiency", efficiency, "", "")
     return table
@@ -104,28 +105,34 @@ def _methods(result: Result) -> Group:
 
 
 def _shares(result: Result, watts: float) -> tuple[str, str, str]:
-    of_total = f"{watts / result.total:.1%}" if result.total else ""
-    of_input = f"{watts / result.input_power:.3%}" if result.input_power else ""
-    return f"{watts:.1f}", of_total, of_input
+    of_total = f"{watts / result.total:z.1%}" if result.total else ""
+    of_input = f"{watts / result.input_power:z.3%}" if result.input_power else ""
+    return f"{watts:z.1f}", of_total, of_input
 
 
 def _members(result: Result) -> Table:
-    table = _table("Power flow (into the gear set)", "", "speed rpm", "torque N·m", "power W")
-    rpm = registry().Quantity(1.0, "rad/s").to("rpm").magnitude
+    units = f"speed {unit_text(RPM.display)}", f"torque {unit_text(NEWTON_METRE.display)}"
+    table = _table("Power flow (into the gear set)", "", *units, "power W")
     for name, member in result.flow.members.items():
         table.add_row(
-            name, f"{member.speed * rpm:.1f}", f"{member.torque:.2f}", f"{member.power:.1f}"
+            name,
+            f"{RPM.to_display(member.speed):z.1f}",
+            f"{NEWTON_METRE.to_display(member.torque):z.2f}",
+            f"{member.power:z.1f}",
         )
     return table
 
 
-def _meshes(result: Result) -> Table:
+def _meshes(result: Result) -> RenderableType:
     names = [name.replace("_", " ") for name in result.meshes]
     table = _table("Meshes", "", *names, "unit")
     table.columns[-1].justify = "left"
     columns: Sequence[MeshFigures] = tuple(result.meshes.values())
     for row in zip(*(figures(mesh) for mesh in columns), strict=True):
-        table.add_row(row[0].label, *(_cell(item) for item in row), _unit(row[0]))
+        cells = (shown(item.value) for item in row)
+        table.add_row(row[0].label, *cells, unit_text(row[0].unit))
+    if any(mesh.contact is None for mesh in columns):
+        return Group(table, Text(f'"{MISSING}": no load or no motion in the mesh.'))
     return table
 
 
@@ -133,16 +140,8 @@ def _figure_table(title: str, items: Iterable[Figure]) -> Table:
     table = _table(title, "", "value", "unit")
     table.columns[-1].justify = "left"
     for item in items:
-        table.add_row(item.label, _cell(item), _unit(item))
+        table.add_row(item.label, shown(item.value), unit_text(item.unit))
     return table
-
-
-def _cell(item: Figure) -> str:
-    return "-" if math.isnan(item.value) else format_number(item.value, 4)
-
-
-def _unit(item: Figure) -> str:
-    return item.unit.translate({ord("*"): "·"}).replace("^2", "²").replace("^3", "³")
 
 
 def _list(title: str, items: Sequence[str]) -> Group:
@@ -155,19 +154,21 @@ def _list(title: str, items: Sequence[str]) -> Group:
 def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
     """Friction models side by side, with the spread."""
     meshes = list(rows[0].mean_friction)
+    if all(math.isnan(row.mean_friction[mesh]) for row in rows for mesh in meshes):
+        return Text("There is no load or no motion: nothing slides, and no friction to compare.")
     columns = [f"μ {mesh.replace('_', ' ')}" for mesh in meshes]
     table = _table("Friction models", "", *columns, "sliding W", "quick W", "to chosen", "")
     table.columns[-1].justify = "left"
-    chosen = next((row.sliding for row in rows if row.chosen), math.nan)
+    chosen = next(row.sliding for row in rows if row.chosen)
     for row in rows:
         marks = ", ".join(
             mark for mark, holds in (("chosen", row.chosen), ("out of range", row.flagged)) if holds
         )
         table.add_row(
             row.name,
-            *(f"{row.mean_friction[mesh]:.4f}" for mesh in meshes),
-            f"{row.sliding:.1f}",
-            f"{row.quick:.1f}",
+            *(f"{row.mean_friction[mesh]:z.4f}" for mesh in meshes),
+            f"{row.sliding:z.1f}",
+            f"{row.quick:z.1f}",
             f"{row.sliding / chosen:.2f}" if chosen else "",
             marks,
             style="bold" if row.chosen else "",

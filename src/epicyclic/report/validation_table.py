@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from epicyclic.report.shown import shown
 from epicyclic.report.tables import plain_table
-from epicyclic.units import format_number
 from epicyclic.validation.compare import Comparison
 
 __all__ = ["validation_table"]
@@ -27,8 +27,8 @@ def validation_table(rows: Sequence[Comparison]) -> RenderableType:
         table.add_row(
             Text.assemble(row.what, ("\n" + row.source, "dim")),
             f"{_published(row)} {row.unit}".rstrip(),
-            f"{format_number(row.computed, 4)} {row.unit}".rstrip(),
-            f"{row.difference:+.1%}",
+            f"{shown(row.computed)} {row.unit}".rstrip(),
+            f"{row.difference:+z.1%}",
             Text(_verdict(row), style=_STYLES[row.verdict]),
         )
     counted = [row for row in rows if row.role == "validation"]
@@ -47,5 +47,5 @@ def _verdict(row: Comparison) -> str:
 
 
 def _published(row: Comparison) -> str:
-    low, high = format_number(row.low, 4), format_number(row.high, 4)
+    low, high = shown(row.low), shown(row.high)
     return low if low == high else f"{low} to {high}"
