@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 from pathlib import Path
 
 import pytest
 
 import epicyclic as ep
+from epicyclic.cli.main import main
 
 PLANETARY_LOSSES = [
     "sun_mesh_sliding",
@@ -70,6 +72,29 @@ def test_json_result_keeps_the_contract(epicyclic, tmp_path):
     file = tmp_path / "result.json"
     assert epicyclic("run", "talbot-2012", "--json", str(file)).returncode == 0
     assert json.loads(file.read_text()) == result
+
+
+@pytest.mark.parametrize("rest", [(), ("--set", "operation.torque=1000 N*m")])
+def test_json_without_a_file_goes_to_standard_output(epicyclic, rest):
+    done = epicyclic("run", "talbot-2012", "--json", *rest)
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["losses"]
+
+
+def test_zeros_have_no_sign(epicyclic):
+    for change in ("operation.torque=0 N*m", "operation.speed=0 rpm", "operation.speed=-100 rpm"):
+        for options in ((), ("--json",)):
+            done = epicyclic("run", "talbot-2012", "--set", change, *options)
+            assert re.search(r"-0(\.0*)?(?![\d.])", done.stdout) is None
+
+
+@pytest.mark.parametrize("change", ["operation.torque=0 N*m", "operation.speed=0 rpm"])
+def test_tables_say_that_there_is_no_load_or_motion(epicyclic, change):
+    for command in ("run", "friction"):
+        done = epicyclic(command, "talbot-2012", "--set", change)
+        assert done.returncode == 0
+        assert "no load or no motion" in done.stdout
+        assert "nan" not in done.stdout.split()
 
 
 def test_inputs_of_a_result_are_the_case_again(epicyclic):
@@ -211,6 +236,24 @@ def test_friction_models_side_by_side(epicyclic):
     ):  # fmt: skip
         assert name in done.stdout
     assert "Spread" in done.stdout
+
+
+def test_an_unexpected_error_is_one_line(monkeypatch, capsys):
+    def broken(case):
+        raise RuntimeError("something new")
+
+    monkeypatch.setattr("epicyclic.analysis.solve.solve", broken)
+    monkeypatch.setattr("sys.argv", ["epicyclic", "run", "talbot-2012"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 1
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.splitlines()[0] == "Error of the program: RuntimeError: something new"
+    assert "EPICYCLIC_TRACEBACK=1" in shown.err
+    monkeypatch.setenv("EPICYCLIC_TRACEBACK", "1")
+    with pytest.raises(RuntimeError, match="something new"):
+        main()
 
 
 def test_version_and_help(epicyclic):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import signal
 import subprocess
 import sys
@@ -13,11 +15,20 @@ import pytest
 import xarray as xr
 
 import epicyclic as ep
-from epicyclic.sweeps import run as run_module
 
 
 def names_in(folder):
     return [path.name for path in folder.iterdir()]
+
+
+def stop_at(count):
+    """A progress callback that interrupts the sweep when `count` points are done."""
+
+    def progress(done, total):
+        if done == count:
+            raise KeyboardInterrupt
+
+    return progress
 
 
 VARY = {
@@ -50,11 +61,16 @@ def test_sweep_equals_single_solutions(case, dataset):
     )
 
 
-def test_every_variable_has_its_unit(dataset):
-    numeric = [array for array in dataset.data_vars.values() if array.dtype.kind == "f"]
+def test_every_number_has_its_unit(dataset):
+    numeric = [array for array in dataset.variables.values() if array.dtype.kind in "fi"]
     assert len(numeric) > 40
     assert all(array.attrs["units"] and array.attrs["long_name"] for array in numeric)
     assert dataset["operation.speed"].attrs["units"] == "rpm"
+    for key in ("planet.count", "efficiency", "sun_mesh_film_ratio_min"):
+        assert dataset[key].attrs["units"] == "1"
+    for key in ("status", "message", "warnings"):
+        assert dataset[key].attrs["long_name"]
+        assert "units" not in dataset[key].attrs
 
 
 def test_processes_give_the_same_bits(case, dataset):
@@ -69,62 +85,149 @@ def test_failed_cases_are_rows_with_their_reason(case):
     assert result["total"].values[0] > 0
 
 
-def test_a_sweep_of_failures_only_is_still_a_dataset(case):
-    result = ep.sweep(case, {"planet.count": [12, 13]})
-    assert list(result["status"].values) == ["failed", "failed"]
+def test_variables_do_not_depend_on_what_succeeds(case, dataset):
+    failed = ep.sweep(case, {"planet.count": [12, 13]})
+    assert list(failed["status"].values) == ["failed", "failed"]
+    assert np.isnan(failed["total"].values).all()
+    parts = case.updated({"planet_bearing": None, "carrier": None})
+    bare = ep.sweep(parts, {"planet.count": [3, 12]})
+    assert np.isnan(bare["planet_bearing_radial_force"].values).all()
+    for other in (failed, bare):
+        assert list(other.data_vars) == list(dataset.data_vars)
+        for name, array in dataset.data_vars.items():
+            assert other[name].attrs == array.attrs
+            assert other[name].dtype == array.dtype
 
 
-def test_a_sweep_goes_on_where_it_stopped(case, dataset, tmp_path, monkeypatch):
-    journal = tmp_path / "sweep.partial"
-    monkeypatch.setattr(run_module, "BATCH", 1)
-    solved: list[int] = []
-    original = run_module.solve_row
+def test_a_pair_has_its_own_variables():
+    pair = ep.load_case("talbot-2012-pair")
+    data = ep.sweep(pair, {"operation.speed": ["0 rpm", "1000 rpm"]})
+    assert {"mesh_sliding", "pinion_torque", "gear_speed", "mesh_backlash"} <= set(data.data_vars)
+    assert not any(name.startswith(("sun", "planet")) for name in data.data_vars)
 
-    def interrupted(plan, index):
-        if len(solved) == 5:
-            raise KeyboardInterrupt
-        solved.append(index)
-        return original(plan, index)
 
-    monkeypatch.setattr(run_module, "solve_row", interrupted)
+def test_any_error_of_one_point_is_a_row(case, monkeypatch):
+    def solve(changed):
+        if changed.planet.count == 4:
+            raise RuntimeError("broken")
+        return ep.solve(changed)
+
+    monkeypatch.setattr("epicyclic.sweeps.run.solve", solve)
+    result = ep.sweep(case, {"planet.count": [3, 4, 5]}, jobs=1)
+    assert list(result["status"].values) == ["converged", "failed", "converged"]
+    assert result["message"].values[1] == "RuntimeError: broken"
+
+
+def test_a_sweep_goes_on_where_it_stopped(case, dataset, tmp_path):
+    journal = tmp_path / "points"
     with pytest.raises(KeyboardInterrupt):
-        ep.sweep(case, VARY, jobs=1, journal=journal)
-    again: list[int] = []
-    monkeypatch.setattr(
-        run_module, "solve_row", lambda plan, index: again.append(index) or original(plan, index)
-    )
-    result = ep.sweep(case, VARY, jobs=1, journal=journal)
-    assert result.identical(dataset)
-    assert len(again) == 12 - 5
-    assert not set(again) & set(solved)
+        ep.sweep(case, VARY, jobs=1, journal=journal, progress=stop_at(5))
+    calls: list[tuple[int, int]] = []
+    again = ep.sweep(case, VARY, jobs=1, journal=journal, progress=lambda *call: calls.append(call))
+    assert again.identical(dataset)
+    assert calls == [(done, 12) for done in range(5, 13)]
+
+
+def test_workers_keep_their_points(case, dataset, tmp_path):
+    journal = tmp_path / "points"
+    ep.sweep(case, VARY, jobs=2, journal=journal)
+    calls: list[tuple[int, int]] = []
+    again = ep.sweep(case, VARY, journal=journal, progress=lambda *call: calls.append(call))
+    assert calls == [(12, 12)]
+    assert again.identical(dataset)
+
+
+@pytest.mark.parametrize(
+    ("damage", "left"),
+    [
+        (lambda data: data[:-20], 4),  # killed while it wrote
+        (lambda data: data + b'\n{"sweep', 5),
+        (lambda data: data + b"\n\x00\xff\xfe{}\n[]", 5),
+        (lambda data: data[:10], 0),
+        (lambda data: b"", 0),
+    ],
+)
+def test_damaged_lines_are_computed_again(case, dataset, tmp_path, damage, left):
+    journal = tmp_path / "points"
+    with pytest.raises(KeyboardInterrupt):
+        ep.sweep(case, VARY, jobs=1, journal=journal, progress=stop_at(5))
+    journal.write_bytes(damage(journal.read_bytes()))
+    calls: list[tuple[int, int]] = []
+    for _ in range(2):
+        again = ep.sweep(
+            case, VARY, jobs=1, journal=journal, progress=lambda *call: calls.append(call)
+        )
+        assert again.identical(dataset)
+    assert calls[0] == (left, 12)
+    assert calls[-1] == (12, 12)
+
+
+@pytest.mark.parametrize("content", [b"\x00\xff\n", b"my notes\n", b"{}", "another sweep"])
+def test_a_file_of_something_else_is_refused(case, tmp_path, content):
+    journal = tmp_path / "points"
+    if isinstance(content, bytes):
+        journal.write_bytes(content)
+    else:
+        ep.sweep(case, {"planet.count": [3, 4]}, journal=journal)
+    before = journal.read_bytes()
+    with pytest.raises(ep.InputError, match="something else than points of this sweep"):
+        ep.sweep(case, {"planet.count": [3, 5]}, journal=journal)
+    assert journal.read_bytes() == before
+
+
+def test_a_folder_is_no_journal(case, tmp_path):
+    with pytest.raises(ep.InputError, match="cannot be read"):
+        ep.sweep(case, {"planet.count": [3, 5]}, journal=tmp_path)
+
+
+@pytest.fixture(scope="module")
+def partly_failed(case):
+    """Three axes, with points that fail."""
+    return ep.sweep(case, VARY | {"planet.count": [3, 12]})
 
 
 @pytest.mark.parametrize("suffix", ["nc", "csv", "parquet"])
-def test_files_hold_what_was_computed(dataset, tmp_path, epicyclic, suffix):
+def test_files_hold_what_was_computed(partly_failed, tmp_path, epicyclic, suffix):
     output = tmp_path / f"sweep.{suffix}"
     done = epicyclic(
         "sweep", "talbot-2012", "--vary", "operation.speed=1000,4000 rpm",
-        "--vary", "planet.count=3,4", "--vary", "operation.torque=0,-500,1000 N*m",
+        "--vary", "planet.count=3,12", "--vary", "operation.torque=0,-500,1000 N*m",
         "-o", str(output),
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 4, done.stderr
     assert names_in(tmp_path) == [output.name]
+    assert (partly_failed["status"] == "failed").sum() == 6
     if suffix == "nc":
         with xr.open_dataset(output) as stored:
-            total = stored["total"].values
-            assert stored["total"].attrs["units"] == "W"
-            np.testing.assert_array_equal(
-                stored["operation.speed"].values, dataset["operation.speed"].values
-            )
-    else:
-        table = pd.read_csv(output) if suffix == "csv" else pd.read_parquet(output)
-        total = table["total [W]"].to_numpy().reshape(2, 2, 3)
-        assert list(table["operation.speed [rpm]"].unique()) == [1000.0, 4000.0]
-    # CSV keeps 17 significant digits: exact as well
-    np.testing.assert_array_equal(total, dataset["total"].values)
+            assert stored.identical(partly_failed)
+        return
+    table = pd.read_csv(output) if suffix == "csv" else pd.read_parquet(output)
+    assert len(table) == 12
+    for name, array in partly_failed.variables.items():
+        unit = array.attrs.get("units", "1")
+        column = table[name if unit == "1" else f"{name} [{unit}]"]
+        if name in partly_failed.coords:
+            wanted = partly_failed[name].broadcast_like(partly_failed["total"]).values
+        else:
+            wanted = array.values
+        if array.dtype.kind == "O":  # CSV has no empty text
+            assert list(column.fillna("")) == list(wanted.ravel())
+        else:  # CSV keeps 17 significant digits: exact as well
+            np.testing.assert_array_equal(column.to_numpy(), wanted.ravel())
+    if suffix == "parquet":
+        assert table.attrs == partly_failed.attrs
 
 
-def test_command_reports_failed_cases(tmp_path, epicyclic):
+def test_a_file_says_where_it_comes_from(case, partly_failed):
+    attributes = partly_failed.attrs
+    again = ep.load_case(json.loads(attributes["case"]))
+    assert again == case
+    versions = json.loads(attributes["versions"])
+    assert versions == ep.solve(case).to_dict()["versions"]
+    assert versions["epicyclic"] in attributes["source"]
+
+
+def test_command_reports_failed_points(tmp_path, epicyclic):
     done = epicyclic(
         "sweep", "talbot-2012", "--vary", "planet.count=3,12", "-o", str(tmp_path / "s.csv")
     )
@@ -147,28 +250,53 @@ def test_unusable_output_is_refused_before_computing(tmp_path, epicyclic, output
     assert names_in(tmp_path) == []
 
 
+def lines_in(folder):
+    return sum(path.read_bytes().count(b"\n") for path in folder.iterdir())
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 def test_interrupted_command_resumes(tmp_path):
-    command = [
-        sys.executable, "-m", "epicyclic", "sweep", "talbot-2012",
-        "--vary", "operation.speed=1000:4000:60 rpm", "--vary", "operation.torque=1:1000:60 N*m",
-        "--jobs", "1", "-o", str(tmp_path / "s.csv"),
-    ]  # fmt: skip
-    journal = tmp_path / "s.csv.partial"
-    first = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    def command(*vary):
+        options = [option for value in vary for option in ("--vary", value)]
+        return [
+            sys.executable, "-m", "epicyclic", "sweep", "talbot-2012", *options,
+            "--jobs", "1", "-o", str(tmp_path / "s.csv"),
+        ]  # fmt: skip
+
+    def call(*vary):
+        return subprocess.run(command(*vary), capture_output=True, text=True, check=False)
+
+    vary = ("operation.speed=1000:4000:60 rpm", "operation.torque=1:1000:60 N*m")
+    running = subprocess.Popen(
+        command(*vary), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
     deadline = time.monotonic() + 120
-    while time.monotonic() < deadline:
-        if journal.exists() and len(journal.read_text().splitlines()) > 50:
-            break
+    while lines_in(tmp_path) < 50:
+        assert running.poll() is None, "it ended before it could be interrupted"
+        assert time.monotonic() < deadline, "it kept no points"
         time.sleep(0.02)
-    first.send_signal(signal.SIGINT)
-    _, errors = first.communicate(timeout=60)
-    assert first.returncode == 130
-    assert "Traceback" not in errors
-    assert names_in(tmp_path) == [journal.name]
-    kept = journal.read_text().splitlines()[1:]
-    assert len(kept) >= 50
-    second = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert second.returncode == 0, second.stderr
+    running.send_signal(signal.SIGINT)
+    output, errors = running.communicate(timeout=60)
+    assert running.returncode == 130
+    assert output == ""
+    said = re.fullmatch(
+        r"(\d+) of 3600 points kept in (.*); give the same command again to go on.\n"
+        r"\n*Interrupted.\n",
+        errors,
+    )
+    assert said is not None, errors
+    assert 50 <= int(said[1]) < 3600
+    (left,) = names_in(tmp_path)
+    assert said[2] == str(tmp_path / left)
+
+    other = call("operation.speed=1000,2000 rpm")
+    assert other.returncode == 0
+    assert f"{said[2]} holds points of an interrupted sweep" in other.stderr
+    assert sorted(names_in(tmp_path)) == ["s.csv", left]
+    assert len(pd.read_csv(tmp_path / "s.csv")) == 2
+
+    again = call(*vary)
+    assert again.returncode == 0, again.stderr
+    assert again.stderr == f"Going on from {said[1]} of 3600 points in {said[2]}.\n"
     assert names_in(tmp_path) == ["s.csv"]
     assert len(pd.read_csv(tmp_path / "s.csv")) == 3600

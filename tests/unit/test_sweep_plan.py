@@ -1,15 +1,12 @@
-"""What a sweep varies: command-line forms, axes, order, journal."""
+"""What a sweep varies: command-line forms, axes, order."""
 
 from __future__ import annotations
-
-import json
 
 import numpy as np
 import pint
 import pytest
 
 import epicyclic as ep
-from epicyclic.sweeps.journal import Journal
 from epicyclic.sweeps.plan import make_plan, parse_vary
 
 
@@ -53,6 +50,7 @@ def test_command_line_form(case, option, key, values):
         (["operation.speed=1 rpm:2 rad/s:3"], "differ"),
         (["operation.speed=a:b:3"], "must be numbers"),
         (["operation.speed=1:2:0 rpm"], "1 or more"),
+        (["operation.speed=1:2:1000000000000 rpm"], "1000000 or less"),
         (["planet.count=3,4", "planet.count=5,6"], "again"),
     ],
 )
@@ -70,11 +68,24 @@ def test_unreadable_option(case, options, words):
         ({"operation.speed": [1000, 2000]}, "has no unit"),
         ({"operation.speed": ["1 kg"]}, "rotational speed"),
         ({"operation.speed": ["60 rpm", "6.283185307179586 rad/s"]}, "same value twice"),
+        ({"gears": [1, 2]}, "is a table; .*such as gears.normal_module"),
+        ({"losses.sun_drag": [1]}, "is a table; .*such as losses.sun_drag.include"),
+        ({"friction_table": [1]}, "is a table"),
+        ({"planet.angles": [["0 deg", "180 deg"]]}, "is a list"),
+        ({"planet.angles": ["0 deg", "180 deg"]}, "is a list"),
+        ({"lubricant.oil.density": [1]}, "is a list"),
+        ({"lubricant.oil": [{"kind": "mineral"}]}, "no value of one key"),
+        ({"planet.count": [10**400]}, "no value of one key"),
+        ({"planet.count": range(1001), "sun.teeth": range(1001)}, "1000000 points or fewer"),
     ],
 )
 def test_unsuitable_axis(case, vary, words):
-    with pytest.raises(ep.InputError, match=words):
+    with pytest.raises(ep.InputError, match=words) as caught:
         make_plan(case, vary)
+    for problem in caught.value.problems:
+        assert problem.allowed.endswith(".")
+        assert problem.remedy[0].isupper()
+        assert problem.remedy.endswith((".", "?"))
 
 
 def test_all_problems_of_a_sweep_are_reported_together(case):
@@ -96,7 +107,28 @@ def test_coordinates_are_in_display_units(case):
     assert plan.axes[0].coordinate == pytest.approx((1000.0, 2000.0), rel=1e-12)
     assert plan.axes[1].coordinate == (92.13, 92.0)
     assert plan.axes[2].coordinate == (3, 4)
-    assert [axis.unit for axis in plan.axes] == ["rpm", "mm", ""]
+    assert [axis.unit for axis in plan.axes] == ["rpm", "mm", "1"]
+
+
+def test_coordinates_without_unit(case):
+    plan = make_plan(
+        case,
+        {
+            "planet.count": np.arange(3, 5),
+            "models.friction": "schlenk",
+            "losses.sun_drag.include": [True, False],
+            "lubricant.oil": ["iso-vg-32-mineral", "iso-vg-32-pao"],
+            "planet.roughness": ["shaved", "0.1 um"],
+            "losses.sun_drag.factor": 2,
+        },
+    )
+    assert [axis.unit for axis in plan.axes] == ["1", "", "", "", "um", "1"]
+    assert plan.axes[0].coordinate == (3, 4)
+    assert all(isinstance(count, int) for count in plan.axes[0].coordinate)
+    assert plan.axes[1].coordinate == ("schlenk",)
+    assert plan.axes[2].coordinate == ("true", "false")
+    assert plan.axes[3].coordinate == ("iso-vg-32-mineral", "iso-vg-32-pao")
+    assert plan.axes[5].coordinate == (2,)
 
 
 def test_cases_that_share_geometry_are_next_to_each_other(case):
@@ -127,26 +159,3 @@ def test_fingerprint_follows_case_and_values(case):
     ]
     assert len({plan.fingerprint() for plan in plans}) == 3
     assert plans[0].fingerprint() == make_plan(case, {"planet.count": [3, 4]}).fingerprint()
-
-
-def test_journal_survives_a_line_cut_short(tmp_path):
-    journal = Journal(tmp_path / "sweep.partial", "abc")
-    assert journal.read() == {}
-    journal.append([(0, {"x": 0.1}), (1, {"x": float("nan")})])
-    with journal.path.open("a") as file:
-        file.write('{"case": 2, "ro')
-    rows = journal.read()
-    assert sorted(rows) == [0, 1]
-    assert rows[0] == {"x": 0.1}
-    assert np.isnan(rows[1]["x"])
-    journal.append([(2, {"x": 3.0})])
-    assert sorted(journal.read()) == [0, 1, 2]
-
-
-def test_journal_of_another_sweep_is_not_taken_over(tmp_path):
-    path = tmp_path / "sweep.partial"
-    first = Journal(path, "abc")
-    first.read()
-    first.append([(0, {})])
-    assert Journal(path, "other").read() == {}
-    assert json.loads(path.read_text()) == {"fingerprint": "other"}

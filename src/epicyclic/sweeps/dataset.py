@@ -109,6 +109,8 @@ def to_table(dataset: xr.Dataset) -> pd.DataFrame:
     table = dataset.to_dataframe().reset_index()
     columns = {**dataset.coords, **dataset.data_vars}
     units = {str(name): str(array.attrs.get("units", "")) for name, array in columns.items()}
-    return table.rename(
+    table = table.rename(
         columns={name: f"{name} [{unit}]" for name, unit in units.items() if unit not in ("", "1")}
     )
+    table.attrs = dict(dataset.attrs)
+    return table
