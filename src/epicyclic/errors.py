@@ -14,6 +14,7 @@ __all__ = [
     "EpicyclicError",
     "InputError",
     "Problem",
+    "is_interrupt",
 ]
 
 
@@ -73,3 +74,16 @@ class InputError(EpicyclicError, ValueError):
 
 class ConvergenceError(EpicyclicError):
     """An iteration ended without a solution; the message names the next thing to try."""
+
+
+def is_interrupt(error: BaseException) -> bool:
+    """True if an error stands for an interruption by the user.
+
+    Compiled code that is interrupted ends in a `SystemError` with the interruption as its cause.
+    """
+    chain: BaseException | None = error
+    while chain is not None:
+        if isinstance(chain, KeyboardInterrupt):
+            return True
+        chain = chain.__cause__
+    return False

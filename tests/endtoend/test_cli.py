@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import sys
 import tomllib
 from pathlib import Path
 
@@ -79,6 +81,22 @@ def test_json_without_a_file_goes_to_standard_output(epicyclic, rest):
     done = epicyclic("run", "talbot-2012", "--json", *rest)
     assert done.returncode == 0
     assert json.loads(done.stdout)["losses"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs named pipes and links")
+def test_json_goes_through_pipes_and_links(epicyclic, tmp_path):
+    file, link, pipe = tmp_path / "r.json", tmp_path / "link.json", tmp_path / "pipe.json"
+    link.symlink_to(file)
+    assert epicyclic("run", "talbot-2012", "--json", str(link)).returncode == 0
+    assert link.is_symlink()
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        assert epicyclic("run", "talbot-2012", "--json", str(pipe)).returncode == 0
+        assert pipe.is_fifo()
+        assert os.read(reader, 10**6).decode() == file.read_text()
+    finally:
+        os.close(reader)
 
 
 def test_zeros_have_no_sign(epicyclic):
@@ -170,6 +188,8 @@ def test_all_problems_of_a_case_are_reported_together(epicyclic, tmp_path):
         (("run", "talbot-2012", "--set", "planet.count"), "KEY=VALUE"),
         (("run", "talbot-2012", "--set", "planet.cuont=3"), "Did you mean 'count'?"),
         (("run", "talbot-2012", "--json", "no/such/folder/r.json"), "cannot be written"),
+        (("run", "talbot-2012", "--json", "."), "cannot be written"),
+        (("run", "talbot-2012", "--json", "x" * 300), "cannot be written"),
         (("sweep", "talbot-2012", "-o", "s.csv"), "--vary"),
         (("oils", "atf-talbot-2021"), "atf-talbot-2012"),
     ],
@@ -254,6 +274,21 @@ def test_an_unexpected_error_is_one_line(monkeypatch, capsys):
     monkeypatch.setenv("EPICYCLIC_TRACEBACK", "1")
     with pytest.raises(RuntimeError, match="something new"):
         main()
+
+
+@pytest.mark.parametrize("wrapped", [True, False])
+def test_an_interruption_ends_with_130(monkeypatch, capsys, wrapped):
+    def interrupted(case):
+        if wrapped:  # as compiled code does
+            raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("epicyclic.analysis.solve.solve", interrupted)
+    monkeypatch.setattr("sys.argv", ["epicyclic", "run", "talbot-2012"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 130
+    assert capsys.readouterr().err.strip() == "Interrupted."
 
 
 def test_version_and_help(epicyclic):

@@ -118,6 +118,15 @@ def test_any_error_of_one_point_is_a_row(case, monkeypatch):
     assert result["message"].values[1] == "RuntimeError: broken"
 
 
+def test_an_interruption_in_compiled_code_ends_the_sweep(case, monkeypatch):
+    def solve(changed):
+        raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
+
+    monkeypatch.setattr("epicyclic.sweeps.run.solve", solve)
+    with pytest.raises(KeyboardInterrupt):
+        ep.sweep(case, {"planet.count": [3, 4]}, jobs=1)
+
+
 def test_a_sweep_goes_on_where_it_stopped(case, dataset, tmp_path):
     journal = tmp_path / "points"
     with pytest.raises(KeyboardInterrupt):
@@ -248,6 +257,15 @@ def test_unusable_output_is_refused_before_computing(tmp_path, epicyclic, output
     assert done.returncode == 2
     assert words in done.stderr
     assert names_in(tmp_path) == []
+
+
+def test_output_may_be_a_link(tmp_path, epicyclic):
+    file, link = tmp_path / "s.csv", tmp_path / "link.csv"
+    link.symlink_to(file)
+    done = epicyclic("sweep", "talbot-2012", "--vary", "planet.count=3,4", "-o", str(link))
+    assert done.returncode == 0
+    assert link.is_symlink()
+    assert len(pd.read_csv(file)) == 2
 
 
 def lines_in(folder):

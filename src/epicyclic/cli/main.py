@@ -10,13 +10,13 @@ import os
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.errors import ConvergenceError, InputError, Problem, is_interrupt
 from epicyclic.status import Status
 
 if TYPE_CHECKING:
@@ -277,14 +277,20 @@ def _parse_changes(options: Sequence[str]) -> dict[str, Any]:
 
 
 def _write(path: Path, text: str) -> None:
-    """Write `text` whole or not at all."""
-    temporary = path.with_name(f".{path.name}.tmp")
+    """Write `text` to a file whole or not at all, or to a device or pipe as it is."""
+    target = path.resolve()
+    temporary = target.with_name(f".{target.name}.tmp")
     try:
+        if target.exists() and not target.is_file():
+            target.write_text(text, encoding="utf-8")  # must not be replaced by a file
+            return
         temporary.write_text(text, encoding="utf-8")
-        temporary.replace(path)
+        temporary.replace(target)
     except OSError as error:
-        temporary.unlink(missing_ok=True)
-        problem = Problem("FILE", str(path), f"cannot be written: {error.strerror}.", "Move it.")
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+        allowed = f"cannot be written: {error.strerror}."
+        problem = Problem("FILE", str(path), allowed, "Name another file.")
         raise InputError([problem], "the command") from None
 
 
@@ -314,9 +320,10 @@ def main() -> None:
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123
         sys.exit(EXIT_BROKEN_PIPE)
     except (KeyboardInterrupt, click.Abort):
-        click.echo("Interrupted.", err=True)
-        sys.exit(EXIT_INTERRUPTED)
+        _end_interrupted()
     except Exception as error:
+        if is_interrupt(error):
+            _end_interrupted()
         if os.environ.get("EPICYCLIC_TRACEBACK") == "1":
             raise
         click.echo(
@@ -325,3 +332,8 @@ def main() -> None:
             err=True,
         )
         sys.exit(EXIT_ERROR)
+
+
+def _end_interrupted() -> NoReturn:
+    click.echo("Interrupted.", err=True)
+    sys.exit(EXIT_INTERRUPTED)

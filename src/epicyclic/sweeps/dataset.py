@@ -77,7 +77,7 @@ def check_output(path: Path) -> None:
         problem = Problem(
             "-o", str(path), f"must end in {', '.join(FORMATS)}.", "Choose one of these formats."
         )
-    elif path.is_dir() or not path.absolute().parent.is_dir():
+    elif (path.exists() and not path.is_file()) or not path.absolute().parent.is_dir():
         problem = Problem("-o", str(path), "is no place for a file.", "Name a file in a folder.")
     elif not os.access(path.absolute().parent, os.W_OK):
         problem = Problem("-o", str(path), "lies in a folder without write permission.", "Move it.")
@@ -88,7 +88,8 @@ def check_output(path: Path) -> None:
 
 def write_dataset(dataset: xr.Dataset, path: Path) -> None:
     """Write `dataset` to `path` in the format its suffix names, whole or not at all."""
-    handle, name = tempfile.mkstemp(suffix=path.suffix, dir=path.absolute().parent)
+    target = path.resolve()
+    handle, name = tempfile.mkstemp(suffix=path.suffix, dir=target.parent)
     os.close(handle)
     temporary = Path(name)
     try:
@@ -99,7 +100,7 @@ def write_dataset(dataset: xr.Dataset, path: Path) -> None:
         else:
             to_table(dataset).to_parquet(temporary, index=False)
         temporary.chmod(0o644)
-        temporary.replace(path)
+        temporary.replace(target)
     finally:
         temporary.unlink(missing_ok=True)
 

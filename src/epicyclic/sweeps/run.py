@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case
-from epicyclic.errors import EpicyclicError, InputError
+from epicyclic.errors import EpicyclicError, InputError, is_interrupt
 from epicyclic.status import Status
 from epicyclic.sweeps.dataset import to_dataset
 from epicyclic.sweeps.journal import Journal, Row
@@ -154,6 +154,8 @@ def _solve_point(plan: Plan, index: int) -> Row:
     except EpicyclicError as error:
         return _failed(str(error))
     except Exception as error:  # whatever it is, the other points do not suffer
+        if is_interrupt(error):
+            raise KeyboardInterrupt from error
         return _failed(f"{type(error).__name__}: {error}")
     return Row(
         status=str(result.status),
