@@ -268,6 +268,30 @@ def test_output_may_be_a_link(tmp_path, epicyclic):
     assert len(pd.read_csv(file)) == 2
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+def test_an_interruption_waits_for_the_file_to_be_written(tmp_path, monkeypatch, capsys):
+    from epicyclic.cli.main import main
+    from epicyclic.sweeps import dataset
+
+    write = dataset.write_dataset
+
+    def interrupted(data, path):
+        signal.raise_signal(signal.SIGINT)
+        write(data, path)
+
+    monkeypatch.setattr(dataset, "write_dataset", interrupted)
+    output = str(tmp_path / "s.nc")
+    command = ["epicyclic", "sweep", "talbot-2012", "--vary", "planet.count=3,4", "-o", output]
+    monkeypatch.setattr("sys.argv", command)
+    main()
+    assert names_in(tmp_path) == ["s.nc"]
+    shown = capsys.readouterr()
+    assert shown.err == f"Writing {output}. Interrupt again to stop.\n"
+    assert shown.out == f"Wrote 2 points to {output}.\n"
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+
+
 def lines_in(folder):
     return sum(path.read_bytes().count(b"\n") for path in folder.iterdir())
 

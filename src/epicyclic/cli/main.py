@@ -7,6 +7,7 @@ failed points, 130 interrupted. ``EPICYCLIC_TRACEBACK=1`` shows where in the pro
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -185,8 +186,9 @@ def sweep(
     with _kept_in(journal, plan.size):
         with progress_bar("points") as progress:
             rows = run_plan(plan, jobs=jobs, journal=journal, progress=progress)
-        write_dataset(to_dataset(plan, rows), output)
-    journal.remove()
+        with _finishing(f"Writing {output}."):
+            write_dataset(to_dataset(plan, rows), output)
+            journal.remove()
     reasons = [row.message for row in rows if row.status == Status.FAILED]
     _print_failures(reasons)
     outcome = f", {len(reasons)} of them failed." if reasons else "."
@@ -217,6 +219,25 @@ def _open_journal(plan: Plan, output: Path) -> Journal:
     if kept:
         click.echo(f"Going on from {kept} of {plan.size} points in {journal.path}.", err=True)
     return journal
+
+
+@contextmanager
+def _finishing(what: str) -> Iterator[None]:
+    """Put off the first interruption until all is done: it would leave the file half written.
+
+    Libraries that write files may also hang for ever when they are interrupted.
+    """
+    usual = signal.getsignal(signal.SIGINT)
+
+    def put_off(*_: object) -> None:
+        signal.signal(signal.SIGINT, usual)
+        click.echo(f"{what} Interrupt again to stop.", err=True)
+
+    signal.signal(signal.SIGINT, put_off)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, usual)
 
 
 @contextmanager

@@ -89,7 +89,7 @@ def check_output(path: Path) -> None:
 def write_dataset(dataset: xr.Dataset, path: Path) -> None:
     """Write `dataset` to `path` in the format its suffix names, whole or not at all."""
     target = path.resolve()
-    handle, name = tempfile.mkstemp(suffix=path.suffix, dir=target.parent)
+    handle, name = tempfile.mkstemp(path.suffix, f".{target.name}.", target.parent)
     os.close(handle)
     temporary = Path(name)
     try:
