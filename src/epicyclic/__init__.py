@@ -15,6 +15,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from epicyclic.analysis.mesh_details import mesh_details
     from epicyclic.analysis.result import Result
     from epicyclic.analysis.solve import mesh_contacts, solve
     from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema, load_case
@@ -32,6 +33,7 @@ _HOME = {
     "case_schema": "epicyclic.case.case",
     "load_case": "epicyclic.case.case",
     "mesh_contacts": "epicyclic.analysis.solve",
+    "mesh_details": "epicyclic.analysis.mesh_details",
     "solve": "epicyclic.analysis.solve",
     "sweep": "epicyclic.sweeps.run",
 }
@@ -47,6 +49,7 @@ __all__ = [
     "case_schema",
     "load_case",
     "mesh_contacts",
+    "mesh_details",
     "solve",
     "sweep",
 ]

@@ -237,6 +237,13 @@ class Quantity:
         """SI `value` in the display unit."""
         return _convert_back(value, self.si, self.display)
 
+    def scale_and_offset(self) -> tuple[float, float]:
+        """What arrays of SI values are multiplied by, and what is added, for the display unit."""
+        if not self.si:
+            return 1.0, 0.0
+        zero = self.to_display(0.0)
+        return self.to_display(1.0) - zero, zero
+
     def text(self, value: float, digits: int = 6) -> str:
         """SI `value` as text in the display unit, ``"139.23 mm"``."""
         return f"{format_number(self.to_display(value), digits)} {self.display}"
@@ -348,11 +355,13 @@ MILLIPASCAL_SECOND = Quantity("a viscosity", "Pa*s", "mPa*s")
 NEWTON = Quantity("a force", "N", "N")
 NEWTON_METRE = Quantity("a moment", "N*m", "N*m")
 NEWTON_PER_MM = Quantity("a line load", "N/m", "N/mm")
+NEWTON_PER_MM_MICROMETRE = Quantity("a stiffness per width", "N/m^2", "N/(mm*um)")
 NUMBER = Quantity("a number", "", "")
 PER_GIGAPASCAL = Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa")
 RPM = Quantity("a rotational speed", "rad/s", "rpm")
 SQUARE_MM_PER_SECOND = Quantity("a viscosity", "m^2/s", "mm^2/s")
 WATT = Quantity("a power", "W", "W")
+WATT_PER_MM = Quantity("a power per length", "W/m", "W/mm")
 
 
 class _Dimensionless:
@@ -391,3 +400,11 @@ KinematicViscosity = Annotated[
 PressureViscosity = Annotated[
     float, Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa", low=1.0, high=60.0)
 ]
+
+
+def unit_text(unit: str) -> str:
+    """`unit` in print, ``"mm²/s"`` for ``"mm^2/s"``; nothing for pure numbers."""
+    if unit == "1":
+        return ""
+    text = unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
+    return text.replace("degC", "°C").replace("um", "µm")

@@ -294,3 +294,18 @@ def test_an_interruption_ends_with_130(monkeypatch, capsys, wrapped):
 def test_version_and_help(epicyclic):
     assert "epicyclic" in epicyclic("--version").stdout
     assert "talbot-2012" in epicyclic("--help").stdout
+
+
+def test_mesh_prints_and_draws(epicyclic, tmp_path):
+    done = epicyclic("mesh", "talbot-2012", "--plot", str(tmp_path / "teeth.png"))
+    assert done.returncode == 0, done.stderr
+    assert "mean mesh stiffness" in done.stdout
+    for name in ("teeth-sun_mesh.png", "teeth-ring_mesh.png"):
+        assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
+
+
+def test_mesh_refuses_an_unknown_format_before_any_work(epicyclic, tmp_path):
+    done = epicyclic("mesh", "talbot-2012", "--plot", str(tmp_path / "teeth.bmp"))
+    assert done.returncode == 2
+    assert ".svg" in done.stderr
+    assert not list(tmp_path.glob("teeth*"))

@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from epicyclic.report.shown import shown, unit_text
+from epicyclic.report.shown import shown
+from epicyclic.units import unit_text
 
 
 @pytest.mark.parametrize(

@@ -60,7 +60,7 @@ from epicyclic.losses.viscous import (
 )
 from epicyclic.lubricant.properties import MixtureState, OilState
 
-__all__ = ["planetary_duties", "solve_planetary"]
+__all__ = ["most_loaded_duties", "planetary_duties", "solve_planetary"]
 
 CAGED_PALMGREN = 0.0003
 """f1 of a caged roller bearing, middle of 0.0002-0.0004. Talbot (2012), p. 56. [1]"""
@@ -78,7 +78,7 @@ def solve_planetary(case: PlanetaryCase) -> Result:
     """The losses of a planetary gear set."""
     fluids = fluids_of(case)
     speeds = member_speeds(case)
-    shares = planet_shares(case, planetary_duties(case, 1 / case.planet.count), _bearing(case))
+    shares = _shares(case)
     branches = [
         _solve_branch(case, share, shares.count(share), fluids.oil, speeds)
         for share in sorted(set(shares), reverse=True)
@@ -123,6 +123,15 @@ def solve_planetary(case: PlanetaryCase) -> Result:
         planet_angles=angles,
         planet_shares=shares,
     )
+
+
+def most_loaded_duties(case: PlanetaryCase) -> tuple[MeshDuty, MeshDuty]:
+    """Both meshes of the planet that carries most."""
+    return planetary_duties(case, max(_shares(case)))
+
+
+def _shares(case: PlanetaryCase) -> tuple[float, ...]:
+    return planet_shares(case, planetary_duties(case, 1 / case.planet.count), _bearing(case))
 
 
 def planetary_duties(case: PlanetaryCase, share: float) -> tuple[MeshDuty, MeshDuty]:

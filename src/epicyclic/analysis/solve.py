@@ -11,7 +11,7 @@ import math
 
 from epicyclic.analysis.pair import pair_duty, solve_pair
 from epicyclic.analysis.parts import fluids_of, load_mesh
-from epicyclic.analysis.planetary import planetary_duties, solve_planetary
+from epicyclic.analysis.planetary import most_loaded_duties, solve_planetary
 from epicyclic.analysis.result import Result
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.errors import ConvergenceError
@@ -48,12 +48,11 @@ def solve(case: Case) -> Result:
 
 
 def mesh_contacts(case: Case) -> dict[str, MeshContact]:
-    """Conditions along the contact lines of every mesh of a case; empty without load or motion."""
+    """Conditions along the contact lines of every mesh of a case; empty without load or motion.
+
+    Of a planetary set both meshes of the most loaded planet.
+    """
     oil = fluids_of(case).oil
-    duties = (
-        planetary_duties(case, 1 / case.planet.count)
-        if isinstance(case, PlanetaryCase)
-        else (pair_duty(case),)
-    )
+    duties = most_loaded_duties(case) if isinstance(case, PlanetaryCase) else (pair_duty(case),)
     contacts = {duty.key: load_mesh(duty, case.models, case.numerics, oil) for duty in duties}
     return {key: contact for key, contact in contacts.items() if contact is not None}

@@ -6,6 +6,7 @@ failed points, 130 interrupted. ``EPICYCLIC_TRACEBACK=1`` shows where in the pro
 
 from __future__ import annotations
 
+import io
 import os
 import signal
 import sys
@@ -21,6 +22,8 @@ from epicyclic.errors import ConvergenceError, InputError, Problem, is_interrupt
 from epicyclic.status import Status
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from epicyclic.sweeps.journal import Journal
     from epicyclic.sweeps.plan import Plan
 
@@ -29,6 +32,7 @@ __all__ = ["main"]
 EXIT_ERROR, EXIT_INPUT, EXIT_NO_SOLUTION, EXIT_FAILED_POINTS = 1, 2, 3, 4
 EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
 SHOWN_FAILURES = 10
+PICTURES = (".png", ".svg", ".pdf")
 
 case_argument = click.argument("case", metavar="CASE")
 set_option = click.option(
@@ -150,6 +154,32 @@ def friction(case: str, changes: tuple[str, ...]) -> None:
     from epicyclic.report.tables import friction_table, terminal
 
     terminal().print(friction_table(compare_friction(_load(case, changes))))
+
+
+@cli.command()
+@case_argument
+@set_option
+@click.option(
+    "--plot",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Draw each mesh to FILE-MESH.png, .svg or .pdf.",
+)
+def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
+    """Show how the teeth carry: load, transmission error, stiffness, pressure, friction power."""
+    from epicyclic.analysis.mesh_details import mesh_details
+    from epicyclic.report.mesh_table import mesh_tables
+    from epicyclic.report.tables import terminal
+
+    if plot is not None:
+        _check_picture("--plot", plot)
+    meshes = mesh_details(_load(case, changes))
+    terminal().print(mesh_tables(meshes))
+    if plot is not None:
+        from epicyclic.plots.mesh import mesh_figure
+
+        for key, details in meshes.items():
+            _draw(mesh_figure(details), plot.with_name(f"{plot.stem}-{key}{plot.suffix}"))
 
 
 @cli.command()
@@ -297,15 +327,30 @@ def _parse_changes(options: Sequence[str]) -> dict[str, Any]:
     return changes
 
 
-def _write(path: Path, text: str) -> None:
-    """Write `text` to a file whole or not at all, or to a device or pipe as it is."""
+def _check_picture(option: str, path: Path) -> None:
+    if path.suffix not in PICTURES:
+        allowed = f"must end in {', '.join(PICTURES)}."
+        problem = Problem(option, str(path), allowed, "Choose one of these formats.")
+        raise InputError([problem], "the command")
+
+
+def _draw(figure: Figure, path: Path) -> None:
+    picture = io.BytesIO()
+    figure.savefig(picture, format=path.suffix[1:])
+    _write(path, picture.getvalue())
+    click.echo(f"Wrote {path}.")
+
+
+def _write(path: Path, content: str | bytes) -> None:
+    """Write `content` to a file whole or not at all, or to a device or pipe as it is."""
+    data = content.encode() if isinstance(content, str) else content
     target = path.resolve()
     temporary = target.with_name(f".{target.name}.tmp")
     try:
         if target.exists() and not target.is_file():
-            target.write_text(text, encoding="utf-8")  # must not be replaced by a file
+            target.write_bytes(data)  # must not be replaced by a file
             return
-        temporary.write_text(text, encoding="utf-8")
+        temporary.write_bytes(data)
         temporary.replace(target)
     except OSError as error:
         with suppress(OSError):

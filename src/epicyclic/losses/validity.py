@@ -64,7 +64,7 @@ class Range:
 
     def limits(self) -> tuple[float | None, float | None]:
         """`low` and `high` in SI."""
-        scale, offset = _display(self.unit)
+        scale, offset = self.unit.scale_and_offset()
         low = None if self.low is None else (self.low - offset) / scale
         high = None if self.high is None else (self.high - offset) / scale
         return low, high
@@ -202,7 +202,7 @@ def check_ranges(
     flags = []
     for item in ranges:
         value = np.atleast_1d(np.asarray(values[item.name], dtype=float))
-        scale, offset = _display(item.unit)
+        scale, offset = item.unit.scale_and_offset()
         shown = value * scale + offset
         outside = _outside(shown, item)
         if not outside.any():
@@ -227,11 +227,3 @@ def _outside(shown: FloatArray, item: Range) -> NDArray[np.bool_]:
     if item.high is not None:
         outside |= shown > item.high + slack
     return outside
-
-
-def _display(unit: Quantity) -> tuple[float, float]:
-    """Scale and offset from SI to the display unit."""
-    if not unit.si:
-        return 1.0, 0.0
-    zero = unit.to_display(0.0)
-    return unit.to_display(1.0) - zero, zero

@@ -8,7 +8,7 @@ from rich.text import Text
 from epicyclic import library
 from epicyclic.lubricant.oil import Oil
 from epicyclic.lubricant.properties import OilState, oil_state
-from epicyclic.report.shown import shown, unit_text
+from epicyclic.report.shown import shown
 from epicyclic.report.tables import plain_table
 from epicyclic.units import (
     CELSIUS,
@@ -16,6 +16,7 @@ from epicyclic.units import (
     PER_GIGAPASCAL,
     SQUARE_MM_PER_SECOND,
     Quantity,
+    unit_text,
 )
 
 __all__ = ["case_table", "oil_sheet", "oil_table"]

@@ -6,7 +6,7 @@ import math
 
 from epicyclic.units import format_number
 
-__all__ = ["MISSING", "shown", "unit_text"]
+__all__ = ["MISSING", "shown"]
 
 MISSING = "-"
 """Stands where there is no number."""
@@ -14,19 +14,9 @@ MISSING = "-"
 _ROUNDING_NOISE = 1e-9
 """What is smaller, in any unit that tables use, is left over from rounding and shown as 0."""
 
-_SIGNS = str.maketrans({"*": "·"})
-
 
 def shown(value: float, digits: int = 4) -> str:
     """`value` with up to `digits` significant digits."""
     if math.isnan(value):
         return MISSING
     return format_number(0.0 if abs(value) < _ROUNDING_NOISE else value, digits)
-
-
-def unit_text(unit: str) -> str:
-    """`unit` in print; nothing for pure numbers."""
-    if unit == "1":
-        return ""
-    text = unit.translate(_SIGNS).replace("^2", "²").replace("^3", "³")
-    return text.replace("degC", "°C")

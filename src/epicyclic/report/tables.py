@@ -21,8 +21,8 @@ from epicyclic.analysis.result import (
     Result,
     figures,
 )
-from epicyclic.report.shown import MISSING, shown, unit_text
-from epicyclic.units import DEGREE, NEWTON_METRE, RPM
+from epicyclic.report.shown import MISSING, shown
+from epicyclic.units import DEGREE, NEWTON_METRE, RPM, unit_text
 
 __all__ = ["friction_table", "plain_table", "result_tables", "terminal"]
 

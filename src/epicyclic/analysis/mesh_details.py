@@ -1,0 +1,177 @@
+"""Everything about the loaded meshes of a case, point by point."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.analysis.pair import pair_duty
+from epicyclic.analysis.parts import (
+    MeshDuty,
+    distribute_load,
+    fluids_of,
+    friction_settings,
+    load_mesh,
+    resolve_models,
+)
+from epicyclic.analysis.planetary import most_loaded_duties
+from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.errors import InputError, Problem
+from epicyclic.losses.friction import friction_model
+from epicyclic.losses.load_distribution import LineLoads
+from epicyclic.units import (
+    DEGREE,
+    GIGAPASCAL,
+    METRE_PER_SECOND,
+    MICROMETRE,
+    MILLIMETRE,
+    NEWTON,
+    NEWTON_PER_MM,
+    NEWTON_PER_MM_MICROMETRE,
+    NUMBER,
+    WATT_PER_MM,
+    Quantity,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["mesh_details"]
+
+FloatArray = NDArray[np.float64]
+Variable = tuple[tuple[str, ...], FloatArray, dict[str, str]]
+
+_DIMENSIONS = ("mesh_position", "contact_line", "segment")
+
+
+def mesh_details(case: Case) -> dict[str, xr.Dataset]:
+    """Load, pressure, sliding and friction at every point of every loaded mesh of a case.
+
+    Of a planetary set both meshes of the most loaded planet.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+
+    Returns
+    -------
+    dict of str to xarray.Dataset
+        By mesh, ``"sun_mesh"``. Dimensions ``mesh_position`` over one base pitch,
+        ``contact_line`` (line k touches k base pitches after line 0) and ``segment`` along a line.
+        NaN where no tooth touches or, without motion, for what depends on it. Each variable has its
+        unit in ``attrs["units"]``.
+
+    Raises
+    ------
+    InputError
+        If the case has no torque.
+    ConvergenceError
+        If the load on the teeth is not found.
+    """
+    if case.operation.torque == 0:
+        problem = Problem(
+            "operation.torque",
+            "0 N*m",
+            "leaves the meshes without load.",
+            "Give a torque other than zero.",
+        )
+        raise InputError([problem], case.source)
+    duties = most_loaded_duties(case) if isinstance(case, PlanetaryCase) else (pair_duty(case),)
+    return {duty.key: _details(case, duty) for duty in duties}
+
+
+def _details(case: Case, duty: MeshDuty) -> xr.Dataset:
+    import xarray as xr
+
+    mesh = duty.mesh
+    loads = distribute_load(duty, case.models, case.numerics)
+    lines = loads.lines
+    pitch_angle = 2 * math.pi / mesh.gear1.teeth
+    variables = {
+        "weight": _variable(1, lines.weight, "share of the mesh period", NUMBER),
+        "path_position": _points(
+            lines.curvature1 - mesh.pitch_point, "path of contact from the pitch point", MILLIMETRE
+        ),
+        "face_position": _points(lines.face_position, "position across the face", MILLIMETRE),
+        **_loads(loads, mesh.face_width),
+        **_contact(case, duty, loads),
+    }
+    coordinates = {
+        "roll_angle": _variable(
+            1, lines.position * pitch_angle, f"roll angle of the {mesh.gear1.name}", DEGREE
+        ),
+        "contact_line": np.arange(lines.length.shape[1]),
+    }
+    title = f"{duty.key.replace('_', ' ').capitalize()} of {case.title or 'the case'}"
+    attributes = {
+        "title": title,
+        "load_distribution": case.models.load_distribution,
+        "force_N": abs(duty.torque1) / mesh.gear1.base_radius,
+        "pitch_angle_deg": DEGREE.to_display(pitch_angle),
+    }
+    return xr.Dataset(variables, coordinates, attributes)
+
+
+def _variable(dims: int, values: FloatArray, label: str, unit: Quantity) -> Variable:
+    """A variable over the first `dims` of the dimensions."""
+    scale, offset = unit.scale_and_offset()
+    attributes = {"long_name": label, "units": unit.display or "1"}
+    return (_DIMENSIONS[:dims], values * scale + offset, attributes)
+
+
+_points = partial(_variable, 3)
+
+
+def _loads(loads: LineLoads, face_width: float) -> dict[str, Variable]:
+    """What the load distribution tells. Theory (E8), (E9)."""
+    lines = loads.lines
+    touching = lines.length > 0
+    unknown = np.full(len(lines.position), math.nan)
+    elastic = loads.elastic
+    error = unknown if elastic is None else elastic.transmission_error
+    stiffness = unknown if elastic is None else elastic.tangent_stiffness
+    return {
+        "line_load": _points(
+            np.where(touching, loads.line_load, math.nan), "line load", NEWTON_PER_MM
+        ),
+        "pair_load": _variable(
+            2,
+            (loads.line_load * lines.length).sum(axis=2),
+            "normal force on the tooth pair",
+            NEWTON,
+        ),
+        "transmission_error": _variable(1, error, "loaded transmission error", MICROMETRE),
+        "mesh_stiffness": _variable(
+            1, stiffness / face_width, "mesh stiffness per face width", NEWTON_PER_MM_MICROMETRE
+        ),
+    }
+
+
+def _contact(case: Case, duty: MeshDuty, loads: LineLoads) -> dict[str, Variable]:
+    """What pressure and motion add."""
+    contact = load_mesh(duty, case.models, case.numerics, fluids_of(case).oil)
+    loaded = (loads.lines.length > 0) & (loads.line_load > 0)
+
+    def spread(values: FloatArray | float) -> FloatArray:
+        field = np.full(loaded.shape, math.nan)
+        field[loaded] = values
+        return field
+
+    if contact is None:
+        pressure = sliding = film = friction = power = np.array(math.nan)
+    else:
+        model = friction_model(resolve_models(case)["friction"], friction_settings(case))
+        pressure, sliding = contact.hertz_pressure, contact.sliding_speed
+        film, friction = contact.film_ratio, model.coefficient(contact)
+        power = friction * contact.line_load * np.abs(sliding)
+    return {
+        "hertz_pressure": _points(spread(pressure), "contact pressure", GIGAPASCAL),
+        "sliding_speed": _points(spread(sliding), "sliding speed", METRE_PER_SECOND),
+        "film_ratio": _points(spread(film), "film ratio", NUMBER),
+        "friction_coefficient": _points(spread(friction), "coefficient of friction", NUMBER),
+        "friction_power": _points(spread(power), "friction power per length", WATT_PER_MM),
+    }

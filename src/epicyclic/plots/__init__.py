@@ -1,0 +1,1 @@
+"""Plots: functions that draw one question each on matplotlib Axes and return them."""

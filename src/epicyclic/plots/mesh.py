@@ -1,0 +1,109 @@
+"""A loaded mesh: where the teeth carry, how they share, how they slide.
+
+All functions take one mesh as `epicyclic.mesh_details` returns it, draw on given Axes and return
+them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.tri import Triangulation
+
+from epicyclic.plots.style import COLOUR_MAP, label_of, styled_figure
+
+__all__ = [
+    "mesh_figure",
+    "plot_mesh_stiffness",
+    "plot_pair_loads",
+    "plot_plane_of_action",
+    "plot_transmission_error",
+]
+
+MAPS = ("line_load", "hertz_pressure", "sliding_speed", "friction_power")
+"""Variables drawn over the plane of action."""
+
+
+def mesh_figure(mesh: xr.Dataset) -> Figure:
+    """Everything an engineer looks at on one mesh."""
+    with styled_figure(3, 3, str(mesh.attrs["title"])) as (figure, axes):
+        flat = axes.ravel()
+        plot_pair_loads(mesh, flat[0])
+        plot_transmission_error(mesh, flat[1])
+        plot_mesh_stiffness(mesh, flat[2])
+        for ax, name in zip(flat[3:], (*MAPS, "film_ratio", "friction_coefficient"), strict=True):
+            plot_plane_of_action(mesh, name, ax)
+    return figure
+
+
+def plot_plane_of_action(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
+    """Values of `name` over the plane of action, all mesh positions together."""
+    shape = (mesh.sizes["mesh_position"] * mesh.sizes["contact_line"], mesh.sizes["segment"])
+    order = ("contact_line", "mesh_position", "segment")
+    path, face, values = (
+        mesh[key].transpose(*order).to_numpy().reshape(shape)
+        for key in ("path_position", "face_position", name)
+    )
+    known = np.isfinite(values)
+    # triangles between the points, in coordinates of like size so that they are not slivers
+    scale = np.ptp(path[known]) / np.ptp(face[known])
+    triangles = Triangulation(path[known], face[known] * scale).triangles
+    corners = Triangulation(path[known], face[known], triangles)
+    drawn = ax.tripcolor(
+        corners, values[known], shading="gouraud", cmap=COLOUR_MAP, rasterized=True
+    )
+    figure = ax.get_figure()
+    assert figure is not None
+    figure.colorbar(drawn, ax=ax, label=label_of(mesh[name]))
+    ax.set(
+        title=str(mesh[name].attrs["long_name"]).capitalize(),
+        xlabel=label_of(mesh["path_position"]),
+        ylabel=label_of(mesh["face_position"]),
+    )
+    ax.axvline(0.0, color="black", lw=0.8, ls="--")
+    return ax
+
+
+def plot_pair_loads(mesh: xr.Dataset, ax: Axes) -> Axes:
+    """Load of every tooth pair over the roll angle of member 1, through its whole engagement."""
+    angle = mesh["roll_angle"] + mesh["contact_line"] * float(mesh.attrs["pitch_angle_deg"])
+    order = ("contact_line", "mesh_position")
+    ax.plot(
+        angle.transpose(*order).to_numpy().ravel(),
+        mesh["pair_load"].transpose(*order).to_numpy().ravel(),
+        marker=".",
+        ms=3,
+    )
+    ax.set(
+        title="Load of one tooth pair through its engagement",
+        xlabel=label_of(mesh["roll_angle"]),
+        ylabel=label_of(mesh["pair_load"]),
+    )
+    return ax
+
+
+def plot_transmission_error(mesh: xr.Dataset, ax: Axes) -> Axes:
+    """Loaded transmission error over one mesh period."""
+    return _plot_over_period(mesh, "transmission_error", ax)
+
+
+def plot_mesh_stiffness(mesh: xr.Dataset, ax: Axes) -> Axes:
+    """Mesh stiffness over one mesh period."""
+    return _plot_over_period(mesh, "mesh_stiffness", ax)
+
+
+def _plot_over_period(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
+    values = mesh[name].to_numpy()
+    if np.isfinite(values).any():
+        ax.plot(mesh["roll_angle"].to_numpy(), values, marker=".", ms=3)
+    else:
+        text = "not known with this load distribution"
+        ax.text(0.5, 0.5, text, ha="center", transform=ax.transAxes)
+    ax.set(
+        title=str(mesh[name].attrs["long_name"]).capitalize(),
+        xlabel=label_of(mesh["roll_angle"]),
+        ylabel=label_of(mesh[name]),
+    )
+    return ax
