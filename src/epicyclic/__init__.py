@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from epicyclic.analysis.mesh_details import mesh_details
     from epicyclic.analysis.result import Result
-    from epicyclic.analysis.solve import mesh_contacts, solve
+    from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
     from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema, load_case
     from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
     from epicyclic.sweeps.run import sweep
@@ -32,6 +32,7 @@ _HOME = {
     "Result": "epicyclic.analysis.result",
     "case_schema": "epicyclic.case.case",
     "load_case": "epicyclic.case.case",
+    "loaded_meshes": "epicyclic.analysis.solve",
     "mesh_contacts": "epicyclic.analysis.solve",
     "mesh_details": "epicyclic.analysis.mesh_details",
     "solve": "epicyclic.analysis.solve",
@@ -48,6 +49,7 @@ __all__ = [
     "Result",
     "case_schema",
     "load_case",
+    "loaded_meshes",
     "mesh_contacts",
     "mesh_details",
     "solve",

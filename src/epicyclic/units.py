@@ -33,6 +33,7 @@ __all__ = [
     "NEWTON",
     "NEWTON_METRE",
     "NEWTON_PER_MM",
+    "NEWTON_PER_UM",
     "NUMBER",
     "PER_GIGAPASCAL",
     "RPM",
@@ -356,6 +357,7 @@ NEWTON = Quantity("a force", "N", "N")
 NEWTON_METRE = Quantity("a moment", "N*m", "N*m")
 NEWTON_PER_MM = Quantity("a line load", "N/m", "N/mm")
 NEWTON_PER_MM_MICROMETRE = Quantity("a stiffness per width", "N/m^2", "N/(mm*um)")
+NEWTON_PER_UM = Quantity("a stiffness", "N/m", "N/um")
 NUMBER = Quantity("a number", "", "")
 PER_GIGAPASCAL = Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa")
 RPM = Quantity("a rotational speed", "rad/s", "rpm")

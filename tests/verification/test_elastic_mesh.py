@@ -502,3 +502,40 @@ def test_the_rim_couples_the_pairs_of_teeth(talbot_meshes):
     np.testing.assert_allclose(soft.pair_force.sum(axis=1), rigid.pair_force.sum(axis=1), rtol=1e-8)
     change = np.abs(soft.pair_force - rigid.pair_force).max() / rigid.pair_force.max()
     assert 0.01 < change < 0.2
+
+
+# --- through a case -------------------------------------------------------------------------------
+
+
+def test_a_case_reports_transmission_error_and_stiffness(talbot):
+    result = ep.solve(talbot)
+    loaded = ep.loaded_meshes(talbot)
+    assert set(loaded) == {"sun_mesh", "ring_mesh"}
+    for key, mesh in loaded.items():
+        figures = result.meshes[key]
+        assert figures.transmission_error_range == mesh.transmission_error_range > 0
+        assert figures.mesh_stiffness == mesh.mean(mesh.tangent_stiffness) > 0
+    uniform = ep.solve(talbot.updated({"models.load_distribution": "uniform"}))
+    assert math.isnan(uniform.meshes["sun_mesh"].mesh_stiffness)
+    assert ep.loaded_meshes(talbot.updated({"operation.torque": "0 N*m"})) == {}
+
+
+def test_reversed_torque_loads_the_teeth_alike(talbot):
+    back = ep.loaded_meshes(talbot.updated({"operation.torque": "-1000 N*m"}))
+    for key, mesh in ep.loaded_meshes(talbot).items():
+        np.testing.assert_array_equal(back[key].line_load, mesh.line_load)
+
+
+def test_the_tool_of_the_case_cuts_the_fillet(talbot):
+    """A sharp tool leaves a thinner root: the mesh is softer."""
+    sharp = talbot.updated({"planet.tool_tip_radius": "0 mm"})
+    for key, mesh in ep.loaded_meshes(talbot).items():
+        other = ep.loaded_meshes(sharp)[key]
+        ratio = other.mean(other.tangent_stiffness) / mesh.mean(mesh.tangent_stiffness)
+        assert 0.9 < ratio < 1.0
+
+
+def test_what_cannot_be_solved_is_a_convergence_error(talbot_meshes):
+    broken = GearBody(math.nan, 0.3)
+    with pytest.raises(ep.ConvergenceError, match="load_distribution"):
+        load_mesh_elastically(talbot_meshes[0], broken, STEEL, 4, 4, 100.0)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.analysis.pair import pair_duty
 from epicyclic.analysis.parts import (
     MeshDuty,
     distribute_load,
@@ -18,8 +17,8 @@ from epicyclic.analysis.parts import (
     load_mesh,
     resolve_models,
 )
-from epicyclic.analysis.planetary import most_loaded_duties
-from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.analysis.solve import loaded_duties
+from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem
 from epicyclic.losses.friction import friction_model
 from epicyclic.losses.load_distribution import LineLoads
@@ -80,8 +79,7 @@ def mesh_details(case: Case) -> dict[str, xr.Dataset]:
             "Give a torque other than zero.",
         )
         raise InputError([problem], case.source)
-    duties = most_loaded_duties(case) if isinstance(case, PlanetaryCase) else (pair_duty(case),)
-    return {duty.key: _details(case, duty) for duty in duties}
+    return {duty.key: _details(case, duty) for duty in loaded_duties(case)}
 
 
 def _details(case: Case, duty: MeshDuty) -> xr.Dataset:

@@ -262,6 +262,9 @@ def solve_mesh(case: Case, duty: MeshDuty, oil: OilState, count: int) -> MeshOut
     rolling = ROLLING_MODELS[models["rolling"]]
     quick = models["mesh"] == "loss-factor"
     contact = load_mesh(duty, case.models, case.numerics, oil)
+    elastic = None
+    if contact is not None:
+        elastic = distribute_load(duty, case.models, case.numerics).elastic
     if contact is None:
         loss = MeshLoss(0.0, 0.0, math.nan)
     elif quick:
@@ -278,10 +281,12 @@ def solve_mesh(case: Case, duty: MeshDuty, oil: OilState, count: int) -> MeshOut
         f"{duty.key}_rolling": rolling_part,
         f"{duty.key}_pocketing": Part(LOAD_INDEPENDENT, left_out=NO_POCKETING),
     }
-    return MeshOutcome(parts, _mesh_figures(duty, contact, loss.mean_friction), loss.flags)
+    return MeshOutcome(parts, _mesh_figures(duty, contact, loss.mean_friction, elastic), loss.flags)
 
 
-def _mesh_figures(duty: MeshDuty, contact: MeshContact | None, friction_mean: float) -> MeshFigures:
+def _mesh_figures(
+    duty: MeshDuty, contact: MeshContact | None, friction_mean: float, elastic: LoadedMesh | None
+) -> MeshFigures:
     mesh = duty.mesh
     speed1 = abs(duty.speed1)
     sliding = max(
@@ -301,6 +306,8 @@ def _mesh_figures(duty: MeshDuty, contact: MeshContact | None, friction_mean: fl
         film_ratio_max=math.nan if contact is None else float(contact.film_ratio.max()),
         friction_mean=friction_mean,
         loss_factor=ohlendorf_loss_factor(mesh),
+        transmission_error_range=math.nan if elastic is None else elastic.transmission_error_range,
+        mesh_stiffness=math.nan if elastic is None else elastic.mean(elastic.tangent_stiffness),
         contact=contact,
     )
 

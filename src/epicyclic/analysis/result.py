@@ -27,11 +27,13 @@ from epicyclic.units import (
     GIGAPASCAL,
     KILOGRAM_PER_CUBIC_METRE,
     METRE_PER_SECOND,
+    MICROMETRE,
     MILLIMETRE,
     MILLIPASCAL_SECOND,
     NEWTON,
     NEWTON_METRE,
     NEWTON_PER_MM,
+    NEWTON_PER_UM,
     NUMBER,
     PER_GIGAPASCAL,
     RPM,
@@ -122,7 +124,11 @@ class LossTerm:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MeshFigures:
-    """What an engineer checks by eye on a mesh; NaN where there is no load or no motion."""
+    """What an engineer checks by eye on a mesh; NaN where there is no load or no motion.
+
+    Transmission error and stiffness, in the transverse plane of action, are those of elastic teeth
+    and NaN with another load distribution.
+    """
 
     contact: MeshContact | None
     pressure_angle: float = _figure("operating pressure angle, transverse", DEGREE)
@@ -137,6 +143,8 @@ class MeshFigures:
     film_ratio_max: float = _figure("film ratio, largest", NUMBER)
     friction_mean: float = _figure("mean coefficient of friction", NUMBER)
     loss_factor: float = _figure("loss factor H_V (Ohlendorf)", NUMBER)
+    transmission_error_range: float = _figure("loaded transmission error, peak to peak", MICROMETRE)
+    mesh_stiffness: float = _figure("mean mesh stiffness at this load", NEWTON_PER_UM)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,14 +10,15 @@ from __future__ import annotations
 import math
 
 from epicyclic.analysis.pair import pair_duty, solve_pair
-from epicyclic.analysis.parts import fluids_of, load_mesh
+from epicyclic.analysis.parts import MeshDuty, elastic_loads, fluids_of, load_mesh
 from epicyclic.analysis.planetary import most_loaded_duties, solve_planetary
 from epicyclic.analysis.result import Result
 from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.elasticity.loaded_mesh import LoadedMesh
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.contact import MeshContact
 
-__all__ = ["mesh_contacts", "solve"]
+__all__ = ["loaded_duties", "loaded_meshes", "mesh_contacts", "solve"]
 
 
 def solve(case: Case) -> Result:
@@ -53,6 +54,23 @@ def mesh_contacts(case: Case) -> dict[str, MeshContact]:
     Of a planetary set both meshes of the most loaded planet.
     """
     oil = fluids_of(case).oil
-    duties = most_loaded_duties(case) if isinstance(case, PlanetaryCase) else (pair_duty(case),)
-    contacts = {duty.key: load_mesh(duty, case.models, case.numerics, oil) for duty in duties}
+    contacts = {
+        duty.key: load_mesh(duty, case.models, case.numerics, oil) for duty in loaded_duties(case)
+    }
     return {key: contact for key, contact in contacts.items() if contact is not None}
+
+
+def loaded_meshes(case: Case) -> dict[str, LoadedMesh]:
+    """Every mesh of a case under load, with elastic teeth whatever ``models.load_distribution`` is.
+
+    Line loads, load of each pair of teeth, contact pattern, transmission error and stiffness over
+    the mesh period; of a planetary set for the most loaded planet. Empty without load.
+    """
+    return {
+        duty.key: elastic_loads(duty, case.numerics) for duty in loaded_duties(case) if duty.torque1 != 0
+    }
+
+
+def loaded_duties(case: Case) -> tuple[MeshDuty, ...]:
+    """The mesh of a pair, or both meshes of the planet that carries most."""
+    return most_loaded_duties(case) if isinstance(case, PlanetaryCase) else (pair_duty(case),)
