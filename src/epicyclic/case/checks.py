@@ -32,8 +32,8 @@ from epicyclic.errors import Problem
 
 __all__ = ["cross_check"]
 
-MOST_COEFFICIENTS = 10_000_000
-"""Largest number of influence coefficients for each contact line: 80 MB."""
+MOST_COEFFICIENTS = 5_000_000
+"""Largest number of influence coefficients for each contact line: 40 MB, for three lines 120 MB."""
 
 
 def cross_check(sections: Mapping[str, Table], given: Collection[str]) -> list[Problem]:

@@ -25,9 +25,9 @@ TOLERANCE = 1e-9
 """Gap or penetration that may remain, over the approach; error of the balance, over the force."""
 STEPS_PER_SEGMENT = 10
 """Most steps of the careful method for each segment: one may leave or join in a step."""
-KEPT_LOADS = 512
-"""Solutions that are kept: each load of both meshes of a few hundred operating points. One takes
-about 10 kB with the default resolution."""
+KEPT_LOADS = 256
+"""Solutions that are kept: one for each torque, mesh and set of flanks, for all speeds and
+temperatures. One takes 10 kB with the default resolution."""
 UNMODIFIED = FlankDeviations()
 
 

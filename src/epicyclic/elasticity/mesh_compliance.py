@@ -29,9 +29,9 @@ FloatArray = NDArray[np.float64]
 FACE_TERMS_PER_HEIGHT = 2.5
 """Polynomials along a tooth for each tooth height in its length: shorter ones decay fast. [1]"""
 FACE_TERMS_LIMITS = (8, 40)
-KEPT_MESHES = 32
-"""Meshes whose coefficients are kept: those of a sweep over a few gear sets. One takes 0.25 MB with
-the default resolution; it grows with the mesh positions and the square of the segments."""
+KEPT_MESHES = 8
+"""Meshes whose coefficients are kept: those of a few gear sets, as sweeps put cases of one set next
+to each other. One takes 0.25 MB with the default resolution, and 120 MB with the largest."""
 
 
 @dataclass(frozen=True, slots=True)
