@@ -125,7 +125,7 @@ _points = partial(_variable, 3)
 
 
 def _loads(loads: LineLoads, face_width: float) -> dict[str, Variable]:
-    """What the load distribution tells. Theory (E8), (E9)."""
+    """What the load distribution tells."""
     lines = loads.lines
     touching = lines.length > 0
     unknown = np.full(len(lines.position), math.nan)

@@ -67,7 +67,9 @@ def loaded_meshes(case: Case) -> dict[str, LoadedMesh]:
     the mesh period; of a planetary set for the most loaded planet. Empty without load.
     """
     return {
-        duty.key: elastic_loads(duty, case.numerics) for duty in loaded_duties(case) if duty.torque1 != 0
+        duty.key: elastic_loads(duty, case.numerics)
+        for duty in loaded_duties(case)
+        if duty.torque1 != 0
     }
 
 

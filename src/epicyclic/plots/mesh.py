@@ -11,6 +11,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
+from numpy.typing import NDArray
 
 from epicyclic.plots.style import COLOUR_MAP, label_of, styled_figure
 
@@ -21,6 +22,8 @@ __all__ = [
     "plot_plane_of_action",
     "plot_transmission_error",
 ]
+
+FloatArray = NDArray[np.float64]
 
 MAPS = ("line_load", "hertz_pressure", "sliding_speed", "friction_power")
 """Variables drawn over the plane of action."""
@@ -47,16 +50,10 @@ def plot_plane_of_action(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
         for key in ("path_position", "face_position", name)
     )
     known = np.isfinite(values)
-    # triangles between the points, in coordinates of like size so that they are not slivers
-    scale = np.ptp(path[known]) / np.ptp(face[known])
-    triangles = Triangulation(path[known], face[known] * scale).triangles
-    corners = Triangulation(path[known], face[known], triangles)
-    drawn = ax.tripcolor(
-        corners, values[known], shading="gouraud", cmap=COLOUR_MAP, rasterized=True
-    )
-    figure = ax.get_figure()
-    assert figure is not None
-    figure.colorbar(drawn, ax=ax, label=label_of(mesh[name]))
+    if known.any():
+        _draw_map(ax, path[known], face[known], values[known], label_of(mesh[name]))
+    else:
+        _say(ax, "no motion")
     ax.set(
         title=str(mesh[name].attrs["long_name"]).capitalize(),
         xlabel=label_of(mesh["path_position"]),
@@ -64,6 +61,22 @@ def plot_plane_of_action(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
     )
     ax.axvline(0.0, color="black", lw=0.8, ls="--")
     return ax
+
+
+def _draw_map(ax: Axes, path: FloatArray, face: FloatArray, values: FloatArray, label: str) -> None:
+    # triangles between the points, in coordinates of like size so that they are not slivers
+    scale = np.ptp(path) / np.ptp(face)
+    triangles = Triangulation(path, face * scale).triangles
+    corners = Triangulation(path, face, triangles)
+    drawn = ax.tripcolor(corners, values, shading="gouraud", cmap=COLOUR_MAP, rasterized=True)
+    figure = ax.get_figure()
+    assert figure is not None
+    figure.colorbar(drawn, ax=ax, label=label)
+
+
+def _say(ax: Axes, text: str) -> None:
+    """Words instead of a drawing."""
+    ax.text(0.5, 0.5, text, ha="center", transform=ax.transAxes)
 
 
 def plot_pair_loads(mesh: xr.Dataset, ax: Axes) -> Axes:
@@ -99,8 +112,7 @@ def _plot_over_period(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
     if np.isfinite(values).any():
         ax.plot(mesh["roll_angle"].to_numpy(), values, marker=".", ms=3)
     else:
-        text = "not known with this load distribution"
-        ax.text(0.5, 0.5, text, ha="center", transform=ax.transAxes)
+        _say(ax, "not known with this load distribution")
     ax.set(
         title=str(mesh[name].attrs["long_name"]).capitalize(),
         xlabel=label_of(mesh["roll_angle"]),
