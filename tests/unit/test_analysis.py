@@ -10,7 +10,8 @@ import pytest
 import epicyclic as ep
 from epicyclic.analysis.compare import compare_friction
 from epicyclic.analysis.parts import resolve_models
-from epicyclic.analysis.planetary import planet_load, planetary_duties
+from epicyclic.analysis.planet_load import planet_load
+from epicyclic.analysis.planetary import planetary_duties
 
 IDENTITY = 1e-12  # rounding only
 

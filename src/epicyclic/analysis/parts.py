@@ -298,6 +298,7 @@ def _mesh_figures(
         transverse_contact_ratio=mesh.transverse_contact_ratio,
         overlap_ratio=mesh.overlap_ratio,
         backlash=mesh.backlash,
+        misalignment=duty.misalignment,
         pitch_line_speed=speed1 * mesh.operating_radius1,
         sliding_speed_max=sliding,
         line_load_max=math.nan if contact is None else float(contact.line_load.max()),

@@ -23,6 +23,7 @@ from epicyclic.analysis.parts import (
     solve_mesh,
     used_sources,
 )
+from epicyclic.analysis.planet_load import PlanetLoad, planet_load, tilt_planet
 from epicyclic.analysis.result import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
@@ -126,8 +127,9 @@ def solve_planetary(case: PlanetaryCase) -> Result:
 
 
 def most_loaded_duties(case: PlanetaryCase) -> tuple[MeshDuty, MeshDuty]:
-    """Both meshes of the planet that carries most."""
-    return planetary_duties(case, max(_shares(case)))
+    """Both meshes of the planet that carries most, misaligned if the case asks for its tilt."""
+    duties, _ = _tilted(case, planetary_duties(case, max(_shares(case))), member_speeds(case))
+    return duties
 
 
 def _shares(case: PlanetaryCase) -> tuple[float, ...]:
@@ -201,15 +203,25 @@ class _Branch:
 def _solve_branch(
     case: PlanetaryCase, share: float, count: int, oil: OilState, speeds: Mapping[str, float]
 ) -> _Branch:
-    duties = planetary_duties(case, share)
+    duties, load = _tilted(case, planetary_duties(case, share), speeds)
     meshes = {duty.key: solve_mesh(case, duty, oil, count) for duty in duties}
-    bearing = _solve_bearing(case, duties, count, oil, speeds)
+    bearing = _solve_bearing(case, load, count, oil, speeds)
     parts, flags = dict(bearing.parts), bearing.flags
     for mesh in meshes.values():
         parts |= mesh.parts
         flags = mesh.flags + flags
     figures = {key: mesh.figures for key, mesh in meshes.items()}
     return _Branch(parts, figures, bearing.figures, flags)
+
+
+def _tilted(
+    case: PlanetaryCase, duties: tuple[MeshDuty, MeshDuty], speeds: Mapping[str, float]
+) -> tuple[tuple[MeshDuty, MeshDuty], PlanetLoad]:
+    """The duties of a planet, misaligned by its tilt if the case asks for it, and its load."""
+    centrifugal, bearing = _centrifugal(case, speeds), _bearing(case)
+    if case.models.planet_tilt == "left-out" or bearing is None or duties[0].torque1 == 0:
+        return duties, planet_load(duties, centrifugal)
+    return tilt_planet(duties, bearing, centrifugal, case.numerics)
 
 
 def _sum_parts(branches: Sequence[_Branch]) -> dict[str, Part]:
@@ -236,49 +248,9 @@ class _BearingOutcome:
     flags: tuple[ValidityFlag, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class PlanetLoad:
-    """Load of one planet on its bearing, x along the radial force.
-
-    Attributes
-    ----------
-    force : float
-        Radial. [N]
-    moment_x, moment_y : float
-        Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
-    """
-
-    force: float
-    moment_x: float
-    moment_y: float
-
-
-def planet_load(duties: tuple[MeshDuty, MeshDuty], centrifugal: float) -> PlanetLoad:
-    """Load on the bearing of a planet from both meshes and the centrifugal force.
-
-    Theory (B1), (B2).
-
-    Talbot (2012), Eq. 3.7 and 3.8, for equal or unequal pressure angles: the tangential forces
-    add, the radial ones cancel or not, the axial ones form a couple in the plane of the axes.
-    """
-    tangential = radial = couple = 0.0
-    for duty, outward in zip(duties, (1, -1), strict=True):
-        mesh = duty.mesh
-        planet_radius = mesh.operating_radius2 if outward > 0 else mesh.operating_radius1
-        force = abs(duty.torque1) / mesh.operating_radius1
-        tangential += force
-        radial += outward * force * math.tan(mesh.operating_pressure_angle)
-        couple += force * mesh.operating_helix_tangent * planet_radius
-    radial += centrifugal
-    turn = math.atan2(radial, tangential)
-    return PlanetLoad(
-        math.hypot(tangential, radial), couple * math.sin(turn), couple * math.cos(turn)
-    )
-
-
 def _solve_bearing(
     case: PlanetaryCase,
-    duties: tuple[MeshDuty, MeshDuty],
+    load: PlanetLoad,
     count: int,
     oil: OilState,
     speeds: Mapping[str, float],
@@ -295,7 +267,6 @@ def _solve_bearing(
             }
         )
     speed = planet_speed(case.sun.teeth, case.planet.teeth, speeds)
-    load = planet_load(duties, _centrifugal(case, speeds))
     loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
     if resolve_models(case)["bearing"] == "mixed-ehl":
         loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil)

@@ -135,6 +135,7 @@ class MeshFigures:
     transverse_contact_ratio: float = _figure("transverse contact ratio", NUMBER)
     overlap_ratio: float = _figure("overlap ratio", NUMBER)
     backlash: float = _figure("circumferential backlash", MILLIMETRE)
+    misalignment: float = _figure("misalignment, with tilt of the planet if coupled", MICROMETRE)
     pitch_line_speed: float = _figure("pitch-line speed, relative to carrier", METRE_PER_SECOND)
     sliding_speed_max: float = _figure("largest sliding speed", METRE_PER_SECOND)
     line_load_max: float = _figure("largest line load", NEWTON_PER_MM)

@@ -50,6 +50,8 @@ def cross_check(sections: Mapping[str, Table], given: Collection[str]) -> list[P
     models = sections.get("models")
     if isinstance(models, GearPairModels):
         problems += _check_friction_model(models, {*given, *sections})
+    if isinstance(models, PlanetaryModels):
+        problems += _check_planet_tilt(models, {*given, *sections})
     for check, needed in _CHECKS:
         if all(name in sections for name in needed):
             problems += check(*(sections[name] for name in needed))
@@ -180,6 +182,20 @@ def _check_closed_form(
             'Write method = "direct".',
         )
         for reason in reasons
+    ]
+
+
+def _check_planet_tilt(models: PlanetaryModels, given: Collection[str]) -> list[Problem]:
+    if models.planet_tilt == "left-out":
+        return []
+    reasons = {
+        "needs [planet_bearing], in which the planet tilts.": "planet_bearing" not in given,
+        'needs load_distribution = "compliance".': models.load_distribution != "compliance",
+    }
+    return [
+        Problem("models.planet_tilt", '"coupled"', reason, 'Or write planet_tilt = "left-out".')
+        for reason, holds in reasons.items()
+        if holds
     ]
 
 

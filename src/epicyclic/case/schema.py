@@ -575,6 +575,7 @@ class GearPairModels(Table):
         "mesh": None,
         "drag": None,
         "bearing_viscous": None,
+        "planet_tilt": None,
     }
 
     friction: FrictionName = Field(
@@ -619,6 +620,10 @@ class PlanetaryModels(GearPairModels):
         default="auto", description="auto: mixed-ehl for the fluid it was made for, else palmgren."
     )
     bearing_viscous: Literal["harris"] = "harris"
+    planet_tilt: Literal["left-out", "coupled"] = Field(
+        default="left-out",
+        description="coupled: the planet tilts in its bearing and misaligns its meshes.",
+    )
 
 
 class Numerics(Table):

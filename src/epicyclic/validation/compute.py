@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.analysis.parts import fluids_of
-from epicyclic.analysis.planetary import planet_load, planetary_duties, roller_bearing
+from epicyclic.analysis.planet_load import planet_load
+from epicyclic.analysis.planetary import planetary_duties, roller_bearing
 from epicyclic.analysis.result import Result
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import PlanetaryCase, load_case

@@ -1,0 +1,131 @@
+"""Tilt of the planet in its bearing, coupled with the load along the teeth."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import epicyclic as ep
+from epicyclic.analysis.planet_load import planet_load
+from epicyclic.analysis.planetary import most_loaded_duties, planetary_duties, roller_bearing
+from epicyclic.losses.planet_bearing import roller_loads
+
+
+@pytest.fixture(scope="module")
+def talbot():
+    return ep.load_case("talbot-2012").updated({"models.planet_tilt": "coupled"})
+
+
+def misalignments(case):
+    """Of sun and ring mesh. [um]"""
+    return [duty.misalignment * 1e6 for duty in most_loaded_duties(case)]
+
+
+def test_bearing_and_meshes_are_in_balance(talbot):
+    """The moments of the line loads, summed here, tilt the bearing by the misalignment found."""
+    duties = most_loaded_duties(talbot)
+    moments = []
+    for key, mesh in ep.loaded_meshes(talbot).items():
+        height = mesh.lines.face_position - 24.4e-3 / 2
+        beta_b = math.radians(12.109)  # sin(beta_b) = sin(13.124 deg) cos(22.5 deg)
+        force = mesh.line_load * mesh.lines.length * math.cos(beta_b)
+        assert force.sum(axis=(1, 2)) == pytest.approx(mesh.force, rel=1e-4), key
+        moments.append(float((force * height).sum(axis=(1, 2)) @ mesh.lines.weight))
+    load = planet_load(duties, 0.0, (moments[0], moments[1]))
+    bearing = roller_bearing(talbot.planet_bearing, talbot.numerics.bearing_slices)
+    tilt = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y).displacement[2:]
+    # the radial force lies along the circle of the planets but for the difference of the meshes'
+    # pressure angles, which are equal here: x is t, y is r
+    alpha = math.radians(23.011)
+    for duty, outward in zip(duties, (1, -1), strict=True):
+        expected = 24.4e-3 * (tilt[0] * math.cos(alpha) + outward * tilt[1] * math.sin(alpha))
+        assert duty.misalignment == pytest.approx(expected, rel=1e-3)
+
+
+def test_planet_opens_the_sun_mesh_where_contact_ends_and_the_ring_mesh_where_it_begins(talbot):
+    sun, ring = misalignments(talbot)
+    assert sun > 1.0
+    assert ring < -1.0
+
+
+def test_teeth_carry_back_part_of_the_couple(talbot):
+    rigid = ep.solve(talbot.updated({"models.planet_tilt": "left-out"}))
+    tilted = ep.solve(talbot)
+    assert tilted.bearing.moment < rigid.bearing.moment
+    assert tilted.meshes["sun_mesh"].misalignment * 1e6 == pytest.approx(misalignments(talbot)[0])
+    assert rigid.meshes["sun_mesh"].misalignment == 0.0
+    for name, mesh in tilted.meshes.items():
+        assert mesh.line_load_max > rigid.meshes[name].line_load_max
+
+
+def test_more_clearance_more_tilt(talbot):
+    sizes = [
+        misalignments(talbot.updated({"planet_bearing.diametral_clearance": clearance}))[0]
+        for clearance in ("0 um", "10 um", "40 um")
+    ]
+    assert sizes == sorted(sizes)
+    assert sizes[2] > 1.2 * sizes[0]
+
+
+def test_misalignment_of_the_case_is_added(talbot):
+    """A gear set made askew turns its planets, but not as far as to undo it."""
+    alone = misalignments(talbot)[0]
+    both = misalignments(talbot.updated({"sun_mesh.misalignment": "20 um"}))[0]
+    assert alone < both < alone + 20
+
+
+def test_spur_planets_stand_straight():
+    case = ep.load_case("talbot-2012").updated(
+        {
+            "models.planet_tilt": "coupled",
+            "gears.helix_angle": "0 deg",
+            "gears.normal_module": None,
+            "gears.transverse_module": "1.8616 mm",
+            "gears.normal_pressure_angle": None,
+            "gears.transverse_pressure_angle": "23.041 deg",
+        }
+    )
+    assert misalignments(case) == pytest.approx([0.0, 0.0], abs=1e-3)
+
+
+def test_no_torque_no_tilt(talbot):
+    assert misalignments(talbot.updated({"operation.torque": "0 N*m"})) == [0.0, 0.0]
+
+
+def test_torque_and_speed_may_have_any_sign(talbot):
+    there = misalignments(talbot)
+    for changes in ({"operation.torque": "-1000 N*m"}, {"operation.speed": "-4000 rpm"}):
+        assert misalignments(talbot.updated(changes)) == pytest.approx(there, rel=1e-6)
+
+
+@pytest.mark.parametrize("torque", ["0.01 N*m", "10 N*m", "10000 N*m"])
+def test_balance_is_found_at_any_load(talbot, torque):
+    case = talbot.updated({"operation.torque": torque})
+    assert all(math.isfinite(value) for value in misalignments(case))
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"models.load_distribution": "uniform"}, "compliance"),
+        ({"planet_bearing": None}, "planet_bearing"),
+    ],
+)
+def test_what_the_tilt_needs(talbot, changes, words):
+    with pytest.raises(ep.InputError, match=words):
+        talbot.updated(changes)
+
+
+def test_shares_are_those_of_straight_planets(talbot):
+    """The branch stiffness of load sharing leaves the tilt out."""
+    changes = {
+        "planet.count": 6,
+        "load_sharing.method": "direct",
+        "load_sharing.position_errors": ["10 um", *["0 um"] * 5],
+    }
+    straight = talbot.updated({**changes, "models.planet_tilt": "left-out"})
+    coupled = ep.solve(talbot.updated(changes))
+    assert coupled.planet_shares == ep.solve(straight).planet_shares
+    duties = planetary_duties(straight, max(coupled.planet_shares))
+    assert misalignments(talbot.updated(changes))[0] > duties[0].misalignment
