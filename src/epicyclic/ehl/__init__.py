@@ -1,0 +1,1 @@
+"""Elastohydrodynamic line contacts solved numerically."""

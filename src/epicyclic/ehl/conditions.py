@@ -1,0 +1,205 @@
+"""What a line contact and the oil in it are given by, and the scales that follow."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+from epicyclic.errors import InputError, Problem
+from epicyclic.kernels.ehl_fluid import BARUS, ROELANDS, TWO_SLOPE, ScaledFluid
+from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
+from epicyclic.lubricant.properties import ROELANDS_OFFSET, ROELANDS_PRESSURE
+
+__all__ = ["Barus", "ContactOil", "LineContact", "Roelands", "TwoSlope"]
+
+STIFFENING, PACKING = 1.34 / 5.9e8, 1.0 / 5.9e8
+"""Constants of Dowson and Higginson's density. [1/Pa]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Barus:
+    """mu = mu_0 exp(alpha p). Theory (H5).
+
+    Attributes
+    ----------
+    alpha : float
+        [1/Pa]
+    """
+
+    alpha: float
+
+
+@dataclass(frozen=True, slots=True)
+class Roelands:
+    """Roelands' law with the slope `alpha` at ambient pressure. Theory (H6).
+
+    Attributes
+    ----------
+    alpha : float
+        [1/Pa]
+    """
+
+    alpha: float
+
+
+@dataclass(frozen=True, slots=True)
+class TwoSlope:
+    """Slopes of ln(mu) at low and at high pressure, joined by a cubic. Theory (H7).
+
+    Attributes
+    ----------
+    alpha, alpha_high : float
+        [1/Pa]
+    transition : float
+        Pressure at which the two straight lines meet. [Pa]
+    """
+
+    alpha: float
+    alpha_high: float
+    transition: float
+
+
+@dataclass(frozen=True, slots=True)
+class ContactOil:
+    """Oil in a contact, at one temperature.
+
+    Attributes
+    ----------
+    viscosity : float
+        Dynamic viscosity at ambient pressure. [Pa s]
+    pressure_law : Barus, Roelands or TwoSlope
+    eyring_stress : float
+        tau_0 of the Ree-Eyring law; infinite for a Newtonian oil. [Pa]
+    compressible : bool
+        Density after Dowson and Higginson, or constant.
+    """
+
+    viscosity: float
+    pressure_law: Barus | Roelands | TwoSlope
+    eyring_stress: float = math.inf
+    compressible: bool = True
+
+    @property
+    def roelands_index(self) -> float:
+        """z = alpha 1.96e8/(ln mu_0 + 9.67). Theory (H6). [1]"""
+        return (
+            self.pressure_law.alpha
+            * ROELANDS_PRESSURE
+            / (math.log(self.viscosity) + ROELANDS_OFFSET)
+        )
+
+
+@dataclass(frozen=True)
+class LineContact:
+    """Load, geometry and surface speeds of a line contact.
+
+    Attributes
+    ----------
+    line_load : float
+        W', per length. [N/m]
+    radius : float
+        R_eq. [m]
+    equivalent_modulus : float
+        E_eq. [Pa]
+    speed1, speed2 : float
+        Of the surfaces through the contact, both in the direction of x. [m/s]
+    oil : ContactOil
+    """
+
+    line_load: float
+    radius: float
+    equivalent_modulus: float
+    speed1: float
+    speed2: float
+    oil: ContactOil
+
+    def __post_init__(self) -> None:
+        problems = [
+            Problem(name, f"{value:g}", "must be a finite number above zero.", "Change it.")
+            for name, value in (
+                ("line_load", self.line_load),
+                ("radius", self.radius),
+                ("equivalent_modulus", self.equivalent_modulus),
+                ("speed1 + speed2", self.speed1 + self.speed2),
+                ("oil.viscosity", self.oil.viscosity),
+                ("oil.pressure_law.alpha", self.oil.pressure_law.alpha),
+            )
+            if not (value > 0 and math.isfinite(value))
+        ]
+        if not self.oil.eyring_stress > 0:
+            value = f"{self.oil.eyring_stress:g}"
+            problems.append(
+                Problem("oil.eyring_stress", value, "must be above zero.", "Use inf for none.")
+            )
+        if problems:
+            raise InputError(problems, "the contact")
+
+    @property
+    def rolling_speed(self) -> float:
+        """u_r, the mean of both. [m/s]"""
+        return (self.speed1 + self.speed2) / 2
+
+    @property
+    def sliding_speed(self) -> float:
+        """u_s = u_1 - u_2. [m/s]"""
+        return self.speed1 - self.speed2
+
+    @cached_property
+    def half_width(self) -> float:
+        """b_h of Hertz. [m]"""
+        return hertz_half_width(self.line_load, self.radius, self.equivalent_modulus)
+
+    @cached_property
+    def hertz_pressure(self) -> float:
+        """p_h. [Pa]"""
+        return hertz_pressure(self.line_load, self.radius, self.equivalent_modulus)
+
+    @property
+    def film_scale(self) -> float:
+        """b^2/R, the unit of H. Theory (H1). [m]"""
+        return self.half_width**2 / self.radius
+
+    @property
+    def moes_load(self) -> float:
+        """M = W (2U)^-1/2. Theory (H3). [1]"""
+        return self._load_number / math.sqrt(2 * self._speed_number)
+
+    @property
+    def moes_material(self) -> float:
+        """L = G (2U)^1/4. Theory (H3). [1]"""
+        return (
+            self.oil.pressure_law.alpha
+            * self.equivalent_modulus
+            * math.pow(2 * self._speed_number, 0.25)
+        )
+
+    @property
+    def _load_number(self) -> float:
+        return self.line_load / (self.equivalent_modulus * self.radius)
+
+    @property
+    def _speed_number(self) -> float:
+        return self.oil.viscosity * self.rolling_speed / (self.equivalent_modulus * self.radius)
+
+    def scaled_fluid(self) -> ScaledFluid:
+        """The oil in the units of this contact. Theory (H2)."""
+        oil, p_h = self.oil, self.hertz_pressure
+        law = oil.pressure_law
+        code, second, third = BARUS, 0.0, 0.0
+        if isinstance(law, Roelands):
+            code, second, third = ROELANDS, p_h / ROELANDS_PRESSURE, oil.roelands_index
+        elif isinstance(law, TwoSlope):
+            code, second, third = TWO_SLOPE, law.alpha_high * p_h, law.transition / p_h
+        wedge = 12 * oil.viscosity * self.rolling_speed * self.radius**2
+        return ScaledFluid(
+            law=code,
+            slope=law.alpha * p_h,
+            second=second,
+            third=third,
+            stiffening=STIFFENING * p_h if oil.compressible else 0.0,
+            packing=PACKING * p_h if oil.compressible else 0.0,
+            poiseuille=self.half_width**3 * p_h / wedge,
+            sliding=oil.viscosity * abs(self.sliding_speed) / (p_h * self.film_scale),
+            eyring=oil.eyring_stress / p_h,
+        )

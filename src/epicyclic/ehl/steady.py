@@ -1,0 +1,189 @@
+"""Steady smooth contact: pressure, film, friction and rolling loss."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.ehl.conditions import LineContact
+from epicyclic.ehl.film import moes_central_film
+from epicyclic.ehl.grid import gap_length, graded_nodes, grid_for
+from epicyclic.kernels.ehl_steady import deflection_matrix, shear_stresses, solve_steady
+from epicyclic.status import Status
+
+__all__ = ["SmoothSolution", "solve_smooth"]
+
+FloatArray = NDArray[np.float64]
+
+NODES = 256
+"""Nodes by default: the central film is then within 0.7 % of its limit up to M = 200."""
+COARSE_NODES = 96
+"""Nodes of the first solution, from which the others start."""
+REFINEMENT = 3
+"""Largest ratio of the nodes of one solution to those it starts from."""
+TOLERANCE = 1e-6
+"""Largest relative change of pressure and film in the last Newton step. [1]"""
+MAX_ITERATIONS = 40
+"""Newton steps on one grid; twelve have always been enough."""
+EXIT_GUESS = 0.4
+"""Where the film is first taken to rupture: beyond x = b, over `gap_length`. [1]"""
+TRACE = 1e-9
+"""Pressure that marks a node as not ruptured in a starting guess, over p_h. [1]"""
+
+
+@dataclass(frozen=True, eq=False)
+class SmoothSolution:
+    """Solution of a steady smooth contact.
+
+    Attributes
+    ----------
+    contact : LineContact
+    status : Status
+        Whether the iteration met its tolerance; if it did not, nothing else may be used.
+    message : str
+        Why it failed; empty if it did not.
+    iterations : int
+        Newton steps on the last grid.
+    error : float
+        Largest relative change in the last step. [1]
+    x : ndarray, shape (n,)
+        [m]
+    pressure : ndarray, shape (n,)
+        [Pa]
+    film : ndarray, shape (n,)
+        [m]
+    shear_stress : ndarray, shape (n,)
+        Mean over the film; zero where it is ruptured. [Pa]
+    flow : ndarray, shape (n - 1,)
+        Volume flow at ambient density through the faces between the nodes. [m^2/s]
+    """
+
+    contact: LineContact
+    status: Status
+    message: str
+    iterations: int
+    error: float
+    x: FloatArray
+    pressure: FloatArray
+    film: FloatArray
+    shear_stress: FloatArray
+    flow: FloatArray
+
+    @property
+    def minimum_film(self) -> float:
+        """Least film before the rupture. [m]"""
+        return float(self.film[self.pressure > 0].min())
+
+    @property
+    def central_film(self) -> float:
+        """Film at x = 0. [m]"""
+        return float(np.interp(0.0, self.x, self.film))
+
+    @property
+    def load(self) -> float:
+        """Integral of the pressure. [N/m]"""
+        return float(np.trapezoid(self.pressure, self.x))
+
+    @property
+    def friction_coefficient(self) -> float:
+        """Sliding friction over the load. Theory (H18). [1]"""
+        return float(np.trapezoid(self.shear_stress, self.x)) / self.contact.line_load
+
+    @property
+    def rolling_traction(self) -> float:
+        """Rolling force on each surface, half the integral of h dp. Theory (H19). [N/m]"""
+        mean = (self.film[1:] + self.film[:-1]) / 2
+        return float((mean * np.diff(self.pressure)).sum()) / 2
+
+    @property
+    def rolling_loss(self) -> float:
+        """Power per length that rolling costs. Theory (H19). [W/m]"""
+        return 2 * self.rolling_traction * self.contact.rolling_speed
+
+    @property
+    def mass_error(self) -> float:
+        """Largest difference of flow between faces of the full film, over the flow. [1]"""
+        full = self.flow[: np.flatnonzero(self.pressure > 0)[-1] + 1]
+        return float(np.ptp(full) / full.mean())
+
+
+def solve_smooth(
+    contact: LineContact, nodes: int = NODES, inlet: float | None = None
+) -> SmoothSolution:
+    """Steady smooth solution of a contact.
+
+    Theory (H14).
+
+    Parameters
+    ----------
+    contact : LineContact
+    nodes : int
+    inlet : float, optional
+        Where the film starts, over b_h and below -1; by default so far off that it does not
+        matter, a fully flooded contact.
+    """
+    film = expected_film(contact)
+    fluid = contact.scaled_fluid()
+    grid = grid_for(film, inlet)
+    x = graded_nodes(node_counts(nodes)[0], grid)
+    pressure, approach = _first_guess(x, film), 0.0
+    message, iterations, error = "", 0, math.inf
+    matrix = deflection_matrix(x)
+    approach = film - float(np.interp(0.0, x, matrix @ pressure))
+    for count in node_counts(nodes):
+        if count != x.size:
+            finer = graded_nodes(count, grid)
+            pressure, x = np.interp(finer, x, pressure), finer
+            matrix = deflection_matrix(x)
+        try:
+            pressure, height, flow, approach, iterations, error = solve_steady(
+                x, x**2 / 2, matrix, math.pi / 2, fluid, pressure, approach, TOLERANCE,
+                MAX_ITERATIONS,
+            )  # fmt: skip
+        except np.linalg.LinAlgError:
+            iterations, message = 0, "the equations of a Newton step are singular"
+            height, flow = np.full_like(x, math.nan), np.full(x.size - 1, math.nan)
+        if iterations <= 0:
+            message = message or f"no convergence in {-iterations} Newton steps on {count} nodes"
+            break
+    scale = contact.film_scale
+    return SmoothSolution(
+        contact=contact,
+        status=Status.FAILED if message else Status.CONVERGED,
+        message=message,
+        iterations=abs(iterations),
+        error=error,
+        x=x * contact.half_width,
+        pressure=pressure * contact.hertz_pressure,
+        film=height * scale,
+        shear_stress=shear_stresses(pressure, height, fluid) * contact.hertz_pressure,
+        flow=flow * scale * contact.rolling_speed,
+    )
+
+
+def expected_film(contact: LineContact) -> float:
+    """H = h R/b^2 from the fit of Moes. Theory (H3), (H20)."""
+    m = contact.moes_load
+    return moes_central_film(m, contact.moes_material) * math.pi / (8 * m)
+
+
+def node_counts(nodes: int) -> Sequence[int]:
+    """Numbers of nodes of the solutions one after the other, the last being `nodes`."""
+    counts = [nodes]
+    while counts[0] > REFINEMENT * COARSE_NODES:
+        counts.insert(0, counts[0] // REFINEMENT)
+    if counts[0] > COARSE_NODES:
+        counts.insert(0, COARSE_NODES)
+    return counts
+
+
+def _first_guess(x: FloatArray, film: float) -> FloatArray:
+    """Half an ellipse, as wide as the contact or, in a thick film, as the parabola of the gap."""
+    width = math.sqrt(1 + film)
+    pressure = np.sqrt(np.maximum(1 - (x / width) ** 2, 0)) / width
+    full = (x > 0) & (x < 1 + EXIT_GUESS * gap_length(film))
+    return np.where(full, np.maximum(pressure, TRACE), pressure)
