@@ -132,13 +132,13 @@ def solve_smooth(
     x = graded_nodes(node_counts(nodes)[0], grid)
     pressure, approach = _first_guess(x, film), 0.0
     message, iterations, error = "", 0, math.inf
-    matrix = deflection_matrix(x)
+    matrix = deflection_matrix(x, x)
     approach = film - float(np.interp(0.0, x, matrix @ pressure))
     for count in node_counts(nodes):
         if count != x.size:
             finer = graded_nodes(count, grid)
             pressure, x = np.interp(finer, x, pressure), finer
-            matrix = deflection_matrix(x)
+            matrix = deflection_matrix(x, x)
         try:
             pressure, height, flow, approach, iterations, error = solve_steady(
                 x, x**2 / 2, matrix, math.pi / 2, fluid, pressure, approach, TOLERANCE,

@@ -43,20 +43,21 @@ def _second_primitive(x: float) -> float:
 
 
 @kernel
-def deflection_matrix(x: FloatArray) -> FloatArray:
-    """Deflection at each node for unit pressure at each node, linear in between. Theory (H9).
+def deflection_matrix(points: FloatArray, nodes: FloatArray) -> FloatArray:
+    """Deflection at each point for unit pressure at each node, linear in between. Theory (H9).
 
-    `x` of shape (n,), rising. The result, shape (n, n), is -1/pi times the integral of
-    ln|X_i - S| times the hat function of node j; the pressure vanishes at both ends.
+    `points` of shape (m,), `nodes` of shape (n,), rising. The result, shape (m, n), is -1/pi times
+    the integral of ln|X_i - S| times the hat function of node j. The pressure vanishes at the first
+    and the last node, whose columns are zero.
     """
-    n = x.size
-    matrix = np.zeros((n, n))
-    for i in range(n):
-        before = _second_primitive(x[i] - x[0])
-        here = _second_primitive(x[i] - x[1])
+    n = nodes.size
+    matrix = np.zeros((points.size, n))
+    for i in range(points.size):
+        before = _second_primitive(points[i] - nodes[0])
+        here = _second_primitive(points[i] - nodes[1])
         for j in range(1, n - 1):
-            after = _second_primitive(x[i] - x[j + 1])
-            left, right = x[j] - x[j - 1], x[j + 1] - x[j]
+            after = _second_primitive(points[i] - nodes[j + 1])
+            left, right = nodes[j] - nodes[j - 1], nodes[j + 1] - nodes[j]
             matrix[i, j] = -((after - here) / right - (here - before) / left) / math.pi
             before, here = here, after
     return matrix

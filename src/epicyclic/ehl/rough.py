@@ -1,0 +1,301 @@
+"""Transient contact of two moving rough surfaces: averages of friction, contact and film."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.ehl.conditions import LineContact
+from epicyclic.ehl.roughness import SMOOTH, Profile
+from epicyclic.ehl.steady import SmoothSolution, expected_film, solve_smooth
+from epicyclic.kernels.ehl_rough import GROUP, march, masses
+from epicyclic.kernels.ehl_steady import deflection_matrix
+from epicyclic.status import Status
+
+__all__ = ["AsperityContact", "Frame", "RoughSolution", "solve_rough"]
+
+FloatArray = NDArray[np.float64]
+
+NODES = 512
+"""Nodes by default: some 125 in a half-width."""
+TOLERANCE = 2e-3
+"""Largest change of a pressure in the last Newton step of a time step, over p_h; what is left is
+its square. [1]"""
+MAX_ITERATIONS = 15
+"""Newton steps of a time step, doubled in a second attempt."""
+GROWTH, SETTLING = 1.0, 2.0
+"""Times b/u_r in which the roughness grows, and until averages begin. [1]"""
+BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 4, 48
+"""Time b/u_r of a block, and numbers of blocks that an average takes."""
+STATIONARY = 0.02
+"""Standard error of the mean friction over it at which a simulation ends. [1]"""
+LARGEST_UNSOLVED_SHARE = 0.01
+"""Share of time steps without convergence above which a result is failed. [1]"""
+COLUMNS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class AsperityContact:
+    """Where surfaces touch, and their friction there. Theory (H23).
+
+    Attributes
+    ----------
+    film : float
+        Film below which they touch: the size of a few molecules. [m]
+    friction : float
+        Shear stress over pressure where they touch. [1]
+    """
+
+    film: float = 1e-9
+    friction: float = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One moment of a simulation. Time in s, pressure [Pa] and film [m] of shape (n,)."""
+
+    time: float
+    pressure: FloatArray
+    film: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class RoughSolution:
+    """Averages of a transient rough contact.
+
+    Attributes
+    ----------
+    contact : LineContact
+    smooth : SmoothSolution
+        The same contact without roughness, where the simulation starts.
+    status : Status
+        Failed if the friction did not become stationary or too many steps had no solution.
+    message : str
+        Why it failed; empty if it did not.
+    x : ndarray, shape (n,)
+        [m]
+    friction : ndarray, shape (steps,)
+        Coefficient at every step that counts. [1]
+    friction_coefficient, friction_error : float
+        Mean and its standard error, from the means of blocks. [1]
+    asperity_friction_share : float
+        Share of friction from touching surfaces. [1]
+    contact_share : float
+        Touching length over 2 b_h. [1]
+    asperity_load_share : float
+        Load on touching surfaces over W'. [1]
+    minimum_film, mean_least_film : float
+        Least film of all moments, and the mean over them of the least. [m]
+    rolling_loss : float
+        Power per length of the pressure flow. [W/m]
+    steps, unsolved_steps : int
+        Time steps in all, and those without convergence.
+    newton_steps : float
+        Mean over the time steps.
+    frames : list of Frame
+        Moments kept, if asked for.
+    """
+
+    contact: LineContact
+    smooth: SmoothSolution
+    status: Status
+    message: str
+    x: FloatArray
+    friction: FloatArray
+    friction_coefficient: float
+    friction_error: float
+    asperity_friction_share: float
+    contact_share: float
+    asperity_load_share: float
+    minimum_film: float
+    mean_least_film: float
+    rolling_loss: float
+    steps: int
+    unsolved_steps: int
+    newton_steps: float
+    frames: Sequence[Frame] = field(default_factory=list)
+
+
+class _Simulation:
+    """State of a simulation between calls of the kernel, in scaled units."""
+
+    def __init__(
+        self, smooth: SmoothSolution, surfaces: tuple[Profile, Profile], nodes: int,
+        asperities: AsperityContact,
+    ) -> None:  # fmt: skip
+        contact = smooth.contact
+        self.contact, self.asperities = contact, asperities
+        self.boundary_friction = asperities.friction if contact.sliding_speed else 0.0
+        self.fluid = contact.scaled_fluid()
+        parabola = math.sqrt(2 * expected_film(contact))
+        inlet, outlet = -(1 + max(1.5, 3 * parabola)), 1 + max(0.5, 1.5 * parabola)
+        self.x: FloatArray = np.linspace(inlet, outlet, nodes, dtype=np.float64)
+        self.dx = float(self.x[1] - self.x[0])
+        reach: FloatArray = np.arange(nodes) * self.dx
+        cell: FloatArray = np.array([-self.dx, 0.0, self.dx])
+        row = deflection_matrix(reach, cell)[:, 1]
+        self.kernel_row = np.concatenate([row[::-1], row[1:]])
+
+        x = smooth.x / contact.half_width
+        known = smooth.pressure / contact.hertz_pressure
+        self.pressure = np.interp(self.x, x, known)
+        self.pressure[-1] = 0
+        self.smooth_pressure = self.pressure.copy()
+        # the smooth pressure before the grid, and half a cell into it
+        outside = np.append(x[x < inlet], [inlet, inlet + self.dx])
+        upstream = np.append(np.interp(outside[:-1], x, known), 0.0)
+        self.base = self.x**2 / 2 + deflection_matrix(self.x, outside) @ upstream
+        self.load = math.pi / 2 - float(np.trapezoid(upstream[:-1], outside[:-1]))
+        self.film = self.base + np.convolve(
+            self.kernel_row, np.append(0.0, self.pressure[1:]), "valid"
+        )
+        center = float(np.interp(0, x, smooth.film)) / contact.film_scale
+        self.approach = center - float(np.interp(0, self.x, self.film))
+        self.film += self.approach
+        self.active = self.pressure > 0
+        self.active[0] = self.active[-1] = False
+        self.now = np.empty(nodes)
+        masses(self.pressure, self.film, self.fluid, self.now)
+        self.before = self.now.copy()
+        self.grouped = np.zeros((-(-nodes // GROUP), nodes))
+        self.included = np.zeros(nodes, dtype=np.bool_)
+        spacing = self.dx * contact.half_width
+        self.heights = [surface.resampled(spacing) / contact.film_scale for surface in surfaces]
+        self.shifts = [
+            speed / contact.rolling_speed * heights.size * spacing / surface.length
+            for speed, heights, surface in zip(
+                (contact.speed1, contact.speed2), self.heights, surfaces, strict=True
+            )
+        ]
+        self.steps = 0
+
+    def advance(self, steps: int) -> FloatArray:
+        """Records of `steps` more time steps, shape (steps, 8)."""
+        records = np.zeros((steps, COLUMNS))
+        scale = self.contact.film_scale
+        self.approach = march(
+            self.pressure, self.film, self.now, self.before, self.active, self.approach,
+            self.smooth_pressure, self.base, self.kernel_row, self.grouped, self.included,
+            self.heights[0], self.heights[1], self.shifts[0], self.shifts[1], self.steps,
+            self.step_count(GROWTH), self.fluid, self.dx, self.load,
+            self.asperities.film / scale, self.boundary_friction, TOLERANCE, MAX_ITERATIONS,
+            records,
+        )  # fmt: skip
+        self.steps += steps
+        return records
+
+    def step_count(self, time: float) -> int:
+        """Time steps in `time`, in b/u_r."""
+        return max(1, round(time / self.dx))
+
+    def frame(self) -> Frame:
+        """This moment."""
+        contact = self.contact
+        time = self.steps * self.dx * contact.half_width / contact.rolling_speed
+        return Frame(time, self.pressure * contact.hertz_pressure, self.film * contact.film_scale)
+
+
+def solve_rough(
+    contact: LineContact,
+    surface1: Profile = SMOOTH,
+    surface2: Profile = SMOOTH,
+    asperities: AsperityContact | None = None,
+    nodes: int = NODES,
+    frame_interval: float | None = None,
+) -> RoughSolution:
+    """Simulate until the mean friction is known to 2 %.
+
+    Theory (H21), (H25).
+
+    Parameters
+    ----------
+    contact : LineContact
+    surface1, surface2 : Profile
+        Moving with the speeds of the contact.
+    asperities : AsperityContact, optional
+    nodes : int
+    frame_interval : float, optional
+        Time between kept moments; none are kept by default. [s]
+    """
+    smooth = solve_smooth(contact)
+    if smooth.status is not Status.CONVERGED:
+        return _failed(smooth, f"the smooth contact: {smooth.message}")
+    run = _Simulation(smooth, (surface1, surface2), nodes, asperities or AsperityContact())
+    frames: list[Frame] = []
+    chunk = run.step_count(BLOCK)
+    if frame_interval is not None:
+        every = frame_interval * contact.rolling_speed / contact.half_width
+        chunk = min(chunk, run.step_count(every))
+
+    def advance(steps: int) -> FloatArray:
+        parts = []
+        while steps > 0:
+            parts.append(run.advance(min(chunk, steps)))
+            steps -= chunk
+            if frame_interval is not None:
+                frames.append(run.frame())
+        return np.concatenate(parts)
+
+    settling = advance(run.step_count(GROWTH + SETTLING))
+    still_smooth = float(settling[0, 5])
+    unsolved = _unsolved(settling)
+    blocks: list[FloatArray] = []
+    error = mean = math.inf
+    while len(blocks) < MOST_BLOCKS and not math.isnan(mean):
+        blocks.append(advance(run.step_count(BLOCK)))
+        means = np.array([block[:, :2].sum(axis=1).mean() for block in blocks])
+        mean = float(means.mean())
+        if len(blocks) >= FEWEST_BLOCKS:
+            error = float(means.std(ddof=1)) / math.sqrt(len(blocks))
+            if error <= STATIONARY * mean:
+                break
+    records = np.concatenate(blocks)
+    unsolved += _unsolved(records)
+    message = ""
+    if math.isnan(mean):
+        message = "a time step broke down"
+    elif error > STATIONARY * mean:
+        message = f"friction is known to {error / mean:.1%} only after {run.steps} time steps"
+    elif unsolved > LARGEST_UNSOLVED_SHARE * run.steps:
+        message = f"{unsolved} of {run.steps} time steps did not converge"
+    load = math.pi / 2
+    column = records.mean(axis=0)
+    power = contact.hertz_pressure * contact.film_scale * contact.rolling_speed
+    return RoughSolution(
+        contact=contact,
+        smooth=smooth,
+        status=Status.FAILED if message else Status.CONVERGED,
+        message=message,
+        x=run.x * contact.half_width,
+        friction=records[:, :2].sum(axis=1) / load,
+        friction_coefficient=mean / load,
+        friction_error=error / load,
+        asperity_friction_share=float(column[1]) / mean if mean > 0 else 0.0,
+        contact_share=float(column[2]),
+        asperity_load_share=float(column[3]) / load,
+        minimum_film=float(records[:, 4].min()) * contact.film_scale,
+        mean_least_film=float(column[4]) * contact.film_scale,
+        rolling_loss=smooth.rolling_loss + power * (float(column[5]) - still_smooth),
+        steps=run.steps,
+        unsolved_steps=unsolved,
+        newton_steps=float(records[:, 6].mean()),
+        frames=frames,
+    )
+
+
+def _failed(smooth: SmoothSolution, message: str) -> RoughSolution:
+    """A result without numbers."""
+    nothing = math.nan
+    return RoughSolution(
+        smooth.contact, smooth, Status.FAILED, message, np.empty(0), np.empty(0), nothing, nothing,
+        nothing, nothing, nothing, nothing, nothing, nothing, 0, 0, nothing,
+    )  # fmt: skip
+
+
+def _unsolved(records: FloatArray) -> int:
+    """Number of time steps that did not meet the tolerance."""
+    return int((~(records[:, 7] < TOLERANCE)).sum())

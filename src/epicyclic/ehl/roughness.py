@@ -1,0 +1,224 @@
+"""Surface profiles: generated with given statistics, or from measured heights."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.errors import InputError, Problem
+
+__all__ = ["SMOOTH", "Profile", "generate_profile", "read_profile", "sinusoidal_profile"]
+
+FloatArray = NDArray[np.float64]
+
+POINTS_PER_CORRELATION = 8
+"""Points of a generated profile within one correlation length."""
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """Heights of a surface at even distances; it repeats itself.
+
+    Attributes
+    ----------
+    heights : ndarray, shape (n,)
+        With zero mean. [m]
+    spacing : float
+        [m]
+    """
+
+    heights: FloatArray
+    spacing: float
+
+    @property
+    def length(self) -> float:
+        """Of one period. [m]"""
+        return self.heights.size * self.spacing
+
+    @property
+    def rms(self) -> float:
+        """Rq. [m]"""
+        return float(np.sqrt(np.mean(self.heights**2)))
+
+    @property
+    def skewness(self) -> float:
+        """Rsk. [1]"""
+        return float(np.mean(self.heights**3)) / self.rms**3
+
+    @property
+    def kurtosis(self) -> float:
+        """Rku, 3 for a normal distribution. [1]"""
+        return float(np.mean(self.heights**4)) / self.rms**4
+
+    def scaled_to(self, rms: float) -> Profile:
+        """The same shape with another Rq."""
+        return Profile(self.heights * (rms / self.rms), self.spacing)
+
+    def resampled(self, spacing: float) -> FloatArray:
+        """Heights at about `spacing`, without what that cannot resolve, shape (m,).
+
+        The period is kept, so that the spacing is stretched by less than half a point in it.
+        """
+        count = max(4, round(self.length / spacing))
+        spectrum = np.fft.rfft(self.heights)
+        kept = np.zeros(count // 2 + 1, dtype=complex)
+        shared = min(kept.size, spectrum.size)
+        kept[:shared] = spectrum[:shared]
+        if shared == kept.size and count % 2 == 0:
+            kept[-1] = 0  # the highest wave has no phase on this grid
+        heights: FloatArray = np.fft.irfft(kept, count) * (count / self.heights.size)
+        return heights
+
+
+SMOOTH = Profile(np.zeros(4), 1.0)
+"""No roughness."""
+
+
+def sinusoidal_profile(amplitude: float, wavelength: float) -> Profile:
+    """One wave. `amplitude` from its mean line. [m]"""
+    points = 64
+    phase = np.arange(points) * (2 * math.pi / points)
+    return Profile(amplitude * np.cos(phase), wavelength / points)
+
+
+def generate_profile(
+    rms: float,
+    correlation_length: float,
+    length: float,
+    seed: int,
+    skewness: float = 0.0,
+    kurtosis: float = 3.0,
+) -> Profile:
+    """A random profile of given statistics. Theory (H26).
+
+    Parameters
+    ----------
+    rms : float
+        Rq. [m]
+    correlation_length : float
+        Where the autocorrelation exp(-(x/l)^2) has fallen to 1/e. [m]
+    length : float
+        Of the period. [m]
+    seed : int
+        The same seed gives the same profile.
+    skewness, kurtosis : float
+        Rsk and Rku of the height distribution.
+
+    Raises
+    ------
+    InputError
+        If the statistics are impossible, or not reached by the sinh-arcsinh transformation.
+    """
+    _check_statistics(rms, correlation_length, length, skewness, kurtosis)
+    if rms == 0:
+        return SMOOTH
+    count = 2 * math.ceil(length / correlation_length * POINTS_PER_CORRELATION / 2)
+    rng = np.random.default_rng(seed)
+    wave = 2 * math.pi * np.fft.rfftfreq(count, length / count)
+    noise = rng.standard_normal(wave.size) + 1j * rng.standard_normal(wave.size)
+    spectrum = noise * np.exp(-((wave * correlation_length) ** 2) / 8)
+    spectrum[0] = 0
+    normal = np.fft.irfft(spectrum, count)
+    heights = _with_moments(normal / normal.std(), skewness, kurtosis)
+    heights -= heights.mean()
+    return Profile(heights * (rms / heights.std()), length / count)
+
+
+def read_profile(path: Path, cutoff: float | None = None) -> Profile:
+    """A measured profile: CSV with position in mm and height in um in its first two columns.
+
+    The straight line through it is taken off; with `cutoff` [m] also every wave longer than it.
+    Lines that start with # or letters are skipped.
+    """
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise _profile_error(path, f"cannot be read: {error}.", "Give a text file.") from None
+    rows = [line.replace(";", ",").split(",") for line in lines if _is_data(line)]
+    try:
+        table = np.array([[float(row[0]), float(row[1])] for row in rows])
+    except (ValueError, IndexError):
+        raise _profile_error(
+            path, "has lines that are not two numbers.", "Write position in mm, height in um."
+        ) from None
+    if len(table) < 16:
+        raise _profile_error(path, f"has {len(table)} points.", "Give 16 or more.")
+    if not np.isfinite(table).all():
+        raise _profile_error(path, "has gaps.", "Fill or cut them out.")
+    steps = np.diff(table[:, 0])
+    spacing = float(steps.mean())
+    if not (spacing > 0 and np.abs(steps - spacing).max() < 0.01 * spacing):
+        raise _profile_error(path, "has uneven positions.", "Resample it evenly, rising.")
+    x = np.arange(len(table)) * spacing
+    heights = table[:, 1] - np.polyval(np.polyfit(x, table[:, 1], 1), x)
+    if cutoff is not None:
+        waves = np.fft.rfft(heights)
+        waves[np.fft.rfftfreq(heights.size, spacing * 1e-3) < 1 / cutoff] = 0
+        heights = np.fft.irfft(waves, heights.size)
+    return Profile((heights - heights.mean()) * 1e-6, spacing * 1e-3)
+
+
+def _is_data(line: str) -> bool:
+    text = line.strip()
+    return bool(text) and (text[0].isdigit() or text[0] in "+-.,;" or text[:3].lower() == "nan")
+
+
+def _profile_error(path: Path, what: str, remedy: str) -> InputError:
+    return InputError([Problem("profile", str(path), what, remedy)], str(path))
+
+
+def _check_statistics(
+    rms: float, correlation_length: float, length: float, skewness: float, kurtosis: float
+) -> None:
+    problems = []
+    if not rms >= 0:
+        problems.append(Problem("rms", f"{rms:g}", "must be zero or more.", "Change it."))
+    if not correlation_length > 0:
+        problems.append(
+            Problem("correlation_length", f"{correlation_length:g}", "must be > 0.", "Change it.")
+        )
+    elif not length >= 4 * correlation_length:
+        problems.append(
+            Problem("length", f"{length:g}", "is under four correlation lengths.", "Increase it.")
+        )
+    if not kurtosis >= skewness**2 + 1:
+        problems.append(
+            Problem(
+                "kurtosis", f"{kurtosis:g}", "cannot be less than 1 + skewness^2.", "Increase it."
+            )
+        )
+    if problems:
+        raise InputError(problems, "the roughness")
+
+
+def _with_moments(normal: FloatArray, skewness: float, kurtosis: float) -> FloatArray:
+    """Heights of other third and fourth moments in the order of the `normal` ones.
+
+    Sinh-arcsinh transformation of Jones and Pewsey (2009), y = sinh((asinh(z) + e)/d), its two
+    constants found for the sample. Theory (H26).
+    """
+    if skewness == 0 and kurtosis == 3:
+        return normal
+    from scipy.optimize import least_squares
+
+    def transformed(constants: FloatArray) -> FloatArray:
+        y = np.sinh((np.arcsinh(normal) + constants[0]) * math.exp(constants[1]))
+        standard: FloatArray = (y - y.mean()) / y.std()
+        return standard
+
+    def lack(constants: FloatArray) -> FloatArray:
+        y = transformed(constants)
+        return np.array([np.mean(y**3) - skewness, np.mean(y**4) - kurtosis])
+
+    found = least_squares(lack, np.zeros(2), bounds=([-5, -3], [5, 1.5]))
+    if np.abs(found.fun).max() > 0.01:
+        value = f"skewness {skewness:g}, kurtosis {kurtosis:g}"
+        raise InputError(
+            [Problem("roughness", value, "cannot be reached.", "Bring them nearer to 0 and 3.")],
+            "the roughness",
+        )
+    return transformed(found.x)
