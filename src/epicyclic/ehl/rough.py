@@ -135,8 +135,8 @@ class _Simulation:
         inlet, outlet = -(1 + max(1.5, 3 * parabola)), 1 + max(0.5, 1.5 * parabola)
         self.x: FloatArray = np.linspace(inlet, outlet, nodes, dtype=np.float64)
         self.dx = float(self.x[1] - self.x[0])
-        reach: FloatArray = np.arange(nodes) * self.dx
-        cell: FloatArray = np.array([-self.dx, 0.0, self.dx])
+        reach = self.x - self.x[0]
+        cell = np.array([-self.dx, 0.0, self.dx], dtype=np.float64)
         row = deflection_matrix(reach, cell)[:, 1]
         self.kernel_row = np.concatenate([row[::-1], row[1:]])
 

@@ -1,0 +1,259 @@
+"""The tables of a line contact, and how it is built from them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal, cast
+
+from pydantic import Field
+
+from epicyclic.case.plain import plain, with_value
+from epicyclic.case.reading import read_file
+from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Table
+from epicyclic.case.validation import validate
+from epicyclic.ehl.conditions import Barus, ContactOil, LineContact, Roelands, TwoSlope
+from epicyclic.ehl.rough import NODES, AsperityContact
+from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, read_profile
+from epicyclic.errors import InputError, Problem
+from epicyclic.kernels.line_contact import equivalent_modulus, line_load_at_pressure
+from epicyclic.lubricant.properties import oil_state
+from epicyclic.units import (
+    HertzPressure,
+    Length,
+    Number,
+    PressureViscosity,
+    Quantity,
+    SmallLength,
+    Speed,
+    Temperature,
+)
+
+__all__ = ["ContactCase", "ContactModel", "contact_model", "load_contact_case"]
+
+LineLoad = Annotated[
+    float, Quantity("a line load", "N/m", "N/mm", low=0.0, high=1e5, open_low=True)
+]
+Stress = Annotated[float, Quantity("a stress", "Pa", "MPa", low=0.0, high=1e6, open_low=True)]
+
+PERIOD = 200.0
+"""Length of a generated profile, over its correlation length. [1]"""
+
+
+class Contact(Table):
+    """Load, geometry and motion."""
+
+    EXACTLY_ONE = (("line_load", "hertz_pressure"),)
+
+    radius: Length = Field(description="Equivalent radius of curvature.")
+    line_load: LineLoad | None = Field(default=None, description="Normal load per length.")
+    hertz_pressure: HertzPressure | None = Field(
+        default=None, description="Instead of line_load: the pressure of Hertz it causes."
+    )
+    rolling_speed: Speed = Field(description="Mean of both surface speeds.")
+    slide_to_roll_ratio: Number = Field(
+        default=0.0, ge=0.0, le=2.0, description="Difference of the surface speeds over their mean."
+    )
+
+
+class ContactLubricant(Table):
+    """The oil in the contact."""
+
+    oil: NamedOil = Field(
+        description="A name of the oil library (epicyclic oils) or a table of properties."
+    )
+    temperature: Temperature = Field(description="Of the oil at the inlet.")
+    pressure_law: Literal["roelands", "barus", "two-slope"] = Field(
+        default="roelands", description="Viscosity under pressure."
+    )
+    second_slope: PressureViscosity | None = Field(
+        default=None, description="For two-slope: slope at high pressure."
+    )
+    transition_pressure: HertzPressure | None = Field(
+        default=None, description="For two-slope: where the slopes meet."
+    )
+    eyring_stress: Stress = Field(
+        default=cast("Any", "5 MPa"),
+        description="Stress beyond which the oil thins (estimate; mineral oils 2 to 10 MPa).",
+    )
+
+
+class Surface(Table):
+    """A surface: its material and its roughness, generated or measured."""
+
+    material: NamedMaterial = Field(
+        default=cast("Any", "steel"), description="A name or a table of elastic constants."
+    )
+    roughness: Roughness | None = Field(
+        default=None, description="Rq; a measured profile is scaled to it. Smooth by default."
+    )
+    correlation_length: SmallLength = Field(
+        default=cast("Any", "20 um"), description="Where the autocorrelation has fallen to 1/e."
+    )
+    skewness: Number = Field(default=0.0, ge=-5.0, le=5.0, description="Rsk.")
+    kurtosis: Number = Field(default=3.0, ge=1.0, le=50.0, description="Rku.")
+    seed: int = Field(default=1, ge=0, description="Of the generated profile.")
+    profile: str | None = Field(
+        default=None, description="CSV of position in mm and height in um, instead."
+    )
+    cutoff: Length | None = Field(
+        default=None, description="Of a measured profile: longer waves are taken off."
+    )
+
+
+class Asperities(Table):
+    """Where the film vanishes."""
+
+    film: SmallLength = Field(
+        default=cast("Any", "1 nm"), description="Film below which surfaces touch (estimate)."
+    )
+    friction: Number = Field(
+        default=0.1, ge=0.0, le=1.0, description="Friction where they touch (estimate)."
+    )
+
+
+class ContactNumerics(Table):
+    """The grid."""
+
+    nodes: int = Field(default=NODES, ge=128, le=4096, description="In the rough contact.")
+
+
+class ContactCase(Table):
+    """One line contact."""
+
+    kind: Literal["line_contact"] = "line_contact"
+    title: str = ""
+    contact: Contact
+    lubricant: ContactLubricant
+    surface1: Surface = Surface()
+    surface2: Surface = Surface(seed=2)
+    asperities: Asperities = Asperities()
+    numerics: ContactNumerics = ContactNumerics()
+
+
+@dataclass(frozen=True, eq=False)
+class ContactModel:
+    """What the solver needs of a case."""
+
+    contact: LineContact
+    surfaces: tuple[Profile, Profile]
+    asperities: AsperityContact
+
+    @property
+    def smooth(self) -> bool:
+        """Neither surface has a roughness."""
+        return all(surface.rms == 0 for surface in self.surfaces)
+
+
+def load_contact_case(
+    source: str | Path | Mapping[str, Any], changes: Mapping[str, Any] | None = None
+) -> ContactCase:
+    """Read and check a line contact.
+
+    Parameters
+    ----------
+    source : str, Path or mapping
+        A TOML file, or its tables.
+    changes : mapping of str to object, optional
+        Dotted keys to values as a file has them.
+
+    Raises
+    ------
+    InputError
+        With every problem found.
+    """
+    problems: Sequence[Problem] = ()
+    if isinstance(source, Mapping):
+        name, tables = "the command", plain(source)
+    else:
+        name = str(source)
+        tables, problems = read_file(Path(source))
+    for key, value in (changes or {}).items():
+        tables = with_value(tables, key.split("."), plain(value))
+    checked = validate(ContactCase, tables)
+    found = [*problems, *checked.problems, *_cross_check(checked.sections)]
+    if checked.case is None or found:
+        raise InputError(found, name)
+    return checked.case
+
+
+def _cross_check(sections: Mapping[str, Table]) -> list[Problem]:
+    """What is wrong across keys."""
+    lubricant = sections.get("lubricant")
+    problems = []
+    if isinstance(lubricant, ContactLubricant) and lubricant.pressure_law == "two-slope":
+        problems += [
+            Problem(f"lubricant.{key}", "", "is missing; two-slope needs it.", "Give it.")
+            for key in ("second_slope", "transition_pressure")
+            if getattr(lubricant, key) is None
+        ]
+    for name in ("surface1", "surface2"):
+        surface = sections.get(name)
+        if isinstance(surface, Surface) and surface.cutoff is not None and surface.profile is None:
+            problems.append(
+                Problem(f"{name}.cutoff", "", "is for a measured profile.", "Give its file.")
+            )
+    return problems
+
+
+def contact_model(case: ContactCase) -> ContactModel:
+    """Contact, profiles and asperities of a case."""
+    modulus = _modulus(case.surface1.material, case.surface2.material)
+    table = case.contact
+    load = table.line_load
+    if load is None:
+        assert table.hertz_pressure is not None
+        load = line_load_at_pressure(table.hertz_pressure, table.radius, modulus)
+    slip = table.slide_to_roll_ratio / 2
+    contact = LineContact(
+        line_load=load,
+        radius=table.radius,
+        equivalent_modulus=modulus,
+        speed1=table.rolling_speed * (1 + slip),
+        speed2=table.rolling_speed * (1 - slip),
+        oil=_oil(case.lubricant),
+    )
+    surfaces = (_profile("surface1", case.surface1), _profile("surface2", case.surface2))
+    asperities = AsperityContact(case.asperities.film, case.asperities.friction)
+    return ContactModel(contact, surfaces, asperities)
+
+
+def _modulus(one: Material, two: Material) -> float:
+    return equivalent_modulus(
+        one.elastic_modulus, one.poisson_ratio, two.elastic_modulus, two.poisson_ratio
+    )
+
+
+def _oil(table: ContactLubricant) -> ContactOil:
+    state = oil_state(table.oil, table.temperature)
+    alpha = state.pressure_viscosity
+    law: Barus | Roelands | TwoSlope = Roelands(alpha)
+    if table.pressure_law == "barus":
+        law = Barus(alpha)
+    elif table.pressure_law == "two-slope":
+        assert table.second_slope is not None
+        assert table.transition_pressure is not None
+        law = TwoSlope(alpha, table.second_slope, table.transition_pressure)
+    return ContactOil(state.dynamic_viscosity, law, table.eyring_stress)
+
+
+def _profile(name: str, table: Surface) -> Profile:
+    if table.profile is not None:
+        measured = read_profile(Path(table.profile), table.cutoff)
+        return measured if table.roughness is None else measured.scaled_to(table.roughness)
+    if table.roughness is None:
+        return SMOOTH
+    try:
+        return generate_profile(
+            table.roughness, table.correlation_length, PERIOD * table.correlation_length,
+            table.seed, table.skewness, table.kurtosis,
+        )  # fmt: skip
+    except InputError as error:
+        raise InputError(
+            [
+                Problem(f"{name}.{problem.key}", problem.value, problem.allowed, problem.remedy)
+                for problem in error.problems
+            ],
+            error.source,
+        ) from None

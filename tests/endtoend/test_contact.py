@@ -1,0 +1,108 @@
+"""``epicyclic contact`` as a user meets it."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+SMOOTH = (
+    "contact", "--radius", "10 mm", "--pressure", "1 GPa", "--speed", "10 m/s", "--slip", "0.2",
+    "--oil", "atf-talbot-2012", "--temperature", "90 degC",
+)  # fmt: skip
+
+FILE = """\
+title = "Sun and planet"
+
+[contact]
+radius = "8 mm"
+line_load = "300 N/mm"
+rolling_speed = "8 m/s"
+slide_to_roll_ratio = 0.1
+
+[lubricant]
+oil = "iso-vg-100-mineral"
+temperature = "80 degC"
+pressure_law = "two-slope"
+second_slope = "8 1/GPa"
+transition_pressure = "0.4 GPa"
+
+[surface1]
+roughness = "0.1 um"
+"""
+
+
+def test_contact_by_options_prints_films_and_friction(epicyclic):
+    done = epicyclic(*SMOOTH)
+    assert done.returncode == 0, done.stderr
+    for words in ("central film", "minimum film", "friction coefficient", "rolling loss", "Conv"):
+        assert words in done.stdout, words
+
+
+def test_contact_by_file_gives_json_and_a_figure(epicyclic, tmp_path):
+    file, figure = tmp_path / "contact.toml", tmp_path / "contact.png"
+    file.write_text(FILE, encoding="utf-8")
+    done = epicyclic("contact", str(file), "--json", "-", "--plot", str(figure))
+    assert done.returncode == 0, done.stderr
+    result = json.loads(done.stdout)
+    assert result["status"] == "converged"
+    assert result["rough"]["time_steps"] > 0
+    assert result["figures"]["line load"]["value"] == pytest.approx(3e5)
+    assert 0 < result["figures"]["friction coefficient"]["value"] < 0.1
+    assert figure.read_bytes()[:4] == b"\x89PNG"
+
+
+def test_rough_contact_moves_in_a_gif(epicyclic, tmp_path):
+    figure = tmp_path / "contact.gif"
+    done = epicyclic(
+        *SMOOTH, "--roughness1", "0.02 um", "--set", "numerics.nodes=128", "--plot", str(figure)
+    )
+    assert done.returncode == 0, done.stderr
+    content = figure.read_bytes()
+    assert content[:6] == b"GIF89a"
+    assert content.count(b"\x21\xf9\x04") > 10  # one graphic control block a frame
+
+
+def test_every_mistake_is_named(epicyclic):
+    done = epicyclic(
+        "contact", "--radius", "10", "--pressure", "1 GPa", "--load", "5 N/mm", "--slip", "3",
+        "--oil", "atf-talbt", "--set", "lubricant.pressure_law=two-slope",
+    )  # fmt: skip
+    assert done.returncode == 2
+    for words in (
+        "contact.radius = 10: has no unit",
+        "contact.rolling_speed: is missing",
+        "contact.slide_to_roll_ratio = 3",
+        "line_load",
+        "Did you mean 'atf-talbot-2012'?",
+        "lubricant.temperature: is missing",
+    ):
+        assert words in done.stderr, words
+
+
+def test_laws_and_filters_that_lack_a_key_are_named(epicyclic):
+    done = epicyclic(
+        *SMOOTH, "--set", "lubricant.pressure_law=two-slope", "--set", "surface1.cutoff=0.8 mm"
+    )
+    assert done.returncode == 2
+    for key in ("second_slope", "transition_pressure", "surface1.cutoff"):
+        assert key in done.stderr
+
+
+def test_a_contact_without_solution_ends_with_3(epicyclic):
+    done = epicyclic(
+        "contact", "--radius", "10 mm", "--pressure", "80 GPa", "--speed", "1 m/s",
+        "--oil", "iso-vg-680-mineral", "--temperature", "40 degC", "--json", "-",
+        "--set", "lubricant.pressure_law=barus",
+    )  # fmt: skip
+    assert done.returncode == 3
+    result = json.loads(done.stdout)
+    assert result["status"] == "failed"
+    assert "smooth" not in result
+    assert "no convergence" in result["message"]
+
+
+def test_unwritable_figures_are_refused(epicyclic, tmp_path):
+    done = epicyclic(*SMOOTH, "--plot", str(tmp_path / "contact.nothing"))
+    assert done.returncode == 2
+    assert "--plot" in done.stderr
