@@ -17,11 +17,14 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
 
 import epicyclic as ep
+from epicyclic.analysis.contact import solve_contact
+from epicyclic.case.contact import load_contact_case
 
 REPEATS = 5
 MATRIX = {
@@ -130,6 +133,32 @@ def compliance_seconds(segments: int) -> tuple[float, float]:
     return building, median_seconds(loads, repeats=20)
 
 
+CONTACT = {
+    "contact": {
+        "radius": "10 mm",
+        "hertz_pressure": "1 GPa",
+        "rolling_speed": "10 m/s",
+        "slide_to_roll_ratio": 0.25,
+    },
+    "lubricant": {"oil": "atf-talbot-2012", "temperature": "90 degC"},
+}
+"""A line contact of the test article's kind."""
+
+
+def contact_seconds(roughness: str) -> tuple[float, int]:
+    """Time of one line contact with both surfaces of a roughness, and its time steps."""
+    tables: dict[str, Any] = dict(CONTACT)
+    if roughness:
+        tables |= {
+            name: {"roughness": roughness, "seed": seed}
+            for seed, name in enumerate(("surface1", "surface2"))
+        }
+    contact = load_contact_case(tables)
+    rough = solve_contact(contact).rough
+    seconds = median_seconds(lambda: solve_contact(contact), repeats=REPEATS if rough else 50)
+    return seconds, rough.steps if rough else 0
+
+
 def main() -> None:
     case = ep.load_case("talbot-2012")
     with tempfile.TemporaryDirectory() as empty:
@@ -184,7 +213,14 @@ def main() -> None:
         cost.add_column(column, justify="right")
     for count, (building, loading) in elastic.items():
         cost.add_row(str(count), f"{1e3 * building:.0f} ms", f"{1e3 * loading:.2f} ms")
-    for shown in (table, cost):
+    contacts = Table(title="Line contacts, one core", title_justify="left")
+    for column in ("roughness of both", "measured", "aim", "time steps", "a step"):
+        contacts.add_column(column, justify="right")
+    for roughness, aim in (("", "10 ms"), ("0.05 um", "500 ms"), ("0.4 um", "500 ms")):
+        seconds, steps = contact_seconds(roughness)
+        each = f"{1e3 * seconds / steps:.2f} ms" if steps else ""
+        contacts.add_row(roughness or "none", f"{1e3 * seconds:.1f} ms", aim, str(steps), each)
+    for shown in (table, cost, contacts):
         Console().print(shown)
 
 

@@ -29,7 +29,7 @@ MAX_ITERATIONS = 15
 """Newton steps of a time step, doubled in a second attempt."""
 GROWTH, SETTLING = 1.0, 2.0
 """Times b/u_r in which the roughness grows, and until averages begin. [1]"""
-BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 4, 48
+BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 4, 96
 """Time b/u_r of a block, and numbers of blocks that an average takes."""
 STATIONARY = 0.02
 """Standard error of the mean friction over it at which a simulation ends. [1]"""

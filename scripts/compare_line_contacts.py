@@ -1,0 +1,114 @@
+"""Sliding friction of the line-contact solver beside the regression of Talbot (2012), Eq. 5.8.
+
+Run: python scripts/compare_line_contacts.py [POINTS] [SEED]
+
+Points are drawn from the levels of his Table 5.1 for the test fluid. The source states neither the
+profiles nor the shear law nor the boundary friction of its simulations: those of the defaults
+of `epicyclic contact` are used, uncalibrated.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from epicyclic.analysis.contact import solve_contact
+from epicyclic.case.contact import load_contact_case
+from epicyclic.kernels.line_contact import pan_hamrock_minimum_film
+from epicyclic.kernels.mixed_ehl import sliding_friction
+from epicyclic.lubricant.properties import oil_state
+
+LEVELS = {
+    "temperature": (25.0, 50.0, 75.0, 100.0),
+    "radius": (5.0, 20.0, 40.0),
+    "rough1": (0.1, 0.3, 0.5, 0.7),
+    "rough2": (0.1, 0.3, 0.5, 0.7),
+    "pressure": (0.5, 1.0, 1.5, 2.0, 2.5),
+    "speed": (1.0, 5.0, 10.0, 15.0, 20.0),
+    "slip": (0.025, 0.05, 0.10, 0.25, 0.50, 0.75, 1.00),
+}
+"""Table 5.1: degC, mm, um, um, GPa, m/s, 1."""
+
+
+def compare(point: dict[str, float]) -> dict[str, float | str]:
+    """Friction of both, and how the solution ended."""
+    case = load_contact_case(
+        {
+            "contact": {
+                "radius": f"{point['radius']} mm",
+                "hertz_pressure": f"{point['pressure']} GPa",
+                "rolling_speed": f"{point['speed']} m/s",
+                "slide_to_roll_ratio": point["slip"],
+            },
+            "lubricant": {
+                "oil": "atf-talbot-2012",
+                "temperature": f"{point['temperature']} degC",
+            },
+            "surface1": {"roughness": f"{point['rough1']} um"},
+            "surface2": {"roughness": f"{point['rough2']} um"},
+        }
+    )
+    start = time.perf_counter()
+    result = solve_contact(case)
+    seconds = time.perf_counter() - start
+    rough, contact = result.rough, result.smooth.contact
+    assert rough is not None
+    state = oil_state(case.lubricant.oil, case.lubricant.temperature)
+    e_eq, r_eq = contact.equivalent_modulus, contact.radius
+    u = contact.rolling_speed * state.dynamic_viscosity / (e_eq * r_eq)
+    g = state.pressure_viscosity * e_eq
+    rq1, rq2 = point["rough1"] * 1e-6 / r_eq, point["rough2"] * 1e-6 / r_eq
+    s_co = float(np.hypot(rq1, rq2))
+    lam = pan_hamrock_minimum_film(u, g, contact.line_load / (e_eq * r_eq)) / s_co
+    published = sliding_friction(
+        point["slip"], u, g, contact.hertz_pressure / e_eq, r_eq / contact.half_width, s_co,
+        rq1 * rq2 / (rq1 + rq2), lam,
+    )  # fmt: skip
+    return {
+        **point,
+        "film_ratio": lam,
+        "published": published,
+        "computed": rough.friction_coefficient,
+        "smooth": result.smooth.friction_coefficient,
+        "ratio": rough.friction_coefficient / published,
+        "asperity_load": rough.asperity_load_share,
+        "status": str(rough.status),
+        "unsolved": rough.unsolved_steps / max(rough.steps, 1),
+        "steps": rough.steps,
+        "seconds": seconds,
+    }
+
+
+def main(count: int = 60, seed: int = 1) -> None:
+    rng = np.random.default_rng(seed)
+    rows = []
+    for _ in range(count):
+        point = {name: float(rng.choice(levels)) for name, levels in LEVELS.items()}
+        rows.append(compare(point))
+        print(rows[-1], file=sys.stderr, flush=True)
+    table = pd.DataFrame(rows)
+    table.to_csv(Path("line_contacts.csv"), index=False)
+    solved = table[table["status"] == "converged"]
+    for name, part in (
+        ("all", solved),
+        ("film ratio <= 0.7", solved[solved["film_ratio"] <= 0.7]),
+        ("0.7 to 3", solved[(solved["film_ratio"] > 0.7) & (solved["film_ratio"] <= 3)]),
+        ("> 3", solved[solved["film_ratio"] > 3]),
+    ):
+        if len(part):
+            low, median, high = part["ratio"].quantile([0.1, 0.5, 0.9])
+            near = ((part["ratio"] - 1).abs() <= 0.25).mean()
+            print(
+                f"{name}: {len(part)} points, computed/published median {median:.2f}, "
+                f"10 to 90 %: {low:.2f} to {high:.2f}, within 25 %: {near:.0%}"
+            )
+    print(f"not converged: {len(table) - len(solved)} of {len(table)}")
+    print(f"median {table['seconds'].median():.2f} s, {table['steps'].median():.0f} time steps")
+
+
+if __name__ == "__main__":
+    main(*(int(argument) for argument in sys.argv[1:3]))
