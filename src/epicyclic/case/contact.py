@@ -20,13 +20,11 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus, line_load_at_pressure
 from epicyclic.lubricant.properties import oil_state
 from epicyclic.units import (
-    HertzPressure,
     Length,
     Number,
     PressureViscosity,
     Quantity,
     SmallLength,
-    Speed,
     Temperature,
 )
 
@@ -34,6 +32,10 @@ __all__ = ["ContactCase", "ContactModel", "contact_model", "load_contact_case"]
 
 LineLoad = Annotated[
     float, Quantity("a line load", "N/m", "N/mm", low=0.0, high=1e5, open_low=True)
+]
+RollingSpeed = Annotated[float, Quantity("a speed", "m/s", "m/s", low=0.0, high=1e4, open_low=True)]
+LoadPressure = Annotated[
+    float, Quantity("a pressure", "Pa", "GPa", low=0.0, high=100.0, open_low=True)
 ]
 Stress = Annotated[float, Quantity("a stress", "Pa", "MPa", low=0.0, high=1e6, open_low=True)]
 
@@ -48,10 +50,10 @@ class Contact(Table):
 
     radius: Length = Field(description="Equivalent radius of curvature.")
     line_load: LineLoad | None = Field(default=None, description="Normal load per length.")
-    hertz_pressure: HertzPressure | None = Field(
+    hertz_pressure: LoadPressure | None = Field(
         default=None, description="Instead of line_load: the pressure of Hertz it causes."
     )
-    rolling_speed: Speed = Field(description="Mean of both surface speeds.")
+    rolling_speed: RollingSpeed = Field(description="Mean of both surface speeds.")
     slide_to_roll_ratio: Number = Field(
         default=0.0, ge=0.0, le=2.0, description="Difference of the surface speeds over their mean."
     )
@@ -70,7 +72,7 @@ class ContactLubricant(Table):
     second_slope: PressureViscosity | None = Field(
         default=None, description="For two-slope: slope at high pressure."
     )
-    transition_pressure: HertzPressure | None = Field(
+    transition_pressure: LoadPressure | None = Field(
         default=None, description="For two-slope: where the slopes meet."
     )
     eyring_stress: Stress = Field(

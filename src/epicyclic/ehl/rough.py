@@ -25,7 +25,7 @@ NODES = 512
 TOLERANCE = 2e-3
 """Largest change of a pressure in the last Newton step of a time step, over p_h; what is left is
 its square. [1]"""
-MAX_ITERATIONS = 15
+MAX_ITERATIONS = 40
 """Newton steps of a time step, doubled in a second attempt."""
 GROWTH, SETTLING = 1.0, 2.0
 """Times b/u_r in which the roughness grows, and until averages begin. [1]"""

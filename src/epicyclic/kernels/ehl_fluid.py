@@ -113,33 +113,36 @@ def density_ratio(pressure: float, fluid: ScaledFluid) -> tuple[float, float]:
 
 
 @kernel
-def mean_fluidity(log_left: float, log_right: float) -> tuple[float, float, float]:
+def mean_fluidity(
+    log_left: float, log_right: float, root_left: float, root_right: float
+) -> tuple[float, float, float]:
     """Mean of 1/mu between two nodes and its derivatives in ln(mu) of each. Theory (H13).
 
-    The logarithmic mean: exact for a flow through a cell in which mu is exponential in p.
+    The logarithmic mean: exact for a flow through a cell in which mu is exponential in p. `root_*`
+    is mu^-1/2 of each node.
     """
     half = 0.5 * (log_right - log_left)
-    level = math.exp(-0.5 * (log_left + log_right))
+    level = root_left * root_right
     if abs(half) < 1e-3:  # series, where the closed form loses its digits
         ratio = 1.0 + half * half / 6.0
         slope = half / 3.0
     else:
-        sine = math.sinh(half)
-        ratio = sine / half
-        slope = (math.cosh(half) - ratio) / half
+        growth = root_left / root_right
+        ratio = 0.5 * (growth - 1.0 / growth) / half
+        slope = (0.5 * (growth + 1.0 / growth) - ratio) / half
     mean = level * ratio
     return mean, -0.5 * mean - 0.5 * level * slope, -0.5 * mean + 0.5 * level * slope
 
 
 @kernel
-def thinning_factor(log_viscosity: float, film: float, fluid: ScaledFluid) -> tuple[float, float]:
+def thinning_factor(viscosity: float, film: float, fluid: ScaledFluid) -> tuple[float, float]:
     """Factor by which sliding eases the pressure flow, and d(ln factor)/d(ln Sigma).
 
     Theory (H12).
 
     cosh(tau_m/tau_0) = sqrt(1 + Sigma^2) with tau_m/tau_0 = asinh(Sigma), Sigma = mu u_s/(tau_0 h).
     """
-    sigma = math.exp(log_viscosity) * fluid.sliding / (film * fluid.eyring)
+    sigma = viscosity * fluid.sliding / (film * fluid.eyring)
     if sigma > LARGE_SHEAR:  # sigma squared may overflow
         return sigma, 1.0
     return math.sqrt(1.0 + sigma * sigma), sigma * sigma / (1.0 + sigma * sigma)

@@ -76,19 +76,21 @@ def face_terms(
     """
     n = pressure.size
     log_left, slope_left = log_viscosity_ratio(pressure[0], fluid)
+    root_left = math.exp(-0.5 * log_left)
     rho[0], d_rho[0] = density_ratio(pressure[0], fluid)
     for i in range(n - 1):
         log_right, slope_right = log_viscosity_ratio(pressure[i + 1], fluid)
+        root_right = math.exp(-0.5 * log_right)
         rho[i + 1], d_rho[i + 1] = density_ratio(pressure[i + 1], fluid)
         left, right = film[i], film[i + 1]
         conductance[i] = 0.0
         terms[i, :] = 0.0
         if left > 0.0 and right > 0.0:
-            fluidity, by_left, by_right = mean_fluidity(log_left, log_right)
+            fluidity, by_left, by_right = mean_fluidity(log_left, log_right, root_left, root_right)
             sum_ = left + right
             cube = 2.0 * (left * right) ** 2 / sum_
             mean_film = 0.5 * sum_
-            ease, exponent = thinning_factor(0.5 * (log_left + log_right), mean_film, fluid)
+            ease, exponent = thinning_factor(1.0 / (root_left * root_right), mean_film, fluid)
             density = 0.5 * (rho[i] + rho[i + 1])
             g = fluid.poiseuille * density * cube * fluidity * ease / dx
             conductance[i] = g
@@ -101,7 +103,7 @@ def face_terms(
             )
             terms[i, 2] = flow * (2.0 / left - (1.0 + exponent) / sum_)
             terms[i, 3] = flow * (2.0 / right - (1.0 + exponent) / sum_)
-        log_left, slope_left = log_right, slope_right
+        log_left, slope_left, root_left = log_right, slope_right, root_right
 
 
 @kernel

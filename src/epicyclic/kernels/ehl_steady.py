@@ -99,10 +99,11 @@ def _flows(
     d_film = np.zeros((n - 1, 3))
     d_pressure = np.zeros((n - 1, 3))
     rho, d_rho = np.zeros(n), np.zeros(n)
-    log_mu, d_log_mu = np.zeros(n), np.zeros(n)
+    log_mu, d_log_mu, root = np.zeros(n), np.zeros(n), np.zeros(n)
     for i in range(n):
         rho[i], d_rho[i] = density_ratio(pressure[i], fluid)
         log_mu[i], d_log_mu[i] = log_viscosity_ratio(pressure[i], fluid)
+        root[i] = math.exp(-0.5 * log_mu[i])
     for i in range(n - 1):
         dx = x[i + 1] - x[i]
         # Couette flow: extrapolated from upstream; at the inlet, centred
@@ -117,8 +118,8 @@ def _flows(
         # Poiseuille flow
         h = 0.5 * (film[i] + film[i + 1])
         density = 0.5 * (rho[i] + rho[i + 1])
-        fluidity, d_left, d_right = mean_fluidity(log_mu[i], log_mu[i + 1])
-        ease, exponent = thinning_factor(0.5 * (log_mu[i] + log_mu[i + 1]), h, fluid)
+        fluidity, d_left, d_right = mean_fluidity(log_mu[i], log_mu[i + 1], root[i], root[i + 1])
+        ease, exponent = thinning_factor(1.0 / (root[i] * root[i + 1]), h, fluid)
         conductance = fluid.poiseuille * density * h**3 * fluidity * ease
         gradient = (pressure[i + 1] - pressure[i]) / dx
         poiseuille = conductance * gradient
