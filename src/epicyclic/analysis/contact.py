@@ -14,7 +14,7 @@ from epicyclic.status import Status
 
 __all__ = ["ContactFigure", "ContactResult", "solve_contact"]
 
-FRAMES = 120
+FRAMES = 60
 """Moments kept for an animation."""
 
 
