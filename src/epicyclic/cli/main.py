@@ -33,6 +33,7 @@ EXIT_ERROR, EXIT_INPUT, EXIT_NO_SOLUTION, EXIT_FAILED_POINTS = 1, 2, 3, 4
 EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
 SHOWN_FAILURES = 10
 PICTURES = (".png", ".svg", ".pdf")
+ANIMATION = ".gif"
 
 case_argument = click.argument("case", metavar="CASE")
 set_option = click.option(
@@ -208,12 +209,10 @@ def contact(
         for name, text in options.items()
         if text is not None
     }
+    if plot is not None:
+        _check_picture("--plot", plot, (*PICTURES, ANIMATION))
     case = load_contact_case(file or {}, given | _parse_changes(changes))
     result = solve_contact(case, frames=plot is not None)
-    if plot is not None:
-        from epicyclic.plots.contact import save_contact
-
-        save_contact(result, plot)
     if json_file == "-":
         click.echo(result.to_json())
     else:
@@ -223,6 +222,13 @@ def contact(
         if json_file is not None:
             _write(Path(json_file), result.to_json() + "\n")
         terminal().print(contact_tables(result))
+    if plot is not None and result.smooth.status is Status.CONVERGED:
+        from epicyclic.plots.contact import contact_animation, contact_figure
+
+        if plot.suffix == ANIMATION and result.rough is not None:
+            _write(plot, contact_animation(result))
+        else:
+            _write(plot, _picture(contact_figure(result), plot))
     if result.status is not Status.CONVERGED:
         sys.exit(EXIT_NO_SOLUTION)
 
@@ -398,18 +404,23 @@ def _parse_changes(options: Sequence[str]) -> dict[str, Any]:
     return changes
 
 
-def _check_picture(option: str, path: Path) -> None:
-    if path.suffix not in PICTURES:
-        allowed = f"must end in {', '.join(PICTURES)}."
+def _check_picture(option: str, path: Path, formats: Sequence[str] = PICTURES) -> None:
+    if path.suffix not in formats:
+        allowed = f"must end in {', '.join(formats)}."
         problem = Problem(option, str(path), allowed, "Choose one of these formats.")
         raise InputError([problem], "the command")
 
 
 def _draw(figure: Figure, path: Path) -> None:
+    _write(path, _picture(figure, path))
+    click.echo(f"Wrote {path}.")
+
+
+def _picture(figure: Figure, path: Path) -> bytes:
+    """What a file of the type of `path` holds of a figure."""
     picture = io.BytesIO()
     figure.savefig(picture, format=path.suffix[1:])
-    _write(path, picture.getvalue())
-    click.echo(f"Wrote {path}.")
+    return picture.getvalue()
 
 
 def _write(path: Path, content: str | bytes) -> None:

@@ -1,97 +1,81 @@
-"""Pressure and film of a line contact, still or animated."""
+"""Pressure and film of a line contact, still or in motion."""
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from epicyclic.analysis.contact import FRAMES, ContactResult
-from epicyclic.errors import InputError, Problem
+from epicyclic.plots.style import styled_figure
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+__all__ = ["contact_animation", "contact_figure", "plot_film", "plot_pressure"]
 
-__all__ = ["ANIMATIONS", "draw_contact", "save_contact"]
-
-ANIMATIONS = (".gif",)
-"""File types that are animated."""
 GIGAPASCAL, MICROMETRE, MILLIMETRE = 1e9, 1e-6, 1e-3
-FRAMES_PER_SECOND = 20
+SHOWN_WIDTHS = (-2.0, 1.5)
+"""Limits of the abscissa, over the half-width of Hertz. [1]"""
 SHOWN_FILMS = 5.0
-"""Height of the film axis, over the central film. [1]"""
+"""Height of the film axis, over the central film of the smooth contact. [1]"""
+FRAMES_PER_SECOND = 20
+ANIMATION_DPI = 80
 
 
-def save_contact(result: ContactResult, path: Path) -> None:
-    """Draw into a file of any type matplotlib writes; a .gif moves."""
-    matplotlib = _matplotlib()
-    with matplotlib.rc_context({"backend": "agg"}):
-        figure = draw_contact(result)
-        try:
-            if path.suffix.lower() in ANIMATIONS and result.rough is not None:
-                _animate(figure, result, path)
-            else:
-                figure.savefig(path)
-        except (OSError, ValueError) as error:
-            problem = Problem("--plot", str(path), f"cannot be written: {error}.", "Rename it.")
-            raise InputError([problem], "the command") from None
-
-
-def draw_contact(result: ContactResult) -> Figure:
-    """Pressure above, film below, over x; of a rough contact the last moment kept."""
-    _matplotlib()
-    from matplotlib.figure import Figure
-
-    smooth, rough = result.smooth, result.rough
-    figure = Figure(figsize=(8, 6), layout="constrained")
-    upper, lower = figure.subplots(2, sharex=True)
-    width = smooth.contact.half_width / MILLIMETRE
-    x = smooth.x / MILLIMETRE
-    upper.plot(x, smooth.pressure / GIGAPASCAL, color="0.5", label="smooth")
-    lower.plot(x, smooth.film / MICROMETRE, color="0.5", label="smooth")
-    if rough is not None and rough.frames:
-        frame = rough.frames[-1]
-        inside = rough.x / MILLIMETRE
-        upper.plot(inside, frame.pressure / GIGAPASCAL, linewidth=1, label="rough")
-        lower.plot(inside, frame.film / MICROMETRE, linewidth=1, label="rough")
-        upper.set_ylim(0, 1.05 * max(float(f.pressure.max()) for f in rough.frames) / GIGAPASCAL)
-        upper.legend(frameon=False)
-    upper.set_ylabel("pressure / GPa")
-    lower.set_ylabel("film / µm")
-    lower.set_xlabel("x / mm")
-    lower.set_xlim(-2 * width, 1.5 * width)
-    lower.set_ylim(0, SHOWN_FILMS * smooth.central_film / MICROMETRE)
-    upper.set_title(result.case.title or "Line contact")
+def contact_figure(result: ContactResult) -> Figure:
+    """Pressure above, film below."""
+    with styled_figure(2, 1, result.case.title or "Line contact") as (figure, axes):
+        plot_pressure(result, axes[0, 0])
+        plot_film(result, axes[1, 0])
     return figure
 
 
-def _animate(figure: Figure, result: ContactResult, path: Path) -> None:
-    from matplotlib.animation import FuncAnimation, PillowWriter
+def plot_pressure(result: ContactResult, ax: Axes) -> Axes:
+    """Pressure of the smooth contact, and of a rough one the last moment kept."""
+    ax.plot(result.smooth.x / MILLIMETRE, result.smooth.pressure / GIGAPASCAL, label="smooth")
+    rough = result.rough
+    if rough is not None and rough.frames:
+        ax.plot(rough.x / MILLIMETRE, rough.frames[-1].pressure / GIGAPASCAL, label="rough")
+        highest = max(float(frame.pressure.max()) for frame in rough.frames[-FRAMES:])
+        ax.set_ylim(0, 1.05 * highest / GIGAPASCAL)
+        ax.legend()
+    return _over_x(result, ax, "pressure, GPa")
 
+
+def plot_film(result: ContactResult, ax: Axes) -> Axes:
+    """Film of the smooth contact, and of a rough one the last moment kept."""
+    ax.plot(result.smooth.x / MILLIMETRE, result.smooth.film / MICROMETRE, label="smooth")
+    rough = result.rough
+    if rough is not None and rough.frames:
+        ax.plot(rough.x / MILLIMETRE, rough.frames[-1].film / MICROMETRE, label="rough")
+    ax.set_ylim(0, SHOWN_FILMS * result.smooth.central_film / MICROMETRE)
+    return _over_x(result, ax, "film, µm")
+
+
+def contact_animation(result: ContactResult) -> bytes:
+    """The last moments kept of a rough contact as an animated GIF."""
     assert result.rough is not None
     frames = result.rough.frames[-FRAMES:]
-    upper, lower = figure.axes[:2]
+    figure = contact_figure(result)
+    upper, lower = (ax.lines[-1] for ax in figure.axes)
 
     def show(number: int) -> list[Any]:
-        frame = frames[number]
-        _last_line(upper).set_ydata(frame.pressure / GIGAPASCAL)
-        _last_line(lower).set_ydata(frame.film / MICROMETRE)
-        return [_last_line(upper), _last_line(lower)]
+        upper.set_ydata(frames[number].pressure / GIGAPASCAL)
+        lower.set_ydata(frames[number].film / MICROMETRE)
+        return [upper, lower]
 
     animation = FuncAnimation(figure, show, frames=len(frames))
-    animation.save(path, writer=PillowWriter(fps=FRAMES_PER_SECOND))
+    with tempfile.TemporaryDirectory() as folder:  # the writer of frames takes a path only
+        path = Path(folder) / "contact.gif"
+        animation.save(path, writer=PillowWriter(fps=FRAMES_PER_SECOND), dpi=ANIMATION_DPI)
+        return path.read_bytes()
 
 
-def _last_line(axes: Axes) -> Any:
-    return axes.lines[-1]
-
-
-def _matplotlib() -> Any:
-    try:
-        import matplotlib
-    except ImportError:
-        problem = Problem(
-            "--plot", "", "needs matplotlib.", "Run: python -m pip install 'epicyclic[plot]'."
-        )
-        raise InputError([problem], "the command") from None
-    return matplotlib
+def _over_x(result: ContactResult, ax: Axes, label: str) -> Axes:
+    width = result.smooth.contact.half_width / MILLIMETRE
+    ax.set_xlim(SHOWN_WIDTHS[0] * width, SHOWN_WIDTHS[1] * width)
+    ax.set_xlabel("x, mm")
+    ax.set_ylabel(label)
+    return ax

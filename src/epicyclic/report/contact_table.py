@@ -6,10 +6,10 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from epicyclic.analysis.contact import ContactFigure, ContactResult
-from epicyclic.report.shown import shown, unit_text
+from epicyclic.report.shown import shown
 from epicyclic.report.tables import plain_table
 from epicyclic.status import Status
-from epicyclic.units import Quantity
+from epicyclic.units import Quantity, unit_text
 
 __all__ = ["contact_tables"]
 
