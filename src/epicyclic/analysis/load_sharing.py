@@ -20,7 +20,23 @@ from epicyclic.elasticity.planet_sharing import (
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.planet_bearing import RollerBearing, radial_stiffness
 
-__all__ = ["planet_shares"]
+__all__ = ["SHARING_METHODS", "planet_shares"]
+
+SHARE_DIGITS = 12
+"""Decimals of a share, so that planets that carry alike are solved once. [1]"""
+SHARING_METHODS = {
+    "equal": ("equal loads", ""),
+    "mesh-load-factor": ("one planet overloaded by a given factor", "ISO 6336-1"),
+    "closed-form": (
+        "closed form for equally spaced planets",
+        "T. Ligata, A. Kahraman, A. Singh, J. Mech. Des. 131 (2009) 021007",
+    ),
+    "direct": (
+        "elastic branches between rigid members",
+        "T. Ligata, A. Kahraman, A. Singh, J. Mech. Des. 131 (2009) 021007",
+    ),
+}
+"""What each method of load sharing is, and its source."""
 
 
 def planet_shares(
@@ -64,7 +80,7 @@ def planet_shares(
             {sharing.floating_member: sharing.support_stiffness} if floats else {}
         )
         forces = solve_branch_forces(force, branches, directions, supports)
-    return tuple(float(share) for share in forces / forces.sum())
+    return tuple(float(share) for share in np.round(forces / forces.sum(), SHARE_DIGITS))
 
 
 def _branches(

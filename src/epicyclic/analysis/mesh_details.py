@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from epicyclic.analysis.parts import (
     MeshDuty,
+    contact_under,
     distribute_load,
     fluids_of,
     friction_settings,
-    load_mesh,
+    load_notes,
     resolve_models,
 )
 from epicyclic.analysis.solve import loaded_duties
@@ -79,10 +80,10 @@ def mesh_details(case: Case) -> dict[str, xr.Dataset]:
             "Give a torque other than zero.",
         )
         raise InputError([problem], case.source)
-    return {duty.key: _details(case, duty) for duty in loaded_duties(case)}
+    return {duty.key: _details(case, duty, load_notes(case)) for duty in loaded_duties(case)}
 
 
-def _details(case: Case, duty: MeshDuty) -> xr.Dataset:
+def _details(case: Case, duty: MeshDuty, notes: tuple[str, ...]) -> xr.Dataset:
     import xarray as xr
 
     mesh = duty.mesh
@@ -107,6 +108,7 @@ def _details(case: Case, duty: MeshDuty) -> xr.Dataset:
     title = f"{duty.key.replace('_', ' ').capitalize()} of {case.title or 'the case'}"
     attributes = {
         "title": title,
+        "notes": "\n".join(notes),
         "load_distribution": case.models.load_distribution,
         "force_N": abs(duty.torque1) / mesh.gear1.base_radius,
         "pitch_angle_deg": DEGREE.to_display(pitch_angle),
@@ -151,24 +153,22 @@ def _loads(loads: LineLoads, face_width: float) -> dict[str, Variable]:
 
 def _contact(case: Case, duty: MeshDuty, loads: LineLoads) -> dict[str, Variable]:
     """What pressure and motion add."""
-    contact = load_mesh(duty, case.models, case.numerics, fluids_of(case).oil)
+    contact = contact_under(duty, loads, fluids_of(case).oil)
     loaded = (loads.lines.length > 0) & (loads.line_load > 0)
 
-    def spread(values: FloatArray | float) -> FloatArray:
+    def spread(values: FloatArray) -> FloatArray:
         field = np.full(loaded.shape, math.nan)
         field[loaded] = values
         return field
 
-    if contact is None:
-        pressure = sliding = film = friction = power = np.array(math.nan)
-    else:
+    film = friction = np.full(contact.line_load.shape, math.nan)
+    if duty.speed1 != 0:
         model = friction_model(resolve_models(case)["friction"], friction_settings(case))
-        pressure, sliding = contact.hertz_pressure, contact.sliding_speed
         film, friction = contact.film_ratio, model.coefficient(contact)
-        power = friction * contact.line_load * np.abs(sliding)
+    power = friction * contact.line_load * np.abs(contact.sliding_speed)
     return {
-        "hertz_pressure": _points(spread(pressure), "contact pressure", GIGAPASCAL),
-        "sliding_speed": _points(spread(sliding), "sliding speed", METRE_PER_SECOND),
+        "hertz_pressure": _points(spread(contact.hertz_pressure), "contact pressure", GIGAPASCAL),
+        "sliding_speed": _points(spread(contact.sliding_speed), "sliding speed", METRE_PER_SECOND),
         "film_ratio": _points(spread(film), "film ratio", NUMBER),
         "friction_coefficient": _points(spread(friction), "coefficient of friction", NUMBER),
         "friction_power": _points(spread(power), "friction power per length", WATT_PER_MM),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from epicyclic.analysis.parts import (
     Body,
     MeshDuty,
+    contact_notes,
     drag_part,
     fluid_notes,
     fluids_of,
@@ -19,6 +20,7 @@ from epicyclic.analysis.result import Result
 from epicyclic.case import build
 from epicyclic.case.case import GearPairCase
 from epicyclic.kinematics import pair_power_flow
+from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 
 __all__ = ["pair_duty", "solve_pair"]
 
@@ -30,6 +32,7 @@ def solve_pair(case: GearPairCase) -> Result:
     mesh = solve_mesh(case, duty, fluids.oil, 1)
     drag, drag_flags = drag_part(_bodies(case, duty), fluids.mixture)
     terms = loss_terms(mesh.parts | {"drag": drag}, case.losses)
+    distribution = LOAD_DISTRIBUTIONS[case.models.load_distribution]
     flow = pair_power_flow(
         duty.mesh.ratio,
         duty.mesh.internal,
@@ -51,8 +54,10 @@ def solve_pair(case: GearPairCase) -> Result:
             *general_notes(terms, flow.input_power, flow.efficiency),
             *fluid_notes(case),
             *load_notes(case),
+            *contact_notes({duty.key: mesh.figures}),
         ),
-        sources=used_sources(terms),
+        load_methods={"load_distribution": distribution.title},
+        sources=used_sources(terms, distribution.source),
         inputs=case.inputs(),
     )
 

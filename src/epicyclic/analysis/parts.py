@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel
 
 from epicyclic.analysis.result import (
@@ -46,6 +48,8 @@ __all__ = [
     "MeshDuty",
     "MeshOutcome",
     "Part",
+    "contact_notes",
+    "contact_under",
     "distribute_load",
     "drag_part",
     "elastic_loads",
@@ -62,6 +66,12 @@ __all__ = [
 ]
 
 NO_POCKETING = "pocketing is not modelled yet"
+FloatArray = NDArray[np.float64]
+
+PEAK_SHARE = 0.01
+"""Part of the contact that the largest line load and pressure of a mesh leave out. [1]"""
+LEAST_CONTACT = 0.75
+"""Share of the contact lines that carries below which a result says so. [1]"""
 OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
 
 _VISCOSITY = Range(
@@ -233,7 +243,11 @@ def load_mesh(
     """Conditions along the contact lines; None without load or motion."""
     if duty.torque1 == 0 or duty.speed1 == 0:
         return None
-    loads = distribute_load(duty, models, numerics)
+    return contact_under(duty, distribute_load(duty, models, numerics), oil)
+
+
+def contact_under(duty: MeshDuty, loads: LineLoads, oil: OilState) -> MeshContact:
+    """Conditions along the contact lines under `loads`, at standstill too."""
     return mesh_contact(
         duty.mesh,
         loads.lines,
@@ -284,6 +298,13 @@ def solve_mesh(case: Case, duty: MeshDuty, oil: OilState, count: int) -> MeshOut
     return MeshOutcome(parts, _mesh_figures(duty, contact, loss.mean_friction, elastic), loss.flags)
 
 
+def _largest(values: FloatArray, weight: FloatArray) -> float:
+    """The value that `PEAK_SHARE` of the contact exceeds. Theory (D5)."""
+    order = np.argsort(values)
+    below = np.cumsum(weight[order])
+    return float(values[order][np.searchsorted(below, (1 - PEAK_SHARE) * below[-1])])
+
+
 def _mesh_figures(
     duty: MeshDuty, contact: MeshContact | None, friction_mean: float, elastic: LoadedMesh | None
 ) -> MeshFigures:
@@ -301,8 +322,15 @@ def _mesh_figures(
         misalignment=duty.misalignment,
         pitch_line_speed=speed1 * mesh.operating_radius1,
         sliding_speed_max=sliding,
-        line_load_max=math.nan if contact is None else float(contact.line_load.max()),
-        hertz_pressure_max=math.nan if contact is None else float(contact.hertz_pressure.max()),
+        line_load_max=(
+            math.nan if contact is None else _largest(contact.line_load, contact.weight)
+        ),
+        hertz_pressure_max=(
+            math.nan if contact is None else _largest(contact.hertz_pressure, contact.weight)
+        ),
+        contact_share=(
+            math.nan if contact is None else float(contact.weight.sum()) / mesh.mean_contact_length
+        ),
         film_ratio_min=math.nan if contact is None else float(contact.film_ratio.min()),
         film_ratio_max=math.nan if contact is None else float(contact.film_ratio.max()),
         friction_mean=friction_mean,
@@ -379,6 +407,17 @@ def fluid_notes(case: Case) -> tuple[str, ...]:
     )
 
 
+def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:
+    """A note on every mesh of which much does not carry."""
+    return tuple(
+        f"Only {mesh.contact_share:.0%} of the contact lines of the {name.replace('_', ' ')} carry "
+        "load: the deviations of the flanks exceed what the teeth bend. Contact that begins or "
+        "ends beyond the path of contact is not modelled."
+        for name, mesh in meshes.items()
+        if mesh.contact_share < LEAST_CONTACT
+    )
+
+
 def load_notes(case: Case) -> tuple[str, ...]:
     """Notes on deviations that the load distribution ignores, and on a rim that is too thin."""
     notes = []
@@ -411,8 +450,8 @@ def _states_deviations(case: Case) -> bool:
 
 def used_sources(terms: Iterable[LossTerm], *more: str) -> tuple[str, ...]:
     """Sources of the terms that are included, each once, in order, and `more`."""
-    sources = [term.source for term in terms if not term.left_out and term.source]
-    return tuple(dict.fromkeys([*sources, *more]))
+    sources = [term.source for term in terms if not term.left_out]
+    return tuple(dict.fromkeys(source for source in (*sources, *more) if source))
 
 
 def general_notes(

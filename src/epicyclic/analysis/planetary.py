@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from epicyclic.analysis.load_sharing import planet_shares
+from epicyclic.analysis.load_sharing import SHARING_METHODS, planet_shares
 from epicyclic.analysis.parts import (
     Body,
     MeshDuty,
     Part,
+    contact_notes,
     drag_part,
     fluid_notes,
     fluids_of,
@@ -34,7 +35,7 @@ from epicyclic.analysis.result import (
 )
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
-from epicyclic.case.schema import PlanetBearing
+from epicyclic.case.schema import LoadSharing, PlanetBearing
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_pressure
 from epicyclic.kinematics import (
     MEMBERS,
@@ -43,6 +44,7 @@ from epicyclic.kinematics import (
     planetary_power_flow,
     planetary_speeds,
 )
+from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.planet_bearing import (
     BearingLoss,
     RollerBearing,
@@ -101,6 +103,8 @@ def solve_planetary(case: PlanetaryCase) -> Result:
         drags,
     )
     angles = build.planet_angles(case.sun, case.planet, case.ring)
+    distribution = LOAD_DISTRIBUTIONS[case.models.load_distribution]
+    sharing, sharing_source = SHARING_METHODS[case.load_sharing.method]
     return Result(
         title=case.title,
         kind=case.kind,
@@ -115,11 +119,13 @@ def solve_planetary(case: PlanetaryCase) -> Result:
             *general_notes(terms, flow.input_power, flow.efficiency),
             *fluid_notes(case),
             *load_notes(case),
+            *contact_notes(most_loaded.meshes),
             *_planet_notes(case, angles),
-            *_share_notes(shares),
+            *_share_notes(case.load_sharing, shares),
             *_ring_notes(case, speeds),
         ),
-        sources=used_sources(terms),
+        load_methods={"load_distribution": distribution.title, "load_sharing": sharing},
+        sources=used_sources(terms, distribution.source, sharing_source),
         inputs=case.inputs(),
         planet_angles=angles,
         planet_shares=shares,
@@ -423,11 +429,16 @@ def _planet_notes(case: PlanetaryCase, angles: tuple[float, ...]) -> tuple[str, 
     )
 
 
-def _share_notes(shares: tuple[float, ...]) -> tuple[str, ...]:
-    if len(set(shares)) == 1:
-        return ()
-    most = shares.index(max(shares)) + 1
-    return (f"Meshes and bearing are those of planet {most}, the most loaded one.",)
+def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, ...]:
+    notes = []
+    if len(set(shares)) > 1:
+        most = shares.index(max(shares)) + 1
+        notes.append(f"Meshes and bearing are those of planet {most}, the most loaded one.")
+    notes += [
+        f"load_sharing.{key} has no effect with load_sharing.method = {sharing.method}."
+        for key in sharing.idle_keys()
+    ]
+    return tuple(notes)
 
 
 def _ring_notes(case: PlanetaryCase, speeds: Mapping[str, float]) -> tuple[str, ...]:

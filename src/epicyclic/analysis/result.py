@@ -126,6 +126,10 @@ class LossTerm:
 class MeshFigures:
     """What an engineer checks by eye on a mesh; NaN where there is no load or no motion.
 
+    The largest line load and pressure leave out the 1 % of the contact that carries most: in the
+    corners of a helical face without end relief the load has no bound, and its largest value would
+    be that of the resolution.
+
     Transmission error and stiffness, in the transverse plane of action, are those of elastic teeth
     and NaN with another load distribution.
     """
@@ -138,8 +142,11 @@ class MeshFigures:
     misalignment: float = _figure("misalignment, with tilt of the planet if coupled", MICROMETRE)
     pitch_line_speed: float = _figure("pitch-line speed, relative to carrier", METRE_PER_SECOND)
     sliding_speed_max: float = _figure("largest sliding speed", METRE_PER_SECOND)
-    line_load_max: float = _figure("largest line load", NEWTON_PER_MM)
-    hertz_pressure_max: float = _figure("largest Hertz pressure", GIGAPASCAL)
+    line_load_max: float = _figure("largest line load but for 1 % of the contact", NEWTON_PER_MM)
+    hertz_pressure_max: float = _figure(
+        "largest Hertz pressure but for 1 % of the contact", GIGAPASCAL
+    )
+    contact_share: float = _figure("share of the contact lines that carries", NUMBER)
     film_ratio_min: float = _figure("film ratio, smallest", NUMBER)
     film_ratio_max: float = _figure("film ratio, largest", NUMBER)
     friction_mean: float = _figure("mean coefficient of friction", NUMBER)
@@ -197,6 +204,8 @@ class Result:
         Models used outside their ranges.
     notes : tuple of str
         Other warnings.
+    load_methods : mapping of str to str
+        How the load is found, along the teeth and between planets.
     sources : tuple of str
         Literature of the models used.
     inputs : mapping
@@ -218,6 +227,7 @@ class Result:
     models: Mapping[str, str]
     flags: tuple[ValidityFlag, ...]
     notes: tuple[str, ...]
+    load_methods: Mapping[str, str]
     sources: tuple[str, ...]
     inputs: Mapping[str, Any]
     planet_angles: tuple[float, ...] = ()
@@ -289,7 +299,10 @@ class Result:
             "warnings": list(self.warnings),
             "not_included": {term.name: term.left_out for term in self.terms if term.left_out},
             "factors": {term.name: term.factor for term in self.terms if term.factor != 1.0},
-            "methods": {term.name: term.method for term in self.terms if not term.left_out},
+            "methods": {
+                **{term.name: term.method for term in self.terms if not term.left_out},
+                **self.load_methods,
+            },
             "models": dict(self.models),
             "validity": [dataclasses.asdict(flag) for flag in self.flags],
             "members": {

@@ -486,6 +486,24 @@ class LoadSharing(Table):
         "Default: rigid.",
     )
 
+    def idle_keys(self) -> tuple[str, ...]:
+        """Keys that are given other than by default and do not matter to the method."""
+        elastic = ("position_errors", "floating_member", "support_stiffness", "pin_stiffness")
+        needed = {
+            "equal": (),
+            "mesh-load-factor": ("mesh_load_factor",),
+            "closed-form": elastic,
+            "direct": elastic,
+        }[self.method]
+        idle = [key for key in (*elastic, "mesh_load_factor") if key not in needed]
+        if self.method in ("closed-form", "direct") and self.floating_member == "none":
+            idle.append("support_stiffness")
+        fields = type(self).model_fields
+        defaults = type(self)()
+        return tuple(
+            key for key in fields if key in idle and getattr(self, key) != getattr(defaults, key)
+        )
+
 
 class Lubricant(Table):
     """The oil."""

@@ -151,6 +151,15 @@ class Mesh:
         return self.tip_contact_ratio1 + self.tip_contact_ratio2
 
     @property
+    def mean_contact_length(self) -> float:
+        """Mean over the mesh period of the length of all contact lines. [m]
+
+        Theory (G40).
+        """
+        area = self.face_width * self.transverse_contact_ratio
+        return area / math.cos(self.gear1.rack.base_helix_angle)
+
+    @property
     def overlap_ratio(self) -> float:
         """epsilon_beta = b tan(beta_b)/p_bt. ISO 21771. Theory (G20). [1]"""
         rack = self.gear1.rack

@@ -80,12 +80,15 @@ class LoadDistribution:
 
     Attributes
     ----------
+    title, source : str
     distribute : callable
         From a `MeshLoad`, mesh positions and contact segments to `LineLoads`.
     takes_deviations : bool
         False if micro-geometry and misalignment do not matter to it.
     """
 
+    title: str
+    source: str
     distribute: Callable[[MeshLoad, int, int], LineLoads]
     takes_deviations: bool = False
 
@@ -163,6 +166,19 @@ def _elastic(load: MeshLoad, positions: int, segments: int) -> LineLoads:
 
 
 LOAD_DISTRIBUTIONS: dict[str, LoadDistribution] = {
-    **{name: LoadDistribution(partial(_in_proportion, name)) for name in STIFFNESS_SHAPES},
-    "compliance": LoadDistribution(_elastic, takes_deviations=True),
+    "uniform": LoadDistribution(
+        "even along all contact lines", "", partial(_in_proportion, "uniform")
+    ),
+    "minimum-energy": LoadDistribution(
+        "stiffness along the path of contact from minimum energy",
+        "M. B. Sanchez, M. Pleguezuelos, J. I. Pedrero, Mech. Mach. Theory 109 (2017) 231",
+        partial(_in_proportion, "minimum-energy"),
+    ),
+    "compliance": LoadDistribution(
+        "contact of elastic teeth: plates on elastic foundations, Hertzian flanks",
+        "T. F. Conry, A. Seireg, J. Eng. Ind. 95 (1973) 1115; C. Weber, K. Banaschek, "
+        "Schriftenreihe Antriebstechnik 11 (1953); R. W. Cornell, J. Mech. Des. 103 (1981) 447",
+        _elastic,
+        takes_deviations=True,
+    ),
 }

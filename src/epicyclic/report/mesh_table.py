@@ -29,10 +29,19 @@ def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
     for mesh in meshes.values():
         title = Text(str(mesh.attrs["title"]), style="bold")
         parts += [title, _over_period(mesh), _figures(mesh)]
+    notes = dict.fromkeys(line for mesh in meshes.values() for line in _notes(mesh))
+    parts += [Text(f"• {note}") for note in notes]
     if any(mesh["transmission_error"].isnull().all() for mesh in meshes.values()):
-        text = f'"{MISSING}": this load distribution knows no deflection; compliance does.'
-        parts.append(Text(text))
+        parts.append(
+            Text(f'"{MISSING}": this load distribution knows no deflection; compliance does.')
+        )
+    if any(mesh["film_ratio"].isnull().all() for mesh in meshes.values()):
+        parts.append(Text(f'"{MISSING}": without motion there is no film and no friction power.'))
     return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
+
+
+def _notes(mesh: xr.Dataset) -> list[str]:
+    return str(mesh.attrs["notes"]).splitlines()
 
 
 def _over_period(mesh: xr.Dataset) -> Table:

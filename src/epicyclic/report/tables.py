@@ -101,6 +101,8 @@ def _methods(result: Result) -> Group:
     for term in result.terms:
         if not term.left_out:
             users.setdefault(term.method, []).append(term.name.replace("_", " "))
+    for what, method in result.load_methods.items():
+        users.setdefault(method, []).append(what.replace("_", " "))
     return _list("Methods", [f"{', '.join(names)}: {how}" for how, names in users.items()])
 
 
