@@ -10,7 +10,7 @@ import pytest
 from epicyclic.ehl import rough
 from epicyclic.ehl.conditions import ContactOil, LineContact, Roelands
 from epicyclic.ehl.rough import AsperityContact, solve_rough
-from epicyclic.ehl.roughness import SMOOTH, generate_profile, sinusoidal_profile
+from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, sinusoidal_profile
 from epicyclic.ehl.steady import solve_smooth
 from epicyclic.kernels import ehl_rough
 from epicyclic.status import Status
@@ -42,10 +42,10 @@ def amplitude_ratio(contact, wavelength, nodes=512):
     amplitude = 0.05 * smooth.central_film
     wave = sinusoidal_profile(amplitude, wavelength * contact.half_width)
     run = rough._Simulation(smooth, (wave, SMOOTH), nodes, AsperityContact())
-    run.advance(run.step_count(4.0))
+    run.advance(4.0)
     films = []
     for _ in range(run.step_count(2 * wavelength)):
-        assert run.advance(1)[0, 7] < rough.TOLERANCE
+        assert run.march(1)[0, 7] < rough.TOLERANCE
         films.append(np.interp(0.0, run.x, run.film))
     return np.ptp(films) / 2 * contact.film_scale / amplitude
 
@@ -153,6 +153,15 @@ def test_status_tells_of_time_steps_without_solution(monkeypatch, mixed):
     result = solve_rough(contact, *rough_pair(rms), nodes=NODES)
     assert result.status is Status.FAILED
     assert result.unsolved_steps > 0
+
+
+def test_status_tells_of_a_breakdown(monkeypatch):
+    profile = generate_profile(1e-7, 20e-6, 4e-3, 1)
+    broken = Profile(np.where(np.arange(profile.heights.size) < 60, np.inf, 0.0), profile.spacing)
+    monkeypatch.setattr(Profile, "resampled", lambda self, spacing: self.heights)
+    result = solve_rough(contact_of(20, 8, slip=0.2), broken, nodes=NODES)
+    assert result.status is Status.FAILED
+    assert result.message == "a time step broke down"
 
 
 def test_status_of_a_smooth_failure_is_passed_on():

@@ -125,9 +125,10 @@ class _Simulation:
 
     def __init__(
         self, smooth: SmoothSolution, surfaces: tuple[Profile, Profile], nodes: int,
-        asperities: AsperityContact,
+        asperities: AsperityContact, frame_interval: float | None = None,
     ) -> None:  # fmt: skip
         contact = smooth.contact
+        self.smooth = smooth
         self.contact, self.asperities = contact, asperities
         self.boundary_friction = asperities.friction if contact.sliding_speed else 0.0
         self.fluid = contact.scaled_fluid()
@@ -172,9 +173,26 @@ class _Simulation:
             )
         ]
         self.steps = 0
+        self.frames: list[Frame] = []
+        self.steps_to_frame = 0
+        if frame_interval is not None:
+            time = frame_interval * contact.rolling_speed / contact.half_width
+            self.steps_to_frame = self.step_count(time)
 
-    def advance(self, steps: int) -> FloatArray:
-        """Records of `steps` more time steps, shape (steps, 8)."""
+    def advance(self, time: float) -> FloatArray:
+        """Records of a `time` in b/u_r, shape (steps, 8); keeps frames if they are asked for."""
+        left = self.step_count(time)
+        parts = []
+        while left > 0:
+            steps = min(left, self.steps_to_frame or left)
+            parts.append(self.march(steps))
+            left -= steps
+            if self.steps_to_frame:
+                self.frames.append(self.frame())
+        return np.concatenate(parts)
+
+    def march(self, steps: int) -> FloatArray:
+        """Records of `steps` more time steps, shape (steps, 8); not numbers from a breakdown on."""
         records = np.zeros((steps, COLUMNS))
         scale = self.contact.film_scale
         self.approach = march(
@@ -224,37 +242,37 @@ def solve_rough(
     smooth = solve_smooth(contact)
     if smooth.status is not Status.CONVERGED:
         return _failed(smooth, f"the smooth contact: {smooth.message}")
-    run = _Simulation(smooth, (surface1, surface2), nodes, asperities or AsperityContact())
-    frames: list[Frame] = []
-    chunk = run.step_count(BLOCK)
-    if frame_interval is not None:
-        every = frame_interval * contact.rolling_speed / contact.half_width
-        chunk = min(chunk, run.step_count(every))
-
-    def advance(steps: int) -> FloatArray:
-        parts = []
-        while steps > 0:
-            parts.append(run.advance(min(chunk, steps)))
-            steps -= chunk
-            if frame_interval is not None:
-                frames.append(run.frame())
-        return np.concatenate(parts)
-
-    settling = advance(run.step_count(GROWTH + SETTLING))
-    still_smooth = float(settling[0, 5])
-    unsolved = _unsolved(settling)
+    surfaces = (surface1, surface2)
+    run = _Simulation(smooth, surfaces, nodes, asperities or AsperityContact(), frame_interval)
+    settling = run.advance(GROWTH + SETTLING)
     blocks: list[FloatArray] = []
-    error = mean = math.inf
-    while len(blocks) < MOST_BLOCKS and not math.isnan(mean):
-        blocks.append(advance(run.step_count(BLOCK)))
-        means = np.array([block[:, :2].sum(axis=1).mean() for block in blocks])
-        mean = float(means.mean())
-        if len(blocks) >= FEWEST_BLOCKS:
-            error = float(means.std(ddof=1)) / math.sqrt(len(blocks))
-            if error <= STATIONARY * mean:
-                break
-    records = np.concatenate(blocks)
-    unsolved += _unsolved(records)
+    error = mean = 0.0
+    while not (math.isnan(mean) or _is_stationary(blocks, mean, error)):
+        blocks.append(run.advance(BLOCK))
+        means = [float(_shear(block).mean()) for block in blocks]
+        mean = float(np.mean(means))
+        error = float(np.std(means, ddof=1)) / math.sqrt(len(means)) if len(means) > 1 else 0.0
+    return _averages(run, settling, np.concatenate(blocks), mean, error)
+
+
+def _is_stationary(blocks: Sequence[FloatArray], mean: float, error: float) -> bool:
+    """Enough blocks for the error wanted, or as many as are allowed."""
+    enough = len(blocks) >= FEWEST_BLOCKS and error <= STATIONARY * mean
+    return enough or len(blocks) >= MOST_BLOCKS
+
+
+def _shear(records: FloatArray) -> FloatArray:
+    """Integral of the shear stress at every step, shape (steps,)."""
+    total: FloatArray = records[:, 0] + records[:, 1]
+    return total
+
+
+def _averages(
+    run: _Simulation, settling: FloatArray, records: FloatArray, mean: float, error: float
+) -> RoughSolution:
+    """The result of a simulation; `mean` and `error` of the integral of the shear stress."""
+    contact, smooth = run.contact, run.smooth
+    unsolved = _unsolved(settling) + _unsolved(records)
     message = ""
     if math.isnan(mean):
         message = "a time step broke down"
@@ -271,7 +289,7 @@ def solve_rough(
         status=Status.FAILED if message else Status.CONVERGED,
         message=message,
         x=run.x * contact.half_width,
-        friction=records[:, :2].sum(axis=1) / load,
+        friction=_shear(records) / load,
         friction_coefficient=mean / load,
         friction_error=error / load,
         asperity_friction_share=float(column[1]) / mean if mean > 0 else 0.0,
@@ -279,11 +297,12 @@ def solve_rough(
         asperity_load_share=float(column[3]) / load,
         minimum_film=float(records[:, 4].min()) * contact.film_scale,
         mean_least_film=float(column[4]) * contact.film_scale,
-        rolling_loss=smooth.rolling_loss + power * (float(column[5]) - still_smooth),
+        # the first step still has next to no roughness
+        rolling_loss=smooth.rolling_loss + power * float(column[5] - settling[0, 5]),
         steps=run.steps,
         unsolved_steps=unsolved,
         newton_steps=float(records[:, 6].mean()),
-        frames=frames,
+        frames=run.frames,
     )
 
 

@@ -603,7 +603,8 @@ def march(
         Of `solve_step`.
     records : ndarray, shape (steps, 8)
         Integrals over X of fluid and of asperity shear, contact length over 2 b, integral of the
-        pressure in contact, least film, dissipation, Newton steps, last change of a pressure.
+        pressure in contact, least film, dissipation, Newton steps, error; not numbers from the
+        step on that broke down.
 
     Returns
     -------
@@ -646,7 +647,7 @@ def march(
             for i in range(1, n - 1):
                 active[i] = pressure[i] > 0.0
         if not np.isfinite(result[2]):
-            records[t, 7] = np.nan
+            records[t:] = np.nan
             return approach
         approach = result[0]
         before[:] = now
