@@ -16,6 +16,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -82,8 +83,12 @@ def clear_caches() -> None:
     from epicyclic.elasticity import loaded_mesh, mesh_compliance, tooth_plate
     from epicyclic.geometry import contact_lines
     from epicyclic.losses import load_distribution, planet_bearing
+    from epicyclic.pocketing import fluid, geometry
 
     for function in (
+        fluid.pocket_flow,
+        fluid._cells,
+        geometry.pocket_geometry,
         build.basic_rack,
         build.gear,
         build.planetary_meshes,
@@ -159,6 +164,30 @@ def contact_seconds(roughness: str) -> tuple[float, int]:
     return seconds, rough.steps if rough else 0
 
 
+def pocket_seconds() -> tuple[float, float]:
+    """Geometry of the pockets of one mesh, and one periodic flow through them; the slower mesh."""
+    from epicyclic.analysis.parts import fluids_of
+    from epicyclic.analysis.planetary import planetary_duties
+    from epicyclic.pocketing.fluid import pocket_flow
+    from epicyclic.pocketing.geometry import pocket_geometry
+
+    case = ep.load_case("talbot-2012")
+    mixture = fluids_of(case).mixture
+    geometry_times, flow_times = [], []
+    for duty in planetary_duties(case, 1 / 3):
+        shape = partial(pocket_geometry.__wrapped__, duty.mesh, duty.tools, True)
+        flow = partial(
+            pocket_flow.__wrapped__,
+            pocket_geometry(duty.mesh, duty.tools, True),
+            abs(duty.speed1),
+            mixture,
+            case.surroundings.pressure,
+        )
+        geometry_times.append(median_seconds(shape))
+        flow_times.append(median_seconds(flow))
+    return max(geometry_times), max(flow_times)
+
+
 def main() -> None:
     case = ep.load_case("talbot-2012")
     with tempfile.TemporaryDirectory() as empty:
@@ -178,6 +207,7 @@ def main() -> None:
     segments = (10, 20, 30, 60, 120)
     elastic = {count: compliance_seconds(count) for count in segments}
     ep.solve(case)
+    pocket_shape, pocket_flow = pocket_seconds()
     matrix_seconds = median_seconds(lambda: matrix(None), repeats=3)
     here = str(Path(__file__).resolve().parent)
     command = "import benchmark; benchmark.matrix(None)"
@@ -201,9 +231,13 @@ def main() -> None:
          f"{elastic[30][0] / elastic[30][1]:.0f}", "loading both meshes"),
         ("loading both meshes, 30 segments", f"{1e3 * elastic[30][1]:.2f} ms", "30 ms",
          f"{elastic[30][1] / point:.2f}", "one operating point"),
-        ("test matrix, 300 points", f"{matrix_seconds:.2f} s", "10 s",
+        ("geometry of pockets, one mesh", f"{1e3 * pocket_shape:.1f} ms", "300 ms",
+         f"{pocket_shape / point:.2f}", "one operating point"),
+        ("periodic pocket flow, one mesh", f"{1e3 * pocket_flow:.0f} ms", "300 ms",
+         f"{pocket_flow / pocket_shape:.0f}", "its geometry"),
+        ("test matrix, 300 points", f"{matrix_seconds:.2f} s", "15 s",
          f"{matrix_seconds / (300 * point):.2f}", "300 single points"),
-        ("the same in a new process", f"{matrix_process:.2f} s", "10 s",
+        ("the same in a new process", f"{matrix_process:.2f} s", "15 s",
          f"{matrix_process / matrix_seconds:.2f}", "the matrix, warm"),
         ("largest memory of a process", f"{peak:.0f} MB", "500 MB", "", ""),
     ):  # fmt: skip

@@ -345,6 +345,7 @@ def _convert_back(value: float, si: str, display: str) -> float:
 
 
 # Kinds of values that are only shown; a case does not read them, so that they have no bounds.
+BAR = Quantity("a pressure", "Pa", "bar")
 CELSIUS = Quantity("a temperature", "K", "degC")
 DEGREE = Quantity("an angle", "rad", "deg")
 GIGAPASCAL = Quantity("a pressure", "Pa", "GPa")

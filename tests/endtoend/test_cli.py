@@ -50,7 +50,7 @@ def test_run_prints_where_the_watts_go(epicyclic):
         "radial force",
         "tilting moment",
         "most loaded roller",
-        "pocketing is not modelled yet",
+        "highest pressure in the pockets",
         "Out of range: ",
         "Sources",
     ):

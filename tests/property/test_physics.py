@@ -206,7 +206,9 @@ def test_planetary_results_make_sense_with_elastic_teeth(talbot, changes):
 
 @given(changes=PLANETARY)
 def test_signs_of_torque_and_speed_do_not_matter(talbot, changes):
-    case = talbot.updated(changes)
+    # which member drives decides which flanks bound the pockets
+    pockets = {f"losses.{mesh}_mesh_pocketing.include": False for mesh in ("sun", "ring")}
+    case = talbot.updated({**changes, **pockets})
     losses = ep.solve(case).losses
     positive = case.updated(
         {

@@ -343,7 +343,8 @@ def pair():
     "changes", [{}, {"models.friction": "schlenk", "models.mesh": "loss-factor"}]
 )
 def test_sign_of_torque_and_speed_does_not_change_the_loss(pair, changes):
-    pair = pair.updated(changes)
+    # whether the pinion drives decides which flanks bound the pockets
+    pair = pair.updated({**changes, "losses.mesh_pocketing.include": False})
     forward = ep.solve(pair).losses
     for torque, speed in (
         ("-150 N*m", "3000 rpm"),

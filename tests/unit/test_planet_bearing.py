@@ -99,8 +99,8 @@ def test_load_is_the_resultant_of_the_tooth_forces(make_gear, beta, centrifugal,
     # the same force along both lines of action, by the balance of the planet
     planet_torque = torque / sun.base_radius * planet.base_radius
     duties = (
-        MeshDuty("sun_mesh", meshes[0], (None, None), torque, 100.0),
-        MeshDuty("ring_mesh", meshes[1], (None, None), -planet_torque, -80.0),
+        MeshDuty("sun_mesh", meshes[0], (None, None), torque, 100.0, True, (None, None)),
+        MeshDuty("ring_mesh", meshes[1], (None, None), -planet_torque, -80.0, True, (None, None)),
     )
     load = planet_load(duties, centrifugal)
     force = np.array([0.0, centrifugal, 0.0])

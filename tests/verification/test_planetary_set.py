@@ -26,12 +26,13 @@ PER_PLANET = (
 )
 ALL_LOSSES = (
     *PER_PLANET,
+    "sun_mesh_pocketing",
+    "ring_mesh_pocketing",
     "sun_drag",
     "ring_drag",
     "carrier_drag",
     "thrust_bearing_viscous",
 )
-NOT_MODELLED = ("sun_mesh_pocketing", "ring_mesh_pocketing")
 
 
 @pytest.fixture(scope="module")
@@ -65,8 +66,6 @@ def test_terms_sum_to_the_total(full):
     for name in ALL_LOSSES:
         if name != "ring_drag":  # the ring is held
             assert result.losses[name] > 0, name
-    for name in NOT_MODELLED:
-        assert result.losses[name] == 0.0
     by_group = {"load-dependent": 0.0, "load-independent": 0.0}
     for term in result.terms:
         by_group[term.group] += term.watts
@@ -149,11 +148,15 @@ def test_every_choice_of_input_and_fixed_member(full, driver, held, torque, spee
     member = result.flow.members[driver]
     assert member.torque == pytest.approx(torque, rel=1e-12)
     assert result.flow.members[held].speed == 0.0
-    # signs do not change the losses
+    # signs do not change the losses, but for the pockets, where driving and coasting differ
     mirrored = case.updated(
         {"operation.torque": f"{abs(torque)} N*m", "operation.speed": f"{abs(speed)} rpm"}
     )
-    assert ep.solve(mirrored).losses == pytest.approx(result.losses, rel=ROUNDING)
+    losses = ep.solve(mirrored).losses
+    if torque * speed < 0:
+        for name in ("sun_mesh_pocketing", "ring_mesh_pocketing"):
+            assert losses.pop(name) == pytest.approx(result.losses[name], rel=0.2)
+    assert {name: result.losses[name] for name in losses} == pytest.approx(losses, rel=ROUNDING)
 
 
 @pytest.mark.parametrize(("driver", "second"), CHOICES)

@@ -29,7 +29,7 @@ def solve_pair(case: GearPairCase) -> Result:
     """The losses of a gear pair."""
     fluids = fluids_of(case)
     duty = pair_duty(case)
-    mesh = solve_mesh(case, duty, fluids.oil, 1)
+    mesh = solve_mesh(case, duty, fluids, 1)
     drag, drag_flags = drag_part(_bodies(case, duty), fluids.mixture)
     terms = loss_terms(mesh.parts | {"drag": drag}, case.losses)
     distribution = LOAD_DISTRIBUTIONS[case.models.load_distribution]
@@ -55,6 +55,7 @@ def solve_pair(case: GearPairCase) -> Result:
             *fluid_notes(case),
             *load_notes(case),
             *contact_notes({duty.key: mesh.figures}),
+            *mesh.notes,
         ),
         load_methods={"load_distribution": distribution.title},
         sources=used_sources(terms, distribution.source),
@@ -67,12 +68,17 @@ def pair_duty(case: GearPairCase) -> MeshDuty:
     mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
     operation = case.operation
     return MeshDuty(
-        "mesh",
-        mesh,
-        (case.pinion, case.gear),
-        operation.torque,
-        operation.speed,
-        case.mesh.misalignment,
+        key="mesh",
+        mesh=mesh,
+        gears=(case.pinion, case.gear),
+        torque1=operation.torque,
+        speed1=operation.speed,
+        drives1=operation.torque * operation.speed >= 0,
+        tools=(
+            build.fitted_tool(mesh.gear1, case.pinion, mesh.radius1_at_start),
+            build.fitted_tool(mesh.gear2, case.gear, mesh.radius2_at_end),
+        ),
+        misalignment=case.mesh.misalignment,
     )
 
 

@@ -22,6 +22,7 @@ from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.schema import GearPairModels, GearTable, LossOption, MeshTable, Numerics
 from epicyclic.elasticity.loaded_mesh import LoadedMesh, load_mesh_elastically
 from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.outline import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.contact import Flanks, MeshContact, mesh_contact
 from epicyclic.losses.friction import FrictionSettings, friction_model
@@ -40,6 +41,8 @@ from epicyclic.lubricant.properties import (
     mixture_state,
     oil_state,
 )
+from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow, pocket_flow
+from epicyclic.pocketing.geometry import pocket_geometry
 from epicyclic.units import CELSIUS, SQUARE_MM_PER_SECOND
 
 __all__ = [
@@ -62,10 +65,11 @@ __all__ = [
     "loss_terms",
     "resolve_models",
     "solve_mesh",
+    "solve_pockets",
     "used_sources",
 ]
 
-NO_POCKETING = "pocketing is not modelled yet"
+POCKETING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), chapter 4"
 FloatArray = NDArray[np.float64]
 
 PEAK_SHARE = 0.01
@@ -139,6 +143,10 @@ class MeshDuty:
         On member 1. [N m]
     speed1 : float
         Of member 1. [rad/s]
+    drives1 : bool
+        True if power flows from member 1 to member 2 or no power flows.
+    tools : tuple of Tool
+        The tools that cut both members.
     misalignment : float
         F_beta_x. [m]
     """
@@ -148,6 +156,8 @@ class MeshDuty:
     gears: tuple[GearTable, GearTable]
     torque1: float
     speed1: float
+    drives1: bool
+    tools: tuple[Tool, Tool]
     misalignment: float = 0.0
 
 
@@ -158,6 +168,7 @@ class MeshOutcome:
     parts: dict[str, Part]
     figures: MeshFigures
     flags: tuple[ValidityFlag, ...]
+    notes: tuple[str, ...]
 
 
 def resolve_models(case: Case) -> dict[str, str]:
@@ -168,7 +179,7 @@ def resolve_models(case: Case) -> dict[str, str]:
         "friction": "mixed-ehl" if own else "schlenk",
         "rolling": "mixed-ehl" if own else "goksem-hargreaves",
     }
-    keys = ["friction", "rolling", "load_distribution", "mesh", "drag"]
+    keys = ["friction", "rolling", "load_distribution", "mesh", "pocketing", "drag"]
     if isinstance(case, PlanetaryCase):
         bearing = case.planet_bearing
         caged = bearing is None or bearing.cage == "caged"
@@ -269,16 +280,57 @@ def _flanks(one: GearTable, two: GearTable) -> Flanks:
     return Flanks(modulus, one.roughness, two.roughness)
 
 
-def solve_mesh(case: Case, duty: MeshDuty, oil: OilState, count: int) -> MeshOutcome:
+def solve_pockets(case: Case, duty: MeshDuty, mixture: MixtureState) -> PocketFlow | None:
+    """Flow through the pockets of a mesh; None without motion.
+
+    Raises
+    ------
+    ConvergenceError
+        If the flow is not found.
+    ValueError
+        If a tooth has no outline.
+    """
+    if duty.speed1 == 0:
+        return None
+    geometry = pocket_geometry(duty.mesh, duty.tools, duty.drives1)
+    return pocket_flow(
+        geometry,
+        abs(duty.speed1),
+        mixture,
+        case.surroundings.pressure,
+        case.models.pocketing,
+        case.numerics.pocket_slices,
+        case.numerics.pocket_steps,
+    )
+
+
+def _pocketing(
+    case: Case, duty: MeshDuty, mixture: MixtureState, count: int
+) -> tuple[Part, PocketFlow | None]:
+    """Pocketing loss of `count` meshes, not computed if the case leaves it out."""
+    option: LossOption = getattr(case.losses, f"{duty.key}_pocketing")
+    if not option.include:
+        return Part(LOAD_INDEPENDENT), None
+    try:
+        flow = solve_pockets(case, duty, mixture)
+    except ValueError as error:
+        return Part(LOAD_INDEPENDENT, left_out=f"no tooth outline: {error}"), None
+    watts = 0.0 if flow is None else count * flow.power
+    method = POCKETING_MODELS[case.models.pocketing]
+    return Part(LOAD_INDEPENDENT, watts, method, POCKETING_SOURCE), flow
+
+
+def solve_mesh(case: Case, duty: MeshDuty, fluids: Fluids, count: int) -> MeshOutcome:
     """Losses and figures of one mesh, `count` of which work in parallel."""
     models = resolve_models(case)
     friction = friction_model(models["friction"], friction_settings(case))
     rolling = ROLLING_MODELS[models["rolling"]]
     quick = models["mesh"] == "loss-factor"
-    contact = load_mesh(duty, case.models, case.numerics, oil)
+    contact = load_mesh(duty, case.models, case.numerics, fluids.oil)
     elastic = None
     if contact is not None:
         elastic = distribute_load(duty, case.models, case.numerics).elastic
+    pocketing, flow = _pocketing(case, duty, fluids.mixture, count)
     if contact is None:
         loss = MeshLoss(0.0, 0.0, math.nan)
     elif quick:
@@ -293,9 +345,27 @@ def solve_mesh(case: Case, duty: MeshDuty, oil: OilState, count: int) -> MeshOut
     parts = {
         f"{duty.key}_sliding": Part(LOAD_DEPENDENT, count * loss.sliding, method, source),
         f"{duty.key}_rolling": rolling_part,
-        f"{duty.key}_pocketing": Part(LOAD_INDEPENDENT, left_out=NO_POCKETING),
+        f"{duty.key}_pocketing": pocketing,
     }
-    return MeshOutcome(parts, _mesh_figures(duty, contact, loss.mean_friction, elastic), loss.flags)
+    figures = _mesh_figures(duty, contact, loss.mean_friction, elastic, flow)
+    return MeshOutcome(parts, figures, loss.flags, _pocket_notes(case, duty.mesh, flow))
+
+
+def _pocket_notes(case: Case, mesh: Mesh, flow: PocketFlow | None) -> tuple[str, ...]:
+    if flow is None:
+        return ()
+    notes = []
+    if not flow.periodic:
+        notes.append(
+            f"The flow through the pockets of the {mesh.name} does not repeat from one mesh period "
+            f"to the next; its loss is the mean of {flow.periods // 2} periods."
+        )
+    if float(flow.pressure.min()) < -case.surroundings.pressure:
+        notes.append(
+            f"The pressure in the pockets of the {mesh.name} falls below zero, where the "
+            "fluid would cavitate: models.pocketing = incompressible is meant for lower speeds."
+        )
+    return tuple(notes)
 
 
 def _largest(values: FloatArray, weight: FloatArray) -> float:
@@ -306,7 +376,11 @@ def _largest(values: FloatArray, weight: FloatArray) -> float:
 
 
 def _mesh_figures(
-    duty: MeshDuty, contact: MeshContact | None, friction_mean: float, elastic: LoadedMesh | None
+    duty: MeshDuty,
+    contact: MeshContact | None,
+    friction_mean: float,
+    elastic: LoadedMesh | None,
+    flow: PocketFlow | None,
 ) -> MeshFigures:
     mesh = duty.mesh
     speed1 = abs(duty.speed1)
@@ -337,6 +411,10 @@ def _mesh_figures(
         loss_factor=ohlendorf_loss_factor(mesh),
         transmission_error_range=math.nan if elastic is None else elastic.transmission_error_range,
         mesh_stiffness=math.nan if elastic is None else elastic.mean(elastic.tangent_stiffness),
+        pocket_pressure_max=math.nan if flow is None else float(flow.pressure.max()),
+        pocket_pressure_min=math.nan if flow is None else float(flow.pressure.min()),
+        pocket_speed_max=math.nan if flow is None else flow.speed_max,
+        pocket_power_difference=math.nan if flow is None else flow.difference,
         contact=contact,
     )
 

@@ -11,6 +11,7 @@ import numpy as np
 from epicyclic.analysis.load_sharing import SHARING_METHODS, planet_shares
 from epicyclic.analysis.parts import (
     Body,
+    Fluids,
     MeshDuty,
     Part,
     contact_notes,
@@ -36,6 +37,8 @@ from epicyclic.analysis.result import (
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.schema import LoadSharing, PlanetBearing
+from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.outline import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_pressure
 from epicyclic.kinematics import (
     MEMBERS,
@@ -83,7 +86,7 @@ def solve_planetary(case: PlanetaryCase) -> Result:
     speeds = member_speeds(case)
     shares = _shares(case)
     branches = [
-        _solve_branch(case, share, shares.count(share), fluids.oil, speeds)
+        _solve_branch(case, share, shares.count(share), fluids, speeds)
         for share in sorted(set(shares), reverse=True)
     ]
     drag_parts, drag_flags = _drag_parts(case, speeds, fluids.mixture)
@@ -120,6 +123,7 @@ def solve_planetary(case: PlanetaryCase) -> Result:
             *fluid_notes(case),
             *load_notes(case),
             *contact_notes(most_loaded.meshes),
+            *most_loaded.notes,
             *_planet_notes(case, angles),
             *_share_notes(case.load_sharing, shares),
             *_ring_notes(case, speeds),
@@ -153,23 +157,39 @@ def planetary_duties(case: PlanetaryCase, share: float) -> tuple[MeshDuty, MeshD
     planet_torque = branch_torque * case.planet.teeth / case.sun.teeth
     sun_speed = speeds["sun"] - speeds["carrier"]
     own_speed = planet_speed(case.sun.teeth, case.planet.teeth, speeds)
+    drives1 = branch_torque * sun_speed >= 0
+    sun, planet, ring = _tools(case, sun_mesh, ring_mesh)
     return (
         MeshDuty(
-            "sun_mesh",
-            sun_mesh,
-            (case.sun, case.planet),
-            branch_torque,
-            sun_speed,
-            case.sun_mesh.misalignment,
+            key="sun_mesh",
+            mesh=sun_mesh,
+            gears=(case.sun, case.planet),
+            torque1=branch_torque,
+            speed1=sun_speed,
+            drives1=drives1,
+            tools=(sun, planet),
+            misalignment=case.sun_mesh.misalignment,
         ),
         MeshDuty(
-            "ring_mesh",
-            ring_mesh,
-            (case.planet, case.ring),
-            planet_torque,
-            own_speed,
-            case.ring_mesh.misalignment,
+            key="ring_mesh",
+            mesh=ring_mesh,
+            gears=(case.planet, case.ring),
+            torque1=planet_torque,
+            speed1=own_speed,
+            drives1=drives1,
+            tools=(planet, ring),
+            misalignment=case.ring_mesh.misalignment,
         ),
+    )
+
+
+def _tools(case: PlanetaryCase, sun_mesh: Mesh, ring_mesh: Mesh) -> tuple[Tool, Tool, Tool]:
+    """The tools of sun, planet and ring; the planet serves the mate that reaches deeper."""
+    planet = min(sun_mesh.radius2_at_end, ring_mesh.radius1_at_start)
+    return (
+        build.fitted_tool(sun_mesh.gear1, case.sun, sun_mesh.radius1_at_start),
+        build.fitted_tool(sun_mesh.gear2, case.planet, planet),
+        build.fitted_tool(ring_mesh.gear2, case.ring, ring_mesh.radius2_at_end),
     )
 
 
@@ -204,20 +224,22 @@ class _Branch:
     meshes: dict[str, MeshFigures]
     bearing: BearingFigures | None
     flags: tuple[ValidityFlag, ...]
+    notes: tuple[str, ...]
 
 
 def _solve_branch(
-    case: PlanetaryCase, share: float, count: int, oil: OilState, speeds: Mapping[str, float]
+    case: PlanetaryCase, share: float, count: int, fluids: Fluids, speeds: Mapping[str, float]
 ) -> _Branch:
     duties, load = _tilted(case, planetary_duties(case, share), speeds)
-    meshes = {duty.key: solve_mesh(case, duty, oil, count) for duty in duties}
-    bearing = _solve_bearing(case, load, count, oil, speeds)
+    meshes = {duty.key: solve_mesh(case, duty, fluids, count) for duty in duties}
+    bearing = _solve_bearing(case, load, count, fluids.oil, speeds)
     parts, flags = dict(bearing.parts), bearing.flags
     for mesh in meshes.values():
         parts |= mesh.parts
         flags = mesh.flags + flags
     figures = {key: mesh.figures for key, mesh in meshes.items()}
-    return _Branch(parts, figures, bearing.figures, flags)
+    notes = tuple(note for mesh in meshes.values() for note in mesh.notes)
+    return _Branch(parts, figures, bearing.figures, flags, notes)
 
 
 def _tilted(

@@ -23,6 +23,7 @@ from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.losses.validity import ValidityFlag, describe_flags
 from epicyclic.status import Status
 from epicyclic.units import (
+    BAR,
     DEGREE,
     GIGAPASCAL,
     KILOGRAM_PER_CUBIC_METRE,
@@ -153,6 +154,12 @@ class MeshFigures:
     loss_factor: float = _figure("loss factor H_V (Ohlendorf)", NUMBER)
     transmission_error_range: float = _figure("loaded transmission error, peak to peak", MICROMETRE)
     mesh_stiffness: float = _figure("mean mesh stiffness at this load", NEWTON_PER_UM)
+    pocket_pressure_max: float = _figure("highest pressure in the pockets, above ambient", BAR)
+    pocket_pressure_min: float = _figure("lowest pressure in the pockets, above ambient", BAR)
+    pocket_speed_max: float = _figure("fastest flow out of or into a pocket", METRE_PER_SECOND)
+    pocket_power_difference: float = _figure(
+        "pocketing loss: energy balance over work, less 1", NUMBER
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)

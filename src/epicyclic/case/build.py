@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 
 from epicyclic.case.schema import Gears, GearTable, PairGear, Planet, Ring
@@ -26,6 +27,7 @@ from epicyclic.geometry.outline import (
 __all__ = [
     "basic_rack",
     "cutting_tool",
+    "fitted_tool",
     "gear",
     "longest_involute",
     "outside_radius",
@@ -37,6 +39,9 @@ __all__ = [
 
 DEFAULT_RIM_THICKNESS = 3.0
 """Rim of a ring gear from root to outside if the case states none (estimate). [normal modules]"""
+
+TOOL_HALVINGS = 30
+"""Halvings of the rounding of a tool until it is known: to a billionth."""
 
 
 @lru_cache(maxsize=256)
@@ -198,6 +203,44 @@ def _sharp_undercut(gear: Gear) -> float:
     """
     cosine = math.cos(gear.rack.transverse_pressure_angle)
     return gear.reference_radius * cosine**2 - gear.root_radius
+
+
+@lru_cache(maxsize=256)
+def fitted_tool(gear: Gear, table: GearTable, needed: float) -> Tool:
+    """`cutting_tool`, its rounding reduced where it would take away involute that the mate needs.
+
+    A rounding that the case states is kept.
+
+    Parameters
+    ----------
+    gear : Gear
+    table : GearTable
+    needed : float
+        Radius to which the involute must reach towards the root. [m]
+
+    Raises
+    ------
+    ValueError
+        If no tool generates the tooth.
+    """
+    usual = cutting_tool(gear, table)
+    outward = -1 if gear.internal else 1
+
+    def suits(rounding: float) -> bool:
+        try:
+            reached = form_radius(gear, replace(usual, tip_radius=rounding))
+        except ValueError:
+            return False
+        return outward * (reached - needed) <= 0
+
+    low = 0.0 if gear.internal else _kindest_rack(gear).tip_radius
+    high = usual.tip_radius
+    if table.tool_tip_radius is not None or suits(high) or not suits(low):
+        return usual
+    for _ in range(TOOL_HALVINGS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if suits(middle) else (low, middle)
+    return replace(usual, tip_radius=low)
 
 
 def planet_angles(sun: GearTable, planet: Planet, ring: Ring) -> tuple[float, ...]:

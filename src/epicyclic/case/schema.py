@@ -591,6 +591,7 @@ class GearPairModels(Table):
         "rolling": None,
         "load_distribution": None,
         "mesh": None,
+        "pocketing": None,
         "drag": None,
         "bearing_viscous": None,
         "planet_tilt": None,
@@ -628,6 +629,11 @@ class GearPairModels(Table):
         default="local",
         description="local: along the contact lines; loss-factor: mean friction times Ohlendorf's.",
     )
+    pocketing: Literal["isentropic", "mean-density", "incompressible"] = Field(
+        default="isentropic",
+        description="Fluid in the pockets: isentropic and mean-density: compressible mixture; "
+        "incompressible: mixture of constant density.",
+    )
     drag: Literal["seetharaman-kahraman"] = "seetharaman-kahraman"
 
 
@@ -650,6 +656,12 @@ class Numerics(Table):
     mesh_positions: int = Field(default=20, ge=4, le=1000)
     contact_segments: int = Field(default=20, ge=2, le=1000)
     bearing_slices: int = Field(default=20, ge=3, le=500, description="On each roller.")
+    pocket_slices: int = Field(
+        default=16, ge=2, le=200, description="Of the pockets, across the face; at least."
+    )
+    pocket_steps: int = Field(
+        default=32, ge=8, le=1000, description="Time steps of the pocket flow in one pitch."
+    )
 
 
 class LossOption(Table):

@@ -128,6 +128,41 @@ def mechanical_efficiency(temperature: str, extreme: str) -> float:
     return min(values) if extreme == "lowest" else max(values)
 
 
+def _pocketing(**changes: object) -> float:
+    """Pocketing loss of the example pair with its keys changed. [W]"""
+    case = load_case("talbot-2012-pair")
+    updated = case.updated({key.replace("__", "."): value for key, value in changes.items()})
+    return solve(updated).losses["mesh_pocketing"]
+
+
+def pocketing_loss(helix_angle: str, model: str) -> float:
+    """Pocketing loss of the example pair at 10000 rpm. [W]"""
+    return _pocketing(gears__helix_angle=helix_angle, models__pocketing=model)
+
+
+def pocketing_speed_exponent(model: str) -> float:
+    """Slope of the logarithm of the loss of the spur pair over that of the speed. [1]"""
+    speeds = np.arange(1000, 10001, 1000)
+    losses = [
+        _pocketing(
+            gears__helix_angle="0 deg", models__pocketing=model, operation__speed=f"{speed} rpm"
+        )
+        for speed in speeds
+    ]
+    return float(np.polyfit(np.log(speeds), np.log(losses), 1)[0])
+
+
+def pocketing_oil_ratio(model: str) -> float:
+    """Loss of the spur pair with an oil share of 0.6 over that with 0.05. [1]"""
+    rich, lean = (
+        _pocketing(
+            gears__helix_angle="0 deg", models__pocketing=model, surroundings__oil_air_ratio=share
+        )
+        for share in (0.6, 0.05)
+    )
+    return rich / lean
+
+
 FIGURES: dict[str, Callable[..., float]] = {
     function.__name__: function
     for function in (
@@ -140,5 +175,8 @@ FIGURES: dict[str, Callable[..., float]] = {
         load_dependent_loss,
         load_independent_loss,
         mechanical_efficiency,
+        pocketing_loss,
+        pocketing_speed_exponent,
+        pocketing_oil_ratio,
     )
 }

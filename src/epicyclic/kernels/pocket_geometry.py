@@ -1,0 +1,401 @@
+"""Transverse section of the pockets of a mesh: gaps between flanks, areas, centroids.
+
+The axis of gear 1 is the origin, that of gear 2 lies on the x axis, and the mesh at positive x.
+Points are complex numbers. A flank is stored once, on the positive side of the middle of its tooth
+(the x axis), from the middle of the space to the tip corner; a placed flank is that curve, mirrored
+if `mirror` is negative, turned by `turn` and shifted by `centre`.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.kernels._jit import kernel
+
+__all__ = ["gap_table", "pocket_table"]
+
+Floats = NDArray[np.float64]
+Points = NDArray[np.complex128]
+
+TIP_POINTS = 9
+"""Points on a tip land: a chord of it leaves the arc by a millionth of the module, about."""
+
+
+@kernel
+def _involute_angle(rho: float, base: float, base_half_angle: float, outward: float) -> float:
+    """Polar angle of the involute with radius of curvature `rho`, from the middle of the tooth."""
+    roll = rho / base
+    return base_half_angle - outward * (roll - math.atan(roll))
+
+
+@kernel
+def _involute_point(rho: float, base: float, base_half_angle: float, outward: float) -> complex:
+    angle = _involute_angle(rho, base, base_half_angle, outward)
+    return math.hypot(base, rho) * cmath.exp(1j * angle)
+
+
+@kernel
+def _next_to_tip(flank: Points, first: int, rho: float, base: float, outward: float) -> int:
+    """Index of the first point of the involute closer to the tip than `rho`."""
+    low, high = first, flank.size - 1
+    while low < high:
+        middle = (low + high) // 2
+        squared = flank[middle].real ** 2 + flank[middle].imag ** 2 - base**2
+        if outward * (math.sqrt(max(0.0, squared)) - rho) > 0.0:
+            high = middle
+        else:
+            low = middle + 1
+    return low
+
+
+@kernel
+def _closest(
+    point: complex, flank: Points, joints: Floats, gear: Floats
+) -> tuple[float, complex, int]:
+    """Point of a flank closest to `point`. Theory (Q2).
+
+    Parameters
+    ----------
+    point : complex
+        In the frame of the stored flank. [m]
+    flank : ndarray of complex, shape (n,)
+        From the middle of the space to the tip corner. [m]
+    joints : ndarray, shape (2,)
+        Indices where the fillet begins and where it ends.
+    gear : ndarray, shape (5,)
+        Base radius [m], half angle of the tooth at the base circle [rad], radii of curvature of
+        the involute at the form circle and at the tip [m], +1 for an external gear, -1 for a ring.
+
+    Returns
+    -------
+    distance : float
+        [m]
+    foot : complex
+        [m]
+    after : int
+        Index of the first point of `flank` beyond the foot towards the tip.
+    """
+    base, base_half_angle, rho_form, rho_tip, outward = gear
+    corner = flank[flank.size - 1]
+    best = abs(point - corner)
+    foot = corner
+    after = flank.size - 1
+    radius = abs(point)
+    if radius > base:
+        # The normal of the involute through the point is a tangent of the base circle, and its
+        # length between parallel involutes is the arc between them on that circle.
+        rho = math.sqrt(radius**2 - base**2)
+        roll = rho / base
+        half_angle = cmath.phase(point) + outward * (roll - math.atan(roll))
+        rho_foot = rho - outward * base * (half_angle - base_half_angle)
+        if outward * (rho_foot - rho_form) >= 0.0 and outward * (rho_tip - rho_foot) >= 0.0:
+            distance = abs(rho_foot - rho)
+            if distance < best:
+                best = distance
+                foot = _involute_point(rho_foot, base, base_half_angle, outward)
+                after = _next_to_tip(flank, int(joints[1]), rho_foot, base, outward)
+    for k in range(int(joints[0]), int(joints[1])):
+        chord = flank[k + 1] - flank[k]
+        to_point = point - flank[k]
+        squared = chord.real**2 + chord.imag**2
+        share = (to_point.real * chord.real + to_point.imag * chord.imag) / squared
+        share = min(1.0, max(0.0, share))
+        distance = abs(to_point - share * chord)
+        if distance < best:
+            best = distance
+            foot = flank[k] + share * chord
+            after = k + 1
+    return best, foot, after
+
+
+@kernel
+def _place(point: complex, turn: float, mirror: float, centre: float) -> complex:
+    local = point if mirror > 0.0 else point.conjugate()
+    return centre + local * cmath.exp(1j * turn)
+
+
+@kernel
+def _unplace(point: complex, turn: float, mirror: float, centre: float) -> complex:
+    local = (point - centre) * cmath.exp(-1j * turn)
+    return local if mirror > 0.0 else local.conjugate()
+
+
+@kernel
+def _gap(
+    phi: float,
+    leading: float,
+    gears: tuple[Points, Floats, Floats, Points, Floats, Floats],
+    mesh: Floats,
+) -> tuple[float, complex, complex, int, int]:
+    """Gap between a flank of a tooth of gear 1 and the flank of gear 2 that it faces.
+
+    Theory (Q1), (Q3).
+
+    Parameters
+    ----------
+    phi : float
+        Angle of the tooth from the line of centres. [rad]
+    leading : float
+        +1 for the flank on the side that `phi` grows to, -1 for the other.
+    gears : tuple
+        Flank, joints and figures of gear 1, then of gear 2, as for `_closest`.
+    mesh : ndarray, shape (8,)
+        Coordinate of the axis of gear 2 [m], teeth of gears 1 and 2, +1 for an external mesh and
+        -1 for an internal one, operating pressure angle [rad], length of the line of action [m],
+        clearances of the leading and the trailing flanks along the line of action [m].
+
+    Returns
+    -------
+    gap : float
+        [m]
+    foot1, foot2 : complex
+        Closest points. [m]
+    after1, after2 : int
+        As `after` of `_closest`.
+    """
+    flank1, joints1, gear1, flank2, joints2, gear2 = gears
+    centre2, _, _, side, alpha, action, clear_leading, clear_trailing = mesh
+    turn2, mirror2 = _facing(phi, leading, mesh, gear1, gear2)
+    clearance = clear_leading if leading > 0.0 else clear_trailing
+    base1, half1, form1, tip1, out1 = gear1
+    base2, half2, form2, tip2, out2 = gear2
+    # Involutes conjugate to each other have their common normal on the line of action. Where one of
+    # them ends in its fillet, the point of the fillet closest to the other foot is taken: that
+    # keeps the feet continuous, although a point nearby may be closer by some micrometres.
+    rho1 = base1 * (half1 + alpha + leading * phi)
+    rho2 = action - side * (rho1 + clearance)
+    real1 = rho1 >= form1
+    real2 = out2 * (rho2 - form2) >= 0.0
+    if rho1 <= tip1 and out2 * (tip2 - rho2) >= 0.0 and (real1 or real2):
+        foot1 = _involute_point(rho1, base1, half1, out1)
+        foot2 = _involute_point(rho2, base2, half2, out2)
+        after1 = _next_to_tip(flank1, int(joints1[1]), rho1, base1, out1)
+        after2 = _next_to_tip(flank2, int(joints2[1]), rho2, base2, out2)
+        place1 = _place(foot1, phi, leading, 0.0)
+        place2 = _place(foot2, turn2, mirror2, centre2)
+        if real1 and real2:
+            return clearance, place1, place2, after1, after2
+        if real2:
+            width, foot1, after1 = _closest(
+                _unplace(place2, phi, leading, 0.0), flank1, joints1, gear1
+            )
+            return width, _place(foot1, phi, leading, 0.0), place2, after1, after2
+        width, foot2, after2 = _closest(
+            _unplace(place1, turn2, mirror2, centre2), flank2, joints2, gear2
+        )
+        return width, place1, _place(foot2, turn2, mirror2, centre2), after1, after2
+    corner1 = _place(flank1[flank1.size - 1], phi, leading, 0.0)
+    corner2 = _place(flank2[flank2.size - 1], turn2, mirror2, centre2)
+    on2, foot2, after2 = _closest(
+        _unplace(corner1, turn2, mirror2, centre2), flank2, joints2, gear2
+    )
+    on1, foot1, after1 = _closest(_unplace(corner2, phi, leading, 0.0), flank1, joints1, gear1)
+    if on2 <= on1:
+        return on2, corner1, _place(foot2, turn2, mirror2, centre2), flank1.size - 1, after2
+    return on1, _place(foot1, phi, leading, 0.0), corner2, after1, flank2.size - 1
+
+
+@kernel
+def _facing(
+    phi: float, leading: float, mesh: Floats, gear1: Floats, gear2: Floats
+) -> tuple[float, float]:
+    """Turn and mirroring of the flank of gear 2 that faces a flank of gear 1. Theory (Q1)."""
+    _, z1, z2, side, _, _, clear_leading, clear_trailing = mesh
+    # Half the difference of the clearances, as an angle of gear 2.
+    shift = (clear_leading - clear_trailing) / 2 / gear2[0]
+    turned = phi * z1 / z2 + shift
+    space = math.pi - turned if side > 0.0 else turned
+    half_pitch = math.pi / z2
+    return space - side * leading * half_pitch, side * leading
+
+
+@kernel
+def gap_table(
+    phi: Floats,
+    leading: float,
+    gears: tuple[Points, Floats, Floats, Points, Floats, Floats],
+    mesh: Floats,
+) -> Floats:
+    """Gap between two flanks and its middle at many angles. Theory (Q3).
+
+    Parameters
+    ----------
+    phi : ndarray, shape (n,)
+        Angles of the tooth of gear 1 from the line of centres. [rad]
+    leading, gears, mesh
+        As for `_gap`.
+
+    Returns
+    -------
+    ndarray, shape (n, 3)
+        Width, x and y of the middle. [m]
+    """
+    table = np.empty((phi.size, 3))
+    for n in range(phi.size):
+        width, foot1, foot2, _, _ = _gap(phi[n], leading, gears, mesh)
+        middle = (foot1 + foot2) / 2
+        table[n, 0] = width
+        table[n, 1] = middle.real
+        table[n, 2] = middle.imag
+    return table
+
+
+@kernel
+def _add_tooth(
+    polygon: Points, count: int, flank: Points, after: tuple[int, int], place: tuple[float, float]
+) -> int:
+    """Append a tooth from its leading foot over the tip to its trailing foot, feet left out.
+
+    `after`: as of `_closest` on the flank of positive and on that of negative side; `place`: turn
+    and centre.
+    """
+    turn, centre = place
+    for k in range(after[0], flank.size):
+        polygon[count] = _place(flank[k], turn, 1.0, centre)
+        count += 1
+    corner = flank[flank.size - 1]
+    half = cmath.phase(corner)
+    for k in range(1, TIP_POINTS - 1):
+        angle = half * (1 - 2 * k / (TIP_POINTS - 1))
+        polygon[count] = _place(abs(corner) * cmath.exp(1j * angle), turn, 1.0, centre)
+        count += 1
+    for k in range(flank.size - 1, after[1] - 1, -1):
+        polygon[count] = _place(flank[k], turn, -1.0, centre)
+        count += 1
+    return count
+
+
+@kernel
+def _add_space(
+    polygon: Points,
+    count: int,
+    flank: Points,
+    after: tuple[int, int],
+    turns: tuple[float, float],
+    mirror: float,
+    centre: float,
+) -> int:
+    """Append a space from one foot over the root to the other, feet left out.
+
+    `after` and `turns` belong to the flank where the path begins and to the one where it ends;
+    `mirror` to the first one.
+    """
+    for k in range(after[0] - 1, -1, -1):
+        polygon[count] = _place(flank[k], turns[0], mirror, centre)
+        count += 1
+    for k in range(1, after[1]):
+        polygon[count] = _place(flank[k], turns[1], -mirror, centre)
+        count += 1
+    return count
+
+
+@kernel
+def _area_and_centroid(polygon: Points, count: int) -> tuple[float, complex]:
+    """Area and centroid of a polygon. Theory (Q4), (Q5)."""
+    area = 0.0
+    moment = 0j
+    origin = polygon[0]
+    for k in range(1, count - 1):
+        one = polygon[k] - origin
+        two = polygon[k + 1] - origin
+        cross = one.real * two.imag - one.imag * two.real
+        area += cross
+        moment += cross * (one + two)
+    return abs(area) / 2, origin + moment / (3 * area)
+
+
+@kernel
+def pocket_table(
+    phi: Floats,
+    member: int,
+    gears: tuple[Points, Floats, Floats, Points, Floats, Floats],
+    mesh: Floats,
+) -> Floats:
+    """End area of a pocket and its centroid at many angles. Theory (Q4), (Q5).
+
+    Parameters
+    ----------
+    phi : ndarray, shape (n,)
+        For a tooth of gear 1 in a space of gear 2 the angle of that tooth, for a tooth of gear 2
+        in a space of gear 1 the angle of that space, from the line of centres. [rad]
+    member : int
+        1 or 2: whose tooth is in the space of the other.
+    gears, mesh
+        As for `_gap`.
+
+    Returns
+    -------
+    ndarray, shape (n, 3)
+        Area [m^2], x and y of the centroid [m].
+    """
+    flank1, _, gear1, flank2, _, gear2 = gears
+    centre2, z1 = mesh[0], mesh[1]
+    side = mesh[3]
+    polygon = np.empty(4 * (flank1.size + flank2.size) + TIP_POINTS + 4, np.complex128)
+    half_pitch = math.pi / z1
+    table = np.empty((phi.size, 3))
+    for n in range(phi.size):
+        # Teeth of gear 1 whose leading and trailing flanks bound the pocket.
+        lead = phi[n] if member == 1 else phi[n] - half_pitch
+        trail = phi[n] if member == 1 else phi[n] + half_pitch
+        _, lead1, lead2, lead_after1, lead_after2 = _gap(lead, 1.0, gears, mesh)
+        _, trail1, trail2, trail_after1, trail_after2 = _gap(trail, -1.0, gears, mesh)
+        lead_turn2, mirror2 = _facing(lead, 1.0, mesh, gear1, gear2)
+        trail_turn2, _ = _facing(trail, -1.0, mesh, gear1, gear2)
+        if member == 1:
+            polygon[0] = lead1
+            count = _add_tooth(polygon, 1, flank1, (lead_after1, trail_after1), (lead, 0.0))
+            polygon[count] = trail1
+            polygon[count + 1] = trail2
+            count = _add_space(
+                polygon,
+                count + 2,
+                flank2,
+                (trail_after2, lead_after2),
+                (trail_turn2, lead_turn2),
+                -mirror2,
+                centre2,
+            )
+            polygon[count] = lead2
+        else:
+            # The leading flank of one tooth of gear 1 faces the tooth of gear 2 in the space
+            # before it; seen from gear 2 that is the positive side if the axes turn together.
+            ahead = (lead2, lead_after2) if side > 0.0 else (trail2, trail_after2)
+            behind = (trail2, trail_after2) if side > 0.0 else (lead2, lead_after2)
+            polygon[0] = ahead[0]
+            count = _add_tooth(polygon, 1, flank2, (ahead[1], behind[1]), (lead_turn2, centre2))
+            polygon[count] = behind[0]
+            count += 1
+            if side > 0.0:
+                polygon[count] = trail1
+                count = _add_space(
+                    polygon,
+                    count + 1,
+                    flank1,
+                    (trail_after1, lead_after1),
+                    (trail, lead),
+                    -1.0,
+                    0.0,
+                )
+                polygon[count] = lead1
+            else:
+                polygon[count] = lead1
+                count = _add_space(
+                    polygon,
+                    count + 1,
+                    flank1,
+                    (lead_after1, trail_after1),
+                    (lead, trail),
+                    1.0,
+                    0.0,
+                )
+                polygon[count] = trail1
+        area, centroid = _area_and_centroid(polygon, count + 1)
+        table[n, 0] = area
+        table[n, 1] = centroid.real
+        table[n, 2] = centroid.imag
+    return table

@@ -1,0 +1,1 @@
+"""Loss from squeezing oil and air out of the tooth spaces of a mesh."""

@@ -1,0 +1,175 @@
+"""Pockets of a mesh in the transverse section, as tables over the rotation angle.
+
+A tooth of either gear in a space of the other encloses a pocket, between the narrowest gap on its
+leading side and the one on its trailing side. Seen along the mesh, pockets of both kinds alternate,
+and neighbours share a gap. A slice of a helical mesh is the same section at another angle, so one
+table serves all slices and all times. Talbot (2012), section 4.2.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.geometry.gear import Gear, involute
+from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.outline import Tool, tooth_outline
+from epicyclic.kernels.pocket_geometry import gap_table, pocket_table
+
+__all__ = ["PocketGeometry", "pocket_geometry"]
+
+Floats = NDArray[np.float64]
+
+ANGLES = 769
+"""Angles in each table: its cubics meet area and gap to a thousandth of a percent, about."""
+MARGIN = 0.25
+"""How far tables reach beyond the life of a pocket, because a cell lives while any part of it does:
+more than a slice and a time step turn. [pitches]"""
+OUTLINE_POINTS = 49
+"""Points on each section of an outline."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PocketGeometry:
+    """Pockets of a mesh in the transverse section.
+
+    The first index of `area`, `centroid` and `life` is the member whose tooth is in a space of the
+    other, less one. Arrays are read-only.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    life : ndarray, shape (2, 2)
+        Angles of birth and death of a pocket: of the tooth of gear 1, or of the space of gear 1 in
+        which a tooth of gear 2 is, from the line of centres. [rad]
+    angle : ndarray, shape (2, n)
+        Angles of `area` and `centroid`, evenly spaced, from a little before the life to a little
+        after it. [rad]
+    area : ndarray, shape (2, n)
+        End area of the pocket. [m^2]
+    centroid : ndarray, shape (2, n, 2)
+        About the axis of gear 1, the line of centres along x. [m]
+    gap_angle : ndarray, shape (n,)
+        Angles of the gaps: of the tooth of gear 1 that they belong to. [rad]
+    gap : ndarray, shape (2, n)
+        Narrowest gap at the leading and at the trailing flank of that tooth. [m]
+    gap_middle : ndarray, shape (2, n, 2)
+        As `centroid`. [m]
+    """
+
+    mesh: Mesh
+    life: Floats
+    angle: Floats
+    area: Floats
+    centroid: Floats
+    gap_angle: Floats
+    gap: Floats
+    gap_middle: Floats
+
+    @property
+    def pitch(self) -> float:
+        """Angle of gear 1 in which the mesh repeats. [rad]"""
+        return 2 * math.pi / self.mesh.gear1.teeth
+
+
+@lru_cache(maxsize=32)
+def pocket_geometry(
+    mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool, angles: int = ANGLES
+) -> PocketGeometry:
+    """Pockets of `mesh`.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    tools : tuple
+        The tools that cut members 1 and 2, as for `tooth_outline`.
+    drives1 : bool
+        True if member 1 drives, which puts the contact on its leading flanks.
+    angles : int
+        Angles in each table.
+
+    Returns
+    -------
+    PocketGeometry
+
+    Raises
+    ------
+    ValueError
+        If a tool cannot cut its gear.
+    """
+    backlash = mesh.backlash * math.cos(mesh.operating_pressure_angle)
+    clearances = (0.0, backlash) if drives1 else (backlash, 0.0)
+    figures = np.array(
+        [
+            mesh.side * mesh.center_distance,
+            mesh.gear1.teeth,
+            mesh.gear2.teeth,
+            mesh.side,
+            mesh.operating_pressure_angle,
+            mesh.line_of_action,
+            *clearances,
+        ]
+    )
+    gears = (*_flank(mesh.gear1, tools[0]), *_flank(mesh.gear2, tools[1]))
+    life = _lives(mesh, clearances)
+    half_pitch = math.pi / mesh.gear1.teeth
+    margin = 2 * half_pitch * MARGIN
+    angle = np.linspace(life[:, 0] - margin, life[:, 1] + margin, angles, axis=1)
+    tables = np.stack([pocket_table(angle[k], k + 1, gears, figures) for k in (0, 1)])
+    first = min(life[0, 0], life[1, 0] - half_pitch) - margin
+    last = max(life[0, 1], life[1, 1] + half_pitch) + margin
+    gap_angle = np.linspace(first, last, angles)
+    gaps = np.stack([gap_table(gap_angle, leading, gears, figures) for leading in (1.0, -1.0)])
+    geometry = PocketGeometry(
+        mesh=mesh,
+        life=life,
+        angle=angle,
+        area=tables[..., 0],
+        centroid=tables[..., 1:],
+        gap_angle=gap_angle,
+        gap=gaps[..., 0],
+        gap_middle=gaps[..., 1:],
+    )
+    for array in (life, angle, tables, gap_angle, gaps):
+        array.flags.writeable = False
+    return geometry
+
+
+def _flank(gear: Gear, tool: Tool | None) -> tuple[NDArray[np.complex128], Floats, Floats]:
+    """Flank, joints and figures of a gear as the kernels take them."""
+    outline = tooth_outline(gear, tool, OUTLINE_POINTS)
+    outward = -1.0 if gear.internal else 1.0
+    root, fillet, corner = outline.joints
+    points = outline.radius[: corner + 1] * np.exp(1j * outline.half_angle[: corner + 1])
+    base = gear.base_radius
+    form = math.sqrt(max(0.0, outline.form_radius**2 - base**2))
+    at_base = gear.thickness_half_angle + outward * involute(gear.rack.transverse_pressure_angle)
+    figures = np.array([base, at_base, form, gear.tip_involute_length, outward])
+    return points, np.array([root, fillet], dtype=np.float64), figures
+
+
+def _lives(mesh: Mesh, clearances: tuple[float, float]) -> Floats:
+    """Angles at which the first corner of a tooth enters the tip circle of the mate, and the last
+    one leaves it. Theory (Q6)."""
+    gear1, gear2 = mesh.gear1, mesh.gear2
+    crossing1 = _crossing(gear1.tip_radius, gear2.tip_radius, mesh.center_distance, mesh.internal)
+    half1 = crossing1 + gear1.half_angle_at(gear1.tip_radius)
+    # Seen from a ring, its own tip circle is the far one and that of the planet the near one.
+    cosine = (gear2.tip_radius**2 + mesh.center_distance**2 - gear1.tip_radius**2) / (
+        2 * gear2.tip_radius * mesh.center_distance
+    )
+    crossing2 = math.acos(min(1.0, max(-1.0, cosine)))
+    half2 = (crossing2 + gear2.half_angle_at(gear2.tip_radius)) * mesh.ratio
+    shift = (clearances[0] - clearances[1]) / 2 / gear1.base_radius
+    return np.array([[-half1, half1], [-half2 - shift, half2 - shift]])
+
+
+def _crossing(tip1: float, tip2: float, center_distance: float, internal: bool) -> float:
+    """Angle about gear 1, from the line of centres, at which the tip circles cross. [rad]"""
+    side = -1.0 if internal else 1.0
+    cosine = side * (tip1**2 + center_distance**2 - tip2**2) / (2 * tip1 * center_distance)
+    return math.acos(min(1.0, max(-1.0, cosine)))

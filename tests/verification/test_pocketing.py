@@ -1,0 +1,347 @@
+"""The pockets of a mesh and the flow through them: are the equations solved right?"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+
+import epicyclic as ep
+from epicyclic.case import build
+from epicyclic.geometry.gear import BasicRack, Gear, half_angle_from_profile_shift
+from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.outline import form_radius, tooth_outline
+from epicyclic.kernels.pocket_flow import choking_table, enthalpy
+from epicyclic.lubricant.properties import MixtureState
+from epicyclic.pocketing.fluid import POCKETING_MODELS, pocket_flow
+from epicyclic.pocketing.geometry import pocket_geometry
+
+AMBIENT = 101325.0
+RPM = math.pi / 30
+
+
+def mixture(xi, oil=824.1, air=0.972):
+    """A mixture with the test oil at 90 degC; its viscosity takes no part."""
+    return MixtureState(xi, xi * oil + (1 - xi) * air, 0.0)
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """The example pair of Talbot's table 4.1 at other helix angles and widths, and its tools."""
+
+    def geometry(beta=10.0, width=15.0, drives1=True, **kwargs):
+        case = ep.load_case("talbot-2012-pair").updated(
+            {
+                "gears.helix_angle": f"{beta} deg",
+                "pinion.face_width": f"{width} mm",
+                "gear.face_width": f"{width} mm",
+            }
+        )
+        mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
+        tools = (
+            build.fitted_tool(mesh.gear1, case.pinion, mesh.radius1_at_start),
+            build.fitted_tool(mesh.gear2, case.gear, mesh.radius2_at_end),
+        )
+        return pocket_geometry(mesh, tools, drives1, **kwargs)
+
+    return geometry
+
+
+def solve(geometry, rpm=10000.0, xi=0.05, **kwargs):
+    return pocket_flow(geometry, rpm * RPM, mixture(xi), AMBIENT, **kwargs)
+
+
+# --- geometry -------------------------------------------------------------------------------------
+
+
+def outline_distance(mesh, tools, phi, leading, shift):
+    """Smallest distance of two flanks by brute force over finely drawn outlines."""
+    gear1, gear2 = mesh.gear1, mesh.gear2
+    flanks = []
+    for gear, tool in zip((gear1, gear2), tools, strict=True):
+        outline = tooth_outline(gear, tool, 1500)
+        part = slice(outline.joints[0], outline.joints[2] + 1)
+        flanks.append(outline.radius[part] * np.exp(1j * outline.half_angle[part]))
+    one, two = flanks
+    one = (one if leading > 0 else one.conj()) * np.exp(1j * phi)
+    turned = phi / mesh.ratio + shift
+    middle = turned if mesh.internal else math.pi - turned
+    sign = -leading if mesh.internal else leading
+    two = (two if sign > 0 else two.conj()) * np.exp(1j * (middle - sign * math.pi / gear2.teeth))
+    two = two + mesh.side * mesh.center_distance
+    return float(np.abs(one[:, None] - two[None, :]).min())
+
+
+@pytest.mark.parametrize("internal", [False, True])
+@pytest.mark.parametrize("leading", [1, -1])
+def test_gaps_are_the_smallest_distances(make_mesh, internal, leading):
+    mesh = make_mesh(24, 71 if internal else 33, internal=internal, x1=-0.02, x2=-0.03)
+    tools = (None, None)
+    geometry = pocket_geometry(mesh, tools, True)
+    clearance = mesh.backlash * math.cos(mesh.operating_pressure_angle)
+    shift = -clearance / 2 / mesh.gear2.base_radius
+    at = geometry.gap_angle[40:-40:60]
+    brute = [outline_distance(mesh, tools, phi, leading, shift) for phi in at]
+    gap = geometry.gap[0 if leading > 0 else 1][40:-40:60]
+    # points of the brute force stand 3 um apart: at a contact they miss each other by as much
+    assert gap == pytest.approx(brute, abs=4e-6, rel=1e-3)
+
+
+def test_gaps_in_contact_are_the_clearances(pair):
+    geometry = pair(0.0)
+    mesh = geometry.mesh
+    assert geometry.gap[0].min() == 0.0
+    normal = mesh.backlash * math.cos(mesh.operating_pressure_angle)
+    middle = np.abs(geometry.gap_angle) < 0.3 * geometry.pitch
+    # both flanks of the middle tooth are on the line of action: contact ratio 1.6 by base pitch
+    assert geometry.gap[1][middle] == pytest.approx(normal, rel=1e-12)
+    closed = np.diff(geometry.gap_angle[geometry.gap[0] == 0.0][[0, -1]])[0]
+    step = np.diff(geometry.gap_angle[:2])[0]
+    expected = mesh.transverse_contact_ratio * geometry.pitch
+    assert closed == pytest.approx(expected, abs=2 * step)
+
+
+@pytest.mark.parametrize("drives1", [True, False])
+def test_the_other_driver_mirrors_the_pockets(pair, drives1):
+    one, other = pair(0.0, drives1=drives1), pair(0.0, drives1=not drives1)
+    for k in (0, 1):
+        assert one.angle[k] == pytest.approx(-other.angle[k][::-1], abs=1e-12)
+        assert one.area[k] == pytest.approx(other.area[k][::-1], rel=1e-9)
+    assert one.gap[0] == pytest.approx(other.gap[1][::-1], abs=1e-12)
+
+
+def test_area_of_tooth_and_space_make_the_pocket(make_mesh):
+    """At the line of centres of a symmetric pair without backlash, from the outlines alone."""
+    mesh = make_mesh(30, 30)
+    geometry = pocket_geometry(mesh, (None, None), True)
+    # equal gears: a tooth of one in a space of the other is the same picture from either side
+    assert geometry.area[0] == pytest.approx(geometry.area[1], rel=1e-6)
+    assert geometry.area[0] == pytest.approx(geometry.area[0][::-1], rel=1e-6)
+
+
+def test_area_is_continuous(pair):
+    for beta in (0.0, 30.0):
+        geometry = pair(beta)
+        for k in (0, 1):
+            birth, death = geometry.life[k]
+            alive = (geometry.angle[k] >= birth) & (geometry.angle[k] <= death)
+            change = np.diff(geometry.area[k][alive])
+            jump = np.abs(np.diff(change))
+            # kinks change the slope, by less than a tenth of its median; a jump of feet would
+            # change it by several times as much
+            assert jump.max() < 0.1 * np.median(np.abs(change))
+
+
+def test_outline_points_and_angles_converge(pair):
+    coarse, fine = pair(0.0, angles=385), pair(0.0, angles=1537)
+    assert np.interp(fine.angle[0], coarse.angle[0], coarse.area[0]) == pytest.approx(
+        fine.area[0], rel=2e-3
+    )
+
+
+def test_tools_leave_the_involute_that_the_mate_needs(talbot, talbot_meshes):
+    mesh = talbot_meshes[0]
+    tool = build.fitted_tool(mesh.gear2, talbot.planet, mesh.radius2_at_end)
+    assert form_radius(mesh.gear2, tool) <= mesh.radius2_at_end + 1e-9
+
+
+# --- fluid ----------------------------------------------------------------------------------------
+
+
+def test_enthalpy_is_the_integral_of_the_specific_volume():
+    q = np.linspace(0.0, 3.0, 4001)
+    for xi in (0.0, 0.05, 0.7, 1.0):
+        volume = xi + (1 - xi) * (1 + q) ** (-1 / 1.4)
+        assert enthalpy(3.0, xi) == pytest.approx(np.trapezoid(volume, q), rel=1e-6)
+
+
+def test_air_chokes_at_the_textbook_ratio():
+    # (2/(gamma + 1))^(gamma/(gamma - 1)) for an ideal gas with gamma 1.4
+    assert choking_table(0.0) == pytest.approx(1.2 ** (-1.4 / 0.4), rel=1e-9)
+
+
+@pytest.mark.parametrize(("xi", "rpm"), [(0.0, 10000.0), (0.05, 10000.0), (1.0, 500.0)])
+def test_mass_and_energy_are_conserved(pair, xi, rpm):
+    flow = solve(pair(), rpm, xi)
+    assert abs(flow.mass_error) < 1e-8  # Newton's tolerance
+    assert flow.periodic
+    assert flow.power > 0
+    assert abs(flow.difference) < 5e-3  # time steps; zero for pure oil
+
+
+def test_power_is_the_mean_of_the_instants(pair):
+    flow = solve(pair())
+    assert flow.instant_power.mean() == pytest.approx(flow.power, rel=1e-12)
+
+
+@pytest.mark.parametrize("model", POCKETING_MODELS)
+def test_slow_flow_is_incompressible(pair, model):
+    """At 100 rpm the Mach number is below 0.01; what is left are the time steps."""
+    geometry = pair(20.0)
+    incompressible = solve(geometry, 100.0, model="incompressible", steps=64)
+    assert solve(geometry, 100.0, model=model, steps=64).power == pytest.approx(
+        incompressible.power, rel=0.15
+    )
+
+
+def test_slow_oil_is_incompressible_and_fast_oil_cavitates(pair):
+    slow = solve(pair(0.0), 500.0, 1.0)
+    exact = solve(pair(0.0), 500.0, 1.0, model="incompressible")
+    # air of 1e-4 by volume is left: half a percent of the loss
+    assert slow.power == pytest.approx(exact.power, rel=0.01)
+    assert solve(pair(0.0), 10000.0, 1.0).pressure.min() >= -AMBIENT
+    assert solve(pair(0.0), 10000.0, 1.0, model="incompressible").pressure.min() < -AMBIENT
+
+
+def test_incompressible_loss_is_proportional_to_density(pair):
+    oil, thin = (solve(pair(), xi=xi, model="incompressible").power for xi in (1.0, 0.05))
+    assert oil / thin == pytest.approx(824.1 / mixture(0.05).density, rel=1e-6)
+
+
+def test_incompressible_loss_grows_with_the_cube_of_speed(pair):
+    low, high = (solve(pair(), rpm, model="incompressible").power for rpm in (100.0, 10000.0))
+    assert high / low == pytest.approx(1e6, rel=1e-6)
+
+
+def test_power_scales_with_density_at_one_mach_number(pair):
+    """Density and ambient pressure times ten: the same flow with ten times the power."""
+    geometry, state = pair(), mixture(0.05)
+    heavy = replace(state, density=10 * state.density)
+    one = pocket_flow(geometry, 5000 * RPM, state, AMBIENT)
+    ten = pocket_flow(geometry, 5000 * RPM, heavy, 10 * AMBIENT)
+    assert ten.power == pytest.approx(10 * one.power, rel=1e-6)
+    assert ten.axial_speed == pytest.approx(one.axial_speed, abs=1e-5)
+
+
+def test_spur_flow_is_symmetric_about_the_middle_of_the_face(pair):
+    flow = solve(pair(0.0))
+    scale = np.abs(flow.pressure).max()
+    assert flow.pressure == pytest.approx(flow.pressure[:, :, ::-1], abs=1e-5 * scale)
+    assert flow.axial_speed == pytest.approx(-flow.axial_speed[:, :, ::-1], abs=1e-3)
+
+
+def test_slices_and_steps_converge(pair):
+    """The error of the default resolution is within the 3 % that the manual states."""
+    geometry = pair()
+    slices = [solve(geometry, slices=count).power for count in (8, 16, 32)]
+    steps = [solve(geometry, steps=count).power for count in (16, 32, 64)]
+    for coarse, middle, fine in (slices, steps):
+        assert abs(middle - fine) < 0.5 * abs(coarse - middle)
+        assert abs(middle / fine - 1) < 0.015
+
+
+def test_pockets_do_not_remember_where_they_started(pair):
+    flow = solve(pair())
+    assert flow.periods < 12  # a pocket lives less than four pitches
+
+
+def test_wider_and_straighter_gears_lose_more(pair):
+    narrow, wide = solve(pair(20.0)).power, solve(pair(20.0, 30.0)).power
+    assert wide > 1.5 * narrow
+    assert solve(pair(30.0)).power < narrow
+
+
+# --- the box that the model is made for -----------------------------------------------------------
+
+
+def box_mesh(module, beta, backlash, teeth, internal, width):
+    helix = math.radians(beta)
+    alpha = math.atan(math.tan(math.radians(20.0)) / math.cos(helix))
+    rack = BasicRack(module / math.cos(helix), alpha, helix)
+
+    def gear(name, count, ring):
+        reference = count * rack.transverse_module / 2
+        outward = -module if ring else module
+        half = half_angle_from_profile_shift(rack, count, 0.0) - backlash / 4 / reference
+        tip, root = reference + outward, reference - 1.25 * outward
+        return Gear(name, rack, count, ring, half, tip, root, width)
+
+    one, two = gear("pinion", teeth[0], False), gear("wheel", teeth[1], internal)
+    distance = two.reference_radius + (-1 if internal else 1) * one.reference_radius
+    return Mesh("mesh", one, two, distance)
+
+
+@settings(max_examples=20)
+@given(
+    rpm=st.floats(math.log(10.0), math.log(20000.0)),
+    xi=st.one_of(st.sampled_from([0.0, 1 - 1e-16, 1.0]), st.floats(0.0, 1.0)),
+    beta=st.one_of(st.just(0.0), st.floats(0.0, 40.0)),
+    backlash=st.floats(math.log(1e-5), math.log(5e-4)),
+    module=st.floats(math.log(0.5e-3), math.log(10e-3)),
+    internal=st.booleans(),
+    drives1=st.booleans(),
+)
+@example(math.log(16845), 0.74, 19.9, math.log(1e-5), math.log(9.2e-3), False, False)
+@example(math.log(17463), 0.907, 36.5, math.log(1.8e-4), math.log(3.3e-3), False, True)
+@example(math.log(13434), 0.872, 15.8, math.log(1.3e-4), math.log(6.2e-3), False, True)
+def test_every_point_of_the_box_has_an_answer(rpm, xi, beta, backlash, module, internal, drives1):
+    teeth = (23, 76) if internal else (23, 41)
+    size = math.exp(module)
+    mesh = box_mesh(size, beta, math.exp(backlash), teeth, internal, 8 * size)
+
+    class Table:
+        tool_tip_radius = None
+
+    try:
+        tools = (
+            build.fitted_tool(mesh.gear1, Table, mesh.radius1_at_start),
+            build.fitted_tool(mesh.gear2, Table, mesh.radius2_at_end),
+        )
+    except ValueError:
+        assume(False)
+    flow = solve(pocket_geometry(mesh, tools, drives1), math.exp(rpm), xi, slices=8)
+    assert math.isfinite(flow.power)
+    assert flow.power > 0
+    assert abs(flow.mass_error) < 1e-6
+
+
+# --- in the solution of a case --------------------------------------------------------------------
+
+
+def test_pocketing_is_solved_once_for_all_torques(talbot):
+    ep.solve(talbot)
+    before = pocket_flow.cache_info().misses
+    ep.solve(talbot.updated({"operation.torque": "250 N*m"}))
+    assert pocket_flow.cache_info().misses == before
+    ep.solve(talbot.updated({"operation.speed": "3990 rpm"}))
+    assert pocket_flow.cache_info().misses == before + 2
+
+
+def test_no_motion_no_loss_and_left_out_is_not_computed(talbot):
+    rest = ep.solve(talbot.updated({"operation.speed": "0 rpm"}))
+    assert rest.losses["sun_mesh_pocketing"] == rest.losses["ring_mesh_pocketing"] == 0.0
+    before = pocket_flow.cache_info()
+    without = ep.solve(
+        talbot.updated(
+            {
+                "operation.speed": "3777 rpm",
+                "losses.sun_mesh_pocketing.include": False,
+                "losses.ring_mesh_pocketing.include": False,
+            }
+        )
+    )
+    assert pocket_flow.cache_info().misses == before.misses
+    assert without.losses["sun_mesh_pocketing"] == 0.0
+
+
+def test_speeds_are_relative_to_the_carrier(talbot):
+    """The loss of a set that turns as one block is zero, however fast it turns."""
+    block = {
+        "operation.fixed": None,
+        "operation.second_input": "ring",
+        "operation.second_speed": "4000 rpm",
+        "operation.torque": "0 N*m",
+    }
+    losses = ep.solve(talbot.updated(block)).losses
+    assert losses["sun_mesh_pocketing"] == losses["ring_mesh_pocketing"] == 0.0
+
+
+def test_coasting_turns_the_contact_to_the_other_flanks(talbot):
+    drive = ep.solve(talbot).losses
+    coast = ep.solve(talbot.updated({"operation.torque": "-1000 N*m"})).losses
+    assert coast["sun_mesh_pocketing"] != drive["sun_mesh_pocketing"]
+    assert coast["sun_mesh_pocketing"] == pytest.approx(drive["sun_mesh_pocketing"], rel=0.2)
