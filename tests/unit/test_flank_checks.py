@@ -81,6 +81,54 @@ TABLE = {
             "planet.micro_geometry_ring_side.topography.deviation",
             "2 rows of 2 values",
         ),
+        (
+            "sun.micro_geometry.tip_relief_roll_length",
+            "2 mm",
+            "sun.micro_geometry.tip_relief_roll_length",
+            "belongs to tip_relief, which is not given",
+        ),
+        (
+            "sun.micro_geometry",
+            {"root_relief_diameter": "300 mm"},
+            "sun.micro_geometry.root_relief_diameter",
+            "active profile",
+        ),
+        (
+            "ring.micro_geometry.root_relief_shape",
+            "parabolic",
+            "ring.micro_geometry.root_relief_shape",
+            "belongs to root_relief",
+        ),
+        (
+            "sun.micro_geometry.end_relief_length",
+            "2 mm",
+            "sun.micro_geometry.end_relief_length",
+            "belongs to end_relief",
+        ),
+        (
+            "sun.micro_geometry",
+            {"end_relief_length": "20 mm"},
+            "sun.micro_geometry.end_relief_length",
+            "must fit into the face width",
+        ),
+        (
+            "planet.micro_geometry.topography",
+            TABLE | {"diameter": ["60 mm", "70 mm"]},
+            "planet.micro_geometry.topography.diameter",
+            "overlap the active profile of the sun mesh, ",
+        ),
+        (
+            "planet.micro_geometry.topography",
+            TABLE | {"face_position": ["0 mm", "300 mm"]},
+            "planet.micro_geometry.topography.face_position",
+            "overlap the face, 0 mm to ",
+        ),
+        (
+            "planet.micro_geometry.topography",
+            TABLE | {"face_position": ["20 mm", "40 mm"]},
+            "planet.micro_geometry.topography.face_position",
+            "half of the longer",
+        ),
         ("planet.micro_geometry.tip_releif", "5 um", "planet.micro_geometry.tip_releif", "tip_rel"),
         ("sun_mesh.misalignment", "5 deg", "sun_mesh.misalignment", "measures something else"),
         ("numerics.contact_segments", 1000, "numerics.contact_segments", "memory"),
@@ -92,6 +140,15 @@ def test_what_cannot_be_is_refused(talbot, key, value, problem, words):
     found = [one for one in error.value.problems if one.key == problem]
     assert found, str(error.value)
     assert words in str(found[0])
+
+
+def test_a_relief_of_nothing_may_keep_its_length(talbot):
+    """So that a sweep of the amount can start at zero."""
+    none = talbot.updated({"sun.micro_geometry": TIP | {"tip_relief": "0 um"}})
+    assert ep.load_case(none.inputs()) == none
+    mesh, _ = build.planetary_meshes(none.gears, none.sun, none.planet, none.ring)
+    deviations = flanks.flank_deviations(mesh, (none.sun, none.planet), 0.0)
+    assert deviations.member1 == flanks.MicroGeometry()
 
 
 def test_a_bad_flank_hides_no_other_problem(talbot):

@@ -143,6 +143,8 @@ def test_closed_form_and_direct_solution_agree_on_a_whole_set(six):
     assert one.planet_shares == pytest.approx(other.planet_shares, rel=1e-6)
     assert one.planet_shares[0] == max(one.planet_shares) > 1.1 / 6
     assert one.total == pytest.approx(other.total, rel=1e-6)
+    stated = one.to_dict()["mesh_load_factor"]
+    assert stated == {"value": pytest.approx(6 * max(one.planet_shares)), "unit": "1"}
 
 
 def test_losses_sum_over_unequal_planets(six):

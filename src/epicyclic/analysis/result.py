@@ -328,6 +328,7 @@ class Result:
                 "unit": "deg",
             },
             "planet_shares": {"value": list(self.planet_shares), "unit": "1"},
+            "mesh_load_factor": {"value": self.mesh_load_factor, "unit": "1"},
             "sources": list(self.sources),
             "inputs": dict(self.inputs),
             "versions": versions(),

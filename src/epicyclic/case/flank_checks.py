@@ -63,6 +63,7 @@ def _check_flank(flank: _Flank) -> list[Problem]:
     if not problems and isinstance(tip, float) and isinstance(root, float):
         problems += _check_overlap(flank, tip, root)
     problems += _check_end_relief(flank)
+    problems += _without_amount(flank)
     if flank.table.topography is not None:
         problems += _check_topography(flank, flank.table.topography)
     return problems
@@ -79,7 +80,7 @@ def _relief_length(flank: _Flank, end: str) -> float | Problem:
         for name, value in (("roll_length", roll_length), ("diameter", diameter))
         if value is not None
     ]
-    if amount == 0:
+    if amount == 0 and not given:
         return 0.0
     if len(given) != 1:
         return Problem(
@@ -111,6 +112,23 @@ def _relief_length(flank: _Flank, end: str) -> float | Problem:
     )
 
 
+def _without_amount(flank: _Flank) -> list[Problem]:
+    """Length, diameter or shape of a relief whose amount is not given."""
+    given = flank.table.model_fields_set
+    return [
+        Problem(
+            f"{flank.key}.{key}",
+            "",
+            f"belongs to {relief}, which is not given.",
+            f"Give {relief}, or leave out {key}.",
+        )
+        for relief in ("tip_relief", "root_relief", "end_relief")
+        if relief not in given
+        for key in sorted(given)
+        if key.startswith(f"{relief}_")
+    ]
+
+
 def _diameter(gear: Gear, roll_length: float) -> float:
     return float(2 * (gear.base_radius**2 + roll_length**2) ** 0.5)
 
@@ -133,9 +151,9 @@ def _check_overlap(flank: _Flank, tip: float, root: float) -> list[Problem]:
 def _check_end_relief(flank: _Flank) -> list[Problem]:
     length, width = flank.table.end_relief_length, flank.gear.face_width
     key = f"{flank.key}.end_relief_length"
-    if flank.table.end_relief == 0:
-        return []
     if length is None:
+        if flank.table.end_relief == 0:
+            return []
         return [Problem(key, "", "is missing; it belongs to end_relief.", "Add end_relief_length.")]
     if 2 * length <= width:
         return []
@@ -185,7 +203,33 @@ def _check_topography(flank: _Flank, table: TopographyTable) -> list[Problem]:
                 "Leave out these rows.",
             )
         )
-    return problems
+    return problems or _check_place(flank, table)
+
+
+def _check_place(flank: _Flank, table: TopographyTable) -> list[Problem]:
+    """The points of a sound topography must lie where the flank works."""
+    ends = sorted(_diameter(flank.gear, roll) for roll in flank.active)
+    places = (
+        ("diameter", table.diameter, f"active profile of the {flank.mesh.name}", ends),
+        ("face_position", table.face_position, "face", [0.0, flank.gear.face_width]),
+    )
+    return [
+        Problem(
+            f"{flank.key}.topography.{name}",
+            f"{millimetres(points[0])} to {millimetres(points[-1])}",
+            f"must overlap the {where}, {millimetres(low)} to {millimetres(high)}, by at least "
+            "half of the longer of the two.",
+            "Give the deviations where the flank works.",
+        )
+        for name, points, where, (low, high) in places
+        if not _shares_half((points[0], points[-1]), (low, high))
+    ]
+
+
+def _shares_half(one: tuple[float, float], two: tuple[float, float]) -> bool:
+    """Two ranges have at least half of the longer one in common."""
+    common = min(one[1], two[1]) - max(one[0], two[0])
+    return common >= max(one[1] - one[0], two[1] - two[0]) / 2
 
 
 def _rises(points: Sequence[float]) -> bool:
