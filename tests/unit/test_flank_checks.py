@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import epicyclic as ep
+from epicyclic.analysis.parts import load_notes
 from epicyclic.case import build, flanks
 
 TIP = {"tip_relief": "20 um", "tip_relief_roll_length": "2 mm"}
@@ -217,6 +218,73 @@ def test_a_rim_thinner_than_its_teeth_is_reported(talbot):
 
     assert "less than the height of the teeth, 3.815 mm" in notes("3 mm")
     assert "height of the teeth" not in notes("10 mm")
+
+
+def test_a_rim_is_told_where_planets_are_not_even_or_not_equal(talbot):
+    def notes(**changes):
+        rim = {"ring.rim_thickness": "30 mm", "models.load_distribution": "uniform"}
+        return " ".join(load_notes(talbot.updated(rim | changes)))
+
+    assert "planets" not in notes(**{"planet.count": 6})
+    assert "not evenly spaced" in notes(**{"planet.count": 5})
+    unequal = {"load_sharing.method": "mesh-load-factor", "load_sharing.mesh_load_factor": 1.2}
+    assert "not equally loaded" in notes(**unequal)
+
+
+@pytest.mark.parametrize(("thickness", "accepted"), [("0.45 mm", False), ("0.46 mm", True)])
+def test_a_rim_has_at_least_a_quarter_of_the_normal_module(talbot, thickness, accepted):
+    """0.453 mm on the test article; the thinnest one accepted still finds its balance."""
+    change = {"ring.rim_thickness": thickness, "planet.count": 1}
+    if accepted:
+        assert ep.solve(talbot.updated(change)).total > 0
+        return
+    with pytest.raises(ep.InputError) as error:
+        talbot.updated(change)
+    (problem,) = error.value.problems
+    assert problem.key == "ring.rim_thickness"
+    assert "at least 0.45325 mm" in str(problem)
+
+
+def ring_pair(**gear):
+    tables = ep.load_case("talbot-2012-pair").inputs()
+    tables["operation"]["torque"] = "100 N*m"
+    tables["gears"] = {
+        "normal_module": "2 mm",
+        "normal_pressure_angle": "20 deg",
+        "helix_angle": "0 deg",
+        "center_distance": "40 mm",
+    }
+    common = {"face_width": "20 mm", "profile_shift_coefficient": 0, "roughness": "ground"}
+    tables["pinion"] = common | {"teeth": 30}
+    tables["gear"] = common | {"teeth": 70, "internal": True} | gear
+    return ep.load_case(tables)
+
+
+def test_the_ring_of_a_pair_may_have_a_rim():
+    held, thin, thick = (
+        ring_pair(**rim) for rim in ({}, {"rim_thickness": "12 mm"}, {"rim_thickness": "20 mm"})
+    )
+    stiffness = [ep.solve(case).meshes["mesh"].mesh_stiffness for case in (thin, thick, held)]
+    assert stiffness == sorted(stiffness)
+    assert stiffness[0] < 0.8 * stiffness[2]
+    gear = build.pair_mesh(thin.gears, thin.pinion, thin.gear).gear2
+    assert build.outside_radius(gear, thin.gear) == pytest.approx(gear.root_radius + 12e-3)
+    assert ep.load_case(thin.inputs()) == thin
+
+
+def test_the_rim_of_a_pair_is_checked():
+    with pytest.raises(ep.InputError, match=r"at least 0\.5 mm"):
+        ring_pair(rim_thickness="0.1 mm")
+    with pytest.raises(ep.InputError, match="belongs to a ring gear"):
+        ep.load_case("talbot-2012-pair").updated({"gear.rim_thickness": "10 mm"})
+
+
+def test_a_thousandth_of_the_radius_is_asked_of_the_rim_of_a_large_ring(talbot):
+    pair = ring_pair()
+    large = {"gear.teeth": 800, "gears.center_distance": "770 mm"}
+    with pytest.raises(ep.InputError, match=r"at least 0\.8025 mm"):
+        pair.updated(large | {"gear.rim_thickness": "0.8 mm"})
+    assert ep.solve(pair.updated(large | {"gear.rim_thickness": "0.803 mm"})).total > 0
 
 
 def test_case_with_deviations_is_read_back_from_its_inputs(talbot):

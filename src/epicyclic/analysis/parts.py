@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +21,7 @@ from epicyclic.case import build, flanks
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.schema import GearPairModels, GearTable, LossOption, MeshTable, Numerics
 from epicyclic.elasticity.loaded_mesh import LoadedMesh, load_mesh_elastically
+from epicyclic.geometry.assembly import are_evenly_spaced
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus
@@ -497,7 +498,7 @@ def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:
 
 
 def load_notes(case: Case) -> tuple[str, ...]:
-    """Notes on deviations that the load distribution ignores, and on a rim that is too thin."""
+    """Notes on deviations that the load distribution ignores, and on the rim of a ring gear."""
     notes = []
     model = case.models.load_distribution
     if _states_deviations(case) and not LOAD_DISTRIBUTIONS[model].takes_deviations:
@@ -505,15 +506,31 @@ def load_notes(case: Case) -> tuple[str, ...]:
             f"models.load_distribution = {model} ignores micro-geometry and misalignment; "
             "compliance takes them into account."
         )
-    if isinstance(case, PlanetaryCase) and case.ring.rim_thickness is not None:
-        ring = build.gear("ring", case.ring, case.gears)
-        height = ring.root_radius - ring.tip_radius
-        if case.ring.rim_thickness < height:
-            notes.append(
-                f"ring.rim_thickness is less than the height of the teeth, {1e3 * height:.4g} mm: "
-                "the deflection of so thin a rim is outside what the compliance is made for."
-            )
-    return tuple(notes)
+    return (*notes, *_rim_notes(case))
+
+
+def _rim_notes(case: Case) -> Iterator[str]:
+    """Where a rim leaves the assumptions of its formula."""
+    name = "ring" if isinstance(case, PlanetaryCase) else "gear"
+    table = case.ring if isinstance(case, PlanetaryCase) else case.gear
+    thickness = build.rim_thickness(table)
+    if thickness is None:
+        return
+    ring = build.gear(name, table, case.gears)
+    height = ring.root_radius - ring.tip_radius
+    if thickness < height:
+        yield (
+            f"{name}.rim_thickness is less than the height of the teeth, {1e3 * height:.4g} mm: "
+            "the deflection of so thin a rim is outside what the compliance is made for."
+        )
+    if not isinstance(case, PlanetaryCase):
+        return
+    even = are_evenly_spaced(build.planet_angles(case.sun, case.planet, case.ring))
+    if not even or case.load_sharing.method != "equal":
+        yield (
+            "ring.rim_thickness: the rim bends as under evenly spaced and equally loaded planets, "
+            f"but these are {'not equally loaded' if even else 'not evenly spaced'}."
+        )
 
 
 def _states_deviations(case: Case) -> bool:

@@ -34,6 +34,7 @@ __all__ = [
     "pair_mesh",
     "planet_angles",
     "planetary_meshes",
+    "rim_thickness",
     "stated_tool",
 ]
 
@@ -250,11 +251,16 @@ def planet_angles(sun: GearTable, planet: Planet, ring: Ring) -> tuple[float, ..
     return admissible_angles(planet.count, sun.teeth, ring.teeth)
 
 
+def rim_thickness(table: GearTable) -> float | None:
+    """Rim of a ring gear from root to outside; None if the case states none. [m]"""
+    return table.rim_thickness if isinstance(table, Ring | PairGear) else None
+
+
 def outside_radius(gear: Gear, table: GearTable) -> float:
     """Radius of the outside of a gear as a rotating body: tip circle, or back of the rim. [m]"""
     if not gear.internal:
         return gear.tip_radius
-    rim = table.rim_thickness if isinstance(table, Ring) else None
+    rim = rim_thickness(table)
     return gear.root_radius + (
         DEFAULT_RIM_THICKNESS * gear.rack.normal_module if rim is None else rim
     )

@@ -29,6 +29,7 @@ from epicyclic.case.schema import (
 )
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
+from epicyclic.geometry.assembly import are_evenly_spaced
 
 __all__ = ["cross_check"]
 
@@ -161,16 +162,10 @@ def _check_load_sharing(
 def _check_closed_form(
     sharing: LoadSharing, sun: GearTable, planet: Planet, ring: Ring
 ) -> list[Problem]:
-    angles = build.planet_angles(sun, planet, ring)
-    step = 2 * math.pi / planet.count
-    even = all(
-        math.isclose(math.remainder(angle - angles[0] - k * step, 2 * math.pi), 0.0, abs_tol=1e-9)
-        for k, angle in enumerate(angles)
-    )
     reasons = []
     if planet.count < 3:
         reasons.append("three or more planets")
-    if not even:
+    if not are_evenly_spaced(build.planet_angles(sun, planet, ring)):
         reasons.append("equally spaced planets")
     if sharing.floating_member != "none" and sharing.support_stiffness > 0:
         reasons.append("a member that floats freely or none")

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Literal
 
 from epicyclic.case import build
-from epicyclic.case.schema import GearTable, MicroGeometryTable, Planet, Ring, TopographyTable
+from epicyclic.case.schema import GearTable, MicroGeometryTable, Planet, TopographyTable
 from epicyclic.elasticity.mesh_compliance import GearBody
 from epicyclic.elasticity.rim import Rim
 from epicyclic.geometry.gear import Gear
@@ -40,7 +40,7 @@ def gear_bodies(mesh: Mesh, tables: Tables) -> tuple[GearBody, GearBody]:
 
 
 def _body(gear: Gear, table: GearTable, loads: int) -> GearBody:
-    thickness = table.rim_thickness if isinstance(table, Ring) else None
+    thickness = build.rim_thickness(table)
     return GearBody(
         table.material.elastic_modulus,
         table.material.poisson_ratio,

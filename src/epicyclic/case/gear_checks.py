@@ -26,6 +26,12 @@ ANGLE_TOLERANCE = math.radians(0.01)
 ROUNDING = 1e-9
 """Clearances count as negative beyond this: drawings may state exactly zero. [m]"""
 
+THINNEST_RIM = 0.25
+"""A thinner rim is foil, and its teeth find no balance. [normal modules]"""
+
+LARGEST_RIM_RATIO = 1000.0
+"""Root radius over thickness of a rim, for the same reason. [1]"""
+
 Tables = Mapping[str, GearTable]
 
 
@@ -67,7 +73,35 @@ def _check_gears(gears: Gears, tables: Tables) -> tuple[dict[str, Gear], list[Pr
             sound[name] = gear
         else:
             problems.append(found)
+        problems += _check_rim(gear, table)
     return sound, problems
+
+
+def _check_rim(gear: Gear, table: GearTable) -> list[Problem]:
+    thickness, key = build.rim_thickness(table), f"{gear.name}.rim_thickness"
+    if thickness is None:
+        return []
+    if not gear.internal:
+        return [
+            Problem(
+                key,
+                millimetres(thickness),
+                "belongs to a ring gear, and this gear is external.",
+                f"Leave it out, or write {gear.name}.internal = true.",
+            )
+        ]
+    least = max(THINNEST_RIM * gear.rack.normal_module, gear.root_radius / LARGEST_RIM_RATIO)
+    if thickness >= least:
+        return []
+    return [
+        Problem(
+            key,
+            millimetres(thickness),
+            f"must be at least {millimetres(least)}: a quarter of the normal module, and a "
+            "thousandth of the root radius.",
+            "Correct it, or leave it out for a rim that does not bend.",
+        )
+    ]
 
 
 def _no_involute_for_thickness(name: str, table: GearTable, gears: Gears) -> Problem:

@@ -329,10 +329,22 @@ class GearTable(Table):
     )
 
 
+_RimThickness = Annotated[
+    Length | None,
+    Field(
+        description="From root to outside. Default: 3 normal modules (estimate) for the drag, and "
+        "a rim that is held on its outside and does not bend."
+    ),
+]
+
+
 class PairGear(GearTable):
     """The gear that meets the pinion."""
 
+    STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
+
     internal: bool = Field(default=False, description="true: a ring gear around the pinion.")
+    rim_thickness: _RimThickness = None
 
 
 class Planet(GearTable):
@@ -367,11 +379,7 @@ class Ring(GearTable):
 
     STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
 
-    rim_thickness: Length | None = Field(
-        default=None,
-        description="From root to outside. Default: 3 normal modules (estimate) for the drag, and "
-        "a rim that is held on its outside and does not bend.",
-    )
+    rim_thickness: _RimThickness = None
 
 
 class MeshTable(Table):

@@ -10,7 +10,21 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
-__all__ = ["admissible_angles", "nearest_admissible_angle", "smallest_planet_gap"]
+__all__ = [
+    "admissible_angles",
+    "are_evenly_spaced",
+    "nearest_admissible_angle",
+    "smallest_planet_gap",
+]
+
+
+def are_evenly_spaced(angles: Sequence[float]) -> bool:
+    """Planets at these angles [rad] divide the carrier into equal parts."""
+    ordered = sorted(angle % (2 * math.pi) for angle in angles)
+    step = 2 * math.pi / len(ordered)
+    return all(
+        math.isclose(angle - ordered[0], k * step, abs_tol=1e-9) for k, angle in enumerate(ordered)
+    )
 
 
 def nearest_admissible_angle(angle: float, teeth_sun: int, teeth_ring: int) -> float:
