@@ -154,7 +154,7 @@ def test_files_without_permission(write):
         (b"x = [" + b"1," * 400_000 + b"]", "too many"),
         (b"teeth = " + b"9" * 5000, "5000 digits"),
         (b"[sun\nteeth = 3", "is not TOML"),
-        (b"[sun]\nteeth = 3\n[sun]\nteeth = 4", "twice"),
+        (b"[sun]\nteeth = 3\n[sun]\nteeth = 4", "declares a table twice (line 3)"),
         (b"just some words", "is not TOML"),
         (b"\x1b[31m", "is not TOML"),
         (b"<html></html>", "is not TOML"),
@@ -213,6 +213,13 @@ def test_a_line_that_quotes_do_not_mend_is_told_once(write):
     text = TALBOT.replace("face_width", '"face_width', 1)
     problem = only(problems_of(load_case, write(text)))
     assert '"face_width = "30.9 mm"' in problem.value
+
+
+def test_a_table_that_a_dotted_key_has_made_already_is_explained(write):
+    text = b"[sun]\nmicro_geometry.tip_relief = '5 um'\n[sun.micro_geometry]"
+    problem = only(problems_of(load_case, write(text)))
+    assert problem.allowed == "declares a table twice (line 3)."
+    assert "a dotted key, such as micro_geometry.tip_relief" in problem.remedy
 
 
 def test_a_key_given_twice_is_told(write):

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
+import tomllib
 
 import pytest
 
+import epicyclic as ep
 from epicyclic.report.shown import shown
+from epicyclic.report.template import case_template
 from epicyclic.units import unit_text
 
 
@@ -31,3 +35,29 @@ def test_rounding_noise_is_zero_and_nan_is_a_dash(value, text):
 )
 def test_units_in_print(unit, text):
     assert unit_text(unit) == text
+
+
+def uncommented(text):
+    """A template with every default that it shows, without the tables that need more than that."""
+    text = re.sub(r"^# (?=\[|[\w.]+ = )", "", text, flags=re.MULTILINE)
+    sections = re.split(r"^(?=\[)", text, flags=re.MULTILINE)
+    kept = [one for one in sections if not one.startswith(("[thrust_bearing]", "[friction_table]"))]
+    return "".join(line for line in "".join(kept).splitlines(keepends=True) if "..." not in line)
+
+
+@pytest.mark.parametrize("kind", ["planetary", "gear_pair"])
+def test_template_with_its_defaults_uncommented_is_the_same_case(kind):
+    template = case_template(kind)
+    plain, full = (tomllib.loads(text) for text in (template, uncommented(template)))
+    assert set(full) - set(plain) >= {"models", "numerics", "losses"}
+    one, other = map(ep.load_case, (plain, full))
+    assert one.inputs().keys() <= other.inputs().keys()
+    assert ep.solve(one).losses == ep.solve(other).losses
+
+
+def test_template_shows_how_arrays_nest():
+    shown_as = dict(re.findall(r"^# (\S+) = (\[.*\]) *#", case_template("planetary"), re.MULTILINE))
+    assert shown_as["angles"] == '["... deg", ...]'
+    assert shown_as["micro_geometry.topography.diameter"] == '["... mm", ...]'
+    for flank in ("micro_geometry", "micro_geometry_ring_side"):
+        assert shown_as[f"{flank}.topography.deviation"] == '[["... um", ...], ...]'

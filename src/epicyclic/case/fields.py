@@ -22,6 +22,7 @@ __all__ = [
     "bounds_of",
     "choices_of",
     "describe",
+    "entry_of",
     "find_field",
     "is_array",
     "is_named",
@@ -206,7 +207,7 @@ def locate(table: type[BaseModel], location: Sequence[str | int]) -> Place:
             continue
         path.append(part)
         if isinstance(part, int):
-            annotation, metadata = _entry(annotation, part), ()
+            annotation, metadata = entry_of(annotation, part), ()
             continue
         owners = list(tables_in(annotation))
         owners.sort(key=lambda one: part not in one.model_fields)
@@ -245,7 +246,7 @@ def _is_table(annotation: Any) -> bool:
     return isinstance(annotation, type) and issubclass(annotation, BaseModel)
 
 
-def _entry(annotation: Any, number: int) -> Any:
+def entry_of(annotation: Any, number: int = 0) -> Any:
     """Type of one entry of an array; None if `annotation` is no array."""
     for member in map(_without_metadata, _members(annotation)):
         if typing.get_origin(member) is tuple:

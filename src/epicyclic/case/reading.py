@@ -183,6 +183,14 @@ def _problem(line: _BadLine, key: str) -> Problem:
         given = one_line(match["value"].strip())
     if _gives_again(line):
         return Problem(key, given, "gives a key that is given before.", "Keep one of the two.")
+    if line.reason.startswith("Cannot declare"):
+        return Problem(
+            key,
+            given,
+            f"declares a table twice (line {line.number}).",
+            "Put all its keys under one header; a dotted key, such as micro_geometry.tip_relief "
+            "under [sun], declares its table too.",
+        )
     remedy = "Mend this line." if match is None else _remedy(match["key"], _value(match))
     return Problem(key, given, f"is not TOML (line {line.number}): {line.reason}.", remedy)
 

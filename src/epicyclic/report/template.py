@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 
 from epicyclic import library
 from epicyclic.case.case import GearPairCase, PlanetaryCase
-from epicyclic.case.fields import choices_of, quantity_of, table_of
+from epicyclic.case.fields import choices_of, entry_of, quantity_of, table_of
 
 __all__ = ["case_template"]
 
@@ -19,7 +19,7 @@ _EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {
     "gear_pair": ("talbot-2012-pair", GearPairCase),
 }
 COMMENT_COLUMN = 44
-_SPELT_OUT = ("micro_geometry", "topography")
+_SPELT_OUT = ("micro_geometry", "micro_geometry_ring_side", "topography")
 """Tables within a table whose keys are listed."""
 
 
@@ -91,7 +91,13 @@ def _default(field: FieldInfo) -> str:
         return _toml(field.default)
     quantity = quantity_of(field.annotation, tuple(field.metadata))
     value = f'"... {quantity.display}"' if quantity is not None else "..."
-    return f"[{value}, ...]" if "tuple" in str(field.annotation) else value
+    return _nested(field.annotation, value)
+
+
+def _nested(annotation: Any, value: str) -> str:
+    """`value` as the entry of an array, or of an array of arrays, if the key holds one."""
+    entry = entry_of(annotation)
+    return value if entry is None else f"[{_nested(entry, value)}, ...]"
 
 
 def _toml(value: Any) -> str:
