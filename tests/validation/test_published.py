@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
-from epicyclic.validation.compare import compare_published
+from epicyclic.reference.mesh_stiffness import mesh_stiffness, theoretical_single_stiffness
+from epicyclic.validation.compare import _published, compare_published
 from epicyclic.validation.compute import FIGURES
 
 KNOWN_DIFFERENCES = {
@@ -36,6 +39,22 @@ def test_calibration_is_met_and_does_not_count(rows):
 def test_every_compared_figure_states_its_tolerance_and_cause(rows):
     assert all(row.cause for row in rows if row.role == "validation")
     assert all(row.source for row in rows)
+
+
+def test_stiffness_of_the_standard_is_that_of_its_formulas(make_mesh):
+    """As stored, with four digits."""
+    found = 0
+    for figure in _published():
+        if figure["compute"] not in ("single_stiffness", "mean_mesh_stiffness"):
+            continue
+        teeth1, teeth2, internal = figure["with"].values()
+        mesh = make_mesh(teeth1, teeth2, internal=internal)
+        expected = theoretical_single_stiffness(teeth1, math.inf if internal else teeth2)
+        if figure["compute"] == "mean_mesh_stiffness":
+            expected = mesh_stiffness(expected, mesh.transverse_contact_ratio)
+        assert figure["value"] == pytest.approx(expected / 1e9, abs=0.0051)
+        found += 1
+    assert found == 6
 
 
 def test_no_figure_function_is_unused(rows):

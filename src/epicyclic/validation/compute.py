@@ -12,12 +12,14 @@ from collections.abc import Callable, Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.analysis.parts import fluids_of
+from epicyclic.analysis.pair import pair_duty
+from epicyclic.analysis.parts import elastic_loads, fluids_of
 from epicyclic.analysis.planet_load import planet_load
 from epicyclic.analysis.planetary import planetary_duties, roller_bearing
 from epicyclic.analysis.result import Result
 from epicyclic.analysis.solve import solve
-from epicyclic.case.case import PlanetaryCase, load_case
+from epicyclic.case.case import GearPairCase, PlanetaryCase, load_case
+from epicyclic.elasticity.loaded_mesh import LoadedMesh
 from epicyclic.losses.planet_bearing import roller_loads
 
 __all__ = ["FIGURES"]
@@ -163,6 +165,53 @@ def pocketing_oil_ratio(model: str) -> float:
     return rich / lean
 
 
+def single_stiffness(teeth1: int, teeth2: int, internal: bool) -> float:
+    """c': largest stiffness of a lone pair of teeth of a standard spur mesh. [N/(mm um)]"""
+    mesh = _standard_mesh(teeth1, teeth2, internal)
+    alone = (mesh.pair_force > 0).sum(axis=1) == 1
+    return float(mesh.secant_stiffness[alone].max()) / mesh.mesh.face_width / 1e9
+
+
+def mean_mesh_stiffness(teeth1: int, teeth2: int, internal: bool) -> float:
+    """c_gamma: stiffness of a standard spur mesh, mean over its period. [N/(mm um)]"""
+    mesh = _standard_mesh(teeth1, teeth2, internal)
+    return mesh.mean(mesh.secant_stiffness) / mesh.mesh.face_width / 1e9
+
+
+def _standard_mesh(teeth1: int, teeth2: int, internal: bool) -> LoadedMesh:
+    """Spur gears of ISO 53, profile A, without shift, of steel of 206 GPa, under 300 N/mm."""
+    module, width, line_load = 4.0, 40.0, 300.0  # mm, mm, N/mm
+    distance = module * (teeth2 + (-teeth1 if internal else teeth1)) / 2
+    base_radius = module * teeth1 / 2 * math.cos(math.radians(20))
+    gear = {
+        "face_width": f"{width} mm",
+        "profile_shift_coefficient": 0.0,
+        "roughness": "ground",
+        "material": {"elastic_modulus": "206 GPa"},
+    }
+    case = load_case(
+        {
+            "kind": "gear_pair",
+            "operation": {
+                "torque": f"{line_load * width * base_radius / 1e3} N*m",
+                "speed": "1000 rpm",
+                "oil_inlet_temperature": "60 degC",
+            },
+            "gears": {
+                "normal_module": f"{module} mm",
+                "normal_pressure_angle": "20 deg",
+                "helix_angle": "0 deg",
+                "center_distance": f"{distance} mm",
+            },
+            "pinion": gear | {"teeth": teeth1},
+            "gear": gear | {"teeth": teeth2, "internal": internal},
+            "lubricant": {"oil": "iso-vg-100-mineral"},
+        }
+    )
+    assert isinstance(case, GearPairCase)
+    return elastic_loads(pair_duty(case), case.numerics)
+
+
 FIGURES: dict[str, Callable[..., float]] = {
     function.__name__: function
     for function in (
@@ -178,5 +227,7 @@ FIGURES: dict[str, Callable[..., float]] = {
         pocketing_loss,
         pocketing_speed_exponent,
         pocketing_oil_ratio,
+        single_stiffness,
+        mean_mesh_stiffness,
     )
 }
