@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -56,6 +57,17 @@ def test_public_names_are_documented_and_importable():
         assert (getattr(ep, name).__doc__ or "").strip(), name
     with pytest.raises(AttributeError, match="no_such_name"):
         ep.no_such_name  # noqa: B018
+
+
+def test_architecture_names_every_module():
+    source = ROOT / "src" / "epicyclic"
+    modules = {
+        ".".join(path.relative_to(source).with_suffix("").parts)
+        for path in source.rglob("*.py")
+        if not path.name.startswith("__")
+    }
+    text = (ROOT / "docs" / "development" / "architecture.md").read_text(encoding="utf-8")
+    assert modules - set(re.findall(r"`([\w.]+)`", text)) == set()
 
 
 def test_documentation_builds_without_warnings(tmp_path):
