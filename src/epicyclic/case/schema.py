@@ -638,7 +638,7 @@ class GearPairModels(Table):
         description="local: along the contact lines; loss-factor: mean friction times Ohlendorf's.",
     )
     pocketing: Literal["isentropic", "mean-density", "incompressible"] = Field(
-        default="isentropic",
+        default="mean-density",
         description="Fluid in the pockets: isentropic and mean-density: compressible mixture; "
         "incompressible: mixture of constant density.",
     )

@@ -112,7 +112,7 @@ def pocket_flow(
     speed: float,
     mixture: MixtureState,
     pressure: float,
-    model: PocketModel = "isentropic",
+    model: PocketModel = "mean-density",
     slices: int = 16,
     steps: int = 32,
 ) -> PocketFlow:
