@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
     from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema, load_case
     from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
+    from epicyclic.maps.compute import loss_map
+    from epicyclic.maps.formats import write_map
     from epicyclic.sweeps.run import sweep
 
 _HOME = {
@@ -33,10 +35,12 @@ _HOME = {
     "case_schema": "epicyclic.case.case",
     "load_case": "epicyclic.case.case",
     "loaded_meshes": "epicyclic.analysis.solve",
+    "loss_map": "epicyclic.maps.compute",
     "mesh_contacts": "epicyclic.analysis.solve",
     "mesh_details": "epicyclic.analysis.mesh_details",
     "solve": "epicyclic.analysis.solve",
     "sweep": "epicyclic.sweeps.run",
+    "write_map": "epicyclic.maps.formats",
 }
 
 __all__ = [
@@ -50,10 +54,12 @@ __all__ = [
     "case_schema",
     "load_case",
     "loaded_meshes",
+    "loss_map",
     "mesh_contacts",
     "mesh_details",
     "solve",
     "sweep",
+    "write_map",
 ]
 
 

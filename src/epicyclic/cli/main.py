@@ -11,7 +11,7 @@ import os
 import signal
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -24,7 +24,7 @@ from epicyclic.status import Status
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from epicyclic.sweeps.journal import Journal
+    from epicyclic.sweeps.journal import Journal, Row
     from epicyclic.sweeps.plan import Plan
 
 __all__ = ["main"]
@@ -281,20 +281,85 @@ def sweep(
     Finished points are kept in a file beside OUTPUT that ends in .partial, so that an interrupted
     sweep goes on where it stopped when the same command is given again.
     """
-    from epicyclic.cli.progress import progress_bar
-    from epicyclic.sweeps.dataset import check_output, to_dataset, write_dataset
+    from epicyclic.sweeps import dataset
     from epicyclic.sweeps.plan import make_plan, parse_vary
-    from epicyclic.sweeps.run import run_plan
 
     loaded = _load(case, changes)
-    check_output(output)
+    dataset.check_output(output)
     plan = make_plan(loaded, parse_vary(loaded, vary))
+    _compute(
+        plan,
+        output,
+        jobs,
+        lambda rows: dataset.write_dataset(dataset.to_dataset(plan, rows), output),
+    )
+
+
+@cli.command("map")
+@case_argument
+@set_option
+@click.option(
+    "--speed", metavar="VALUES", required=True, help='Of the input member, as in "0:4000:41 rpm".'
+)
+@click.option(
+    "--torque",
+    metavar="VALUES",
+    required=True,
+    help='On the input member, as in "-1000:1000:41 N*m"; against the speed is coasting.',
+)
+@click.option(
+    "--temperature",
+    metavar="VALUES",
+    help='Of the oil at the inlet, as in "40,60,90 degC"; default: that of the case.',
+)
+@click.option(
+    "--vary", metavar="KEY=VALUES", multiple=True, help='Further keys, as in "planet.count=3,4".'
+)
+@click.option(
+    "-o", "--output", required=True, type=click.Path(path_type=Path), help="File of the map."
+)
+@click.option("--format", "name", metavar="NAME", help="Default: by the ending of the file.")
+@click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
+def loss_map(
+    case: str,
+    changes: tuple[str, ...],
+    vary: tuple[str, ...],
+    output: Path,
+    name: str | None,
+    jobs: int | None,
+    **values: str | None,
+) -> None:
+    """Compute a loss map: torque loss, losses and efficiency over speed and torque.
+
+    VALUES are a,b,c or start:stop:count with a unit. The torque loss is that at the input member;
+    the file states the signs. An interrupted map goes on where it stopped, as a sweep does.
+    """
+    from epicyclic.maps.compute import AXES, coordinates, map_plan, to_map
+    from epicyclic.maps.formats import check_map_output, write_map
+    from epicyclic.sweeps.plan import parse_vary
+
+    loaded = _load(case, changes)
+    axes = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]
+    given, further = parse_vary(loaded, axes), parse_vary(loaded, vary)
+    speed, torque = given[AXES["speed"]], given[AXES["torque"]]
+    plan = map_plan(loaded, speed, torque, given.get(AXES["temperature"]), further)
+    check_map_output(output, name, coordinates(plan))
+    _compute(plan, output, jobs, lambda rows: write_map(to_map(plan, rows), output, name))
+
+
+def _compute(
+    plan: Plan, output: Path, jobs: int | None, write: Callable[[Sequence[Row]], None]
+) -> None:
+    """Compute the points of `plan`, resumed and kept beside `output`, and `write` their rows."""
+    from epicyclic.cli.progress import progress_bar
+    from epicyclic.sweeps.run import run_plan
+
     journal = _open_journal(plan, output)
     with _kept_in(journal, plan.size):
         with progress_bar("points") as progress:
             rows = run_plan(plan, jobs=jobs, journal=journal, progress=progress)
         with _finishing(f"Writing {output}."):
-            write_dataset(to_dataset(plan, rows), output)
+            write(rows)
             journal.remove()
     reasons = [row.message for row in rows if row.status == Status.FAILED]
     _print_failures(reasons)

@@ -6,7 +6,8 @@ import json
 import math
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,7 +22,15 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-__all__ = ["FORMATS", "check_output", "to_dataset", "write_dataset"]
+__all__ = [
+    "FORMATS",
+    "check_output",
+    "check_place",
+    "to_dataset",
+    "to_table",
+    "whole_file",
+    "write_dataset",
+]
 
 FORMATS = (".nc", ".csv", ".parquet")
 
@@ -77,7 +86,13 @@ def check_output(path: Path) -> None:
         problem = Problem(
             "-o", str(path), f"must end in {', '.join(FORMATS)}.", "Choose one of these formats."
         )
-    elif (path.exists() and not path.is_file()) or not path.absolute().parent.is_dir():
+        raise InputError([problem], "the command")
+    check_place(path)
+
+
+def check_place(path: Path) -> None:
+    """Raise `InputError` unless a file can be written to `path`."""
+    if (path.exists() and not path.is_file()) or not path.absolute().parent.is_dir():
         problem = Problem("-o", str(path), "is no place for a file.", "Name a file in a folder.")
     elif not os.access(path.absolute().parent, os.W_OK):
         problem = Problem("-o", str(path), "lies in a folder without write permission.", "Move it.")
@@ -86,23 +101,30 @@ def check_output(path: Path) -> None:
     raise InputError([problem], "the command")
 
 
-def write_dataset(dataset: xr.Dataset, path: Path) -> None:
-    """Write `dataset` to `path` in the format its suffix names, whole or not at all."""
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """A temporary file beside `path` that replaces it if nothing goes wrong."""
     target = path.resolve()
     handle, name = tempfile.mkstemp(path.suffix, f".{target.name}.", target.parent)
     os.close(handle)
     temporary = Path(name)
     try:
+        yield temporary
+        temporary.chmod(0o644)
+        temporary.replace(target)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_dataset(dataset: xr.Dataset, path: Path) -> None:
+    """Write `dataset` to `path` in the format its suffix names, whole or not at all."""
+    with whole_file(path) as temporary:
         if path.suffix == ".nc":
             dataset.to_netcdf(temporary, engine="netcdf4")
         elif path.suffix == ".csv":
             to_table(dataset).to_csv(temporary, index=False)
         else:
             to_table(dataset).to_parquet(temporary, index=False)
-        temporary.chmod(0o644)
-        temporary.replace(target)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def to_table(dataset: xr.Dataset) -> pd.DataFrame:

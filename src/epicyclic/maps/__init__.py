@@ -1,0 +1,1 @@
+"""Loss maps over speed, torque and oil temperature, in the formats that simulations read."""

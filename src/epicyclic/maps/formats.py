@@ -1,0 +1,128 @@
+"""The formats of loss maps: what each can hold, and how it is written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from epicyclic.errors import InputError, Problem
+from epicyclic.maps import tables
+from epicyclic.sweeps.dataset import check_place, whole_file
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["FORMATS", "check_map_output", "write_map"]
+
+Coordinates = Mapping[str, Sequence[Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """One format of a map.
+
+    Attributes
+    ----------
+    suffix : str
+        Ending of its files; empty if it must be asked for by name.
+    about : str
+        What it is.
+    write : callable
+        Writes a map to a file.
+    problems : callable
+        What of the axes of a map the format cannot hold.
+    single : bool
+        True for one table of speed and torque, without gaps.
+    """
+
+    suffix: str
+    about: str
+    write: Callable[[xr.Dataset, Path], None]
+    problems: Callable[[Coordinates], list[Problem]] = lambda axes: []
+    single: bool = False
+
+
+FORMATS = {
+    "netcdf": Format(".nc", "NetCDF", tables.write_netcdf),
+    "csv": Format(".csv", "table of all points", tables.write_csv),
+    "parquet": Format(".parquet", "table of all points", tables.write_parquet),
+}
+
+
+def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> None:
+    """Write a loss map to a file, whole or not at all.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        As `loss_map` returns it.
+    path : str or Path
+    format : str, optional
+        Name of the format. Default: the one that the ending of `path` names.
+
+    Raises
+    ------
+    InputError
+        If there is no such format, it cannot hold the map, or there is no place for the file.
+    """
+    target = Path(path)
+    axes = {name: list(data[name].values) for name in map(str, data["torque_loss"].dims)}
+    chosen = check_map_output(target, format, axes)
+    if chosen.single:
+        _check_gaps(data)
+    with whole_file(target) as temporary:
+        chosen.write(data, temporary)
+
+
+def check_map_output(path: Path, format: str | None, axes: Coordinates) -> Format:
+    """The format of `path`; raises `InputError` if a map of these axes cannot be written to it."""
+    chosen = _choose(path, format)
+    check_place(path)
+    problems = chosen.problems(axes)
+    if chosen.single:
+        problems = _several(axes) + problems
+    if problems:
+        raise InputError(problems, f"the map for {chosen.about}")
+    return chosen
+
+
+def _choose(path: Path, format: str | None) -> Format:
+    if format is not None:
+        if format in FORMATS:
+            return FORMATS[format]
+        problem = Problem(
+            "--format", f'"{format}"', f"must be one of {', '.join(FORMATS)}.", "Choose one."
+        )
+        raise InputError([problem], "the command")
+    by_suffix = {item.suffix: item for item in FORMATS.values() if item.suffix}
+    if path.suffix in by_suffix:
+        return by_suffix[path.suffix]
+    problem = Problem(
+        "-o", str(path), f"must end in {', '.join(by_suffix)}, or --format must be given.",
+        "Choose one of these formats.",
+    )  # fmt: skip
+    raise InputError([problem], "the command")
+
+
+def _several(axes: Coordinates) -> list[Problem]:
+    """Axes of which the format can hold one value only."""
+    return [
+        Problem(name, "", f"has {len(values)} values; the format holds one.",
+                "Write one file for each.")
+        for name, values in axes.items()
+        if name not in ("speed", "torque") and len(values) > 1
+    ]  # fmt: skip
+
+
+def _check_gaps(data: xr.Dataset) -> None:
+    missing = int(np.isnan(data["torque_loss"].values).sum())
+    if missing:
+        problem = Problem(
+            "torque_loss", "", f"is missing at {missing} points; the format must have all.",
+            "Write a .csv to see why, and leave these points out.",
+        )  # fmt: skip
+        raise InputError([problem], "the map")
