@@ -334,7 +334,7 @@ def loss_map(
     VALUES are a,b,c or start:stop:count with a unit. The torque loss is that at the input member;
     the file states the signs. An interrupted map goes on where it stopped, as a sweep does.
     """
-    from epicyclic.maps.compute import AXES, coordinates, map_plan, to_map
+    from epicyclic.maps.compute import AXES, coordinates, held_shaft, map_plan, to_map
     from epicyclic.maps.formats import check_map_output, write_map
     from epicyclic.sweeps.plan import parse_vary
 
@@ -343,7 +343,7 @@ def loss_map(
     given, further = parse_vary(loaded, axes), parse_vary(loaded, vary)
     speed, torque = given[AXES["speed"]], given[AXES["torque"]]
     plan = map_plan(loaded, speed, torque, given.get(AXES["temperature"]), further)
-    check_map_output(output, name, coordinates(plan))
+    check_map_output(output, name, coordinates(plan), held_shaft(loaded))
     _compute(plan, output, jobs, lambda rows: write_map(to_map(plan, rows), output, name))
 
 

@@ -7,7 +7,6 @@ on it less the torque loss times the sign of its speed, driving and coasting.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -28,7 +27,7 @@ from epicyclic.units import NEWTON_METRE, RPM, WATT
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["AXES", "axis_name", "coordinates", "loss_map", "map_plan", "to_map"]
+__all__ = ["AXES", "axis_name", "coordinates", "held_shaft", "loss_map", "map_plan", "to_map"]
 
 AXES = {
     "speed": "operation.speed",
@@ -122,6 +121,11 @@ def _shaft_key(key: str) -> Problem:
     return Problem(key, "", allowed, "Make a map of each.")
 
 
+def held_shaft(case: Case) -> str:
+    """The member that stands still, or the housing of a pair; empty if all shafts turn."""
+    return (case.operation.fixed or "") if isinstance(case, PlanetaryCase) else "housing"
+
+
 def _has_second_input(case: Case) -> bool:
     return isinstance(case, PlanetaryCase) and case.operation.second_input is not None
 
@@ -208,13 +212,12 @@ def _members(case: Case) -> tuple[str, str]:
 
 def _attributes(plan: Plan, given: Mapping[str, str]) -> dict[str, str]:
     reference, output = _members(plan.case)
-    case = json.loads(given["case"])
     text = {
         "title": given["title"],
         "source": given["source"],
         "reference_shaft": reference,
         "output_shaft": output,
-        "held_shaft": str(case["operation"].get("fixed", "")),
+        "held_shaft": held_shaft(plan.case),
         "sign_convention": f"speed and torque are those of the {reference}; speeds are positive in "
         "one common sense of rotation, torques act on the gear set from outside; torque times "
         "speed > 0: the shaft drives, < 0: it is driven (coasting); losses are never negative",

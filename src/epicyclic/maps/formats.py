@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from epicyclic.errors import InputError, Problem
-from epicyclic.maps import tables
+from epicyclic.maps import simulation, tables, workbook
 from epicyclic.sweeps.dataset import check_place, whole_file
 
 if TYPE_CHECKING:
@@ -50,6 +50,15 @@ FORMATS = {
     "netcdf": Format(".nc", "NetCDF", tables.write_netcdf),
     "csv": Format(".csv", "table of all points", tables.write_csv),
     "parquet": Format(".parquet", "table of all points", tables.write_parquet),
+    "excel": Format(".xlsx", "Excel workbook", workbook.write_workbook, workbook.workbook_problems),
+    "matlab": Format(".mat", "MATLAB", workbook.write_matlab),
+    "vecto": Format(
+        ".vtlm", "VECTO", simulation.write_vecto, simulation.vecto_problems, single=True
+    ),
+    "modelica": Format(
+        ".mo", "Modelica", simulation.write_modelica, simulation.modelica_problems, single=True
+    ),
+    "gem": Format("", "EPA GEM", simulation.write_gem, simulation.gem_problems, single=True),
 }
 
 
@@ -71,20 +80,28 @@ def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> 
     """
     target = Path(path)
     axes = {name: list(data[name].values) for name in map(str, data["torque_loss"].dims)}
-    chosen = check_map_output(target, format, axes)
+    chosen = check_map_output(target, format, axes, data.attrs["held_shaft"])
     if chosen.single:
         _check_gaps(data)
     with whole_file(target) as temporary:
         chosen.write(data, temporary)
 
 
-def check_map_output(path: Path, format: str | None, axes: Coordinates) -> Format:
-    """The format of `path`; raises `InputError` if a map of these axes cannot be written to it."""
+def check_map_output(path: Path, format: str | None, axes: Coordinates, held: str) -> Format:
+    """The format of `path`; raises `InputError` if a map of these axes cannot be written to it.
+
+    `held` is the shaft that stands still, empty if there is none.
+    """
     chosen = _choose(path, format)
     check_place(path)
     problems = chosen.problems(axes)
     if chosen.single:
         problems = _several(axes) + problems
+        if not held:
+            allowed = "is driven; the format holds gears of one input and one output."
+            problems.append(
+                Problem("operation.second_input", "", allowed, "Set operation.fixed instead.")
+            )
     if problems:
         raise InputError(problems, f"the map for {chosen.about}")
     return chosen

@@ -103,17 +103,13 @@ def check_place(path: Path) -> None:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """A temporary file beside `path` that replaces it if nothing goes wrong."""
+    """A file of the same name in a temporary folder; it replaces `path` if nothing goes wrong."""
     target = path.resolve()
-    handle, name = tempfile.mkstemp(path.suffix, f".{target.name}.", target.parent)
-    os.close(handle)
-    temporary = Path(name)
-    try:
+    with tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as folder:
+        temporary = Path(folder) / target.name
         yield temporary
         temporary.chmod(0o644)
         temporary.replace(target)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def write_dataset(dataset: xr.Dataset, path: Path) -> None:

@@ -1,0 +1,189 @@
+"""Maps as vehicle and system simulations read them: one table of speed and torque.
+
+Modelica: `LossyGear` of the Modelica Standard Library takes at each speed a torque loss that is
+linear in the torque of either direction; its table is fitted to the map.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
+
+from epicyclic.errors import Problem
+from epicyclic.maps.tables import statements
+from epicyclic.units import RPM, format_number
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = [
+    "gem_problems",
+    "modelica_problems",
+    "vecto_problems",
+    "write_gem",
+    "write_modelica",
+    "write_vecto",
+]
+
+_LEAST_VECTO_ROWS = 4
+_DIGITS = 10
+
+
+def _single(data: xr.Dataset, name: str) -> NDArray[np.float64]:
+    """A variable over speed and torque; all other axes have one value."""
+    values: NDArray[np.float64] = data[name].transpose("speed", "torque", ...).values
+    return values.reshape(values.shape[:2])
+
+
+def _points(data: xr.Dataset, name: str) -> Iterator[tuple[float, float, float]]:
+    """Speed, torque and a variable at every point."""
+    values = _single(data, name)
+    for i, speed in enumerate(data["speed"].values):
+        for j, torque in enumerate(data["torque"].values):
+            yield float(speed), float(torque), float(values[i, j])
+
+
+def _stated(data: xr.Dataset) -> dict[str, str]:
+    """The statements of a map and the values of the axes that have one."""
+    single = {
+        str(name): f"{data[name].values[0]} {data[name].attrs.get('units', '')}".strip()
+        for name in data["torque_loss"].dims
+        if name not in ("speed", "torque")
+    }
+    return statements(data) | single
+
+
+# --- VECTO ----------------------------------------------------------------------------------------
+
+
+def vecto_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
+    """What VECTO does not take: it needs motoring, and knows one sense of rotation."""
+    problems = _negative_speeds(axes)
+    if not min(axes["torque"]) < 0 < max(axes["torque"]):
+        problems.append(_torques("must have negative and positive values"))
+    if len(axes["speed"]) * len(axes["torque"]) < _LEAST_VECTO_ROWS:
+        allowed = f"and torque must make {_LEAST_VECTO_ROWS} points or more."
+        problems.append(Problem("speed", "", allowed, "Give more values."))
+    return problems
+
+
+def write_vecto(data: xr.Dataset, path: Path) -> None:
+    """Transmission loss map (.vtlm): input speed, input torque, torque loss.
+
+    VECTO user manual, "Transmission Loss Map": output torque = (input torque - loss) * ratio in
+    both directions, the loss never negative. The one header line comes first; a comment ends it.
+    """
+    stated = "; ".join(f"{name}: {text}" for name, text in _stated(data).items())
+    with path.open("w", encoding="utf-8", newline="") as file:
+        file.write(f"Input Speed [rpm],Input Torque [Nm],Torque Loss [Nm] # {stated}\n")
+        for point in _points(data, "torque_loss"):
+            file.write(",".join(format_number(value, _DIGITS) for value in point) + "\n")
+
+
+# --- EPA GEM --------------------------------------------------------------------------------------
+
+
+def gem_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
+    """What the table of 40 CFR 1037.565 does not have: coasting, and rotation backwards."""
+    problems = _negative_speeds(axes)
+    if min(axes["torque"]) < 0:
+        problems.append(_torques("must not be negative"))
+    return problems
+
+
+def write_gem(data: xr.Dataset, path: Path) -> None:
+    """Power loss in kW over input speed and torque, with the digits of 40 CFR 1037.565(g)."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        file.writelines(f"# {name}: {text}\n" for name, text in _stated(data).items())
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["Input Speed [r/min]", "Input Torque [N*m]", "Power Loss [kW]"])
+        for speed, torque, watts in _points(data, "total"):
+            table.writerow([f"{speed:.1f}", f"{torque:.2f}", f"{watts / 1000:.4f}"])
+
+
+# --- Modelica -------------------------------------------------------------------------------------
+
+
+def modelica_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
+    """What a loss table cannot be fitted to."""
+    problems = _negative_speeds(axes)
+    if 0 not in axes["speed"] or len(axes["speed"]) < 2:
+        allowed = "must have zero and one other value: the table begins at rest."
+        problems.append(Problem("speed", "", allowed, "Add them."))
+    if not min(axes["torque"]) < 0 < max(axes["torque"]):
+        problems.append(_torques("must have negative and positive values"))
+    if len(axes["torque"]) < 3:
+        problems.append(_torques("must have three values or more"))
+    return problems
+
+
+def loss_table(data: xr.Dataset) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The table `lossTable` of LossyGear, and how far the torque loss that it gives is off.
+
+    At each speed by least squares over all torques: tau_loss = (1 - eta_mf1) tau + tau_bf for
+    tau >= 0, (1 - 1/eta_mf2) tau + tau_bf for tau < 0, with efficiencies up to 1 and one
+    tau_bf >= 0 for both, so that the sign of the torque is the direction of the power.
+
+    Returns
+    -------
+    table : array, shape (speeds, 5)
+        \\|w\\| [rad/s], eta_mf1, eta_mf2, \\|tau_bf1\\|, \\|tau_bf2\\| [N m].
+    deviation : array, shape (speeds, torques)
+        Of the table less that of the map. [N m]
+    """
+    to_rpm, _ = RPM.scale_and_offset()
+    torque = data["torque"].values
+    columns = np.stack([np.maximum(torque, 0), np.maximum(-torque, 0), np.ones_like(torque)], 1)
+    rows, deviations = [], []
+    for speed, losses in zip(data["speed"].values, _single(data, "torque_loss"), strict=True):
+        drive, coast, drag = lsq_linear(columns, losses, ([0, 0, 0], [1, np.inf, np.inf])).x
+        rows.append([speed / to_rpm, 1 - drive, 1 / (1 + coast), drag, drag])
+        deviations.append(columns @ [drive, coast, drag] - losses)
+    return np.array(rows), np.array(deviations)
+
+
+def write_modelica(data: xr.Dataset, path: Path) -> None:
+    """A record with the parameters `ratio` and `lossTable` of LossyGear."""
+    table, deviation = loss_table(data)
+    name = re.sub(r"\W|^(?=\d)", "_", path.stem, flags=re.ASCII)
+    i, j = np.unravel_index(np.abs(deviation).argmax(), deviation.shape)
+    worst = (
+        f"The table is off by up to {abs(deviation[i, j]):.3g} N.m (at "
+        f"{data['speed'].values[i]:.6g} rpm and {data['torque'].values[j]:.6g} N.m), "
+        f"{np.sqrt(np.mean(deviation**2)):.3g} N.m rms"
+    )
+    fastest = data.isel(speed=-1).stack(point=[*data["torque_loss"].dims[1:]]).isel(point=0)
+    shafts = [data.attrs["reference_shaft"], data.attrs["output_shaft"]]
+    ratio = float(fastest[f"{shafts[0]}_speed"] / fastest[f"{shafts[1]}_speed"])
+    rows = [", ".join(format_number(value, _DIGITS) for value in row) for row in table]
+    body = ";\n    ".join(rows)
+    stated = "\n".join(f"// {key}: {text}" for key, text in _stated(data).items())
+    path.write_text(
+        f"{stated}\n"
+        f"// flange_a: {shafts[0]}; flange_b: {shafts[1]}; support: "
+        f"{data.attrs['held_shaft']}\n"
+        f"// {worst}.\n"
+        f'record {name} "For Modelica.Mechanics.Rotational.Components.LossyGear"\n'
+        f'  parameter Real ratio = {format_number(ratio, 15)} "Speed of flange_a over flange_b";\n'
+        f"  parameter Real lossTable[:, 5] = [\n    {body}]\n"
+        f'    "|w_a| in rad/s, eta_mf1, eta_mf2, |tau_bf1|, |tau_bf2| in N.m";\n'
+        f"end {name};\n",
+        encoding="utf-8",
+    )
+
+
+def _negative_speeds(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
+    if min(axes["speed"]) >= 0:
+        return []
+    return [Problem("speed", "", "must not be negative.", "Leave these values out.")]
+
+
+def _torques(allowed: str) -> Problem:
+    return Problem("torque", "", f"{allowed}.", "Give others.")

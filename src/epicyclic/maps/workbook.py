@@ -1,0 +1,101 @@
+"""Maps as Excel workbooks and as MATLAB files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from epicyclic.errors import Problem
+from epicyclic.maps.tables import statements
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["workbook_problems", "write_matlab", "write_workbook"]
+
+_MOST_ROWS = 1_048_574
+"""Rows of a sheet of Excel below the two of names and units."""
+_LONG_TEXT = ("warnings",)
+"""Variables that are too long for a cell to be read in."""
+
+
+def workbook_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
+    """More points than a sheet has rows."""
+    count = int(np.prod([len(values) for values in axes.values()]))
+    if count <= _MOST_ROWS:
+        return []
+    allowed = f"have {count} points; a sheet of Excel holds {_MOST_ROWS}."
+    return [Problem("all axes", "", allowed, "Give fewer values, or write .parquet.")]
+
+
+def write_workbook(data: xr.Dataset, path: Path) -> None:
+    """Sheets: the map with a row of names and a row of units, the inputs, what the numbers mean."""
+    from openpyxl import Workbook
+
+    book = Workbook(write_only=True)
+    sheet = book.create_sheet("map")
+    sheet.freeze_panes = "A3"
+    table = data.drop_vars(_LONG_TEXT).to_dataframe().reset_index()
+    _append(sheet, table.columns)
+    _append(sheet, [_unit(data, str(name)) for name in table.columns])
+    for row in table.itertuples(index=False, name=None):
+        _append(sheet, row)
+    inputs = book.create_sheet("inputs")
+    _append(inputs, ["key", "value"])
+    for key, value in _flat(json.loads(data.attrs["case"])):
+        _append(inputs, [key, value])
+    about = book.create_sheet("about")
+    for key, text in statements(data).items():
+        _append(about, [key, text])
+    _append(about, ["versions", data.attrs["versions"]])
+    book.save(path)
+
+
+def _append(sheet: Any, row: Sequence[Any]) -> None:
+    """A row of numbers and text; text that looks like a formula stays text, NaN is empty."""
+    from openpyxl.cell import WriteOnlyCell
+    from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
+
+    cells = []
+    for value in row:
+        if isinstance(value, str):
+            cell = WriteOnlyCell(sheet, ILLEGAL_CHARACTERS_RE.sub("", value))
+            cell.data_type = "s"
+            cells.append(cell)
+        else:
+            cells.append(None if value != value else value)  # only NaN differs from itself
+    sheet.append(cells)
+
+
+def _unit(data: xr.Dataset, name: str) -> str:
+    return str(data[name].attrs.get("units", ""))
+
+
+def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values of nested tables; lists as JSON."""
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", json.dumps(value) if isinstance(value, list) else value
+
+
+def write_matlab(data: xr.Dataset, path: Path) -> None:
+    """A struct ``loss_map``: axes, variables over them, their units, and what the numbers mean."""
+    from scipy.io import savemat
+
+    content: dict[str, Any] = {str(name): _matlab(data[name].values) for name in data.variables}
+    content["dimensions"] = _matlab(np.array(data["torque_loss"].dims, dtype=object))
+    content["units"] = {str(name): _unit(data, str(name)) for name in data.variables}
+    content["about"] = dict(data.attrs)
+    with path.open("wb") as file:
+        savemat(file, {"loss_map": content}, long_field_names=True, oned_as="column")
+
+
+def _matlab(values: Any) -> Any:
+    """Numbers as they are, text as a cell array."""
+    return values.astype(object) if values.dtype.kind in "OU" else values

@@ -1,0 +1,243 @@
+"""Loss maps in the formats of other programs, read back with what their users read them with."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+
+import numpy as np
+import openpyxl
+import pandas as pd
+import pytest
+import scipy.io
+
+import epicyclic as ep
+from epicyclic.maps import simulation
+
+SPEED = ["0 rpm", "500 rpm", "4000 rpm"]
+TORQUE = ["-1000 N*m", "-500 N*m", "0 N*m", "500 N*m", "1000 N*m"]
+TITLE = "=1+1\nsecond \x07line"
+"""A title that a spreadsheet must not take for a formula, nor a table for two lines."""
+
+
+@pytest.fixture(scope="module")
+def data():
+    case = ep.load_case("talbot-2012").updated({"title": TITLE})
+    return ep.loss_map(case, SPEED, TORQUE, jobs=1)
+
+
+@pytest.fixture(scope="module")
+def temperatures():
+    return ep.loss_map(
+        ep.load_case("talbot-2012"),
+        SPEED,
+        TORQUE,
+        ["40 degC", "90 degC"],
+        {"sun.roughness": ["ground", "0.2 um"]},
+        jobs=1,
+    )
+
+
+def points(data, name):
+    """Speed, torque and a variable at every point."""
+    speed, torque = np.meshgrid(data["speed"], data["torque"], indexing="ij")
+    values = data[name].values.reshape(speed.shape)
+    return np.stack([speed.ravel(), torque.ravel(), values.ravel()], axis=1)
+
+
+def test_excel_has_units_inputs_and_statements(data, tmp_path):
+    path = tmp_path / "map.xlsx"
+    ep.write_map(data, path)
+    book = openpyxl.load_workbook(path, data_only=False)
+    assert book.sheetnames == ["map", "inputs", "about"]
+    names, units, *rows = book["map"].iter_rows(values_only=True)
+    assert len(rows) == 15
+    by_name = dict(zip(names, units, strict=True))
+    assert by_name["torque_loss"] == "N*m"
+    assert by_name["sun_mesh_sliding"] == "W"
+    assert by_name["temperature"] == "degC"
+    table = pd.DataFrame(rows, columns=names)
+    np.testing.assert_allclose(  # a workbook keeps 16 digits, of 17 that are exact
+        table[["speed", "torque", "torque_loss"]], points(data, "torque_loss"), rtol=1e-15
+    )
+    efficiency = table["efficiency"].astype(float)  # empty where there is none
+    np.testing.assert_allclose(efficiency, data["efficiency"].values.ravel(), rtol=1e-15)
+    inputs = {row[0]: row[1] for row in book["inputs"].iter_rows(values_only=True)}
+    assert inputs["sun.teeth"] == 73
+    assert inputs["gears.normal_module"] == "1.813 mm"
+    about = {row[0].value: row[1] for row in book["about"].iter_rows()}
+    assert about["reference shaft"].value == "sun"
+    assert "torque times speed > 0" in about["sign convention"].value
+    assert about["title"].data_type == "s"
+    (title,) = (row[1] for row in book["inputs"].iter_rows() if row[0].value == "title")
+    assert (title.data_type, title.value) == ("s", "=1+1\nsecond line")
+
+
+def test_matlab_has_axes_variables_units(temperatures, tmp_path):
+    path = tmp_path / "map.mat"
+    ep.write_map(temperatures, path)
+    stored = scipy.io.loadmat(path, simplify_cells=True)["loss_map"]
+    assert list(stored["dimensions"]) == ["speed", "torque", "temperature", "sun_roughness"]
+    assert stored["torque_loss"].shape == (3, 5, 2, 2)
+    for name, array in temperatures.variables.items():
+        if array.dtype.kind in "fi":
+            np.testing.assert_array_equal(stored[name], array.values)
+            assert stored["units"][name] == array.attrs["units"]
+    assert stored["status"][0, 0, 0, 0] == "converged"
+    assert stored["about"]["reference_shaft"] == "sun"
+    assert "never negative" in stored["about"]["sign_convention"]
+    assert json.loads(stored["about"]["case"])["sun"]["teeth"] == 73
+
+
+def test_vecto_reads_header_comment_and_rows(data, tmp_path):
+    path = tmp_path / "map.vtlm"
+    ep.write_map(data, path)
+    lines = path.read_text(encoding="utf-8").splitlines()
+    header, comment = lines[0].split(" # ", 1)
+    assert header == "Input Speed [rpm],Input Torque [Nm],Torque Loss [Nm]"
+    assert "reference shaft: sun" in comment
+    assert "temperature: 90.0 degC" in comment
+    # as VECTO does: what follows a number sign is dropped, the rest are rows
+    rows = list(csv.reader(line.partition("#")[0] for line in lines[1:]))
+    table = np.array(rows, dtype=float)
+    np.testing.assert_allclose(table, points(data, "torque_loss"), rtol=1e-9)  # ten digits
+    assert (table[:, 1] < 0).any()
+    assert (table[:, 2] >= 0).all()
+
+
+def test_gem_has_the_digits_of_the_regulation(data, tmp_path):
+    path = tmp_path / "map.csv"
+    ep.write_map(data.sel(torque=slice(0, None)), path, "gem")
+    text = path.read_text(encoding="utf-8")
+    assert "# reference shaft: sun\n" in text
+    header, *rows = csv.reader(line for line in text.splitlines() if not line.startswith("#"))
+    assert header == ["Input Speed [r/min]", "Input Torque [N*m]", "Power Loss [kW]"]
+    assert len(rows) == 9
+    assert all(re.fullmatch(r"\d+\.\d,\d+\.\d\d,\d+\.\d{4}", ",".join(row)) for row in rows)
+    wanted = points(data.sel(torque=slice(0, None)), "total")[:, 2] / 1000
+    np.testing.assert_allclose(np.array(rows, float)[:, 2], wanted, atol=0.00005)  # four decimals
+
+
+def lossy_gear(table, speed, torque):
+    """Torque loss of Modelica.Mechanics.Rotational.Components.LossyGear, speed > 0. [N m]"""
+    eta1, eta2, bearing1, bearing2 = (
+        np.interp(speed, table[:, 0], table[:, i]) for i in range(1, 5)
+    )
+    bearing_a = (bearing1 - bearing2) / (eta1 - 1 / eta2)
+    if torque - bearing_a >= 0:
+        return (1 - eta1) * torque + bearing1
+    return (1 - 1 / eta2) * torque + bearing2
+
+
+def test_modelica_gives_the_losses_within_what_it_states(data, tmp_path):
+    path = tmp_path / "my map-2.mo"
+    ep.write_map(data, path)
+    text = path.read_text(encoding="utf-8")
+    assert text.count("record my_map_2 ") == 1
+    assert text.endswith("end my_map_2;\n")
+    assert "// flange_a: sun; flange_b: carrier; support: ring\n" in text
+    code = "\n".join(line for line in text.splitlines() if not line.startswith("//"))
+    (body,) = re.findall(r"lossTable\[:, 5\] = \[([^\]]*)\]", code)
+    table = np.array([[float(value) for value in row.split(",")] for row in body.split(";")])
+    (ratio,) = re.findall(r"Real ratio = (\S+)", code)
+    assert float(ratio) == pytest.approx((73 + 125) / 73, rel=1e-12)
+    assert table.shape == (3, 5)
+    assert ((table[:, 1:3] > 0.97) & (table[:, 1:3] <= 1)).all()
+    (stated,) = re.findall(r"off by up to (\S+) N.m", text)
+    worst = 0.0
+    for speed, torque, loss in points(data, "torque_loss"):
+        worst = max(worst, abs(lossy_gear(table, speed * 2 * np.pi / 60, torque) - loss))
+    assert worst == pytest.approx(float(stated), rel=0.005)  # three digits are stated
+    assert worst < 0.05 * float(data["torque_loss"].max())
+
+
+def test_modelica_is_exact_for_linear_losses(data):
+    """Losses that LossyGear can represent come out of the fit as they were put in."""
+    linear = data.copy()
+    torque = data["torque"]
+    slope = 0.02 * torque.where(torque > 0, 0) - 0.03 * torque.where(torque < 0, 0)
+    linear["torque_loss"] = (slope + 0.5).broadcast_like(data["torque_loss"])
+    table, deviation = simulation.loss_table(linear)
+    np.testing.assert_allclose(table[:, 1:], [[0.98, 1 / 1.03, 0.5, 0.5]] * 3, rtol=1e-6)
+    assert abs(deviation).max() < 1e-5  # the tolerance of the bounded solver
+
+
+@pytest.mark.parametrize("suffix", ["vtlm", "mo"])
+def test_formats_of_one_table_refuse_more(temperatures, tmp_path, suffix):
+    with pytest.raises(ep.InputError, match="temperature: has 2 values") as error:
+        ep.write_map(temperatures, tmp_path / f"map.{suffix}")
+    assert len(error.value.problems) == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("select", "format", "words"),
+    [
+        ({"torque": slice(0, None)}, "vecto", "negative and positive"),
+        ({"torque": slice(0, None)}, "modelica", "negative and positive"),
+        ({"speed": slice(500, None)}, "modelica", "begins at rest"),
+        ({}, "gem", "must not be negative"),
+    ],
+)
+def test_formats_say_what_they_need(data, tmp_path, select, format, words):
+    with pytest.raises(ep.InputError, match=words):
+        ep.write_map(data.sel(select), tmp_path / "map.x", format)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_gaps_are_refused_and_backward_rotation_too(data, tmp_path):
+    gap = data.copy(deep=True)
+    gap["torque_loss"][0, 0] = np.nan
+    with pytest.raises(ep.InputError, match="missing at 1 points"):
+        ep.write_map(gap, tmp_path / "map.vtlm")
+    backwards = data.assign_coords(speed=[-1.0, 0.0, 1.0])
+    with pytest.raises(ep.InputError, match="speed: must not be negative"):
+        ep.write_map(backwards, tmp_path / "map.vtlm")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_second_driven_member_is_refused_before_computing(tmp_path, epicyclic):
+    done = epicyclic(
+        "map", "talbot-2012", "--set", "operation.fixed=", "--set", "operation.second_input=ring",
+        "--set", "operation.second_speed=100 rpm", "--speed", "1:9:2 rpm",
+        "--torque", "-1:1:2 N*m", "-o", str(tmp_path / "map.vtlm"),
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "one input and one output" in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_cannot_be_finished_leaves_the_old_one(data, tmp_path, monkeypatch):
+    path = tmp_path / "map.mat"
+    path.write_text("old")
+
+    def fail(file, *args, **kwargs):
+        file.write(b"half")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("scipy.io.savemat", fail)
+    with pytest.raises(OSError, match="No space left"):
+        ep.write_map(data, path)
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "start"),
+    [
+        ("map.vtlm", (), b"Input Speed [rpm]"),
+        ("map.mo", (), b"// title"),
+        ("map.xlsx", (), b"PK"),
+        ("map.mat", (), b"MATLAB 5.0"),
+        ("map.txt", ("--format", "vecto"), b"Input Speed [rpm]"),
+    ],
+)
+def test_the_command_writes_by_suffix_or_name(tmp_path, epicyclic, name, options, start):
+    done = epicyclic(
+        "map", "talbot-2012", "--speed", "0,1000 rpm", "--torque", "-100,0,100 N*m",
+        "-o", str(tmp_path / name), *options,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / name).read_bytes().startswith(start)
+    assert [path.name for path in tmp_path.iterdir()] == [name]
