@@ -78,6 +78,19 @@ def matrix(jobs: int | None) -> None:
         ep.sweep(ep.load_case(f"talbot-2012-{gear_set}"), MATRIX, jobs=jobs)
 
 
+MAP = (
+    "map", "talbot-2012", "--speed", "0:4000:40 rpm", "--torque", "-1000:1000:41 N*m",
+    "--temperature", "40:120:5 degC",
+)  # fmt: skip
+"""A loss map of 8200 points."""
+
+
+def map_seconds() -> float:
+    """A loss map from the command, all cores, file included."""
+    with tempfile.TemporaryDirectory() as folder:
+        return process_seconds("-m", "epicyclic", *MAP, "-o", str(Path(folder) / "map.nc"))
+
+
 def clear_caches() -> None:
     from epicyclic.case import build, flanks
     from epicyclic.elasticity import loaded_mesh, mesh_compliance, tooth_plate
@@ -212,6 +225,7 @@ def main() -> None:
     here = str(Path(__file__).resolve().parent)
     command = "import benchmark; benchmark.matrix(None)"
     matrix_process = process_seconds("-c", command, PYTHONPATH=here)
+    whole_map = map_seconds()
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
 
     table = Table(title="Epicyclic benchmark", title_justify="left")
@@ -239,6 +253,8 @@ def main() -> None:
          f"{matrix_seconds / (300 * point):.2f}", "300 single points"),
         ("the same in a new process", f"{matrix_process:.2f} s", "15 s",
          f"{matrix_process / matrix_seconds:.2f}", "the matrix, warm"),
+        ("loss map, 8200 points, to NetCDF", f"{whole_map:.1f} s", "60 s",
+         f"{whole_map / (8200 * point):.2f}", "8200 single points"),
         ("largest memory of a process", f"{peak:.0f} MB", "500 MB", "", ""),
     ):  # fmt: skip
         table.add_row(*row)
