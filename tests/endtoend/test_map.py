@@ -187,6 +187,8 @@ def test_further_keys_are_axes(tmp_path, epicyclic):
         (("-o", "map.xyz"), "must end in .nc"),
         (("-o", "missing/map.nc"), "no place for a file"),
         (("-o", "map.nc", "--format", "wrong"), "must be one of netcdf"),
+        (("-o", "map.nc", "--speed", " "), "--speed"),
+        (("-o", "map.vtlm"), "temperature: has 2 values"),
         (("-o", "map.nc", "--vary", "planet.cuont=3,4"), "not a known key"),
         (("-o", "map.nc", "--torque", "1,2 rpm"), "operation.torque"),
     ],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from pathlib import Path
 
 import numpy as np
 import openpyxl
@@ -14,6 +15,10 @@ import scipy.io
 
 import epicyclic as ep
 from epicyclic.maps import simulation
+from epicyclic.maps.formats import FORMATS
+from epicyclic.maps.workbook import workbook_problems
+
+HOW_TO = Path(__file__).parents[2] / "docs" / "how-to" / "loss-map.md"
 
 SPEED = ["0 rpm", "500 rpm", "4000 rpm"]
 TORQUE = ["-1000 N*m", "-500 N*m", "0 N*m", "500 N*m", "1000 N*m"]
@@ -241,3 +246,33 @@ def test_the_command_writes_by_suffix_or_name(tmp_path, epicyclic, name, options
     assert (done.returncode, done.stderr) == (0, "")
     assert (tmp_path / name).read_bytes().startswith(start)
     assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_the_command_says_why_points_are_missing(tmp_path, epicyclic):
+    done = epicyclic(
+        "map", "talbot-2012", "--speed", "0,1000 rpm", "--torque", "-100,100 N*m",
+        "--vary", "planet.count=12", "-o", str(tmp_path / "map.vtlm"),
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "overlap" in done.stderr
+    assert "missing at 4 points" in done.stderr
+    assert not (tmp_path / "map.vtlm").exists()
+
+
+def test_excel_refuses_more_points_than_it_has_rows():
+    axes = {"speed": range(1100), "torque": range(1000), "temperature": [90.0]}
+    (problem,) = workbook_problems(axes)
+    assert "1100000 points" in problem.allowed
+    assert workbook_problems(axes | {"speed": range(1000)}) == []
+
+
+def test_the_how_to_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (code,) = re.findall(r"```python\n(.*?)```", HOW_TO.read_text(encoding="utf-8"), re.DOTALL)
+    exec(code, {})
+    assert [path.name for path in tmp_path.iterdir()] == ["map.vtlm"]
+
+
+def test_the_how_to_lists_every_format():
+    rows = re.findall(r"^\| `(\w+)` \| (?:`(\.\w+)`|by name) \|", HOW_TO.read_text("utf-8"), re.M)
+    assert rows == [(name, item.suffix) for name, item in FORMATS.items()]

@@ -11,7 +11,7 @@ import os
 import signal
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -339,12 +339,27 @@ def loss_map(
     from epicyclic.sweeps.plan import parse_vary
 
     loaded = _load(case, changes)
+    _check_values(values)
     axes = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]
     given, further = parse_vary(loaded, axes), parse_vary(loaded, vary)
     speed, torque = given[AXES["speed"]], given[AXES["torque"]]
     plan = map_plan(loaded, speed, torque, given.get(AXES["temperature"]), further)
     check_map_output(output, name, coordinates(plan), held_shaft(loaded))
     _compute(plan, output, jobs, lambda rows: write_map(to_map(plan, rows), output, name))
+
+
+def _check_values(values: Mapping[str, str | None]) -> None:
+    """Raise `InputError` for options that name no values."""
+    problems = [
+        Problem(
+            f"--{name}", f'"{text}"', "must be a,b,c or start:stop:count with a unit.",
+            'For example "0:4000:41 rpm" for the speed.',
+        )
+        for name, text in values.items()
+        if text is not None and not text.strip()
+    ]  # fmt: skip
+    if problems:
+        raise InputError(problems, "the command")
 
 
 def _compute(
@@ -358,11 +373,11 @@ def _compute(
     with _kept_in(journal, plan.size):
         with progress_bar("points") as progress:
             rows = run_plan(plan, jobs=jobs, journal=journal, progress=progress)
+        reasons = [row.message for row in rows if row.status == Status.FAILED]
+        _print_failures(reasons)
         with _finishing(f"Writing {output}."):
             write(rows)
             journal.remove()
-    reasons = [row.message for row in rows if row.status == Status.FAILED]
-    _print_failures(reasons)
     outcome = f", {len(reasons)} of them failed." if reasons else "."
     click.echo(f"Wrote {plan.size} point{'' if plan.size == 1 else 's'} to {output}{outcome}")
     if reasons:
