@@ -334,7 +334,7 @@ def loss_map(
     VALUES are a,b,c or start:stop:count with a unit. The torque loss is that at the input member;
     the file states the signs. An interrupted map goes on where it stopped, as a sweep does.
     """
-    from epicyclic.maps.compute import AXES, coordinates, held_shaft, map_plan, to_map
+    from epicyclic.maps.compute import AXES, coordinates, held_shaft, map_plan, row_length, to_map
     from epicyclic.maps.formats import check_map_output, write_map
     from epicyclic.sweeps.plan import parse_vary
 
@@ -345,7 +345,13 @@ def loss_map(
     speed, torque = given[AXES["speed"]], given[AXES["torque"]]
     plan = map_plan(loaded, speed, torque, given.get(AXES["temperature"]), further)
     check_map_output(output, name, coordinates(plan), held_shaft(loaded))
-    _compute(plan, output, jobs, lambda rows: write_map(to_map(plan, rows), output, name))
+    _compute(
+        plan,
+        output,
+        jobs,
+        lambda rows: write_map(to_map(plan, rows), output, name),
+        batch=row_length(plan),
+    )
 
 
 def _check_values(values: Mapping[str, str | None]) -> None:
@@ -363,7 +369,11 @@ def _check_values(values: Mapping[str, str | None]) -> None:
 
 
 def _compute(
-    plan: Plan, output: Path, jobs: int | None, write: Callable[[Sequence[Row]], None]
+    plan: Plan,
+    output: Path,
+    jobs: int | None,
+    write: Callable[[Sequence[Row]], None],
+    **options: int,
 ) -> None:
     """Compute the points of `plan`, resumed and kept beside `output`, and `write` their rows."""
     from epicyclic.cli.progress import progress_bar
@@ -372,7 +382,7 @@ def _compute(
     journal = _open_journal(plan, output)
     with _kept_in(journal, plan.size):
         with progress_bar("points") as progress:
-            rows = run_plan(plan, jobs=jobs, journal=journal, progress=progress)
+            rows = run_plan(plan, jobs=jobs, journal=journal, progress=progress, **options)
         reasons = [row.message for row in rows if row.status == Status.FAILED]
         _print_failures(reasons)
         with _finishing(f"Writing {output}."):

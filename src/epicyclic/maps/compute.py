@@ -27,7 +27,16 @@ from epicyclic.units import NEWTON_METRE, RPM, WATT
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["AXES", "axis_name", "coordinates", "held_shaft", "loss_map", "map_plan", "to_map"]
+__all__ = [
+    "AXES",
+    "axis_name",
+    "coordinates",
+    "held_shaft",
+    "loss_map",
+    "map_plan",
+    "row_length",
+    "to_map",
+]
 
 AXES = {
     "speed": "operation.speed",
@@ -86,7 +95,8 @@ def loss_map(
     """
     plan = map_plan(case, speed, torque, temperature, vary)
     kept = None if journal is None else Journal(Path(journal).absolute(), plan.fingerprint())
-    return to_map(plan, run_plan(plan, jobs=jobs, journal=kept, progress=progress))
+    rows = run_plan(plan, jobs=jobs, journal=kept, progress=progress, batch=row_length(plan))
+    return to_map(plan, rows)
 
 
 def map_plan(
@@ -104,8 +114,8 @@ def map_plan(
         raise InputError(problems, "the map")
     if temperature is None:
         temperature = [case.inputs()["operation"]["oil_inlet_temperature"]]
-    # loads are kept by torque: speeds, which do not change them, are innermost
-    given = {AXES["torque"]: torque, AXES["temperature"]: temperature, AXES["speed"]: speed}
+    # torque innermost: flows through pockets, which cost most, do not depend on its magnitude
+    given = {AXES["temperature"]: temperature, AXES["speed"]: speed, AXES["torque"]: torque}
     plan = make_plan(case, {**further, **given})
     turns_alone = not _has_second_input(case)
     return replace(plan, axes=tuple(_prepared(axis, turns_alone) for axis in plan.axes))
@@ -141,6 +151,11 @@ def _prepared(axis: Axis, turns_alone: bool) -> Axis:
         points = [creep if coordinate == 0 else (value, coordinate) for value, coordinate in points]
     values, coordinate = zip(*points, strict=True)
     return replace(axis, values=values, coordinate=coordinate)
+
+
+def row_length(plan: Plan) -> int:
+    """Number of points next to each other that differ in torque only."""
+    return len(plan.axes[-1].values)
 
 
 def coordinates(plan: Plan) -> dict[str, tuple[float | str, ...]]:

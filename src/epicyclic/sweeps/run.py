@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -82,21 +83,26 @@ def run_plan(
     jobs: int | None = None,
     journal: Journal | None = None,
     progress: Progress | None = None,
+    batch: int = BATCH,
 ) -> list[Row]:
-    """Rows of all points of `plan`, in their order. Parameters as for `sweep`."""
+    """Rows of all points of `plan`, in their order.
+
+    Parameters as for `sweep`; `batch` is the number of points that one worker should compute
+    together.
+    """
     rows = {} if journal is None else journal.read()
     left = [index for index in plan.order() if index not in rows]
     if progress is not None:
         progress(len(rows), plan.size)
-    for batch in _run_batches(plan, left, jobs, journal):
-        rows.update(batch)
+    for finished in _run_batches(plan, left, jobs, journal, batch):
+        rows.update(finished)
         if progress is not None:
             progress(len(rows), plan.size)
     return [rows[index] for index in range(plan.size)]
 
 
 def _run_batches(
-    plan: Plan, indices: list[int], jobs: int | None, journal: Journal | None
+    plan: Plan, indices: list[int], jobs: int | None, journal: Journal | None, batch: int
 ) -> Iterator[list[tuple[int, Row]]]:
     """Finished points, in any order: here as long as that pays, then in worker processes."""
     start = time.perf_counter()
@@ -107,7 +113,7 @@ def _run_batches(
             done - 1, time.perf_counter() - start, len(indices) - done
         )
         if workers_pay or jobs not in (None, 1):
-            yield from _run_in_workers(plan, indices[done:], jobs or -1, journal)
+            yield from _run_in_workers(plan, indices[done:], jobs or -1, journal, batch)
             return
         yield _solve_batch(plan, [index], journal)
 
@@ -120,17 +126,23 @@ def _workers_pay(done: int, seconds: float, left: int) -> bool:
 
 
 def _run_in_workers(
-    plan: Plan, indices: list[int], jobs: int, journal: Journal | None
+    plan: Plan, indices: list[int], jobs: int, journal: Journal | None, batch: int
 ) -> Iterator[list[tuple[int, Row]]]:
     from joblib import Parallel, delayed, effective_n_jobs
 
     share = len(indices) // (BATCHES_PER_WORKER * effective_n_jobs(jobs))
-    size = min(BATCH, max(1, share))
+    size = min(batch, max(1, share))
     workers = Parallel(n_jobs=jobs, return_as="generator_unordered", inner_max_num_threads=1)
     yield from workers(
-        delayed(_solve_batch)(plan, indices[i : i + size], journal)
-        for i in range(0, len(indices), size)
+        delayed(_solve_batch)(plan, points, journal) for points in _batches(plan, indices, size)
     )
+
+
+def _batches(plan: Plan, indices: list[int], size: int) -> Iterator[list[int]]:
+    """`indices` cut at multiples of `size` in the order of all points, whatever is done already."""
+    place = {index: i for i, index in enumerate(plan.order())}
+    for _, points in groupby(indices, key=lambda index: place[index] // size):
+        yield list(points)
 
 
 def _solve_batch(
