@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -231,7 +232,10 @@ def _solve_branch(
     case: PlanetaryCase, share: float, count: int, fluids: Fluids, speeds: Mapping[str, float]
 ) -> _Branch:
     duties, load = _tilted(case, planetary_duties(case, share), speeds)
-    meshes = {duty.key: solve_mesh(case, duty, fluids, count) for duty in duties}
+    # both at once: the kernels of the pockets, which take longest, release the interpreter
+    with ThreadPoolExecutor(len(duties)) as pool:
+        outcomes = pool.map(lambda duty: solve_mesh(case, duty, fluids, count), duties)
+        meshes = {duty.key: mesh for duty, mesh in zip(duties, outcomes, strict=True)}
     bearing = _solve_bearing(case, load, count, fluids.oil, speeds)
     parts, flags = dict(bearing.parts), bearing.flags
     for mesh in meshes.values():
