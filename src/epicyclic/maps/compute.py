@@ -21,7 +21,8 @@ from epicyclic.kinematics import MEMBERS
 from epicyclic.sweeps.dataset import to_dataset
 from epicyclic.sweeps.journal import Journal, Row
 from epicyclic.sweeps.plan import Axis, Plan, make_plan
-from epicyclic.sweeps.run import Progress, run_plan
+from epicyclic.sweeps.run import run_plan
+from epicyclic.sweeps.work import Progress
 from epicyclic.units import NEWTON_METRE, RPM, WATT
 
 if TYPE_CHECKING:

@@ -85,10 +85,27 @@ class Journal:
         return rows
 
     def append(self, point: int, row: Row) -> None:
-        """Add a finished point; it outlives this process when this returns."""
-        record = _RECORD.dump_json(_Record(self.fingerprint, point, row))
-        with self.path.open("ab", buffering=0) as file:  # one write: workers share the file
-            file.write(b"\n" + record)  # first the end of a line that may have been cut short
+        """Add a finished point; it outlives this process when this returns.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written; what was written before stays.
+        """
+        # first the end of a line that may have been cut short
+        line = b"\n" + _RECORD.dump_json(_Record(self.fingerprint, point, row))
+        try:
+            with self.path.open("ab", buffering=0) as file:  # one write: workers share the file
+                whole = file.write(line) == len(line)
+            reason = "the disk is full"
+        except OSError as error:
+            whole, reason = False, str(error.strerror)
+        if not whole:
+            problem = Problem(
+                "journal", str(self.path), f"cannot be written: {reason}.",
+                "Finished points are kept; make room, and give the same command again.",
+            )  # fmt: skip
+            raise InputError([problem], "the sweep")
 
     def remove(self) -> None:
         """Delete the journal of a finished sweep."""

@@ -1,36 +1,23 @@
-"""Run a sweep: in this process while it is short, on all cores when it is long."""
+"""Run a sweep."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import groupby
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case
-from epicyclic.errors import EpicyclicError, InputError, is_interrupt
-from epicyclic.status import Status
 from epicyclic.sweeps.dataset import to_dataset
 from epicyclic.sweeps.journal import Journal, Row
 from epicyclic.sweeps.plan import Plan, make_plan
+from epicyclic.sweeps.work import BATCH, Progress, guarded, run_work
 
 if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["run_plan", "sweep"]
-
-Progress = Callable[[int, int], None]
-
-BATCH = 16
-"""Largest number of points that a worker is given at once, which share geometry where they can."""
-BATCHES_PER_WORKER = 4
-"""Fewer would leave workers idle at the end."""
-WORKER_START_SECONDS = 4.0
-"""Work left, in seconds on one core, below which starting worker processes does not pay."""
-TRIAL_POINTS, TRIAL_SECONDS = 16, 2.0
-"""Points computed, or time spent on them, before the work left is estimated."""
 
 
 def sweep(
@@ -77,6 +64,21 @@ def sweep(
     return to_dataset(plan, run_plan(plan, jobs=jobs, journal=kept, progress=progress))
 
 
+@dataclass(frozen=True, slots=True)
+class _Cases:
+    """The cases of a plan as work."""
+
+    plan: Plan
+
+    def order(self) -> Sequence[int]:
+        """Those that share geometry next to each other."""
+        return self.plan.order()
+
+    def solve(self, index: int) -> Row:
+        """One case as a flat record."""
+        return guarded(lambda: _solve_point(self.plan, index))
+
+
 def run_plan(
     plan: Plan,
     *,
@@ -90,91 +92,18 @@ def run_plan(
     Parameters as for `sweep`; `batch` is the number of points that one worker should compute
     together.
     """
-    rows = {} if journal is None else journal.read()
-    left = [index for index in plan.order() if index not in rows]
-    if progress is not None:
-        progress(len(rows), plan.size)
-    for finished in _run_batches(plan, left, jobs, journal, batch):
+    rows: dict[int, Row] = {}
+    for finished in run_work(_Cases(plan), jobs=jobs, journal=journal, batch=batch):
         rows.update(finished)
         if progress is not None:
             progress(len(rows), plan.size)
     return [rows[index] for index in range(plan.size)]
 
 
-def _run_batches(
-    plan: Plan, indices: list[int], jobs: int | None, journal: Journal | None, batch: int
-) -> Iterator[list[tuple[int, Row]]]:
-    """Finished points, in any order: here as long as that pays, then in worker processes."""
-    start = time.perf_counter()
-    for done, index in enumerate(indices):
-        if done == 1:  # the first point also pays for compilation
-            start = time.perf_counter()
-        workers_pay = jobs is None and _workers_pay(
-            done - 1, time.perf_counter() - start, len(indices) - done
-        )
-        if workers_pay or jobs not in (None, 1):
-            yield from _run_in_workers(plan, indices[done:], jobs or -1, journal, batch)
-            return
-        yield _solve_batch(plan, [index], journal)
-
-
-def _workers_pay(done: int, seconds: float, left: int) -> bool:
-    """Whether to start workers for the points `left`, `done` having taken `seconds`."""
-    if done < 1 or (done < TRIAL_POINTS and seconds < TRIAL_SECONDS):
-        return False
-    return left * seconds / done > WORKER_START_SECONDS
-
-
-def _run_in_workers(
-    plan: Plan, indices: list[int], jobs: int, journal: Journal | None, batch: int
-) -> Iterator[list[tuple[int, Row]]]:
-    from joblib import Parallel, delayed, effective_n_jobs
-
-    share = len(indices) // (BATCHES_PER_WORKER * effective_n_jobs(jobs))
-    size = min(batch, max(1, share))
-    workers = Parallel(n_jobs=jobs, return_as="generator_unordered", inner_max_num_threads=1)
-    yield from workers(
-        delayed(_solve_batch)(plan, points, journal) for points in _batches(plan, indices, size)
-    )
-
-
-def _batches(plan: Plan, indices: list[int], size: int) -> Iterator[list[int]]:
-    """`indices` cut at multiples of `size` in the order of all points, whatever is done already."""
-    place = {index: i for i, index in enumerate(plan.order())}
-    for _, points in groupby(indices, key=lambda index: place[index] // size):
-        yield list(points)
-
-
-def _solve_batch(
-    plan: Plan, indices: Sequence[int], journal: Journal | None
-) -> list[tuple[int, Row]]:
-    rows = []
-    for index in indices:
-        row = _solve_point(plan, index)
-        if journal is not None:
-            journal.append(index, row)
-        rows.append((index, row))
-    return rows
-
-
 def _solve_point(plan: Plan, index: int) -> Row:
-    """One point of `plan` as a flat record; one that fails becomes a row with its reason."""
-    try:
-        result = solve(plan.case.updated(plan.changes(index)))
-    except InputError as error:
-        return _failed("; ".join(str(problem) for problem in error.problems))
-    except EpicyclicError as error:
-        return _failed(str(error))
-    except Exception as error:  # whatever it is, the other points do not suffer
-        if is_interrupt(error):
-            raise KeyboardInterrupt from error
-        return _failed(f"{type(error).__name__}: {error}")
+    result = solve(plan.case.updated(plan.changes(index)))
     return Row(
         status=str(result.status),
         warnings=" | ".join(result.warnings),
         numbers={item.key: item.value for item in result.numbers()},
     )
-
-
-def _failed(message: str) -> Row:
-    return Row(str(Status.FAILED), message)
