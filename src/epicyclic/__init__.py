@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from epicyclic.analysis.mesh_details import mesh_details
+    from epicyclic.analysis.pocket_details import pocket_details
     from epicyclic.analysis.result import Result
     from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
     from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema, load_case
@@ -38,6 +39,7 @@ _HOME = {
     "loss_map": "epicyclic.maps.compute",
     "mesh_contacts": "epicyclic.analysis.solve",
     "mesh_details": "epicyclic.analysis.mesh_details",
+    "pocket_details": "epicyclic.analysis.pocket_details",
     "solve": "epicyclic.analysis.solve",
     "sweep": "epicyclic.sweeps.run",
     "write_map": "epicyclic.maps.formats",
@@ -57,6 +59,7 @@ __all__ = [
     "loss_map",
     "mesh_contacts",
     "mesh_details",
+    "pocket_details",
     "solve",
     "sweep",
     "write_map",

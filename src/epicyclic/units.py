@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CELSIUS",
+    "CUBIC_MILLIMETRE",
     "DEGREE",
     "GIGAPASCAL",
     "KILOGRAM_PER_CUBIC_METRE",
@@ -37,6 +38,7 @@ __all__ = [
     "NUMBER",
     "PER_GIGAPASCAL",
     "RPM",
+    "SQUARE_MILLIMETRE",
     "SQUARE_MM_PER_SECOND",
     "WATT",
     "Angle",
@@ -347,6 +349,7 @@ def _convert_back(value: float, si: str, display: str) -> float:
 # Kinds of values that are only shown; a case does not read them, so that they have no bounds.
 BAR = Quantity("a pressure", "Pa", "bar")
 CELSIUS = Quantity("a temperature", "K", "degC")
+CUBIC_MILLIMETRE = Quantity("a volume", "m^3", "mm^3")
 DEGREE = Quantity("an angle", "rad", "deg")
 GIGAPASCAL = Quantity("a pressure", "Pa", "GPa")
 KILOGRAM_PER_CUBIC_METRE = Quantity("a density", "kg/m^3", "kg/m^3")
@@ -362,6 +365,7 @@ NEWTON_PER_UM = Quantity("a stiffness", "N/m", "N/um")
 NUMBER = Quantity("a number", "", "")
 PER_GIGAPASCAL = Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa")
 RPM = Quantity("a rotational speed", "rad/s", "rpm")
+SQUARE_MILLIMETRE = Quantity("an area", "m^2", "mm^2")
 SQUARE_MM_PER_SECOND = Quantity("a viscosity", "m^2/s", "mm^2/s")
 WATT = Quantity("a power", "W", "W")
 WATT_PER_MM = Quantity("a power per length", "W/m", "W/mm")

@@ -64,6 +64,7 @@ __all__ = [
     "load_mesh",
     "load_notes",
     "loss_terms",
+    "pocket_notes",
     "resolve_models",
     "solve_mesh",
     "solve_pockets",
@@ -349,10 +350,11 @@ def solve_mesh(case: Case, duty: MeshDuty, fluids: Fluids, count: int) -> MeshOu
         f"{duty.key}_pocketing": pocketing,
     }
     figures = _mesh_figures(duty, contact, loss.mean_friction, elastic, flow)
-    return MeshOutcome(parts, figures, loss.flags, _pocket_notes(case, duty.mesh, flow))
+    return MeshOutcome(parts, figures, loss.flags, pocket_notes(case, duty.mesh, flow))
 
 
-def _pocket_notes(case: Case, mesh: Mesh, flow: PocketFlow | None) -> tuple[str, ...]:
+def pocket_notes(case: Case, mesh: Mesh, flow: PocketFlow | None) -> tuple[str, ...]:
+    """What to know about the flow through the pockets of a mesh."""
     if flow is None:
         return ()
     notes = []

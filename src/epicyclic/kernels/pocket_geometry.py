@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = ["gap_table", "pocket_table"]
+__all__ = ["gap_table", "pocket_outlines", "pocket_table"]
 
 Floats = NDArray[np.float64]
 Points = NDArray[np.complex128]
@@ -309,6 +309,95 @@ def _area_and_centroid(polygon: Points, count: int) -> tuple[float, complex]:
 
 
 @kernel
+def _add_pocket(
+    polygon: Points,
+    phi: float,
+    member: int,
+    gears: tuple[Points, Floats, Floats, Points, Floats, Floats],
+    mesh: Floats,
+) -> int:
+    """Fill `polygon` with the outline of a pocket and return how many points it has.
+
+    From the leading foot of the tooth over its tip and back along the space. Arguments as for
+    `pocket_table`, `phi` one angle.
+    """
+    flank1, _, gear1, flank2, _, gear2 = gears
+    centre2, z1 = mesh[0], mesh[1]
+    side = mesh[3]
+    half_pitch = math.pi / z1
+    # Teeth of gear 1 whose leading and trailing flanks bound the pocket.
+    lead = phi if member == 1 else phi - half_pitch
+    trail = phi if member == 1 else phi + half_pitch
+    _, lead1, lead2, lead_after1, lead_after2 = _gap(lead, 1.0, gears, mesh)
+    _, trail1, trail2, trail_after1, trail_after2 = _gap(trail, -1.0, gears, mesh)
+    lead_turn2, mirror2 = _facing(lead, 1.0, mesh, gear1, gear2)
+    trail_turn2, _ = _facing(trail, -1.0, mesh, gear1, gear2)
+    if member == 1:
+        polygon[0] = lead1
+        count = _add_tooth(polygon, 1, flank1, (lead_after1, trail_after1), (lead, 0.0))
+        polygon[count] = trail1
+        polygon[count + 1] = trail2
+        count = _add_space(
+            polygon,
+            count + 2,
+            flank2,
+            (trail_after2, lead_after2),
+            (trail_turn2, lead_turn2),
+            -mirror2,
+            centre2,
+        )
+        polygon[count] = lead2
+        return count + 1
+    # The leading flank of one tooth of gear 1 faces the tooth of gear 2 in the space before it;
+    # seen from gear 2 that is the positive side if the axes turn together.
+    ahead = (lead2, lead_after2) if side > 0.0 else (trail2, trail_after2)
+    behind = (trail2, trail_after2) if side > 0.0 else (lead2, lead_after2)
+    polygon[0] = ahead[0]
+    count = _add_tooth(polygon, 1, flank2, (ahead[1], behind[1]), (lead_turn2, centre2))
+    polygon[count] = behind[0]
+    count += 1
+    if side > 0.0:
+        polygon[count] = trail1
+        count = _add_space(
+            polygon, count + 1, flank1, (trail_after1, lead_after1), (trail, lead), -1.0, 0.0
+        )
+        polygon[count] = lead1
+    else:
+        polygon[count] = lead1
+        count = _add_space(
+            polygon, count + 1, flank1, (lead_after1, trail_after1), (lead, trail), 1.0, 0.0
+        )
+        polygon[count] = trail1
+    return count + 1
+
+
+@kernel
+def _most_points(flank1: Points, flank2: Points) -> int:
+    return 2 * (flank1.size + flank2.size) + TIP_POINTS + 4
+
+
+@kernel
+def pocket_outlines(
+    phi: Floats,
+    member: int,
+    gears: tuple[Points, Floats, Floats, Points, Floats, Floats],
+    mesh: Floats,
+) -> Points:
+    """Outlines of a pocket at many angles, arguments as for `pocket_table`.
+
+    Returns
+    -------
+    ndarray of complex, shape (n, m)
+        Points around the pocket, as many as it has, then NaN. [m]
+    """
+    outlines = np.full((phi.size, _most_points(gears[0], gears[3])), complex(math.nan, math.nan))
+    for n in range(phi.size):
+        count = _add_pocket(outlines[n], phi[n], member, gears, mesh)
+        outlines[n, count:] = complex(math.nan, math.nan)
+    return outlines
+
+
+@kernel
 def pocket_table(
     phi: Floats,
     member: int,
@@ -332,69 +421,11 @@ def pocket_table(
     ndarray, shape (n, 3)
         Area [m^2], x and y of the centroid [m].
     """
-    flank1, _, gear1, flank2, _, gear2 = gears
-    centre2, z1 = mesh[0], mesh[1]
-    side = mesh[3]
-    polygon = np.empty(4 * (flank1.size + flank2.size) + TIP_POINTS + 4, np.complex128)
-    half_pitch = math.pi / z1
+    polygon = np.empty(_most_points(gears[0], gears[3]), np.complex128)
     table = np.empty((phi.size, 3))
     for n in range(phi.size):
-        # Teeth of gear 1 whose leading and trailing flanks bound the pocket.
-        lead = phi[n] if member == 1 else phi[n] - half_pitch
-        trail = phi[n] if member == 1 else phi[n] + half_pitch
-        _, lead1, lead2, lead_after1, lead_after2 = _gap(lead, 1.0, gears, mesh)
-        _, trail1, trail2, trail_after1, trail_after2 = _gap(trail, -1.0, gears, mesh)
-        lead_turn2, mirror2 = _facing(lead, 1.0, mesh, gear1, gear2)
-        trail_turn2, _ = _facing(trail, -1.0, mesh, gear1, gear2)
-        if member == 1:
-            polygon[0] = lead1
-            count = _add_tooth(polygon, 1, flank1, (lead_after1, trail_after1), (lead, 0.0))
-            polygon[count] = trail1
-            polygon[count + 1] = trail2
-            count = _add_space(
-                polygon,
-                count + 2,
-                flank2,
-                (trail_after2, lead_after2),
-                (trail_turn2, lead_turn2),
-                -mirror2,
-                centre2,
-            )
-            polygon[count] = lead2
-        else:
-            # The leading flank of one tooth of gear 1 faces the tooth of gear 2 in the space
-            # before it; seen from gear 2 that is the positive side if the axes turn together.
-            ahead = (lead2, lead_after2) if side > 0.0 else (trail2, trail_after2)
-            behind = (trail2, trail_after2) if side > 0.0 else (lead2, lead_after2)
-            polygon[0] = ahead[0]
-            count = _add_tooth(polygon, 1, flank2, (ahead[1], behind[1]), (lead_turn2, centre2))
-            polygon[count] = behind[0]
-            count += 1
-            if side > 0.0:
-                polygon[count] = trail1
-                count = _add_space(
-                    polygon,
-                    count + 1,
-                    flank1,
-                    (trail_after1, lead_after1),
-                    (trail, lead),
-                    -1.0,
-                    0.0,
-                )
-                polygon[count] = lead1
-            else:
-                polygon[count] = lead1
-                count = _add_space(
-                    polygon,
-                    count + 1,
-                    flank1,
-                    (lead_after1, trail_after1),
-                    (lead, trail),
-                    1.0,
-                    0.0,
-                )
-                polygon[count] = trail1
-        area, centroid = _area_and_centroid(polygon, count + 1)
+        count = _add_pocket(polygon, phi[n], member, gears, mesh)
+        area, centroid = _area_and_centroid(polygon, count)
         table[n, 0] = area
         table[n, 1] = centroid.real
         table[n, 2] = centroid.imag

@@ -61,6 +61,11 @@ class PocketFlow:
         Of the mixture at ambient pressure; infinite for an incompressible one. [m/s]
     angle : ndarray, shape (steps,)
         Rotation of gear 1 at the end of each step, one pitch in all. [rad]
+    place : ndarray, shape (pockets,)
+        Angle of each pocket at the beginning, at the first end of the face: of its tooth or space
+        of gear 1 from the line of centres. [rad]
+    station : ndarray, shape (slices + 1,)
+        Angle that the helix turns from the first end of the face to both ends of each slice. [rad]
     live : ndarray of bool, shape (steps, pockets, slices)
         Which cells are pockets. Pockets follow each other along the mesh: a tooth of gear 1 in a
         space of gear 2 at even places, a tooth of gear 2 in a space of gear 1 at odd ones.
@@ -81,6 +86,8 @@ class PocketFlow:
     periodic: bool
     sound_speed: float
     angle: Floats
+    place: Floats
+    station: Floats
     live: NDArray[np.bool_]
     pressure: Floats
     axial_speed: Floats
@@ -104,6 +111,8 @@ class _Cells:
 
     shape: tuple[Floats, Floats, Floats, Floats, Floats]
     live: NDArray[np.bool_]
+    place: Floats
+    station: Floats
 
 
 @lru_cache(maxsize=256)
@@ -175,7 +184,7 @@ def pocket_flow(
             f"pocketing of the {geometry.mesh.name}: a time step has no solution; raise "
             "numerics.pocket_steps, or leave the term out (losses)."
         )
-    for array in (*history, work, cells.live):
+    for array in (*history, work, cells.live, cells.place, cells.station):
         array.flags.writeable = False
     work_done, lost, come, out, gone, stored = map(float, figures[:6])
     return PocketFlow(
@@ -186,6 +195,8 @@ def pocket_flow(
         periodic=periods > 0,
         sound_speed=_sound_speed(xi, c2),
         angle=geometry.pitch * np.arange(1, steps + 1) / steps,
+        place=cells.place,
+        station=cells.station,
         live=cells.live,
         pressure=pressure * history[0],
         axial_speed=history[1],
@@ -241,7 +252,9 @@ def _cells(geometry: PocketGeometry, slices: int, steps: int) -> _Cells:
     gap_reach = np.zeros((times.size, 2, *gap.shape[1:]))
     gap_reach[:, 0, 1:] = np.linalg.norm(middle[:, 1:] - cell, axis=-1)
     gap_reach[:, 1, :-1] = np.linalg.norm(middle[:, :-1] - cell, axis=-1)
-    return _Cells((width * _mean_of_ends(area), area, width * gap, reach, gap_reach), live)
+    place = np.add.outer(-teeth[:-1], [0.0, -0.5]).ravel() * pitch
+    shape = (width * _mean_of_ends(area), area, width * gap, reach, gap_reach)
+    return _Cells(shape, live, place, stations)
 
 
 def _teeth(geometry: PocketGeometry, twist: float) -> Floats:

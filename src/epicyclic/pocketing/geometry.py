@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +19,9 @@ from numpy.typing import NDArray
 from epicyclic.geometry.gear import Gear, involute
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import Tool, tooth_outline
-from epicyclic.kernels.pocket_geometry import gap_table, pocket_table
+from epicyclic.kernels import pocket_geometry as kernels
 
-__all__ = ["PocketGeometry", "pocket_geometry"]
+__all__ = ["PocketGeometry", "contact_clearances", "pocket_geometry", "pocket_outlines"]
 
 Floats = NDArray[np.float64]
 
@@ -101,29 +102,18 @@ def pocket_geometry(
     ValueError
         If a tool cannot cut its gear.
     """
-    backlash = mesh.backlash * math.cos(mesh.operating_pressure_angle)
-    clearances = (0.0, backlash) if drives1 else (backlash, 0.0)
-    figures = np.array(
-        [
-            mesh.side * mesh.center_distance,
-            mesh.gear1.teeth,
-            mesh.gear2.teeth,
-            mesh.side,
-            mesh.operating_pressure_angle,
-            mesh.line_of_action,
-            *clearances,
-        ]
-    )
-    gears = (*_flank(mesh.gear1, tools[0]), *_flank(mesh.gear2, tools[1]))
-    life = _lives(mesh, clearances)
+    gears, figures = _section(mesh, tools, drives1)
+    life = _lives(mesh, contact_clearances(mesh, drives1))
     half_pitch = math.pi / mesh.gear1.teeth
     margin = 2 * half_pitch * MARGIN
     angle = np.linspace(life[:, 0] - margin, life[:, 1] + margin, angles, axis=1)
-    tables = np.stack([pocket_table(angle[k], k + 1, gears, figures) for k in (0, 1)])
+    tables = np.stack([kernels.pocket_table(angle[k], k + 1, gears, figures) for k in (0, 1)])
     first = min(life[0, 0], life[1, 0] - half_pitch) - margin
     last = max(life[0, 1], life[1, 1] + half_pitch) + margin
     gap_angle = np.linspace(first, last, angles)
-    gaps = np.stack([gap_table(gap_angle, leading, gears, figures) for leading in (1.0, -1.0)])
+    gaps = np.stack(
+        [kernels.gap_table(gap_angle, leading, gears, figures) for leading in (1.0, -1.0)]
+    )
     geometry = PocketGeometry(
         mesh=mesh,
         life=life,
@@ -137,6 +127,53 @@ def pocket_geometry(
     for array in (life, angle, tables, gap_angle, gaps):
         array.flags.writeable = False
     return geometry
+
+
+def pocket_outlines(
+    mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool, member: int, angle: Floats
+) -> NDArray[np.complex128]:
+    """Outlines of the pockets of `mesh`, for pictures.
+
+    Parameters
+    ----------
+    mesh, tools, drives1
+        As for `pocket_geometry`.
+    member : int
+        1 or 2: whose tooth is in the space of the other.
+    angle : ndarray, shape (n,)
+        Of that tooth of gear 1, or of that space of gear 1, from the line of centres. [rad]
+
+    Returns
+    -------
+    ndarray of complex, shape (n, m)
+        Points x + iy around the pocket, as many as it has, then NaN; axes as of `centroid`. [m]
+    """
+    gears, figures = _section(mesh, tools, drives1)
+    outlines: NDArray[np.complex128] = kernels.pocket_outlines(angle, member, gears, figures)
+    return outlines
+
+
+def _section(mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool) -> tuple[Any, Any]:
+    """Both gears and the figures of their mesh as the kernels take them."""
+    clearances = contact_clearances(mesh, drives1)
+    figures = np.array(
+        [
+            mesh.side * mesh.center_distance,
+            mesh.gear1.teeth,
+            mesh.gear2.teeth,
+            mesh.side,
+            mesh.operating_pressure_angle,
+            mesh.line_of_action,
+            *clearances,
+        ]
+    )
+    return (*_flank(mesh.gear1, tools[0]), *_flank(mesh.gear2, tools[1])), figures
+
+
+def contact_clearances(mesh: Mesh, drives1: bool) -> tuple[float, float]:
+    """Clearances of the leading and of the trailing flanks along the line of action. [m]"""
+    backlash = mesh.backlash * math.cos(mesh.operating_pressure_angle)
+    return (0.0, backlash) if drives1 else (backlash, 0.0)
 
 
 def _flank(gear: Gear, tool: Tool | None) -> tuple[NDArray[np.complex128], Floats, Floats]:

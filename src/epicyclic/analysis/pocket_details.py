@@ -1,0 +1,359 @@
+"""Everything about the pockets of the meshes of a case, through their whole life."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.analysis.pair import pair_duty
+from epicyclic.analysis.parts import MeshDuty, fluids_of, pocket_notes, solve_pockets
+from epicyclic.analysis.planetary import planetary_duties
+from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.errors import InputError, Problem
+from epicyclic.geometry.outline import tooth_outline
+from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow
+from epicyclic.pocketing.geometry import (
+    PocketGeometry,
+    contact_clearances,
+    pocket_geometry,
+    pocket_outlines,
+)
+from epicyclic.units import (
+    BAR,
+    CUBIC_MILLIMETRE,
+    DEGREE,
+    METRE_PER_SECOND,
+    MICROMETRE,
+    MILLIMETRE,
+    NUMBER,
+    RPM,
+    SQUARE_MILLIMETRE,
+    WATT,
+    Quantity,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["mesh_duties", "pocket_details"]
+
+Array = NDArray[np.float64] | NDArray[np.bool_]
+FloatArray = NDArray[np.float64]
+Variable = tuple[tuple[str, ...], Array, dict[str, str]]
+
+_LIFE = ("tooth", "roll")
+_AXIS = "axis"
+
+
+def pocket_details(case: Case) -> dict[str, xr.Dataset]:
+    """Shape, pressure, flow and power of the pockets of every mesh of a case.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+
+    Returns
+    -------
+    dict of str to xarray.Dataset
+        By mesh, ``"sun_mesh"``, each of one planet. A pocket is named after the member whose tooth
+        is in a space of the other (dimension ``tooth``), and followed over ``roll``, the angle of
+        that tooth of member 1, or of that space of member 1, from the line of centres, at the first
+        end of the face. ``slice`` counts cells across the face, ``station`` their ends, ``end`` is
+        the first or last end of the face, ``mesh_position`` one mesh period: every
+        ``mesh_position``-th value along ``roll`` is a pocket that lives at the same time. NaN where
+        there is no pocket. Numbers that belong to the whole mesh have no dimension. Each variable
+        has its unit in ``attrs["units"]``.
+
+    Raises
+    ------
+    InputError
+        If the gears do not turn against each other, or have no tooth outline.
+    ConvergenceError
+        If the flow is not found.
+    """
+    mixture = fluids_of(case).mixture
+    found = {}
+    for duty in mesh_duties(case):
+        try:
+            flow = solve_pockets(case, duty, mixture)
+        except ValueError as error:
+            raise _unsuitable(case, duty, f"has no tooth outline: {error}.") from None
+        if flow is None:
+            raise _unsuitable(case, duty, "does not turn: its pockets keep their volume.")
+        found[duty.key] = _dataset(case, duty, flow)
+    return found
+
+
+def mesh_duties(case: Case) -> tuple[MeshDuty, ...]:
+    """The mesh of a pair, or both meshes of one planet of equal load."""
+    if isinstance(case, PlanetaryCase):
+        return planetary_duties(case, 1 / case.planet.count)
+    return (pair_duty(case),)
+
+
+def _unsuitable(case: Case, duty: MeshDuty, what: str) -> InputError:
+    remedy = "Change operation.speed, or the tooth (tip and root diameter, tool_tip_radius)."
+    return InputError([Problem(duty.key, "", what, remedy)], case.source)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Life:
+    """Both kinds of pocket through their life. First indices: kind of pocket, step of its life."""
+
+    geometry: PocketGeometry
+    flow: PocketFlow
+    drives1: bool
+
+    @property
+    def roll(self) -> FloatArray:
+        """Angle at the first end of the face. [rad]"""
+        return self.of_pockets(self.flow.angle[:, None] + self.flow.place)
+
+    @property
+    def section(self) -> FloatArray:
+        """Angle at every station. [rad]"""
+        return self.roll[..., None] + self.flow.station
+
+    def of_pockets(self, values: Array, first: int = 0) -> FloatArray:
+        """Values over a period of places from number `first` on, as life of both kinds of pocket.
+
+        What one pocket does in the next period, the pocket before it does in this one.
+        """
+        pockets = self.flow.live.shape[1]
+        kinds = [values[:, first + kind : first + pockets : 2] for kind in (0, 1)]
+        lives = [np.moveaxis(kind, 1, 0)[::-1] for kind in kinds]
+        return np.stack([life.reshape(-1, *life.shape[2:]) for life in lives])
+
+    @property
+    def living(self) -> NDArray[np.bool_]:
+        """Which sections are pockets, at every station."""
+        birth, death = (self.geometry.life[:, k, None, None] for k in (0, 1))
+        return (self.section >= birth) & (self.section <= death)
+
+    def read(self, table: FloatArray) -> FloatArray:
+        """A table of the geometry over its angle, at every station."""
+        return np.stack(
+            [np.interp(self.section[k], self.geometry.angle[k], table[k]) for k in (0, 1)]
+        )
+
+    @property
+    def gaps(self) -> tuple[FloatArray, FloatArray]:
+        """Gaps that bound the pockets at every station, of contact and of backlash side. [m]"""
+        half_pitch = self.geometry.pitch / 2
+        # a space of member 1 lies between the leading flank of the tooth behind it and the trailing
+        # flank of the tooth ahead
+        turned = (np.array([0.0, -half_pitch]), np.array([0.0, half_pitch]))
+        leading, trailing = (
+            np.interp(
+                self.section + turned[k][:, None, None],
+                self.geometry.gap_angle,
+                self.geometry.gap[k],
+            )
+            for k in (0, 1)
+        )
+        return (leading, trailing) if self.drives1 else (trailing, leading)
+
+    @property
+    def gap_speeds(self) -> tuple[FloatArray, FloatArray]:
+        """Speeds out of the pockets through the gaps of contact and of backlash side. [m/s]"""
+        before = -self.of_pockets(self.flow.gap_speed)
+        after = self.of_pockets(self.flow.gap_speed, first=1)
+        # the gap before a tooth of member 1 is at its leading flank, that before a space of it at
+        # the trailing flank of the tooth ahead
+        leading, trailing = np.stack([before[0], after[1]]), np.stack([after[0], before[1]])
+        return (leading, trailing) if self.drives1 else (trailing, leading)
+
+
+def _dataset(case: Case, duty: MeshDuty, flow: PocketFlow) -> xr.Dataset:
+    import xarray as xr
+
+    mesh = duty.mesh
+    geometry = pocket_geometry(mesh, duty.tools, duty.drives1)
+    life = _Life(geometry, flow, duty.drives1)
+    width = mesh.face_width
+    stations = np.linspace(0.0, width, flow.station.size)
+    coordinates = {
+        "tooth": [mesh.gear1.name, mesh.gear2.name],
+        "roll_angle": _variable(_LIFE, life.roll, "roll angle of the pocket", DEGREE),
+        "slice_position": _variable(
+            "slice", (stations[1:] + stations[:-1]) / 2, "position across the face", MILLIMETRE
+        ),
+        "station_position": _variable("station", stations, "position across the face", MILLIMETRE),
+        "period_angle": _variable(
+            "mesh_position", flow.angle, f"roll angle of the {mesh.gear1.name}", DEGREE
+        ),
+        "end": ["first", "last"],
+        "axis": ["x", "y"],
+    }
+    variables = {
+        **_shapes(life, width),
+        **_flows(life),
+        **_pictures(duty, life),
+        **_numbers(case, duty, flow),
+    }
+    title = f"Pockets of the {duty.key.replace('_', ' ')} of {case.title or 'the case'}"
+    attributes = {
+        "title": title,
+        "notes": "\n".join(pocket_notes(case, mesh, flow)),
+        "model": POCKETING_MODELS[case.models.pocketing],
+        "drives": mesh.gear1.name if duty.drives1 else mesh.gear2.name,
+        "members": f"{mesh.gear1.name} {mesh.gear2.name}",
+        "internal": int(mesh.internal),
+        "teeth": [mesh.gear1.teeth, mesh.gear2.teeth],
+        "meshes": case.planet.count if isinstance(case, PlanetaryCase) else 1,
+    }
+    return xr.Dataset(variables, coordinates, attributes)
+
+
+def _variable(
+    dims: str | tuple[str, ...], values: Array | float, label: str, unit: Quantity
+) -> Variable:
+    scale, offset = unit.scale_and_offset()
+    shown = np.asarray(values) * scale + offset
+    attributes = {"long_name": label, "units": unit.display or "1"}
+    return ((dims,) if isinstance(dims, str) else dims, shown, attributes)
+
+
+def _shapes(life: _Life, width: float) -> dict[str, Variable]:
+    """What the geometry tells."""
+    area = life.read(life.geometry.area)
+    alive = life.of_pockets(life.flow.live).astype(bool)
+    thickness = width / (life.flow.station.size - 1)
+    slices = np.where(alive, thickness * (area[..., 1:] + area[..., :-1]) / 2, math.nan)
+    volume = np.where(alive.any(axis=-1), np.nansum(slices, axis=-1), math.nan)
+    contact, backlash = life.gaps
+    centroid = [life.read(life.geometry.centroid[..., k]) for k in (0, 1)]
+    station = (*_LIFE, "station")
+
+    def known(values: FloatArray) -> FloatArray:
+        return np.where(life.living, values, math.nan)
+
+    return {
+        "live": (
+            (*_LIFE, "slice"), alive, {"long_name": "whether a slice is a pocket", "units": "1"}
+        ),
+        "end_area": _variable(station, known(area), "area of the section", SQUARE_MILLIMETRE),
+        "slice_volume": _variable(
+            (*_LIFE, "slice"), slices, "volume of a slice", CUBIC_MILLIMETRE
+        ),
+        "volume": _variable(_LIFE, volume, "volume of the pocket", CUBIC_MILLIMETRE),
+        "contact_gap": _variable(station, known(contact), "gap at the contact side", MICROMETRE),
+        "backlash_gap": _variable(station, known(backlash), "gap at the backlash side", MICROMETRE),
+        "centroid": _variable(
+            (*station, _AXIS),
+            np.stack([known(values) for values in centroid], axis=-1),
+            "centroid of the section, axis of member 1 at the origin",
+            MILLIMETRE,
+        ),
+    }  # fmt: skip
+
+
+def _flows(life: _Life) -> dict[str, Variable]:
+    """What the flow tells."""
+    flow = life.flow
+    alive = life.of_pockets(flow.live).astype(bool)
+    cells = (*_LIFE, "slice")
+    # an axial opening is one as long as either slice beside it lives
+    beside = np.pad(alive, ((0, 0), (0, 0), (1, 1)))
+    opening = beside[..., 1:] | beside[..., :-1]
+
+    def known(values: FloatArray, where: NDArray[np.bool_] = alive) -> FloatArray:
+        return np.where(where, values, math.nan)
+
+    contact, backlash = life.gap_speeds
+    return {
+        "pressure": _variable(
+            cells, known(life.of_pockets(flow.pressure)), "pressure above ambient", BAR
+        ),
+        "axial_speed": _variable(
+            (*_LIFE, "station"),
+            known(life.of_pockets(flow.axial_speed), opening),
+            "axial speed, towards the last end",
+            METRE_PER_SECOND,
+        ),
+        "contact_gap_speed": _variable(
+            cells, known(contact), "speed out through the contact side", METRE_PER_SECOND
+        ),
+        "backlash_gap_speed": _variable(
+            cells, known(backlash), "speed out through the backlash side", METRE_PER_SECOND
+        ),
+        "instant_power": _variable("mesh_position", flow.instant_power, "power", WATT),
+    }
+
+
+def _pictures(duty: MeshDuty, life: _Life) -> dict[str, Variable]:
+    """What a picture of the transverse section needs."""
+    mesh = duty.mesh
+    at_ends = np.moveaxis(life.section[..., [0, -1]], -1, -2)
+    outlines = np.stack(
+        [
+            np.stack(
+                [
+                    pocket_outlines(mesh, duty.tools, duty.drives1, k + 1, angle)
+                    for angle in at_ends[k]
+                ],
+                axis=1,
+            )
+            for k in (0, 1)
+        ]
+    )
+    outlines = np.where(life.living[..., [0, -1], None], outlines, math.nan)
+    leading, trailing = contact_clearances(mesh, duty.drives1)
+    variables = {
+        "outline": _variable(
+            (*_LIFE, "end", "point", _AXIS),
+            _coordinates(outlines),
+            "outline of the pocket, axis of member 1 at the origin",
+            MILLIMETRE,
+        ),
+        "center_distance": _variable((), mesh.center_distance, "centre distance", MILLIMETRE),
+        "space_shift": _variable(
+            (),
+            (leading - trailing) / 2 / mesh.gear2.base_radius,
+            "turn of member 2 that closes the contact side",
+            DEGREE,
+        ),
+        "twist": _variable((), life.flow.station[-1], "turn of the helix over the face", DEGREE),
+    }
+    for number, gear, tool in zip((1, 2), (mesh.gear1, mesh.gear2), duty.tools, strict=True):
+        points = tooth_outline(gear, tool).points(teeth=1) @ np.array([[0.0, -1.0], [1.0, 0.0]])
+        variables[f"tooth{number}"] = _variable(
+            (f"tooth{number}_point", _AXIS),
+            points,
+            f"outline of a tooth of the {gear.name}, along x",
+            MILLIMETRE,
+        )
+    return variables
+
+
+def _coordinates(points: NDArray[np.complex128]) -> FloatArray:
+    return np.stack([points.real, points.imag], axis=-1)
+
+
+def _numbers(case: Case, duty: MeshDuty, flow: PocketFlow) -> dict[str, Variable]:
+    """What holds for the whole mesh."""
+    numbers: dict[str, tuple[float, str, Quantity]] = {
+        "power": (flow.power, "power, from the work at the boundaries", WATT),
+        "power_from_flow": (flow.power_from_flow, "power, from the energy balance", WATT),
+        "power_difference": (flow.difference, "energy balance over work, less 1", NUMBER),
+        "mass_error": (flow.mass_error, "mass lost in a period over mass that came in", NUMBER),
+        "periods": (flow.periods, "mesh periods until the flow repeated", NUMBER),
+        "sound_speed": (flow.sound_speed, "speed of sound of the mixture", METRE_PER_SECOND),
+        "speed_max": (flow.speed_max, "fastest flow through any opening", METRE_PER_SECOND),
+        "ambient_pressure": (case.surroundings.pressure, "ambient pressure", BAR),
+        "speed": (
+            abs(duty.speed1),
+            f"speed of the {duty.mesh.gear1.name} against the line of centres",
+            RPM,
+        ),
+        "oil_fraction": (
+            case.surroundings.oil_air_ratio, "share of oil in the mixture, by volume", NUMBER
+        ),
+    }  # fmt: skip
+    return {
+        name: _variable((), value, label, unit) for name, (value, label, unit) in numbers.items()
+    }
