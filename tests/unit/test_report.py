@@ -10,7 +10,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.report.shown import shown
-from epicyclic.report.template import case_template
+from epicyclic.case.template import case_template
 from epicyclic.units import unit_text
 
 

@@ -44,7 +44,7 @@ from epicyclic.case.validation import tables_of, validate
 from epicyclic.case.wording import one_line, path_of, written
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["Case", "GearPairCase", "PlanetaryCase", "case_schema", "load_case"]
+__all__ = ["Case", "GearPairCase", "PlanetaryCase", "build_case", "case_schema", "load_case"]
 
 AnyCase = TypeVar("AnyCase", bound="_CaseTable")
 
@@ -78,12 +78,7 @@ class _CaseTable(Table):
             With every problem of the changed case.
         """
         tables = self._tables or plain(self.inputs())
-        problems: list[Problem] = []
-        for key, value in changes.items():
-            try:
-                tables = _changed(type(self), tables, str(key), plain(value))
-            except InputError as error:
-                problems += [replace(problem, key=str(key)) for problem in error.problems]
+        tables, problems = _with_changes(type(self), tables, changes)
         return _build(type(self), tables, self._source, problems)
 
     def inputs(self) -> dict[str, Any]:
@@ -180,6 +175,18 @@ def load_case(path_or_name: str | Path | Mapping[str, Any]) -> Case:
     return _build_any(tables, name, problems)
 
 
+def build_case(tables: Mapping[str, Any], changes: Mapping[str, Any], source: str) -> Case:
+    """The case of `tables` of a known kind, which may need the `changes` to be complete.
+
+    Raises
+    ------
+    InputError
+        With every problem of the changed tables, as problems of `source`.
+    """
+    changed, problems = _with_changes(_KINDS[tables["kind"]], plain(tables), changes)
+    return _build_any(changed, source, problems)
+
+
 def case_schema() -> dict[str, Any]:
     """JSON Schema of a case file."""
     union = TypeAdapter(Annotated[Case, Field(discriminator="kind")])
@@ -271,6 +278,19 @@ def _position(kind: type[Table], problem: Problem) -> int:
     table = path_of(problem.key)[0] if problem.key else ""
     tables = ["", *kind.model_fields]
     return tables.index(table) if table in tables else len(tables)
+
+
+def _with_changes(
+    kind: type[Table], tables: dict[str, Any], changes: Mapping[str, Any]
+) -> tuple[dict[str, Any], list[Problem]]:
+    """`tables` with some dotted keys changed, and the problems of those that cannot be."""
+    problems: list[Problem] = []
+    for key, value in changes.items():
+        try:
+            tables = _changed(kind, tables, str(key), plain(value))
+        except InputError as error:
+            problems += [replace(problem, key=str(key)) for problem in error.problems]
+    return tables, problems
 
 
 def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) -> dict[str, Any]:

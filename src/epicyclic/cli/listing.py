@@ -44,7 +44,7 @@ def oils(name: str | None) -> None:
 @click.option("--kind", type=click.Choice(["planetary", "gear_pair"]), default="planetary")
 def init(file: Path, kind: str) -> None:
     """Write a commented case FILE (default case.toml) to start from."""
-    from epicyclic.report.template import case_template
+    from epicyclic.case.template import case_template
 
     if file.exists():
         problem = Problem("FILE", str(file), "exists already.", "Name another file.")

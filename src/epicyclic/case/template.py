@@ -1,0 +1,137 @@
+"""Commented case files, written from the schema and the values of a case."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from epicyclic import library
+from epicyclic.case.case import GearPairCase, PlanetaryCase
+from epicyclic.case.fields import choices_of, entry_of, quantity_of, table_of
+
+__all__ = ["case_template", "case_text"]
+
+_EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {
+    "planetary": ("talbot-2012", PlanetaryCase),
+    "gear_pair": ("talbot-2012-pair", GearPairCase),
+}
+COMMENT_COLUMN = 44
+_SPELT_OUT = ("micro_geometry", "micro_geometry_ring_side", "topography", "oil")
+"""Tables within a table whose keys are listed."""
+
+
+def case_template(kind: str) -> str:
+    """A case file of `kind` with every key: given ones with values, defaults commented out."""
+    name, _ = _EXAMPLES[kind]
+    head = [
+        f"A case file of epicyclic, kind {kind}, filled in with the built-in case {name}.",
+        "Every dimensional value carries its unit. Keys behind a # have defaults.",
+    ]
+    return case_text(library.builtin_case(name), head)
+
+
+def case_text(
+    tables: Mapping[str, Any], head: list[str], about: Mapping[str, str] | None = None
+) -> str:
+    """A case file with every key: those of `tables` with values, the others commented out.
+
+    Parameters
+    ----------
+    tables : mapping
+        The tables of a case, with its kind; they need not be complete.
+    head : list of str
+        Lines of comment at the top.
+    about : mapping of str to str
+        Comments of single keys by their dotted names, in place of the schema's description.
+    """
+    kind = tables["kind"]
+    _, schema = _EXAMPLES[kind]
+    lines = [*(f"# {line}" for line in head), f'kind = "{kind}"']
+    lines.append(f"title = {_toml(tables.get('title', ''))}")
+    writer = _Writer(about or {})
+    for key, field in schema.model_fields.items():
+        table = table_of(field.annotation)
+        if table is not None:
+            lines += writer.table_lines(key, table, tables.get(key, {}), field)
+    return "\n".join(lines) + "\n"
+
+
+class _Writer:
+    """Writes the lines of tables; `about` has comments of single keys."""
+
+    def __init__(self, about: Mapping[str, str]) -> None:
+        self.about = about
+
+    def table_lines(
+        self, key: str, table: type[BaseModel], values: Mapping[str, Any], field: FieldInfo
+    ) -> list[str]:
+        doc = (table.__doc__ or "").strip().splitlines()[0]
+        mark = "" if values or field.is_required() else "# "
+        lines = ["", f"{mark}[{key}]".ljust(COMMENT_COLUMN) + f"# {self.about.get(key, doc)}"]
+        for name, inner in table.model_fields.items():
+            lines += self._field_lines(key, name, inner, values)
+        return lines
+
+    def _field_lines(
+        self, key: str, name: str, field: FieldInfo, values: Mapping[str, Any], prefix: str = ""
+    ) -> list[str]:
+        """Lines of one key of table `key`; a table within it appears as dotted keys."""
+        subtable = table_of(field.annotation)
+        full = f"{prefix}{name}"
+        about = self.about.get(f"{key}.{full}", _about(field))
+        given = values.get(name)
+        if given is not None and not (isinstance(given, Mapping) and name in _SPELT_OUT):
+            return [_line(f"{full} = {_toml(given)}", about)]
+        if subtable is None:
+            return [_line(f"# {full} = {_default(field)}", about)]
+        if key == "losses":
+            return [_line(f"# {name} = {{ include = true, factor = 1.0 }}", "")]
+        if isinstance(field.default, str):
+            return [_line(f"# {full} = {_toml(field.default)}", about)]
+        if name not in _SPELT_OUT and (field.default is None or field.is_required()):
+            return [_line(f"# {full} = {{ ... }}", about)]
+        return [
+            line
+            for inner, below in subtable.model_fields.items()
+            for line in self._field_lines(key, inner, below, given or {}, f"{full}.")
+        ]
+
+
+def _line(text: str, about: str) -> str:
+    return f"{text.ljust(COMMENT_COLUMN - 1)} # {about}" if about else text
+
+
+def _about(field: FieldInfo) -> str:
+    choices = " | ".join(choices_of(field.annotation))
+    quantity = quantity_of(field.annotation, tuple(field.metadata))
+    parts = [field.description or "", choices]
+    if not field.description and quantity is not None:
+        parts.append(quantity.describe())
+    return " ".join(part for part in parts if part)
+
+
+def _default(field: FieldInfo) -> str:
+    if field.default is not None and not field.is_required():
+        return _toml(field.default)
+    quantity = quantity_of(field.annotation, tuple(field.metadata))
+    value = f'"... {quantity.display}"' if quantity is not None else "..."
+    return _nested(field.annotation, value)
+
+
+def _nested(annotation: Any, value: str) -> str:
+    """`value` as the entry of an array, or of an array of arrays, if the key holds one."""
+    entry = entry_of(annotation)
+    return value if entry is None else f"[{_nested(entry, value)}, ...]"
+
+
+def _toml(value: Any) -> str:
+    """`value` as TOML writes it on one line; text, numbers and booleans are those of JSON."""
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{key} = {_toml(item)}' for key, item in value.items())} }}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_toml, value))}]"
+    return json.dumps(value, ensure_ascii=False)
