@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import io
 import math
 
 import numpy as np
 import pytest
 import xarray as xr
+from PIL import Image
+from rich.console import Console
 
 import epicyclic as ep
 from epicyclic.analysis.pocket_details import mesh_duties
+from epicyclic.plots.pocket_animation import MeshScene, pocket_animation
+from epicyclic.plots.pocket_section import section_figure
+from epicyclic.plots.pockets import pocket_figure
+from epicyclic.report.pocket_table import pocket_tables
 
 SPUR = {"gears.helix_angle": "0 deg"}
 
@@ -20,12 +27,16 @@ def pair():
 
 
 @pytest.fixture(scope="module")
+def meshes(talbot):
+    return ep.pocket_details(talbot)
+
+
+@pytest.fixture(scope="module")
 def mesh(pair):
     return ep.pocket_details(pair)["mesh"]
 
 
-def test_every_mesh_has_its_pockets_with_labels(talbot):
-    meshes = ep.pocket_details(talbot)
+def test_every_mesh_has_its_pockets_with_labels(talbot, meshes):
     assert list(meshes) == ["sun_mesh", "ring_mesh"]
     losses = ep.solve(talbot).losses
     for key, mesh in meshes.items():
@@ -105,3 +116,72 @@ def test_pockets_of_a_moment_are_a_pitch_apart(mesh):
 def test_pockets_at_rest_are_refused(pair):
     with pytest.raises(ep.InputError, match="does not turn"):
         ep.pocket_details(pair.updated({"operation.speed": "0 rpm"}))
+
+
+def test_table_shows_balance_and_extremes_with_their_place(meshes):
+    console = Console(file=io.StringIO(), width=120)
+    console.print(pocket_tables(meshes))
+    text = console.file.getvalue()
+    mesh = meshes["ring_mesh"]
+    assert "Pockets of the ring mesh of Talbot 2012 test article" in text
+    assert "power of all 3 such meshes" in text
+    assert f"{float(mesh['power']):.2f}" in text
+    assert f"{float(mesh['pressure'].max()):.4f}" in text
+    assert f"{float(abs(mesh['axial_speed']).max()):.2f}" in text
+    assert "mean density" in text
+
+
+def test_pictures_have_labels_with_units(mesh):
+    figure = pocket_figure(mesh)
+    labels = {ax.get_ylabel() for ax in figure.axes} | {ax.get_xlabel() for ax in figure.axes}
+    assert labels >= {
+        "area of the section, mm²",
+        "volume of the pocket, mm³",
+        "gap, µm",
+        "pressure above ambient, bar",
+        "roll angle of the pocket, deg",
+        "roll angle of the pinion, deg",
+        "power, W",
+    }
+
+
+def distance(point, line):
+    """Of a point from a closed line of chords."""
+    start, chord = line, np.roll(line, -1, axis=0) - line
+    share = ((point - start) * chord).sum(axis=1) / np.maximum((chord**2).sum(axis=1), 1e-12)
+    nearest = start + np.clip(share, 0.0, 1.0)[:, None] * chord
+    return np.hypot(*(nearest - point).T).min()
+
+
+@pytest.mark.parametrize("end", ["first", "last"])
+def test_pockets_fit_between_the_teeth_of_a_picture(meshes, mesh, end):
+    """Teeth are placed by the dataset's figures, pockets by the kernel."""
+    for one in (mesh, *meshes.values()):
+        ax = section_figure(one, end).axes[2]
+        teeth = [body.get_paths()[0].vertices for body in ax.collections[:2]]
+        pockets = ax.collections[2].get_paths()
+        assert len(pockets) >= 4
+        for vertices in (pocket.vertices[:-1:7] for pocket in pockets):
+            away = [min(distance(point, line) for line in teeth) for point in vertices]
+            # the chords of both outlines leave the curve by 2 um at most
+            assert max(away) < 4e-3
+
+
+def test_animation_shows_one_period_and_moves(pair):
+    mesh = ep.pocket_details(pair.updated({"numerics.pocket_steps": 8}))["mesh"]
+    done = []
+    frames = Image.open(io.BytesIO(pocket_animation(mesh, lambda *step: done.append(step))))
+    assert frames.format == "GIF"
+    assert frames.n_frames == 8
+    assert done[-1] == (8, 8)
+    pictures = []
+    for number in (0, 4):
+        frames.seek(number)
+        pictures.append(np.asarray(frames.convert("L"), dtype=float))
+    assert np.abs(pictures[1] - pictures[0]).max() > 50
+
+
+def test_a_spur_mesh_is_shown_in_one_section(pair):
+    mesh = ep.pocket_details(pair.updated(SPUR))["mesh"]
+    titles = [ax.get_title(loc="left") for ax in MeshScene(mesh).figure.axes]
+    assert "Last end of the face" not in titles

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import cumulative_trapezoid
 
 from epicyclic.analysis.pair import pair_duty
 from epicyclic.analysis.parts import MeshDuty, fluids_of, pocket_notes, solve_pockets
@@ -19,6 +20,7 @@ from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow
 from epicyclic.pocketing.geometry import (
     PocketGeometry,
     contact_clearances,
+    gap_feet,
     pocket_geometry,
     pocket_outlines,
 )
@@ -140,19 +142,37 @@ class _Life:
             [np.interp(self.section[k], self.geometry.angle[k], table[k]) for k in (0, 1)]
         )
 
+    def mean_area(self) -> FloatArray:
+        """Area of the section where it is a pocket, mean over the face. [m^2]"""
+        first, last = self.section[..., 0], self.section[..., -1]
+        if first[0, 0] == last[0, 0]:
+            return np.where(self.living[..., 0], self.read(self.geometry.area)[..., 0], 0.0)
+        means = []
+        for k, (birth, death) in enumerate(self.geometry.life):
+            angle, area = self.geometry.angle[k], self.geometry.area[k]
+            swept = cumulative_trapezoid(area, angle, initial=0.0)
+            low, high = (
+                np.interp(np.clip(at[k], birth, death), angle, swept) for at in (first, last)
+            )
+            means.append((high - low) / self.flow.station[-1])
+        return np.stack(means)
+
+    def beside(self, leading: bool) -> FloatArray:
+        """Angle of the tooth of member 1 whose leading or trailing flank bounds the pocket. [rad]
+
+        A space of member 1 lies between the leading flank of the tooth behind it and the trailing
+        flank of the tooth ahead.
+        """
+        half_pitch = self.geometry.pitch / 2
+        turn = np.array([0.0, -half_pitch if leading else half_pitch])
+        beside: FloatArray = self.section + turn[:, None, None]
+        return beside
+
     @property
     def gaps(self) -> tuple[FloatArray, FloatArray]:
         """Gaps that bound the pockets at every station, of contact and of backlash side. [m]"""
-        half_pitch = self.geometry.pitch / 2
-        # a space of member 1 lies between the leading flank of the tooth behind it and the trailing
-        # flank of the tooth ahead
-        turned = (np.array([0.0, -half_pitch]), np.array([0.0, half_pitch]))
         leading, trailing = (
-            np.interp(
-                self.section + turned[k][:, None, None],
-                self.geometry.gap_angle,
-                self.geometry.gap[k],
-            )
+            np.interp(self.beside(k == 0), self.geometry.gap_angle, self.geometry.gap[k])
             for k in (0, 1)
         )
         return (leading, trailing) if self.drives1 else (trailing, leading)
@@ -224,7 +244,7 @@ def _shapes(life: _Life, width: float) -> dict[str, Variable]:
     alive = life.of_pockets(life.flow.live).astype(bool)
     thickness = width / (life.flow.station.size - 1)
     slices = np.where(alive, thickness * (area[..., 1:] + area[..., :-1]) / 2, math.nan)
-    volume = np.where(alive.any(axis=-1), np.nansum(slices, axis=-1), math.nan)
+    volume = np.where(alive.any(axis=-1), width * life.mean_area(), math.nan)
     contact, backlash = life.gaps
     centroid = [life.read(life.geometry.centroid[..., k]) for k in (0, 1)]
     station = (*_LIFE, "station")
@@ -286,29 +306,37 @@ def _flows(life: _Life) -> dict[str, Variable]:
 
 
 def _pictures(duty: MeshDuty, life: _Life) -> dict[str, Variable]:
-    """What a picture of the transverse section needs."""
+    """What a picture of the transverse section at both ends of the face needs."""
     mesh = duty.mesh
-    at_ends = np.moveaxis(life.section[..., [0, -1]], -1, -2)
+    section = (mesh, duty.tools, duty.drives1)
+    ends = [0, -1]
+    living = life.living[..., ends]
+
+    def points(values: NDArray[np.complex128]) -> FloatArray:
+        known = np.where(living[..., None], values.reshape(*living.shape, -1), math.nan)
+        return np.stack([known.real, known.imag], axis=-1)
+
     outlines = np.stack(
-        [
-            np.stack(
-                [
-                    pocket_outlines(mesh, duty.tools, duty.drives1, k + 1, angle)
-                    for angle in at_ends[k]
-                ],
-                axis=1,
-            )
-            for k in (0, 1)
-        ]
+        [pocket_outlines(*section, k + 1, life.section[k][:, ends].ravel()) for k in (0, 1)]
     )
-    outlines = np.where(life.living[..., [0, -1], None], outlines, math.nan)
+    contact, backlash = (
+        points(gap_feet(*section, leading, life.beside(leading)[..., ends].ravel()))
+        for leading in (duty.drives1, not duty.drives1)
+    )
+    at_end = (*_LIFE, "end")
     leading, trailing = contact_clearances(mesh, duty.drives1)
     variables = {
         "outline": _variable(
-            (*_LIFE, "end", "point", _AXIS),
-            _coordinates(outlines),
+            (*at_end, "point", _AXIS),
+            points(outlines),
             "outline of the pocket, axis of member 1 at the origin",
             MILLIMETRE,
+        ),
+        "contact_feet": _variable(
+            (*at_end, "member", _AXIS), contact, "narrowest gap at the contact side", MILLIMETRE
+        ),
+        "backlash_feet": _variable(
+            (*at_end, "member", _AXIS), backlash, "narrowest gap at the backlash side", MILLIMETRE
         ),
         "center_distance": _variable((), mesh.center_distance, "centre distance", MILLIMETRE),
         "space_shift": _variable(
@@ -320,18 +348,14 @@ def _pictures(duty: MeshDuty, life: _Life) -> dict[str, Variable]:
         "twist": _variable((), life.flow.station[-1], "turn of the helix over the face", DEGREE),
     }
     for number, gear, tool in zip((1, 2), (mesh.gear1, mesh.gear2), duty.tools, strict=True):
-        points = tooth_outline(gear, tool).points(teeth=1) @ np.array([[0.0, -1.0], [1.0, 0.0]])
+        tooth = tooth_outline(gear, tool).points(teeth=1) @ np.array([[0.0, -1.0], [1.0, 0.0]])
         variables[f"tooth{number}"] = _variable(
             (f"tooth{number}_point", _AXIS),
-            points,
+            tooth,
             f"outline of a tooth of the {gear.name}, along x",
             MILLIMETRE,
         )
     return variables
-
-
-def _coordinates(points: NDArray[np.complex128]) -> FloatArray:
-    return np.stack([points.real, points.imag], axis=-1)
 
 
 def _numbers(case: Case, duty: MeshDuty, flow: PocketFlow) -> dict[str, Variable]:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = ["gap_table", "pocket_outlines", "pocket_table"]
+__all__ = ["gap_feet", "gap_table", "pocket_outlines", "pocket_table"]
 
 Floats = NDArray[np.float64]
 Points = NDArray[np.complex128]
@@ -242,6 +242,26 @@ def gap_table(
         table[n, 1] = middle.real
         table[n, 2] = middle.imag
     return table
+
+
+@kernel
+def gap_feet(
+    phi: Floats,
+    leading: float,
+    gears: tuple[Points, Floats, Floats, Points, Floats, Floats],
+    mesh: Floats,
+) -> Points:
+    """Points of both flanks where the gap between them is narrowest, arguments as for `gap_table`.
+
+    Returns
+    -------
+    ndarray of complex, shape (n, 2)
+        On gear 1 and on gear 2. [m]
+    """
+    feet = np.empty((phi.size, 2), np.complex128)
+    for n in range(phi.size):
+        _, feet[n, 0], feet[n, 1], _, _ = _gap(phi[n], leading, gears, mesh)
+    return feet
 
 
 @kernel

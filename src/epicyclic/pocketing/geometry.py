@@ -21,7 +21,13 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import Tool, tooth_outline
 from epicyclic.kernels import pocket_geometry as kernels
 
-__all__ = ["PocketGeometry", "contact_clearances", "pocket_geometry", "pocket_outlines"]
+__all__ = [
+    "PocketGeometry",
+    "contact_clearances",
+    "gap_feet",
+    "pocket_geometry",
+    "pocket_outlines",
+]
 
 Floats = NDArray[np.float64]
 
@@ -151,6 +157,30 @@ def pocket_outlines(
     gears, figures = _section(mesh, tools, drives1)
     outlines: NDArray[np.complex128] = kernels.pocket_outlines(angle, member, gears, figures)
     return outlines
+
+
+def gap_feet(
+    mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool, leading: bool, angle: Floats
+) -> NDArray[np.complex128]:
+    """Points of both flanks where the gap between them is narrowest, for pictures.
+
+    Parameters
+    ----------
+    mesh, tools, drives1
+        As for `pocket_geometry`.
+    leading : bool
+        Of the leading or of the trailing flank of the tooth of gear 1.
+    angle : ndarray, shape (n,)
+        Of that tooth from the line of centres. [rad]
+
+    Returns
+    -------
+    ndarray of complex, shape (n, 2)
+        On gear 1 and on gear 2, axes as of `pocket_outlines`. [m]
+    """
+    gears, figures = _section(mesh, tools, drives1)
+    feet: NDArray[np.complex128] = kernels.gap_feet(angle, 1.0 if leading else -1.0, gears, figures)
+    return feet
 
 
 def _section(mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool) -> tuple[Any, Any]:

@@ -1,0 +1,145 @@
+"""The pockets of a mesh over the roll angle: shape, pressure, speed, power.
+
+All functions take one mesh as `epicyclic.pocket_details` returns it, draw on given Axes and return
+them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from epicyclic.plots.style import COLOUR_MAP, COLOURS, label_of, styled_figure
+
+__all__ = [
+    "plot_areas",
+    "plot_gaps",
+    "plot_over_life",
+    "plot_power",
+    "plot_volumes",
+    "pocket_figure",
+]
+
+OVER_LIFE = ("pressure", "axial_speed", "contact_gap_speed", "backlash_gap_speed")
+"""Variables drawn over the life of a pocket."""
+DRAWN_SLICES = 9
+"""Most slices that are drawn one by one."""
+GAP_HEIGHT = 8.0
+"""Height of the axis of gaps, over the smallest gap at the backlash side. [1]"""
+
+
+def pocket_figure(mesh: xr.Dataset) -> Figure:
+    """Everything an engineer looks at on the pockets of one mesh."""
+    with styled_figure(3, 4, str(mesh.attrs["title"])) as (figure, axes):
+        plot_areas(mesh, axes[0, 0])
+        plot_volumes(mesh, axes[0, 1])
+        plot_gaps(mesh, axes[0, 2])
+        plot_power(mesh, axes[0, 3])
+        for kind in (0, 1):
+            for ax, name in zip(axes[1 + kind], OVER_LIFE, strict=True):
+                plot_over_life(mesh, name, kind, ax)
+        place = label_of(mesh["station_position"])
+        figure.colorbar(_face_colours(mesh), ax=axes[1:], label=place, aspect=40)
+    return figure
+
+
+def plot_areas(mesh: xr.Dataset, ax: Axes) -> Axes:
+    """Area of the section at the first end of the face."""
+    return _plot_kinds(mesh, mesh["end_area"].isel(station=0), ax, "Area at the first end")
+
+
+def plot_volumes(mesh: xr.Dataset, ax: Axes) -> Axes:
+    """Volume of a pocket across the face."""
+    return _plot_kinds(mesh, mesh["volume"], ax, "Volume of a pocket")
+
+
+def _plot_kinds(mesh: xr.Dataset, values: xr.DataArray, ax: Axes, title: str) -> Axes:
+    for kind in (0, 1):
+        ax.plot(mesh["roll_angle"][kind], values[kind], label=_name(mesh, kind))
+    ax.set_ylim(bottom=0)
+    ax.legend()
+    return _over_roll(mesh, ax, title, label_of(values))
+
+
+def plot_gaps(mesh: xr.Dataset, ax: Axes) -> Axes:
+    """Gaps on both sides at the first end of the face."""
+    first = mesh.isel(station=0)
+    for kind in (0, 1):
+        for side, style in (("contact", "-"), ("backlash", "--")):
+            label = f"{side}, {mesh['tooth'].to_numpy()[kind]}"
+            values = first[f"{side}_gap"][kind]
+            ax.plot(mesh["roll_angle"][kind], values, style, color=COLOURS[kind], label=label)
+    ax.set_ylim(0, GAP_HEIGHT * float(first["backlash_gap"].min()))
+    ax.legend(loc="upper center")
+    return _over_roll(mesh, ax, "Gaps at the first end", "gap, µm")
+
+
+def plot_over_life(mesh: xr.Dataset, name: str, kind: int, ax: Axes) -> Axes:
+    """Pressure or a speed in some slices, or between them, through the life of a pocket.
+
+    Dark lines are near the first end of the face, light ones near the last.
+
+    Parameters
+    ----------
+    mesh : Dataset
+    name : str
+        ``"pressure"``, ``"axial_speed"``, ``"contact_gap_speed"`` or ``"backlash_gap_speed"``.
+    kind : int
+        0: a tooth of member 1 in a space of member 2; 1: the other way round.
+    ax : Axes
+    """
+    values = mesh[name][kind]
+    across = str(values.dims[-1])
+    place = mesh[f"{across}_position"]
+    colours = _face_colours(mesh).to_rgba(place.to_numpy())
+    for number in _spread(place.size):
+        ax.plot(mesh["roll_angle"][kind], values[:, number], color=colours[number], lw=1.0)
+    title = f"{str(mesh[name].attrs['long_name']).capitalize()}: {_name(mesh, kind)}"
+    return _over_roll(mesh, ax, title, label_of(mesh[name]))
+
+
+def _face_colours(mesh: xr.Dataset) -> ScalarMappable:
+    """Colours of the places across the face."""
+    width = float(mesh["station_position"][-1])
+    return ScalarMappable(Normalize(0.0, width), mpl.colormaps[COLOUR_MAP])
+
+
+def _spread(count: int) -> Sequence[int]:
+    """Numbers of some of `count` lines, the outer ones among them."""
+    return [int(n) for n in np.unique(np.linspace(0, count - 1, DRAWN_SLICES).round())]
+
+
+def plot_power(mesh: xr.Dataset, ax: Axes) -> Axes:
+    """Power of all pockets of the mesh over one mesh period, and its mean."""
+    ax.plot(mesh["period_angle"], mesh["instant_power"])
+    mean = float(mesh["power"])
+    ax.axhline(mean, color="black", ls="--", lw=0.8, label=f"mean {mean:.4g} W")
+    ax.legend()
+    ax.set(
+        title="Power over one mesh period",
+        xlabel=label_of(mesh["period_angle"]),
+        ylabel=label_of(mesh["instant_power"]),
+    )
+    return ax
+
+
+def _name(mesh: xr.Dataset, kind: int) -> str:
+    return f"tooth of the {mesh['tooth'].to_numpy()[kind]}"
+
+
+def _over_roll(mesh: xr.Dataset, ax: Axes, title: str, label: str) -> Axes:
+    angles = mesh["roll_angle"].where(mesh["live"].any("slice"))
+    ax.set(
+        xlim=(float(angles.min()), float(angles.max())),
+        title=title,
+        xlabel=label_of(mesh["roll_angle"]),
+        ylabel=label,
+    )
+    return ax
