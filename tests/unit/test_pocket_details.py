@@ -125,7 +125,7 @@ def test_table_shows_balance_and_extremes_with_their_place(meshes):
     mesh = meshes["ring_mesh"]
     assert "Pockets of the ring mesh of Talbot 2012 test article" in text
     assert "power of all 3 such meshes" in text
-    assert f"{float(mesh['power']):.2f}" in text
+    assert f"{float(mesh['power']):.3f}" in text
     assert f"{float(mesh['pressure'].max()):.4f}" in text
     assert f"{float(abs(mesh['axial_speed']).max()):.2f}" in text
     assert "mean density" in text
