@@ -19,8 +19,10 @@ if TYPE_CHECKING:
     from epicyclic.analysis.pocket_details import pocket_details
     from epicyclic.analysis.result import Result
     from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
-    from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema, load_case
+    from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema
     from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
+    from epicyclic.exchange.load import load_case
+    from epicyclic.exchange.rexs.importing import RexsImport, read_rexs
     from epicyclic.maps.compute import loss_map
     from epicyclic.maps.formats import write_map
     from epicyclic.sweeps.run import sweep
@@ -33,13 +35,15 @@ _HOME = {
     "PlanetaryCase": "epicyclic.case.case",
     "Problem": "epicyclic.errors",
     "Result": "epicyclic.analysis.result",
+    "RexsImport": "epicyclic.exchange.rexs.importing",
     "case_schema": "epicyclic.case.case",
-    "load_case": "epicyclic.case.case",
+    "load_case": "epicyclic.exchange.load",
     "loaded_meshes": "epicyclic.analysis.solve",
     "loss_map": "epicyclic.maps.compute",
     "mesh_contacts": "epicyclic.analysis.solve",
     "mesh_details": "epicyclic.analysis.mesh_details",
     "pocket_details": "epicyclic.analysis.pocket_details",
+    "read_rexs": "epicyclic.exchange.rexs.importing",
     "solve": "epicyclic.analysis.solve",
     "sweep": "epicyclic.sweeps.run",
     "write_map": "epicyclic.maps.formats",
@@ -53,6 +57,7 @@ __all__ = [
     "PlanetaryCase",
     "Problem",
     "Result",
+    "RexsImport",
     "case_schema",
     "load_case",
     "loaded_meshes",
@@ -60,6 +65,7 @@ __all__ = [
     "mesh_contacts",
     "mesh_details",
     "pocket_details",
+    "read_rexs",
     "solve",
     "sweep",
     "write_map",

@@ -44,7 +44,15 @@ from epicyclic.case.validation import tables_of, validate
 from epicyclic.case.wording import one_line, path_of, written
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["Case", "GearPairCase", "PlanetaryCase", "build_case", "case_schema", "load_case"]
+__all__ = [
+    "Case",
+    "GearPairCase",
+    "PlanetaryCase",
+    "build_case",
+    "case_schema",
+    "changed_tables",
+    "load_case",
+]
 
 AnyCase = TypeVar("AnyCase", bound="_CaseTable")
 
@@ -185,6 +193,11 @@ def build_case(tables: Mapping[str, Any], changes: Mapping[str, Any], source: st
     """
     changed, problems = _with_changes(_KINDS[tables["kind"]], plain(tables), changes)
     return _build_any(changed, source, problems)
+
+
+def changed_tables(tables: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """`tables` of a known kind with the `changes`; those that cannot be are left out."""
+    return _with_changes(_KINDS[tables["kind"]], plain(tables), changes)[0]
 
 
 def case_schema() -> dict[str, Any]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
+from pydantic_core import PydanticUndefined
 
 from epicyclic import library
 from epicyclic.case.case import GearPairCase, PlanetaryCase
@@ -37,7 +38,7 @@ def case_template(kind: str) -> str:
 def case_text(
     tables: Mapping[str, Any], head: list[str], about: Mapping[str, str] | None = None
 ) -> str:
-    """A case file with every key: those of `tables` with values, the others commented out.
+    """A case file: keys of `tables` with values, the others commented out.
 
     Parameters
     ----------
@@ -46,17 +47,26 @@ def case_text(
     head : list of str
         Lines of comment at the top.
     about : mapping of str to str
-        Comments of single keys by their dotted names, in place of the schema's description.
+        Comments of single keys by their dotted names, in place of the schema's description. With
+        these, tables of which nothing is given or told are only named.
     """
     kind = tables["kind"]
     _, schema = _EXAMPLES[kind]
     lines = [*(f"# {line}" for line in head), f'kind = "{kind}"']
     lines.append(f"title = {_toml(tables.get('title', ''))}")
     writer = _Writer(about or {})
+    left_out = []
     for key, field in schema.model_fields.items():
         table = table_of(field.annotation)
-        if table is not None:
+        if table is None:
+            continue
+        if about is not None and key not in tables and not writer.tells_of(key):
+            left_out.append(f"[{key}]")
+        else:
             lines += writer.table_lines(key, table, tables.get(key, {}), field)
+    if left_out:
+        lines += ["", "# Defaults hold for these tables; 'epicyclic init' writes all their keys:"]
+        lines.append(f"# {', '.join(left_out)}")
     return "\n".join(lines) + "\n"
 
 
@@ -65,6 +75,10 @@ class _Writer:
 
     def __init__(self, about: Mapping[str, str]) -> None:
         self.about = about
+
+    def tells_of(self, key: str) -> bool:
+        """True if there is a comment of `key` or of one below it."""
+        return any(name == key or name.startswith(f"{key}.") for name in self.about)
 
     def table_lines(
         self, key: str, table: type[BaseModel], values: Mapping[str, Any], field: FieldInfo
@@ -92,7 +106,8 @@ class _Writer:
             return [_line(f"# {name} = {{ include = true, factor = 1.0 }}", "")]
         if isinstance(field.default, str):
             return [_line(f"# {full} = {_toml(field.default)}", about)]
-        if name not in _SPELT_OUT and (field.default is None or field.is_required()):
+        is_short = bool(self.about) and given is None and not self.tells_of(f"{key}.{full}.")
+        if (is_short or name not in _SPELT_OUT) and field.default in (None, PydanticUndefined):
             return [_line(f"# {full} = {{ ... }}", about)]
         return [
             line

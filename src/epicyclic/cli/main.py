@@ -1,7 +1,8 @@
 """The command ``epicyclic``: parses, calls the library, prints.
 
 Exit codes: 0 done, 1 an error of the program, 2 bad input, 3 no solution found, 4 a sweep with
-failed points, 130 interrupted. ``EPICYCLIC_TRACEBACK=1`` shows where in the program an error arose.
+failed points, 5 an imported case that lacks values, 130 interrupted. ``EPICYCLIC_TRACEBACK=1``
+shows where in the program an error arose.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from epicyclic.cli.exit_codes import (
 from epicyclic.cli.listing import cases, init, oils, schema
 from epicyclic.cli.many import loss_map, sweep
 from epicyclic.cli.pockets import pockets
+from epicyclic.cli.rexs import rexs
 from epicyclic.cli.single import check, friction, mesh, run
 from epicyclic.cli.validate import validate
 from epicyclic.errors import ConvergenceError, InputError, is_interrupt
@@ -35,7 +37,7 @@ __all__ = ["main"]
 def cli() -> None:
     """Power losses of planetary gear sets and gear pairs: how much, where, and why.
 
-    CASE is a TOML file or the name of a built-in case (epicyclic cases).
+    CASE is a TOML or REXS file or the name of a built-in case (epicyclic cases).
 
     \b
     epicyclic run talbot-2012
@@ -45,9 +47,21 @@ def cli() -> None:
 
 
 COMMANDS = (
-    run, check, sweep, loss_map, mesh, pockets, contact, friction, validate, cases, oils, init,
+    run,
+    check,
+    sweep,
+    loss_map,
+    mesh,
+    pockets,
+    contact,
+    friction,
+    validate,
+    cases,
+    oils,
+    init,
+    rexs,
     schema,
-)  # fmt: skip
+)
 for command in COMMANDS:
     cli.add_command(command)
 

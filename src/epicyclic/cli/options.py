@@ -23,10 +23,9 @@ set_option = click.option(
 
 
 def load_with(case: str, changes: Sequence[str]) -> Any:
-    from epicyclic.case.case import load_case
+    from epicyclic.exchange.load import load_case
 
-    loaded = load_case(case)
-    return loaded.updated(parse_changes(changes)) if changes else loaded
+    return load_case(case, parse_changes(changes))
 
 
 def parse_changes(options: Sequence[str]) -> dict[str, Any]:

@@ -1,0 +1,92 @@
+"""The commands rexs import and rexs export."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from epicyclic.cli.exit_codes import EXIT_INCOMPLETE
+from epicyclic.cli.options import parse_changes, set_option
+from epicyclic.cli.output import write_file
+from epicyclic.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    from epicyclic.exchange.rexs.importing import RexsImport
+
+__all__ = ["rexs"]
+
+component_option = click.option(
+    "--component", type=int, metavar="ID", help="The stage, if the file has several."
+)
+
+
+@click.group()
+def rexs() -> None:
+    """Gears from REXS files, and results into them (.rexs, .rexsj, .rexsz)."""
+
+
+@rexs.command("import")
+@click.argument("file")
+@click.option(
+    "-o", "--output", metavar="CASE.toml", type=click.Path(path_type=Path),
+    help="The case file to write. Default: FILE with the ending .toml, in this folder.",
+)  # fmt: skip
+@component_option
+@click.option("--load-case", type=int, metavar="ID", help="A load case of the load spectrum.")
+@set_option
+def import_(
+    file: str,
+    output: Path | None,
+    component: int | None,
+    load_case: int | None,
+    changes: tuple[str, ...],
+) -> None:
+    """Write a commented case file from a REXS FILE, and say what the file lacks.
+
+    Every value stands beside the REXS attribute that it comes from. If the case needs more than
+    the file has, it is written all the same, with these keys marked NEEDED, and the command ends
+    with exit code 5.
+    """
+    from epicyclic.exchange.rexs.file import stem
+    from epicyclic.exchange.rexs.importing import read_rexs
+    from epicyclic.report.rexs_table import import_tables
+    from epicyclic.report.tables import terminal
+
+    target = output or Path(f"{stem(file)}.toml")
+    if target.exists():
+        problem = Problem("--output", str(target), "exists already.", "Name another file.")
+        raise InputError([problem], "the command")
+    parsed = parse_changes(changes)
+    found = read_rexs(file, component, load_case)
+    unknown = [key for key in parsed if not _is_key(found, key)]
+    if unknown:
+        found.case(parsed)  # tells which keys it does not know
+    write_file(target, found.text(parsed))
+    problems, notes = _state(found, parsed)
+    terminal().print(import_tables(found, parsed, problems, notes))
+    click.echo(f"Wrote {target}.")
+    if problems:
+        click.echo(f"Set what is missing, then: epicyclic run {target}", err=True)
+        sys.exit(EXIT_INCOMPLETE)
+    click.echo(f"Next: epicyclic run {target}")
+
+
+def _is_key(found: RexsImport, key: str) -> bool:
+    from epicyclic.case.case import GearPairCase, PlanetaryCase
+    from epicyclic.case.fields import find_field
+
+    return find_field(PlanetaryCase if found.kind == "planetary" else GearPairCase, key) is not None
+
+
+def _state(
+    found: RexsImport, changes: dict[str, Any]
+) -> tuple[tuple[Problem, ...], tuple[str, ...]]:
+    """Problems of the case as it is written, and how its geometry differs from the file's."""
+    try:
+        case = found.case(changes)
+    except InputError as error:
+        return error.problems, ()
+    return (), found.geometry_notes(case)

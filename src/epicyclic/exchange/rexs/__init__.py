@@ -1,0 +1,1 @@
+"""REXS, the Reusable Engineering EXchange Standard (rexs.info): read into cases, results back."""

@@ -1,0 +1,137 @@
+"""Does a REXS file agree with itself, and with the geometry that is computed here?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from epicyclic.case.build import pair_mesh, planetary_meshes
+from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.exchange.rexs.model import Component, Model
+from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, is_internal
+from epicyclic.geometry import mesh as geometry
+from epicyclic.geometry.gear import involute
+from epicyclic.units import DEGREE, MILLIMETRE, Quantity, format_number
+
+__all__ = ["closing_shift", "file_notes", "geometry_notes", "shift_notes"]
+
+AGREES = 1e-3
+"""Relative difference up to which figures of two programs agree."""
+
+SHIFT_AGREES = 0.02
+"""Difference of profile shifts that allowances for backlash can make."""
+
+
+def file_notes(chosen: PlanetarySet | Pair) -> Iterator[str]:
+    """Contradictions within the file: hands of helices."""
+    said = set()
+    for mesh in chosen.meshes:
+        first, second = map(_signed_helix, mesh.gears)
+        internal = any(map(is_internal, mesh.gears))
+        pair = (mesh.gears[0].id, mesh.gears[1].id)
+        if first * second == 0 or (first * second > 0) == internal or pair in said:
+            continue
+        said.add(pair)
+        hands = "the same hand, as on internal gears" if internal else "opposite hands"
+        yield f"{mesh.gears[0]} and {mesh.gears[1]} should have {hands}: check the helix angles."
+
+
+def _signed_helix(gear: Component) -> float:
+    found = gear.get("helix_angle_reference_diameter")
+    try:
+        return 0.0 if found is None else found.number()
+    except ValueError:  # told when it is read
+        return 0.0
+
+
+def geometry_notes(case: Case, chosen: PlanetarySet | Pair, model: Model) -> Iterator[str]:
+    """Figures of the file that differ from those of the case's geometry."""
+    for mesh, components, stage in _computed(case, chosen):
+        for gear, component in zip((mesh.gear1, mesh.gear2), components, strict=True):
+            reference, base = 2 * gear.reference_radius, 2 * gear.base_radius
+            yield from _compared(
+                component, "reference_diameter_cylindrical_gear", reference, MILLIMETRE
+            )
+            yield from _compared(component, "base_diameter", base, MILLIMETRE)
+        yield from _compared(stage, "radial_contact_ratio", mesh.transverse_contact_ratio)
+        yield from _compared(stage, "overlap_contact_ratio", mesh.overlap_ratio)
+        for data in model.partners(stage.id, "stage_gear_data", "stage", "stage_gear_data"):
+            name = "operating_pressure_angle_in_the_transverse_section"
+            yield from _compared(data, name, mesh.operating_pressure_angle, DEGREE)
+
+
+def _computed(
+    case: Case, chosen: PlanetarySet | Pair
+) -> Iterator[tuple[geometry.Mesh, tuple[Component, Component], Component]]:
+    """Each mesh as it is computed here, with its gears and its stage in the file."""
+    if isinstance(case, PlanetaryCase) and isinstance(chosen, PlanetarySet):
+        sun_mesh, ring_mesh = planetary_meshes(case.gears, case.sun, case.planet, case.ring)
+        planet = chosen.planets[0]
+        yield sun_mesh, (chosen.sun, planet), chosen.sun_meshes[0].stage
+        yield ring_mesh, (planet, chosen.ring), chosen.ring_meshes[0].stage
+    elif isinstance(chosen, Pair) and not isinstance(case, PlanetaryCase):
+        mesh = pair_mesh(case.gears, case.pinion, case.gear)
+        yield mesh, (chosen.pinion, chosen.gear), chosen.mesh.stage
+
+
+def _compared(
+    component: Component, attribute: str, computed: float, unit: Quantity | None = None
+) -> Iterator[str]:
+    """A note if `attribute` is given and is another than `computed`, in SI."""
+    try:
+        stated = component.amount(attribute)
+        if stated is None:
+            return
+        number, name = stated
+        value = abs(number) if unit is None else abs(unit.parse(f"{number!r} {name}"))
+    except ValueError as error:
+        yield f"{attribute} of {component} cannot be compared: it {error}."
+        return
+    if not math.isclose(value, computed, rel_tol=AGREES, abs_tol=AGREES * (unit is None)):
+        here = format_number(computed) if unit is None else unit.text(computed)
+        there = f"{format_number(number)} {name}".rstrip()
+        yield f"{attribute} of {component} is {there}; computed here: {here}."
+
+
+def closing_shift(tables: Mapping[str, Any], member1: str, member2: str) -> float | None:
+    """Profile shift of `member2` that leaves no backlash at the centre distance. ISO 21771.
+
+    None if the tables do not have all that it takes.
+    """
+    try:
+        gears = tables["gears"]
+        first, second = tables[member1], tables[member2]
+        z1, z2 = (
+            table["teeth"] * (-1 if name == "ring" or table.get("internal") else 1)
+            for name, table in ((member1, first), (member2, second))
+        )
+        x1 = first["profile_shift_coefficient"]
+        module = MILLIMETRE.parse(gears["normal_module"])
+        center = MILLIMETRE.parse(gears["center_distance"])
+        normal, helix = (
+            DEGREE.parse(gears[key]) for key in ("normal_pressure_angle", "helix_angle")
+        )
+    except (KeyError, ValueError):
+        return None
+    transverse = math.atan(math.tan(normal) / math.cos(helix))
+    cosine = abs(z1 + z2) * module * math.cos(transverse) / (2 * center * math.cos(helix))
+    if not 0 < cosine < 1:
+        return None
+    difference = involute(math.acos(cosine)) - involute(transverse)
+    total: float = (z1 + z2) * difference / (2 * math.tan(normal))
+    return total - float(x1)
+
+
+def shift_notes(tables: Mapping[str, Any], member1: str, member2: str) -> Iterator[str]:
+    """A note if the profile shift of an internal gear seems to count the other way."""
+    closing = closing_shift(tables, member1, member2)
+    shift = tables.get(member2, {}).get("profile_shift_coefficient")
+    if closing is None or shift is None or abs(shift) < SHIFT_AGREES:
+        return
+    if abs(shift - closing) > SHIFT_AGREES >= abs(-shift - closing):
+        yield (
+            f"The profile shift {format_number(shift)} of the {member2} fits the centre distance "
+            f"with the other sign only; if so, set {member2}.profile_shift_coefficient = "
+            f"{format_number(-shift)}."
+        )

@@ -1,0 +1,194 @@
+"""Gears of a REXS file to tables of a case.
+
+Angles and profile shifts are taken as ISO 21771 has them. Numbers of teeth and diameters of
+internal gears are taken by their magnitude, because programs write them with either sign.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from epicyclic.exchange.rexs.draft import Amount, Draft, amount_text
+from epicyclic.exchange.rexs.model import Component, Model
+from epicyclic.exchange.rexs.sets import is_internal
+from epicyclic.losses.friction.base import RA_OVER_RQ
+
+__all__ = ["flanks_of", "gear_table", "shared_table"]
+
+_TOOLS = ("rack_shaped_tool", "cutter_wheel_tool")
+
+
+def flanks_of(model: Model, gears: Iterable[Component]) -> list[Component]:
+    """The flanks of gears, left and right."""
+    return [
+        flank
+        for gear in gears
+        for side in ("left", "right")
+        for flank in model.partners(gear.id, "flank", "gear", side)
+    ]
+
+
+def _tools_of(model: Model, gears: Iterable[Component]) -> list[Component]:
+    """The first tool of each gear: the one that leaves the root."""
+    found: dict[int, Component] = {}
+    for gear in gears:
+        tools = model.partners(gear.id, "ordered_reference", "origin", "referenced", *_TOOLS)
+        for flank in flanks_of(model, [gear]):
+            tools += model.partners(flank.id, "manufacturing_step", "workpiece", "tool", *_TOOLS)
+        if tools:
+            found[tools[0].id] = tools[0]
+    return list(found.values())
+
+
+def shared_table(
+    draft: Draft, model: Model, gears: Sequence[Component], stages: Sequence[Component]
+) -> None:
+    """What all gears share: module, angles, centre distance."""
+    draft.take("gears.normal_module", "normal_module", gears)
+    flanks = flanks_of(model, gears)
+    normal = draft.take("gears.normal_pressure_angle", "normal_pressure_angle", flanks, None)
+    if normal is None:
+        name = "pressure_angle_in_the_transverse_section"
+        if draft.take("gears.transverse_pressure_angle", name, flanks, None) is None:
+            draft.lack("gears.normal_pressure_angle", "normal_pressure_angle", flanks or gears)
+    name = "helix_angle_reference_diameter"
+    magnitudes: dict[str, str] = {}
+    for gear in gears:
+        found = draft.read(name, [gear], "gears.helix_angle")
+        if found is not None:
+            text = amount_text(round(abs(found.number), 9), found.unit)
+            magnitudes.setdefault(text, found.origin)
+    if len(magnitudes) > 1:
+        shown = ", ".join(magnitudes)
+        draft.notes.append(f"The gears have different helix angles: {shown}. The first is taken.")
+    if magnitudes:
+        draft.give("gears.helix_angle", *next(iter(magnitudes.items())))
+    else:
+        draft.lack("gears.helix_angle", name, gears)
+    draft.take("gears.center_distance", "center_distance", stages, change=abs)
+
+
+def gear_table(draft: Draft, model: Model, key: str, gears: Sequence[Component]) -> None:
+    """Table `key` of one gear, or of several that are alike."""
+    draft.take(f"{key}.teeth", "number_of_teeth", gears, change=abs)
+    draft.take(f"{key}.face_width", "face_width", gears)
+    default = "Default: from gears.addendum_coefficient."
+    draft.take(f"{key}.tip_diameter", "tip_diameter", gears, default, abs)
+    shift = _thickness(draft, model, key, gears)
+    _root(draft, model, key, gears, shift)
+    _roughness(draft, key, gears)
+    _material(draft, model, key, gears)
+
+
+def _thickness(draft: Draft, model: Model, key: str, gears: Sequence[Component]) -> float | None:
+    """The profile shift, or the tooth thickness; the profile shift if it is known."""
+    flanks = flanks_of(model, gears)
+    name = "addendum_modification_coefficient"
+    target = f"{key}.profile_shift_coefficient"
+    shift = draft.take(target, name, flanks, None)
+    if shift is not None:
+        return shift
+    thickness, diameter = (
+        draft.read(attribute, gears, target)
+        for attribute in (
+            "transverse_tooth_thickness_at_reference_diameter",
+            "reference_diameter_cylindrical_gear",
+        )
+    )
+    if thickness is not None and diameter is not None:
+        draft.give(f"{key}.tooth_thickness", thickness.text, thickness.origin)
+        length = amount_text(abs(diameter.number), diameter.unit)
+        draft.give(f"{key}.thickness_diameter", length, diameter.origin)
+        return None
+    settings = [
+        item
+        for flank in flanks
+        for item in model.partners(
+            flank.id, "manufacturing_step", "workpiece", "manufacturing_settings"
+        )
+    ]
+    generated = "generated_addendum_modification_coefficient"
+    if draft.take(target, generated, settings, None) is None:
+        draft.lack(target, name, flanks or gears)
+    return None
+
+
+def _root(
+    draft: Draft, model: Model, key: str, gears: Sequence[Component], shift: float | None
+) -> None:
+    """Root diameter, of the file or of a rack-shaped tool, and the rounding of the tool's tip."""
+    target = f"{key}.root_diameter"
+    tools = _tools_of(model, gears)
+    module = draft.read("normal_module", gears)
+    rounding = _tool_length(draft, tools, "tip_corner_radius_", "factor_", module)
+    if rounding is not None:
+        draft.give(f"{key}.tool_tip_radius", rounding.text, rounding.origin)
+    if draft.take(target, "root_diameter", gears, None, abs) is not None:
+        return
+    addendum = _tool_length(draft, tools, "addendum_", "coefficient_", module)
+    teeth = draft.read("number_of_teeth", gears)
+    helix = draft.read("helix_angle_reference_diameter", gears[:1])
+    is_rack = all(tool.type == "rack_shaped_tool" for tool in tools) and not is_internal(gears[0])
+    usual = (module and module.unit, addendum and addendum.unit, helix and helix.unit)
+    if is_rack and shift is not None and usual == ("mm", "mm", "deg") and teeth:
+        assert module is not None
+        assert addendum is not None
+        assert helix is not None
+        reference = teeth.number * module.number / math.cos(math.radians(helix.number))
+        diameter = reference + 2 * (shift * module.number - addendum.number)
+        origin = f"computed from the addendum of the tool: {addendum.origin}"
+        draft.give(target, amount_text(round(diameter, 9), "mm"), origin)
+    else:
+        draft.lack(target, "root_diameter", gears, "Default: from gears.dedendum_coefficient.")
+
+
+def _tool_length(
+    draft: Draft, tools: Sequence[Component], start: str, middle: str, module: Amount | None
+) -> Amount | None:
+    """A length of the tools, given itself or as a factor of the module."""
+    length = draft.read(f"{start}reference_profile", tools)
+    if length is not None:
+        return length
+    factor = draft.read(f"{start}{middle}reference_profile", tools)
+    if factor is None or module is None:
+        return None
+    origin = f"{factor.origin}, times normal_module"
+    return Amount(factor.number * module.number, module.unit, origin)
+
+
+def _roughness(draft: Draft, key: str, gears: Sequence[Component]) -> None:
+    """Rq from the Ra of the file: that of a Gaussian profile."""
+    name = "arithmetic_mean_roughness_flank_iso_4287_1997"
+    found = draft.read(name, gears, f"{key}.roughness")
+    if found is None:
+        draft.lack(f"{key}.roughness", name, gears)
+        return
+    number, unit, origin = found
+    value = amount_text(float(f"{number / RA_OVER_RQ:.6g}"), unit)
+    draft.give(
+        f"{key}.roughness", value,
+        f"computed: Rq = {1 / RA_OVER_RQ:.4g} Ra of a Gaussian profile, Ra from {origin}",
+    )  # fmt: skip
+
+
+def _material(draft: Draft, model: Model, key: str, gears: Sequence[Component]) -> None:
+    materials = {
+        item.id: item
+        for gear in gears
+        for item in model.partners(gear.id, "reference", "origin", "referenced", "material")
+    }
+    sources = list(materials.values())
+    target = f"{key}.material"
+    modulus = draft.read("elastic_modulus", sources, target)
+    if modulus is None:
+        draft.lack(target, "elastic_modulus", sources, "Default: steel of the material library.")
+        return
+    title = sources[0].get("material_designation")
+    table: dict[str, object] = {"title": title.text() if title else str(sources[0])}
+    table["elastic_modulus"] = modulus.text
+    for name in ("poisson_ratio", "density"):
+        found = draft.read(name, sources, target)
+        if found is not None:
+            table[name] = found.text
+    draft.give(target, table, f"material {sources[0].id}")

@@ -1,0 +1,234 @@
+"""From a REXS file to a case."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from epicyclic.case.case import Case, build_case, changed_tables
+from epicyclic.case.template import case_text
+from epicyclic.case.wording import one_line, path_of
+from epicyclic.errors import InputError, Problem
+from epicyclic.exchange.rexs import checks, planetary
+from epicyclic.exchange.rexs.content import build_model
+from epicyclic.exchange.rexs.draft import Draft, Lack
+from epicyclic.exchange.rexs.file import read_document
+from epicyclic.exchange.rexs.flank_forms import micro_geometry
+from epicyclic.exchange.rexs.gears import gear_table, shared_table
+from epicyclic.exchange.rexs.lubricant import lubricant_table, temperature
+from epicyclic.exchange.rexs.model import Model
+from epicyclic.exchange.rexs.operation import pair_operation, planetary_operation
+from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, choose, is_internal
+from epicyclic.units import format_number
+
+__all__ = ["RexsImport", "read_rexs"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RexsImport:
+    """What a REXS file says of one gear set, and what it lacks.
+
+    Attributes
+    ----------
+    source : str
+        The file.
+    version : str
+        Of REXS.
+    kind : str
+        ``"planetary"`` or ``"gear_pair"``.
+    component : str
+        The stage it was read from.
+    tables : mapping
+        The tables of the case as far as the file gives them.
+    origins : mapping of str to str
+        Where the value of each key comes from.
+    missing : tuple of Lack
+        Keys for which the file has no value: REXS id, component, whether the case needs it, and
+        what happens without it.
+    notes : tuple of str
+        Contradictions in the file, and choices that were made.
+    """
+
+    source: str
+    version: str
+    kind: str
+    component: str
+    tables: Mapping[str, Any]
+    origins: Mapping[str, str]
+    missing: tuple[Lack, ...]
+    notes: tuple[str, ...]
+    _model: Model
+    _chosen: PlanetarySet | Pair
+
+    def case(self, changes: Mapping[str, Any] | None = None) -> Case:
+        """The case, with some keys set.
+
+        Parameters
+        ----------
+        changes : mapping of str to object, optional
+            Dotted keys to values, as in `PlanetaryCase.updated`.
+
+        Raises
+        ------
+        InputError
+            With every problem; for a key that the file lacks, with the REXS id that would give it.
+        """
+        try:
+            return build_case(self.tables, changes or {}, self.source)
+        except InputError as error:
+            problems = [self._explained(problem) for problem in error.problems]
+            raise InputError(problems, error.source) from None
+
+    def text(self, changes: Mapping[str, Any] | None = None) -> str:
+        """The commented case file: for every value its origin, for every other key what is known.
+
+        Parameters
+        ----------
+        changes : mapping of str to object, optional
+            Keys to set.
+        """
+        tables, about = dict(self.tables), dict(self.origins)
+        for lack in self.missing:
+            about[lack.key] = f"{'NEEDED. ' if lack.needed else ''}{lack}"
+        if changes:
+            tables = changed_tables(tables, changes)
+            about |= dict.fromkeys(changes, "set with --set")
+        head = [
+            f"Case of epicyclic, imported from {one_line(self.source, 200)}: {self.component}.",
+            f"REXS {self.version}. Beside each value stands the attribute that it comes from.",
+            "Keys behind a # have the default that is shown or told, or are NEEDED.",
+            *self.notes,
+        ]
+        return case_text(tables, [one_line(line, 400) for line in head], about)
+
+    def geometry_notes(self, case: Case) -> tuple[str, ...]:
+        """Figures of the file, such as base diameters, that differ from those of `case`."""
+        return tuple(checks.geometry_notes(case, self._chosen, self._model))
+
+    def _explained(self, problem: Problem) -> Problem:
+        """A problem of a key that the file lacks, with what the file should have."""
+        path = path_of(problem.key)
+        for lack in self.missing:
+            *owner, name = path_of(lack.key)
+            is_it = [*owner, name] == [*path[: len(owner) + 1]]
+            is_alternative = owner == [*path[:-1]] and str(name) in problem.allowed
+            if lack.needed and (is_it or is_alternative):
+                return replace(problem, remedy=str(lack))
+        return problem
+
+
+def read_rexs(
+    path: str | Path, component: int | None = None, load_case: int | None = None
+) -> RexsImport:
+    """Read a gear set from a REXS file.
+
+    Parameters
+    ----------
+    path : str or Path
+        A file ``.rexs``, ``.rexsj`` or ``.rexsz`` of version 1.1 to 2.0.
+    component : int, optional
+        Id of the ``planetary_stage`` or ``cylindrical_stage``, if the file has several.
+    load_case : int, optional
+        Id of a load case of the load spectrum, whose values come before those of the components.
+
+    Returns
+    -------
+    RexsImport
+
+    Raises
+    ------
+    InputError
+        If it is no such file, or if it has no such gear set.
+    """
+    source = str(path)
+    document = read_document(Path(path))
+    try:
+        model = _with_load_case(build_model(document.content), load_case)
+        chosen = choose(model, component)
+        draft = _draft(model, chosen)
+    except InputError as error:
+        raise InputError(error.problems, one_line(source, 500)) from None
+    return RexsImport(
+        source=source,
+        version=model.version,
+        kind=draft.tables["kind"],
+        component=str(chosen.component),
+        tables=draft.tables,
+        origins=draft.origins,
+        missing=tuple(draft.lacks.values()),
+        notes=tuple(draft.notes),
+        _model=model,
+        _chosen=chosen,
+    )
+
+
+def _with_load_case(model: Model, load_case: int | None) -> Model:
+    if load_case is None:
+        return model
+    if load_case not in model.load_cases:
+        known = ", ".join(map(str, list(model.load_cases)[:12])) or "none"
+        problem = Problem("--load-case", str(load_case), "is not in the file.", f"It has {known}.")
+        raise InputError([problem])
+    return model.with_load_case(load_case)
+
+
+def _draft(model: Model, chosen: PlanetarySet | Pair) -> Draft:
+    title = chosen.component.name.strip()
+    is_pair = isinstance(chosen, Pair)
+    draft = Draft({"kind": "gear_pair" if is_pair else "planetary", "title": one_line(title)})
+    if isinstance(chosen, Pair):
+        _pair(draft, model, chosen)
+    else:
+        _planetary(draft, model, chosen)
+    stages = [mesh.stage for mesh in chosen.meshes]
+    temperature(draft, model, stages)
+    lubricant_table(draft, model, stages)
+    draft.notes += checks.file_notes(chosen)
+    if len(model.load_cases) > 0:
+        cases = ", ".join(map(str, list(model.load_cases)[:12]))
+        draft.notes.append(f"The file has load cases: {cases}. One is read with --load-case.")
+    if draft.problems:
+        raise InputError(draft.problems)
+    return draft
+
+
+def _planetary(draft: Draft, model: Model, chosen: PlanetarySet) -> None:
+    planetary_operation(draft, model, chosen)
+    gears = [chosen.sun, *chosen.planets, chosen.ring]
+    shared_table(draft, model, gears, [mesh.stage for mesh in chosen.meshes])
+    for key, own in (("sun", [chosen.sun]), ("planet", chosen.planets), ("ring", [chosen.ring])):
+        gear_table(draft, model, key, own)
+        micro_geometry(draft, model, key, own)
+    draft.give("planet.count", len(chosen.planets), f"counted: planets of {chosen.component}")
+    draft.take("planet.mass", "mass_of_component", chosen.planets, None)
+    _hint(draft, "sun", "planet")
+    _hint(draft, "planet", "ring")
+    planetary.planet_angles(draft, chosen)
+    planetary.bearing_table(draft, model, chosen)
+    planetary.carrier_table(draft, model, chosen)
+    rims = model.partners(chosen.ring.id, "assembly", "assembly", "part", "gear_body")
+    draft.take("ring.rim_thickness", "gear_body_rim_thickness", rims, None)
+
+
+def _pair(draft: Draft, model: Model, chosen: Pair) -> None:
+    pair_operation(draft, model, chosen)
+    shared_table(draft, model, [chosen.pinion, chosen.gear], [chosen.mesh.stage])
+    for key, own in (("pinion", [chosen.pinion]), ("gear", [chosen.gear])):
+        gear_table(draft, model, key, own)
+        micro_geometry(draft, model, key, own)
+    if is_internal(chosen.gear):
+        draft.give("gear.internal", True, f"{chosen.gear}")
+    _hint(draft, "pinion", "gear")
+
+
+def _hint(draft: Draft, member1: str, member2: str) -> None:
+    """Say which profile shift would close the mesh, and if one seems to have the wrong sign."""
+    draft.notes += checks.shift_notes(draft.tables, member1, member2)
+    for lacking, other in ((member2, member1), (member1, member2)):
+        key = f"{lacking}.profile_shift_coefficient"
+        closing = checks.closing_shift(draft.tables, other, lacking)
+        if key in draft.lacks and closing is not None:
+            text = f"With the {other}, {format_number(round(closing, 4) + 0.0)} leaves no backlash."
+            draft.lacks[key] = replace(draft.lacks[key], instead=text)

@@ -1,0 +1,63 @@
+"""What an import from REXS took, and what the file lacks."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from epicyclic.errors import Problem
+from epicyclic.exchange.rexs.importing import RexsImport
+from epicyclic.report.tables import plain_table
+
+__all__ = ["import_tables"]
+
+
+def import_tables(
+    found: RexsImport, given: Collection[str], problems: Sequence[Problem], notes: Sequence[str]
+) -> RenderableType:
+    """Summary of an import.
+
+    Parameters
+    ----------
+    found : RexsImport
+    given : collection of str
+        Keys that the user set.
+    problems : sequence of Problem
+        Of the case as it is.
+    notes : sequence of str
+        What is to be known beside the notes of the import itself.
+    """
+    head = Text(f"REXS {found.version}, {found.component}: {len(found.origins)} keys", "bold")
+    parts: list[RenderableType] = [head]
+    lacking = [lack for lack in found.missing if not _is_set(lack.key, given)]
+    for title, needed in (("The case needs", True), ("Not in the file", False)):
+        table = plain_table(title)
+        table.add_column("key of the case", no_wrap=True)
+        table.add_column("missing in the file", overflow="fold")
+        for lack in lacking:
+            if lack.needed == needed:
+                table.add_row(Text(lack.key), Text(f"{lack.attribute}. {lack.instead}".rstrip()))
+        if table.row_count:
+            parts.append(table)
+    told = {lack.key for lack in lacking if lack.needed}
+    others = [problem for problem in problems if not _is_told(problem, told)]
+    parts += [Text(f"Problem: {problem}") for problem in others]
+    parts += [Text(f"Note: {note}") for note in (*found.notes, *notes)]
+    return Group(*parts)
+
+
+def _is_set(key: str, given: Collection[str]) -> bool:
+    """True if the user set the key, or the table that it belongs to."""
+    return any(key == other or key.startswith(f"{other}.") for other in given)
+
+
+def _is_told(problem: Problem, told: Collection[str]) -> bool:
+    """True if a table of lacking keys tells of it already."""
+    owner = problem.key.rpartition(".")[0]
+    return any(
+        key == problem.key
+        or (key.rpartition(".")[0] == owner and key.rpartition(".")[2] in problem.allowed)
+        for key in told
+    )
