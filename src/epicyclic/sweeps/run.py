@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,10 +12,12 @@ from typing import TYPE_CHECKING, Any
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case
 from epicyclic.errors import EpicyclicError, InputError, is_interrupt
+from epicyclic.pocketing.table import FlowTables
 from epicyclic.status import Status
 from epicyclic.sweeps.dataset import to_dataset
 from epicyclic.sweeps.journal import Journal, Row
 from epicyclic.sweeps.plan import Plan, make_plan
+from epicyclic.sweeps.pockets import flow_tables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -94,15 +97,25 @@ def run_plan(
     left = [index for index in plan.order() if index not in rows]
     if progress is not None:
         progress(len(rows), plan.size)
-    for finished in _run_batches(plan, left, jobs, journal, batch):
+    work = _Work(plan, flow_tables(plan, jobs) if left else {}, journal)
+    for finished in _run_batches(work, left, jobs, batch):
         rows.update(finished)
         if progress is not None:
             progress(len(rows), plan.size)
     return [rows[index] for index in range(plan.size)]
 
 
+@dataclass(frozen=True, slots=True)
+class _Work:
+    """What all points of a plan share."""
+
+    plan: Plan
+    flow_tables: FlowTables
+    journal: Journal | None
+
+
 def _run_batches(
-    plan: Plan, indices: list[int], jobs: int | None, journal: Journal | None, batch: int
+    work: _Work, indices: list[int], jobs: int | None, batch: int
 ) -> Iterator[list[tuple[int, Row]]]:
     """Finished points, in any order: here as long as that pays, then in worker processes."""
     start = time.perf_counter()
@@ -113,9 +126,9 @@ def _run_batches(
             done - 1, time.perf_counter() - start, len(indices) - done
         )
         if workers_pay or jobs not in (None, 1):
-            yield from _run_in_workers(plan, indices[done:], jobs or -1, journal, batch)
+            yield from _run_in_workers(work, indices[done:], jobs or -1, batch)
             return
-        yield _solve_batch(plan, [index], journal)
+        yield _solve_batch(work, [index])
 
 
 def _workers_pay(done: int, seconds: float, left: int) -> bool:
@@ -126,7 +139,7 @@ def _workers_pay(done: int, seconds: float, left: int) -> bool:
 
 
 def _run_in_workers(
-    plan: Plan, indices: list[int], jobs: int, journal: Journal | None, batch: int
+    work: _Work, indices: list[int], jobs: int, batch: int
 ) -> Iterator[list[tuple[int, Row]]]:
     from joblib import Parallel, delayed, effective_n_jobs
 
@@ -134,7 +147,7 @@ def _run_in_workers(
     size = min(batch, max(1, share))
     workers = Parallel(n_jobs=jobs, return_as="generator_unordered", inner_max_num_threads=1)
     yield from workers(
-        delayed(_solve_batch)(plan, points, journal) for points in _batches(plan, indices, size)
+        delayed(_solve_batch)(work, points) for points in _batches(work.plan, indices, size)
     )
 
 
@@ -145,22 +158,21 @@ def _batches(plan: Plan, indices: list[int], size: int) -> Iterator[list[int]]:
         yield list(points)
 
 
-def _solve_batch(
-    plan: Plan, indices: Sequence[int], journal: Journal | None
-) -> list[tuple[int, Row]]:
+def _solve_batch(work: _Work, indices: Sequence[int]) -> list[tuple[int, Row]]:
     rows = []
     for index in indices:
-        row = _solve_point(plan, index)
-        if journal is not None:
-            journal.append(index, row)
+        row = _solve_point(work, index)
+        if work.journal is not None:
+            work.journal.append(index, row)
         rows.append((index, row))
     return rows
 
 
-def _solve_point(plan: Plan, index: int) -> Row:
-    """One point of `plan` as a flat record; one that fails becomes a row with its reason."""
+def _solve_point(work: _Work, index: int) -> Row:
+    """One point of a plan as a flat record; one that fails becomes a row with its reason."""
     try:
-        result = solve(plan.case.updated(plan.changes(index)))
+        case = work.plan.case.updated(work.plan.changes(index))
+        result = solve(case, flow_tables=work.flow_tables)
     except InputError as error:
         return _failed("; ".join(str(problem) for problem in error.problems))
     except EpicyclicError as error:
