@@ -107,7 +107,7 @@ def test_a_pair_has_its_own_variables():
 
 
 def test_any_error_of_one_point_is_a_row(case, monkeypatch):
-    def solve(changed):
+    def solve(changed, **_):
         if changed.planet.count == 4:
             raise RuntimeError("broken")
         return ep.solve(changed)
@@ -119,7 +119,7 @@ def test_any_error_of_one_point_is_a_row(case, monkeypatch):
 
 
 def test_an_interruption_in_compiled_code_ends_the_sweep(case, monkeypatch):
-    def solve(changed):
+    def solve(changed, **_):
         raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
 
     monkeypatch.setattr("epicyclic.sweeps.run.solve", solve)

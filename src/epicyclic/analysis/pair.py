@@ -16,20 +16,23 @@ from epicyclic.analysis.parts import (
     solve_mesh,
     used_sources,
 )
+from epicyclic.analysis.pockets import mesh_flows
 from epicyclic.analysis.result import Result
 from epicyclic.case import build
 from epicyclic.case.case import GearPairCase
 from epicyclic.kinematics import pair_power_flow
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
+from epicyclic.pocketing.table import FlowTables
 
 __all__ = ["pair_duty", "solve_pair"]
 
 
-def solve_pair(case: GearPairCase) -> Result:
+def solve_pair(case: GearPairCase, flow_tables: FlowTables) -> Result:
     """The losses of a gear pair."""
     fluids = fluids_of(case)
     duty = pair_duty(case)
-    mesh = solve_mesh(case, duty, fluids, 1)
+    flows = mesh_flows(case, (duty,), fluids.mixture, flow_tables)
+    mesh = solve_mesh(case, duty, fluids, flows[duty.key], 1)
     drag, drag_flags = drag_part(_bodies(case, duty), fluids.mixture)
     terms = loss_terms(mesh.parts | {"drag": drag}, case.losses)
     distribution = LOAD_DISTRIBUTIONS[case.models.load_distribution]

@@ -10,6 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
+from epicyclic.analysis.pockets import (
+    POCKETING_SOURCE,
+    MeshFlow,
+    pocket_notes,
+    pocketing_method,
+)
 from epicyclic.analysis.result import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
@@ -42,8 +48,7 @@ from epicyclic.lubricant.properties import (
     mixture_state,
     oil_state,
 )
-from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow, pocket_flow
-from epicyclic.pocketing.geometry import pocket_geometry
+from epicyclic.pocketing.similarity import FlowFigures
 from epicyclic.units import CELSIUS, SQUARE_MM_PER_SECOND
 
 __all__ = [
@@ -64,14 +69,11 @@ __all__ = [
     "load_mesh",
     "load_notes",
     "loss_terms",
-    "pocket_notes",
     "resolve_models",
     "solve_mesh",
-    "solve_pockets",
     "used_sources",
 ]
 
-POCKETING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), chapter 4"
 FloatArray = NDArray[np.float64]
 
 PEAK_SHARE = 0.01
@@ -282,47 +284,9 @@ def _flanks(one: GearTable, two: GearTable) -> Flanks:
     return Flanks(modulus, one.roughness, two.roughness)
 
 
-def solve_pockets(case: Case, duty: MeshDuty, mixture: MixtureState) -> PocketFlow | None:
-    """Flow through the pockets of a mesh; None without motion.
-
-    Raises
-    ------
-    ConvergenceError
-        If the flow is not found.
-    ValueError
-        If a tooth has no outline.
-    """
-    if duty.speed1 == 0:
-        return None
-    geometry = pocket_geometry(duty.mesh, duty.tools, duty.drives1)
-    return pocket_flow(
-        geometry,
-        abs(duty.speed1),
-        mixture,
-        case.surroundings.pressure,
-        case.models.pocketing,
-        case.numerics.pocket_slices,
-        case.numerics.pocket_steps,
-    )
-
-
-def _pocketing(
-    case: Case, duty: MeshDuty, mixture: MixtureState, count: int
-) -> tuple[Part, PocketFlow | None]:
-    """Pocketing loss of `count` meshes, not computed if the case leaves it out."""
-    option: LossOption = getattr(case.losses, f"{duty.key}_pocketing")
-    if not option.include:
-        return Part(LOAD_INDEPENDENT), None
-    try:
-        flow = solve_pockets(case, duty, mixture)
-    except ValueError as error:
-        return Part(LOAD_INDEPENDENT, left_out=f"no tooth outline: {error}"), None
-    watts = 0.0 if flow is None else count * flow.power
-    method = POCKETING_MODELS[case.models.pocketing]
-    return Part(LOAD_INDEPENDENT, watts, method, POCKETING_SOURCE), flow
-
-
-def solve_mesh(case: Case, duty: MeshDuty, fluids: Fluids, count: int) -> MeshOutcome:
+def solve_mesh(
+    case: Case, duty: MeshDuty, fluids: Fluids, flow: MeshFlow, count: int
+) -> MeshOutcome:
     """Losses and figures of one mesh, `count` of which work in parallel."""
     models = resolve_models(case)
     friction = friction_model(models["friction"], friction_settings(case))
@@ -332,7 +296,6 @@ def solve_mesh(case: Case, duty: MeshDuty, fluids: Fluids, count: int) -> MeshOu
     elastic = None
     if contact is not None:
         elastic = distribute_load(duty, case.models, case.numerics).elastic
-    pocketing, flow = _pocketing(case, duty, fluids.mixture, count)
     if contact is None:
         loss = MeshLoss(0.0, 0.0, math.nan)
     elif quick:
@@ -347,28 +310,20 @@ def solve_mesh(case: Case, duty: MeshDuty, fluids: Fluids, count: int) -> MeshOu
     parts = {
         f"{duty.key}_sliding": Part(LOAD_DEPENDENT, count * loss.sliding, method, source),
         f"{duty.key}_rolling": rolling_part,
-        f"{duty.key}_pocketing": pocketing,
+        f"{duty.key}_pocketing": _pocketing(case, flow, count),
     }
-    figures = _mesh_figures(duty, contact, loss.mean_friction, elastic, flow)
-    return MeshOutcome(parts, figures, loss.flags, pocket_notes(case, duty.mesh, flow))
+    figures = _mesh_figures(duty, contact, loss.mean_friction, elastic, flow.figures)
+    notes = pocket_notes(case, duty.mesh, flow.figures)
+    return MeshOutcome(parts, figures, loss.flags, notes)
 
 
-def pocket_notes(case: Case, mesh: Mesh, flow: PocketFlow | None) -> tuple[str, ...]:
-    """What to know about the flow through the pockets of a mesh."""
-    if flow is None:
-        return ()
-    notes = []
-    if not flow.periodic:
-        notes.append(
-            f"The flow through the pockets of the {mesh.name} does not repeat from one mesh period "
-            f"to the next; its loss is the mean of {flow.periods // 2} periods."
-        )
-    if float(flow.pressure.min()) < -case.surroundings.pressure:
-        notes.append(
-            f"The pressure in the pockets of the {mesh.name} falls below zero, where the "
-            "fluid would cavitate: models.pocketing = incompressible is meant for lower speeds."
-        )
-    return tuple(notes)
+def _pocketing(case: Case, flow: MeshFlow, count: int) -> Part:
+    """Pocketing loss of `count` meshes."""
+    if flow.left_out:
+        return Part(LOAD_INDEPENDENT, left_out=flow.left_out)
+    watts = 0.0 if flow.figures is None else count * flow.figures.power
+    method = pocketing_method(case, flow.figures)
+    return Part(LOAD_INDEPENDENT, watts, method, POCKETING_SOURCE)
 
 
 def _largest(values: FloatArray, weight: FloatArray) -> float:
@@ -383,7 +338,7 @@ def _mesh_figures(
     contact: MeshContact | None,
     friction_mean: float,
     elastic: LoadedMesh | None,
-    flow: PocketFlow | None,
+    flow: FlowFigures | None,
 ) -> MeshFigures:
     mesh = duty.mesh
     speed1 = abs(duty.speed1)
@@ -414,10 +369,11 @@ def _mesh_figures(
         loss_factor=ohlendorf_loss_factor(mesh),
         transmission_error_range=math.nan if elastic is None else elastic.transmission_error_range,
         mesh_stiffness=math.nan if elastic is None else elastic.mean(elastic.tangent_stiffness),
-        pocket_pressure_max=math.nan if flow is None else float(flow.pressure.max()),
-        pocket_pressure_min=math.nan if flow is None else float(flow.pressure.min()),
+        pocket_pressure_max=math.nan if flow is None else flow.pressure_max,
+        pocket_pressure_min=math.nan if flow is None else flow.pressure_min,
         pocket_speed_max=math.nan if flow is None else flow.speed_max,
         pocket_power_difference=math.nan if flow is None else flow.difference,
+        pocket_interpolation_error=math.nan if flow is None else flow.error,
         contact=contact,
     )
 

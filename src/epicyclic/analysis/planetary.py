@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +26,7 @@ from epicyclic.analysis.parts import (
     used_sources,
 )
 from epicyclic.analysis.planet_load import PlanetLoad, planet_load, tilt_planet
+from epicyclic.analysis.pockets import MeshFlow, mesh_flows
 from epicyclic.analysis.result import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
@@ -66,6 +66,7 @@ from epicyclic.losses.viscous import (
     viscous_flags,
 )
 from epicyclic.lubricant.properties import MixtureState, OilState
+from epicyclic.pocketing.table import FlowTables
 
 __all__ = ["most_loaded_duties", "planetary_duties", "solve_planetary"]
 
@@ -81,13 +82,16 @@ PALMGREN_METHOD = "friction coefficient f1 of Palmgren"
 PALMGREN_SOURCE = "A. Palmgren, Ball and Roller Bearing Engineering (1959); Talbot (2012), Eq. 3.1"
 
 
-def solve_planetary(case: PlanetaryCase) -> Result:
+def solve_planetary(case: PlanetaryCase, flow_tables: FlowTables) -> Result:
     """The losses of a planetary gear set."""
     fluids = fluids_of(case)
     speeds = member_speeds(case)
     shares = _shares(case)
+    # every planet has the same flows: they do not depend on the load
+    duties = planetary_duties(case, shares[0])
+    flows = mesh_flows(case, duties, fluids.mixture, flow_tables)
     branches = [
-        _solve_branch(case, share, shares.count(share), fluids, speeds)
+        _solve_branch(case, share, shares.count(share), fluids, flows, speeds)
         for share in sorted(set(shares), reverse=True)
     ]
     drag_parts, drag_flags = _drag_parts(case, speeds, fluids.mixture)
@@ -229,13 +233,15 @@ class _Branch:
 
 
 def _solve_branch(
-    case: PlanetaryCase, share: float, count: int, fluids: Fluids, speeds: Mapping[str, float]
+    case: PlanetaryCase,
+    share: float,
+    count: int,
+    fluids: Fluids,
+    flows: Mapping[str, MeshFlow],
+    speeds: Mapping[str, float],
 ) -> _Branch:
     duties, load = _tilted(case, planetary_duties(case, share), speeds)
-    # both at once: the kernels of the pockets, which take longest, release the interpreter
-    with ThreadPoolExecutor(len(duties)) as pool:
-        outcomes = pool.map(lambda duty: solve_mesh(case, duty, fluids, count), duties)
-        meshes = {duty.key: mesh for duty, mesh in zip(duties, outcomes, strict=True)}
+    meshes = {duty.key: solve_mesh(case, duty, fluids, flows[duty.key], count) for duty in duties}
     bearing = _solve_bearing(case, load, count, fluids.oil, speeds)
     parts, flags = dict(bearing.parts), bearing.flags
     for mesh in meshes.values():

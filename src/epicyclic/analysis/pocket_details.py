@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
 from epicyclic.analysis.pair import pair_duty
-from epicyclic.analysis.parts import MeshDuty, fluids_of, pocket_notes, solve_pockets
+from epicyclic.analysis.parts import MeshDuty, fluids_of
 from epicyclic.analysis.planetary import planetary_duties
+from epicyclic.analysis.pockets import pocket_notes, solve_pockets
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.outline import tooth_outline
@@ -24,6 +25,7 @@ from epicyclic.pocketing.geometry import (
     pocket_geometry,
     pocket_outlines,
 )
+from epicyclic.pocketing.similarity import flow_figures
 from epicyclic.units import (
     BAR,
     CUBIC_MILLIMETRE,
@@ -218,7 +220,7 @@ def _dataset(case: Case, duty: MeshDuty, flow: PocketFlow) -> xr.Dataset:
     title = f"Pockets of the {duty.key.replace('_', ' ')} of {case.title or 'the case'}"
     attributes = {
         "title": title,
-        "notes": "\n".join(pocket_notes(case, mesh, flow)),
+        "notes": "\n".join(pocket_notes(case, mesh, flow_figures(flow))),
         "model": POCKETING_MODELS[case.models.pocketing],
         "drives": mesh.gear1.name if duty.drives1 else mesh.gear2.name,
         "members": f"{mesh.gear1.name} {mesh.gear2.name}",

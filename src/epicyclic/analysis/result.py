@@ -160,6 +160,9 @@ class MeshFigures:
     pocket_power_difference: float = _figure(
         "pocketing loss: energy balance over work, less 1", NUMBER
     )
+    pocket_interpolation_error: float = _figure(
+        "pocketing loss: largest error of its interpolation", NUMBER
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)

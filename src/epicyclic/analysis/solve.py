@@ -11,23 +11,29 @@ import math
 
 from epicyclic.analysis.pair import pair_duty, solve_pair
 from epicyclic.analysis.parts import MeshDuty, elastic_loads, fluids_of, load_mesh
-from epicyclic.analysis.planetary import most_loaded_duties, solve_planetary
+from epicyclic.analysis.planetary import most_loaded_duties, planetary_duties, solve_planetary
+from epicyclic.analysis.pockets import flow_numbers
 from epicyclic.analysis.result import Result
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.elasticity.loaded_mesh import LoadedMesh
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.contact import MeshContact
+from epicyclic.pocketing.similarity import FlowFamily
+from epicyclic.pocketing.table import FlowTables
 
-__all__ = ["loaded_duties", "loaded_meshes", "mesh_contacts", "solve"]
+__all__ = ["loaded_duties", "loaded_meshes", "mesh_contacts", "pocket_flow_numbers", "solve"]
 
 
-def solve(case: Case) -> Result:
+def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
     """The losses of a case.
 
     Parameters
     ----------
     case : PlanetaryCase or GearPairCase
         From `load_case`.
+    flow_tables : mapping, optional
+        Tables of flows through pockets, as `sweep` makes them for its points; flows that they do
+        not hold are solved.
 
     Returns
     -------
@@ -38,7 +44,11 @@ def solve(case: Case) -> Result:
     ConvergenceError
         If an iteration ends without a solution, or a loss is no finite number.
     """
-    result = solve_planetary(case) if isinstance(case, PlanetaryCase) else solve_pair(case)
+    tables = flow_tables or {}
+    if isinstance(case, PlanetaryCase):
+        result = solve_planetary(case, tables)
+    else:
+        result = solve_pair(case, tables)
     bad = [term.name for term in result.terms if not math.isfinite(term.watts)]
     if bad:
         raise ConvergenceError(
@@ -46,6 +56,15 @@ def solve(case: Case) -> Result:
             "the models; choose others (models.friction, models.rolling, models.bearing)."
         )
     return result
+
+
+def pocket_flow_numbers(case: Case) -> tuple[tuple[FlowFamily, float], ...]:
+    """Family and number of the flow through the pockets of every mesh whose loss is included."""
+    if isinstance(case, PlanetaryCase):
+        duties: tuple[MeshDuty, ...] = planetary_duties(case, 1 / case.planet.count)
+    else:
+        duties = (pair_duty(case),)
+    return tuple(flow_numbers(case, duties, fluids_of(case).mixture))
 
 
 def mesh_contacts(case: Case) -> dict[str, MeshContact]:

@@ -670,6 +670,12 @@ class Numerics(Table):
     pocket_steps: int = Field(
         default=32, ge=8, le=1000, description="Time steps of the pocket flow in one pitch."
     )
+    pocket_interpolation: Number = Field(
+        default=0.002,
+        ge=0,
+        le=0.1,
+        description="Largest error of pocketing losses that sweeps interpolate; 0 solves each.",
+    )
 
 
 class LossOption(Table):

@@ -245,6 +245,7 @@ def _attributes(plan: Plan, given: Mapping[str, str]) -> dict[str, str]:
         "zero_torque": "efficiency has no value; the torque loss is that of the drag",
         "conventions": "losses in W of the whole gear set, summed over planets; efficiency: power "
         "that leaves over power that enters, 0 if the loss takes all of it",
+        "pocketing": given["pocketing"],
         "versions": given["versions"],
         "case": given["case"],
     }

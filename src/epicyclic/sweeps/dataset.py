@@ -60,7 +60,7 @@ def to_dataset(plan: Plan, rows: Sequence[Row]) -> xr.Dataset:
     for key, (label, values) in texts.items():
         column = np.array(values, dtype=object).reshape(plan.shape)
         variables[key] = (dims, column, _about(label, ""))
-    return xr.Dataset(variables, coords, _attributes(plan))
+    return xr.Dataset(variables, coords, _attributes(plan, rows))
 
 
 def _about(label: str, unit: str) -> dict[str, str]:
@@ -68,7 +68,7 @@ def _about(label: str, unit: str) -> dict[str, str]:
     return {"long_name": label} | ({"units": unit} if unit else {})
 
 
-def _attributes(plan: Plan) -> dict[str, str]:
+def _attributes(plan: Plan, rows: Sequence[Row]) -> dict[str, str]:
     used = versions()
     return {
         "title": plan.case.title,
@@ -77,7 +77,24 @@ def _attributes(plan: Plan) -> dict[str, str]:
         "case": json.dumps(plan.case.inputs()),
         "conventions": "losses in W of the whole gear set, summed over planets; "
         "torque and speed of the input member",
+        "pocketing": _about_pocketing(rows),
     }
+
+
+def _about_pocketing(rows: Sequence[Row]) -> str:
+    """Whether the pocketing losses of some points were interpolated, and how well."""
+    errors = [
+        value
+        for row in rows
+        for key, value in row.numbers.items()
+        if key.endswith("pocket_interpolation_error") and not math.isnan(value)
+    ]
+    if not errors:
+        return "flow solved at every point"
+    return (
+        "flow interpolated over speed * sqrt(density / ambient pressure); largest error of the "
+        f"loss, measured at flows left out: {max(errors):.2%}"
+    )
 
 
 def check_output(path: Path) -> None:

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case
+from epicyclic.pocketing.table import FlowTables
 from epicyclic.sweeps.dataset import to_dataset
 from epicyclic.sweeps.journal import Journal, Row
 from epicyclic.sweeps.plan import Plan, make_plan
+from epicyclic.sweeps.pockets import flow_tables
 from epicyclic.sweeps.work import BATCH, Progress, guarded, run_work
 
 if TYPE_CHECKING:
@@ -66,9 +68,10 @@ def sweep(
 
 @dataclass(frozen=True, slots=True)
 class _Cases:
-    """The cases of a plan as work."""
+    """The cases of a plan as work, with what they share."""
 
     plan: Plan
+    flow_tables: FlowTables
 
     def order(self) -> Sequence[int]:
         """Those that share geometry next to each other."""
@@ -76,7 +79,7 @@ class _Cases:
 
     def solve(self, index: int) -> Row:
         """One case as a flat record."""
-        return guarded(lambda: _solve_point(self.plan, index))
+        return guarded(lambda: _solve_point(self, index))
 
 
 def run_plan(
@@ -92,16 +95,18 @@ def run_plan(
     Parameters as for `sweep`; `batch` is the number of points that one worker should compute
     together.
     """
+    work = _Cases(plan, flow_tables(plan, jobs))
     rows: dict[int, Row] = {}
-    for finished in run_work(_Cases(plan), jobs=jobs, journal=journal, batch=batch):
+    for finished in run_work(work, jobs=jobs, journal=journal, batch=batch):
         rows.update(finished)
         if progress is not None:
             progress(len(rows), plan.size)
     return [rows[index] for index in range(plan.size)]
 
 
-def _solve_point(plan: Plan, index: int) -> Row:
-    result = solve(plan.case.updated(plan.changes(index)))
+def _solve_point(work: _Cases, index: int) -> Row:
+    case = work.plan.case.updated(work.plan.changes(index))
+    result = solve(case, flow_tables=work.flow_tables)
     return Row(
         status=str(result.status),
         warnings=" | ".join(result.warnings),

@@ -1,0 +1,153 @@
+"""Flows through the pockets of a mesh that differ in one number only.
+
+Viscosity takes no part in the flow. For given pockets, share of oil and resolution its equations
+hold speed, density and ambient pressure in one number, so that one curve over it serves all speeds
+and temperatures.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.errors import ConvergenceError
+from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.outline import Tool
+from epicyclic.lubricant.properties import MixtureState
+from epicyclic.pocketing.fluid import PocketFlow, PocketModel, pocket_flow
+from epicyclic.pocketing.geometry import PocketGeometry, pocket_geometry
+
+__all__ = ["FlowFamily", "FlowFigures", "flow_figures", "from_scaled", "scaled_figures"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class FlowFigures:
+    """What a result reports of the flow through the pockets of a mesh.
+
+    Attributes
+    ----------
+    power : float
+        [W]
+    difference : float
+        Of the power from the energy balance, relative. [1]
+    pressure_max, pressure_min : float
+        Above ambient. [Pa]
+    speed_max : float
+        [m/s]
+    periods : int
+        Mesh periods until the flow repeated.
+    periodic : bool
+        False if it did not.
+    nodes : int
+        Number of flows in the table that these figures were read from; zero for the flow itself.
+    error : float
+        Largest error of the power in that table, relative, measured at flows left out of it; NaN
+        for the flow itself. [1]
+    """
+
+    power: float
+    difference: float
+    pressure_max: float
+    pressure_min: float
+    speed_max: float
+    periods: int = 0
+    periodic: bool = True
+    nodes: int = 0
+    error: float = math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class FlowFamily:
+    """All flows through the same pockets. Attributes as for `pocket_geometry` and `pocket_flow`."""
+
+    mesh: Mesh
+    tools: tuple[Tool | None, Tool | None]
+    drives1: bool
+    oil_fraction: float
+    model: PocketModel
+    slices: int
+    steps: int
+
+    @property
+    def geometry(self) -> PocketGeometry:
+        """The pockets."""
+        return pocket_geometry(self.mesh, self.tools, self.drives1)
+
+    def flow(self, speed: float, mixture: MixtureState, pressure: float) -> PocketFlow:
+        """The flow itself. Parameters as for `pocket_flow`."""
+        return pocket_flow(
+            self.geometry, speed, mixture, pressure, self.model, self.slices, self.steps
+        )
+
+    @staticmethod
+    def number(speed: float, mixture: MixtureState, pressure: float) -> float:
+        """Speed over the root of pressure over density. Theory (Q21). [1/m]"""
+        return speed * math.sqrt(mixture.density / pressure)
+
+    def scaled(self, number: float) -> Floats:
+        """Scaled figures of the flow at a number; NaN if it does not repeat or is not found."""
+        try:
+            # not kept: only its figures are needed again
+            flow = pocket_flow.__wrapped__(
+                self.geometry,
+                number,
+                MixtureState(self.oil_fraction, 1.0, 0.0),
+                1.0,
+                self.model,
+                self.slices,
+                self.steps,
+            )
+        except ConvergenceError:
+            return np.full(5, math.nan)
+        if not flow.periodic:
+            return np.full(5, math.nan)
+        return scaled_figures(flow_figures(flow), number, 1.0)
+
+
+def flow_figures(flow: PocketFlow) -> FlowFigures:
+    """The figures of a flow."""
+    return FlowFigures(
+        power=flow.power,
+        difference=flow.difference,
+        pressure_max=float(flow.pressure.max()),
+        pressure_min=float(flow.pressure.min()),
+        speed_max=flow.speed_max,
+        periods=flow.periods,
+        periodic=flow.periodic,
+    )
+
+
+def scaled_figures(figures: FlowFigures, speed: float, density: float) -> Floats:
+    """Power, difference, pressures and speed as functions of the number alone. Theory (Q22)."""
+    head = density * speed**2
+    return np.array(
+        [
+            figures.power / (head * speed),
+            figures.difference,
+            figures.pressure_max / head,
+            figures.pressure_min / head,
+            figures.speed_max / speed,
+        ]
+    )
+
+
+def from_scaled(
+    scaled: Floats, speed: float, density: float, nodes: int, error: float
+) -> FlowFigures:
+    """The reverse of `scaled_figures`."""
+    power, difference, highest, lowest, fastest = map(float, scaled)
+    head = density * speed**2
+    return FlowFigures(
+        power=power * head * speed,
+        difference=difference,
+        pressure_max=highest * head,
+        pressure_min=lowest * head,
+        speed_max=fastest * speed,
+        nodes=nodes,
+        error=error,
+    )

@@ -1,0 +1,127 @@
+"""Tables of flows through pockets: do they give what the flows themselves give?"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+import epicyclic as ep
+from epicyclic.analysis.pair import pair_duty
+from epicyclic.analysis.pockets import flow_family
+from epicyclic.lubricant.properties import MixtureState
+from epicyclic.pocketing.similarity import flow_figures, scaled_figures
+from epicyclic.pocketing.table import make_tables
+
+COARSE = {"numerics.pocket_slices": 4, "numerics.pocket_steps": 12}
+BOUND = 0.002
+UNIT = MixtureState(0.05, 1.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def case():
+    return ep.load_case("talbot-2012-pair").updated(COARSE)
+
+
+@pytest.fixture(scope="module")
+def family(case):
+    return flow_family(case, pair_duty(case))
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Stands for a family of flows: a power that is a function of the number."""
+
+    name: str
+    geometry: None = None
+
+    def scaled(self, number):
+        powers = {"smooth": number**0.3, "jump": 1.0 + (number > 3.0), "gone": number}
+        power = powers[self.name]
+        if self.name == "gone" and 2.0 < number < 2.5:
+            power = math.nan
+        return np.array([power, 0.0, 1.0, -1.0, 1.0])
+
+
+def read(table, number):
+    """Scaled power that a table gives."""
+    figures = table.figures(number, UNIT, 1.0)
+    return None if figures is None else figures.power / number**3
+
+
+def numbers(count=200):
+    return np.geomspace(1.0, 8.0, count)
+
+
+def test_figures_depend_on_one_number_only(family):
+    """Three ways to the same number: speed, density and pressure. Newton's tolerance is 1e-9."""
+    thin = MixtureState(0.05, 40.0, 0.0)
+    states = [(400.0, thin, 1e5), (800.0, thin, 4e5), (200.0, replace(thin, density=160.0), 1e5)]
+    assert len({family.number(*state) for state in states}) == 1
+    one, *others = (
+        scaled_figures(flow_figures(family.flow(*state)), state[0], state[1].density)
+        for state in states
+    )
+    for other in others:
+        assert other == pytest.approx(one, rel=1e-6, abs=1e-9)
+
+
+def test_a_smooth_curve_takes_few_nodes_and_is_met():
+    (table,) = make_tables({Curve("smooth"): numbers()}, BOUND).values()
+    assert table.number.size < 10
+    assert table.error <= BOUND
+    for number in numbers(57)[1:-1]:
+        assert read(table, number) == pytest.approx(number**0.3, rel=BOUND)
+
+
+def test_a_jump_is_solved_where_it_is_and_read_elsewhere():
+    (table,) = make_tables({Curve("jump"): numbers()}, BOUND).values()
+    jump = int(np.searchsorted(table.number, 3.0))
+    assert not table.readable[jump - 1]
+    assert table.number.size < 60
+    assert table.readable[[0, -1]].all()
+    for number in numbers():  # every number asked for has an answer, at the jump its own
+        assert read(table, number) == pytest.approx(1.0 + (number > 3.0), rel=BOUND)
+
+
+def test_what_does_not_repeat_is_left_to_the_solver():
+    (table,) = make_tables({Curve("gone"): numbers()}, BOUND).values()
+    assert read(table, 2.2) is None
+    assert read(table, 1.5) == pytest.approx(1.5, rel=BOUND)
+    assert all(read(table, number) is None for number in (0.5, 9.0))
+
+
+def test_equal_numbers_are_one_flow():
+    asked = [1.0, 1.0 + 1e-13, 2.0]
+    (table,) = make_tables({Curve("smooth"): asked}, BOUND).values()
+    assert table.number.size == 2
+
+
+def test_flows_read_are_the_flows(family):
+    """At numbers that the table does not have, within the bound that it was made for."""
+    (table,) = make_tables({family: np.geomspace(1.0, 6.0, 40)}, BOUND).values()
+    assert 4 <= table.number.size < 40
+    for number in np.sqrt(table.number[1:] * table.number[:-1])[table.readable][::4]:
+        assert read(table, number) == pytest.approx(family.scaled(number)[0], rel=BOUND)
+
+
+def test_a_sweep_interpolates_and_says_so(case):
+    speeds = [f"{speed} rpm" for speed in range(2000, 5000, 150)]
+    vary = {"operation.speed": speeds}
+    read = ep.sweep(case, vary, jobs=1)
+    solved = ep.sweep(case.updated({"numerics.pocket_interpolation": 0}), vary, jobs=1)
+    error = read["mesh_pocket_interpolation_error"]
+    assert (error <= BOUND).all()
+    assert solved["mesh_pocket_interpolation_error"].isnull().all()
+    assert (read["mesh_pocketing"] != solved["mesh_pocketing"]).sum() >= 5
+    np.testing.assert_allclose(read["mesh_pocketing"], solved["mesh_pocketing"], rtol=BOUND)
+    assert "interpolated" in read.attrs["pocketing"]
+    assert "solved at every point" in solved.attrs["pocketing"]
+
+
+def test_a_single_case_and_few_points_are_solved(case):
+    assert math.isnan(ep.solve(case).meshes["mesh"].pocket_interpolation_error)
+    few = ep.sweep(case, {"operation.speed": ["1000 rpm", "2000 rpm"]}, jobs=1)
+    assert few["mesh_pocket_interpolation_error"].isnull().all()
