@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
     from epicyclic.maps.compute import loss_map
     from epicyclic.maps.formats import write_map
+    from epicyclic.records.files import open_result, save_result
+    from epicyclic.records.record import ResultRecord, record
+    from epicyclic.report.html import report_html
     from epicyclic.sweeps.run import sweep
 
 _HOME = {
@@ -32,12 +35,17 @@ _HOME = {
     "PlanetaryCase": "epicyclic.case.case",
     "Problem": "epicyclic.errors",
     "Result": "epicyclic.analysis.result",
+    "ResultRecord": "epicyclic.records.record",
     "case_schema": "epicyclic.case.case",
     "load_case": "epicyclic.case.case",
     "loaded_meshes": "epicyclic.analysis.solve",
     "loss_map": "epicyclic.maps.compute",
     "mesh_contacts": "epicyclic.analysis.solve",
     "mesh_details": "epicyclic.analysis.mesh_details",
+    "open_result": "epicyclic.records.files",
+    "record": "epicyclic.records.record",
+    "report_html": "epicyclic.report.html",
+    "save_result": "epicyclic.records.files",
     "solve": "epicyclic.analysis.solve",
     "sweep": "epicyclic.sweeps.run",
     "write_map": "epicyclic.maps.formats",
@@ -51,12 +59,17 @@ __all__ = [
     "PlanetaryCase",
     "Problem",
     "Result",
+    "ResultRecord",
     "case_schema",
     "load_case",
     "loaded_meshes",
     "loss_map",
     "mesh_contacts",
     "mesh_details",
+    "open_result",
+    "record",
+    "report_html",
+    "save_result",
     "solve",
     "sweep",
     "write_map",

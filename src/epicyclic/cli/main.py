@@ -22,6 +22,7 @@ from epicyclic.cli.exit_codes import (
 )
 from epicyclic.cli.listing import cases, init, oils, schema
 from epicyclic.cli.many import loss_map, sweep
+from epicyclic.cli.show import plot, report
 from epicyclic.cli.single import check, friction, mesh, run
 from epicyclic.cli.validate import validate
 from epicyclic.errors import ConvergenceError, InputError, is_interrupt
@@ -44,7 +45,8 @@ def cli() -> None:
 
 
 COMMANDS = (
-    run, check, sweep, loss_map, mesh, contact, friction, validate, cases, oils, init, schema,
+    run, check, sweep, loss_map, mesh, contact, friction, report, plot, validate, cases, oils, init,
+    schema,
 )  # fmt: skip
 for command in COMMANDS:
     cli.add_command(command)
