@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from epicyclic.exchange.rexs.importing import RexsImport, read_rexs
     from epicyclic.maps.compute import loss_map
     from epicyclic.maps.formats import write_map
+    from epicyclic.records.files import open_result, save_result
+    from epicyclic.records.record import ResultRecord, record
+    from epicyclic.report.html import report_html
     from epicyclic.sweeps.run import sweep
 
 _HOME = {
@@ -36,6 +39,7 @@ _HOME = {
     "Problem": "epicyclic.errors",
     "Result": "epicyclic.analysis.result",
     "RexsImport": "epicyclic.exchange.rexs.importing",
+    "ResultRecord": "epicyclic.records.record",
     "case_schema": "epicyclic.case.case",
     "load_case": "epicyclic.exchange.load",
     "loaded_meshes": "epicyclic.analysis.solve",
@@ -44,6 +48,10 @@ _HOME = {
     "mesh_details": "epicyclic.analysis.mesh_details",
     "pocket_details": "epicyclic.analysis.pocket_details",
     "read_rexs": "epicyclic.exchange.rexs.importing",
+    "open_result": "epicyclic.records.files",
+    "record": "epicyclic.records.record",
+    "report_html": "epicyclic.report.html",
+    "save_result": "epicyclic.records.files",
     "solve": "epicyclic.analysis.solve",
     "sweep": "epicyclic.sweeps.run",
     "write_map": "epicyclic.maps.formats",
@@ -57,6 +65,7 @@ __all__ = [
     "PlanetaryCase",
     "Problem",
     "Result",
+    "ResultRecord",
     "RexsImport",
     "case_schema",
     "load_case",
@@ -64,8 +73,12 @@ __all__ = [
     "loss_map",
     "mesh_contacts",
     "mesh_details",
+    "open_result",
     "pocket_details",
     "read_rexs",
+    "record",
+    "report_html",
+    "save_result",
     "solve",
     "sweep",
     "write_map",

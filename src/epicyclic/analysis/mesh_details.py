@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.analysis.datasets import Variable, variable
 from epicyclic.analysis.parts import (
     MeshDuty,
     contact_under,
@@ -34,7 +35,6 @@ from epicyclic.units import (
     NEWTON_PER_MM_MICROMETRE,
     NUMBER,
     WATT_PER_MM,
-    Quantity,
 )
 
 if TYPE_CHECKING:
@@ -43,7 +43,6 @@ if TYPE_CHECKING:
 __all__ = ["mesh_details"]
 
 FloatArray = NDArray[np.float64]
-Variable = tuple[tuple[str, ...], FloatArray, dict[str, str]]
 
 _DIMENSIONS = ("mesh_position", "contact_line", "segment")
 
@@ -91,7 +90,7 @@ def _details(case: Case, duty: MeshDuty, notes: tuple[str, ...]) -> xr.Dataset:
     lines = loads.lines
     pitch_angle = 2 * math.pi / mesh.gear1.teeth
     variables = {
-        "weight": _variable(1, lines.weight, "share of the mesh period", NUMBER),
+        "weight": variable(_DIMENSIONS[:1], lines.weight, "share of the mesh period", NUMBER),
         "path_position": _points(
             lines.curvature1 - mesh.pitch_point, "path of contact from the pitch point", MILLIMETRE
         ),
@@ -100,8 +99,11 @@ def _details(case: Case, duty: MeshDuty, notes: tuple[str, ...]) -> xr.Dataset:
         **_contact(case, duty, loads),
     }
     coordinates = {
-        "roll_angle": _variable(
-            1, lines.position * pitch_angle, f"roll angle of the {mesh.gear1.name}", DEGREE
+        "roll_angle": variable(
+            _DIMENSIONS[:1],
+            lines.position * pitch_angle,
+            f"roll angle of the {mesh.gear1.name}",
+            DEGREE,
         ),
         "contact_line": np.arange(lines.length.shape[1]),
     }
@@ -116,14 +118,7 @@ def _details(case: Case, duty: MeshDuty, notes: tuple[str, ...]) -> xr.Dataset:
     return xr.Dataset(variables, coordinates, attributes)
 
 
-def _variable(dims: int, values: FloatArray, label: str, unit: Quantity) -> Variable:
-    """A variable over the first `dims` of the dimensions."""
-    scale, offset = unit.scale_and_offset()
-    attributes = {"long_name": label, "units": unit.display or "1"}
-    return (_DIMENSIONS[:dims], values * scale + offset, attributes)
-
-
-_points = partial(_variable, 3)
+_points = partial(variable, _DIMENSIONS)
 
 
 def _loads(loads: LineLoads, face_width: float) -> dict[str, Variable]:
@@ -138,15 +133,20 @@ def _loads(loads: LineLoads, face_width: float) -> dict[str, Variable]:
         "line_load": _points(
             np.where(touching, loads.line_load, math.nan), "line load", NEWTON_PER_MM
         ),
-        "pair_load": _variable(
-            2,
+        "pair_load": variable(
+            _DIMENSIONS[:2],
             (loads.line_load * lines.length).sum(axis=2),
             "normal force on the tooth pair",
             NEWTON,
         ),
-        "transmission_error": _variable(1, error, "loaded transmission error", MICROMETRE),
-        "mesh_stiffness": _variable(
-            1, stiffness / face_width, "mesh stiffness per face width", NEWTON_PER_MM_MICROMETRE
+        "transmission_error": variable(
+            _DIMENSIONS[:1], error, "loaded transmission error", MICROMETRE
+        ),
+        "mesh_stiffness": variable(
+            _DIMENSIONS[:1],
+            stiffness / face_width,
+            "mesh stiffness per face width",
+            NEWTON_PER_MM_MICROMETRE,
         ),
     }
 

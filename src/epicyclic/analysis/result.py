@@ -313,6 +313,8 @@ class Result:
                 **{term.name: term.method for term in self.terms if not term.left_out},
                 **self.load_methods,
             },
+            "groups": {term.name: term.group for term in self.terms},
+            "citations": {term.name: term.source for term in self.terms if not term.left_out},
             "models": dict(self.models),
             "validity": [dataclasses.asdict(flag) for flag in self.flags],
             "members": {

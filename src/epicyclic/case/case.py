@@ -85,9 +85,12 @@ class _CaseTable(Table):
         InputError
             With every problem of the changed case.
         """
-        tables = self._tables or plain(self.inputs())
-        tables, problems = _with_changes(type(self), tables, changes)
+        tables, problems = _with_changes(type(self), self.given(), changes)
         return _build(type(self), tables, self._source, problems)
+
+    def given(self) -> dict[str, Any]:
+        """The case as nested tables of the keys that were given, without defaults."""
+        return self._tables or plain(self.inputs())
 
     def inputs(self) -> dict[str, Any]:
         """The case as nested tables of text and numbers, defaults included, as a file has them."""

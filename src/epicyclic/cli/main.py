@@ -25,6 +25,7 @@ from epicyclic.cli.listing import cases, init, oils, schema
 from epicyclic.cli.many import loss_map, sweep
 from epicyclic.cli.pockets import pockets
 from epicyclic.cli.rexs import rexs
+from epicyclic.cli.show import plot, report
 from epicyclic.cli.single import check, friction, mesh, run
 from epicyclic.cli.validate import validate
 from epicyclic.errors import ConvergenceError, InputError, is_interrupt
@@ -59,6 +60,8 @@ COMMANDS = (
     cases,
     oils,
     init,
+    report,
+    plot,
     rexs,
     schema,
 )

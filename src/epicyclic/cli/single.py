@@ -23,11 +23,23 @@ __all__ = ["check", "friction", "mesh", "run"]
     flag_value="-",
     help="Write the result as JSON, to standard output if no FILE or - is given.",
 )
-def run(case: str, changes: tuple[str, ...], json_file: str | None) -> None:
+@click.option(
+    "--save",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Keep the result with all its fields in FILE.nc, for reports and plots.",
+)
+def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path | None) -> None:
     """Compute the losses of a case and print them by component."""
     from epicyclic.analysis.solve import solve
 
-    result = solve(load_with(case, changes))
+    loaded = load_with(case, changes)
+    if save is not None:
+        from epicyclic.records.files import check_result_output, save_result
+
+        check_result_output(save)
+        save_result(loaded, save)
+    result = solve(loaded)
     if json_file == "-":
         click.echo(result.to_json())
         return

@@ -17,6 +17,7 @@ from epicyclic.plots.style import COLOUR_MAP, label_of, styled_figure
 
 __all__ = [
     "mesh_figure",
+    "plot_along_path",
     "plot_mesh_stiffness",
     "plot_pair_loads",
     "plot_plane_of_action",
@@ -27,6 +28,8 @@ FloatArray = NDArray[np.float64]
 
 MAPS = ("line_load", "hertz_pressure", "sliding_speed", "friction_power")
 """Variables drawn over the plane of action."""
+PATH_PLACES = 40
+"""Places on the path of contact at which values are taken together."""
 
 
 def mesh_figure(mesh: xr.Dataset) -> Figure:
@@ -116,6 +119,35 @@ def _plot_over_period(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
     ax.set(
         title=str(mesh[name].attrs["long_name"]).capitalize(),
         xlabel=label_of(mesh["roll_angle"]),
+        ylabel=label_of(mesh[name]),
+    )
+    return ax
+
+
+def plot_along_path(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
+    """Mean and extremes of `name` at each place on the path of contact, from root to tip."""
+    path, values = (mesh[key].to_numpy().ravel() for key in ("path_position", name))
+    known = np.isfinite(values)
+    if known.any():
+        path, values = path[known], values[known]
+        edges = np.linspace(path.min(), path.max(), PATH_PLACES + 1)
+        place = np.clip(np.searchsorted(edges, path, side="right") - 1, 0, PATH_PLACES - 1)
+        found = np.unique(place)
+        middle = ((edges[1:] + edges[:-1]) / 2)[found]
+        low, mean, high = (
+            np.array([pick(values[place == one]) for one in found])
+            for pick in (np.min, np.mean, np.max)
+        )
+        ax.fill_between(middle, low, high, alpha=0.25, lw=0, label="range across the face")
+        ax.plot(middle, mean, label="mean across the face")
+        ax.axvline(0.0, color="black", lw=0.8, ls="--", label="pitch point")
+        ax.legend(fontsize="small")
+        ax.set_ylim(bottom=min(0.0, float(low.min())))
+    else:
+        _say(ax, "no motion")
+    ax.set(
+        title=f"{str(mesh[name].attrs['long_name']).capitalize()} along the path of contact",
+        xlabel=label_of(mesh["path_position"]),
         ylabel=label_of(mesh[name]),
     )
     return ax

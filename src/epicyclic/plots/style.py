@@ -13,11 +13,15 @@ from matplotlib.figure import Figure
 
 from epicyclic.units import unit_text
 
-__all__ = ["COLOURS", "COLOUR_MAP", "label_of", "styled_figure"]
+__all__ = ["COLOURS", "COLOUR_MAP", "LINE_STYLES", "label_of", "styled_figure"]
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """Of M. Okabe and K. Ito, Color Universal Design (2008)."""
 COLOUR_MAP = "viridis"
+LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (8, 2)))
+"""Beside colours, for prints in grey."""
+PANEL = (4.8, 3.4)
+"""Width and height of one of the Axes of a figure. [inch]"""
 
 _STYLE: Any = {
     "axes.prop_cycle": rcsetup.cycler("color", COLOURS),
@@ -34,18 +38,32 @@ _STYLE: Any = {
 
 
 @contextmanager
-def styled_figure(rows: int, columns: int, title: str) -> Iterator[tuple[Figure, Any]]:
+def styled_figure(
+    rows: int,
+    columns: int,
+    title: str,
+    *,
+    panel: tuple[float, float] = PANEL,
+    projection: str | None = None,
+) -> Iterator[tuple[Figure, Any]]:
     """A figure and its array of Axes, drawn in the style of the package.
 
     Parameters
     ----------
     rows, columns : int
     title : str
+        As it is, without mathematics; none if empty.
+    panel : tuple of float
+        Width and height of one of the Axes. [inch]
+    projection : str, optional
+        ``"polar"``.
     """
     with mpl.rc_context(_STYLE):
-        figure = Figure(figsize=(4.8 * columns, 3.4 * rows), layout="constrained")
-        axes = figure.subplots(rows, columns, squeeze=False)
-        figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
+        size = (panel[0] * columns, panel[1] * rows)
+        figure = Figure(figsize=size, layout="constrained")
+        axes = figure.subplots(rows, columns, squeeze=False, subplot_kw={"projection": projection})
+        if title:
+            figure.suptitle(title, x=0.01, ha="left", fontweight="bold", parse_math=False)
         yield figure, axes
 
 

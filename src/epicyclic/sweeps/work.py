@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
-from typing import Protocol
+from typing import Any, Protocol
 
 from epicyclic.errors import EpicyclicError, InputError, Problem, is_interrupt
 from epicyclic.status import Status
@@ -131,7 +131,7 @@ def _run_on_cluster(
             yield [(index, row)]
 
 
-def _distributed():  # type: ignore[no-untyped-def]
+def _distributed() -> Any:
     """The package of Dask clusters, which is no requirement."""
     try:
         import distributed
@@ -143,7 +143,7 @@ def _distributed():  # type: ignore[no-untyped-def]
     return distributed
 
 
-def _client(address: str):  # type: ignore[no-untyped-def]
+def _client(address: str) -> Any:
     """A connection to the scheduler at `address`."""
     try:
         return _distributed().Client(address, timeout="10s")

@@ -1,0 +1,23 @@
+"""Variables of datasets: values in the units that users see, with label and unit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.units import Quantity
+
+__all__ = ["Variable", "variable"]
+
+Variable = tuple[tuple[str, ...], NDArray[np.float64], dict[str, Any]]
+
+
+def variable(
+    dims: tuple[str, ...], values: NDArray[np.float64] | float, label: str, unit: Quantity
+) -> Variable:
+    """`values`, in SI, as a variable over `dims`, for the constructor of `xarray.Dataset`."""
+    scale, offset = unit.scale_and_offset()
+    attributes = {"long_name": label, "units": unit.display or "1"}
+    return (dims, np.asarray(values) * scale + offset, attributes)

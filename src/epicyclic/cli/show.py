@@ -1,0 +1,89 @@
+"""Commands that show a stored result or map, or a case solved afresh: report, plot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from epicyclic.cli.options import load_with, set_option
+from epicyclic.cli.output import PICTURES, check_picture, draw, write_file
+from epicyclic.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    from epicyclic.plots.catalogue import Stored
+
+__all__ = ["plot", "report"]
+
+PAGE = ".html"
+stored_argument = click.argument("source", metavar="CASE|FILE.nc")
+
+
+@click.command()
+@stored_argument
+@set_option
+@click.option(
+    "-o", "--output", required=True, type=click.Path(path_type=Path), help="The page, .html."
+)
+def report(source: str, changes: tuple[str, ...], output: Path) -> None:
+    """Write a report as one HTML file that needs nothing else.
+
+    FILE.nc is what run --save or map wrote; a CASE is solved first.
+    """
+    from epicyclic.cli.progress import progress_bar
+
+    check_picture("-o", output, (PAGE,))
+    stored = _stored(source, changes)
+    from epicyclic.report.html import report_html
+
+    with progress_bar("figures") as progress:
+        page = report_html(stored, progress)
+    write_file(output, page)
+    click.echo(f"Wrote {output}.")
+
+
+@click.command()
+@stored_argument
+@click.argument("what", required=False)
+@set_option
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help=f"The picture, {', '.join(PICTURES)}; default: WHAT.png.",
+)
+def plot(source: str, what: str | None, changes: tuple[str, ...], output: Path | None) -> None:
+    """Draw one plot of a result or map; without WHAT, list what can be drawn.
+
+    FILE.nc is what run --save or map wrote; a CASE is solved first.
+    """
+    if output is not None:
+        check_picture("-o", output)
+    from epicyclic.plots.catalogue import available, figure_of
+
+    stored = _stored(source, changes)
+    if what is None:
+        found = available(stored)
+        width = max(map(len, found))
+        for name, entry in found.items():
+            click.echo(f"{name:<{width}}  {entry.question}")
+        return
+    draw(figure_of(stored, what), output or Path(f"{what}.png"))
+
+
+def _stored(source: str, changes: Sequence[str]) -> Stored:
+    """What a file holds, or the record of a case."""
+    from epicyclic.records.files import is_stored, open_result
+    from epicyclic.records.record import record
+
+    if not is_stored(source):
+        return record(load_with(source, changes))
+    if changes:
+        problem = Problem(
+            "--set", f'"{changes[0]}"', "changes a case, and a stored result is none.",
+            "Solve the case with it: epicyclic run CASE --set ... --save FILE.nc.",
+        )  # fmt: skip
+        raise InputError([problem], "the command")
+    return open_result(source)

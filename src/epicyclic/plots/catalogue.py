@@ -1,0 +1,234 @@
+"""What can be drawn from a stored result or a map: one entry for each question of an engineer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from epicyclic.errors import InputError, Problem
+from epicyclic.plots.bearing import plot_roller_loads, plot_roller_profile
+from epicyclic.plots.drawing import plot_gear_set, plot_teeth
+from epicyclic.plots.loss_map import map_at, plot_map, plot_map_lines
+from epicyclic.plots.losses import plot_loss_sum, plot_losses
+from epicyclic.plots.mesh import (
+    plot_along_path,
+    plot_mesh_stiffness,
+    plot_pair_loads,
+    plot_plane_of_action,
+    plot_transmission_error,
+)
+from epicyclic.plots.style import PANEL, styled_figure
+from epicyclic.records.record import ResultRecord
+
+__all__ = ["PLOTS", "Panel", "Plot", "available", "figure_of", "panels_of"]
+
+Stored = ResultRecord | xr.Dataset
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """One Axes of a plot.
+
+    Attributes
+    ----------
+    subject : str
+        What it is of, ``"sun mesh"``; empty if it is of the whole.
+    draw : callable
+        Draws on Axes.
+    """
+
+    subject: str
+    draw: Callable[[Axes], Axes]
+
+
+@dataclass(frozen=True, slots=True)
+class Plot:
+    """One plot.
+
+    Attributes
+    ----------
+    question : str
+        Which it answers.
+    panels : callable
+        The panels that a stored result or map has; none if it lacks what the plot shows.
+    projection : str or None
+        Of its Axes.
+    """
+
+    question: str
+    panels: Callable[[Stored], list[Panel]]
+    projection: str | None = None
+
+
+def _of_result(draw: Callable[..., Axes]) -> Callable[[Stored], list[Panel]]:
+    def panels(stored: Stored) -> list[Panel]:
+        return [Panel("", partial(draw, stored.result))] if isinstance(stored, ResultRecord) else []
+
+    return panels
+
+
+def _of_group(
+    group: str, draw: Callable[..., Axes], *more: object
+) -> Callable[[Stored], list[Panel]]:
+    """One panel for each field of a group."""
+
+    def panels(stored: Stored) -> list[Panel]:
+        if not isinstance(stored, ResultRecord):
+            return []
+        return [
+            Panel(name.replace("_", " "), partial(draw, data, *more))
+            for name, data in stored.group(group).items()
+        ]
+
+    return panels
+
+
+def _gear_set(stored: Stored) -> list[Panel]:
+    if not isinstance(stored, ResultRecord):
+        return []
+    return [Panel("", partial(plot_gear_set, stored.group("gears")))]
+
+
+def _teeth(stored: Stored) -> list[Panel]:
+    if not isinstance(stored, ResultRecord):
+        return []
+    gears = stored.group("gears")
+    return [
+        Panel(name.replace("_", " "), partial(plot_teeth, view, gears))
+        for name, view in stored.group("views").items()
+    ]
+
+
+def _of_map(draw: Callable[..., Axes], name: str, *more: object) -> Callable[[Stored], list[Panel]]:
+    """One panel for each temperature of a map, at the first value of its further keys."""
+
+    def panels(stored: Stored) -> list[Panel]:
+        if isinstance(stored, ResultRecord):
+            return []
+        return [
+            Panel(
+                f"{float(value):g} °C",
+                partial(draw, map_at(stored, temperature=value), name, *more),
+            )
+            for value in stored["temperature"].values
+        ]
+
+    return panels
+
+
+PLOTS: dict[str, Plot] = {
+    "gear-set": Plot("What does the gear set look like, to scale?", _gear_set),
+    "teeth": Plot("How do the teeth touch, and where is the path of contact?", _teeth),
+    "losses": Plot("Where do the watts go?", _of_result(plot_losses)),
+    "loss-sum": Plot("How do the losses add up?", _of_result(plot_loss_sum)),
+    "line-load": Plot(
+        "How is the load distributed over the flanks?",
+        _of_group("meshes", plot_plane_of_action, "line_load"),
+    ),
+    "pressure": Plot(
+        "How high is the contact pressure, and where?",
+        _of_group("meshes", plot_plane_of_action, "hertz_pressure"),
+    ),
+    "pair-load": Plot(
+        "How does one tooth pair carry through its engagement?",
+        _of_group("meshes", plot_pair_loads),
+    ),
+    "transmission-error": Plot(
+        "How large is the loaded transmission error?", _of_group("meshes", plot_transmission_error)
+    ),
+    "stiffness": Plot("How stiff is the mesh?", _of_group("meshes", plot_mesh_stiffness)),
+    "friction": Plot(
+        "How does friction change along the path of contact?",
+        _of_group("meshes", plot_along_path, "friction_coefficient"),
+    ),
+    "sliding": Plot(
+        "How fast do the flanks slide?", _of_group("meshes", plot_along_path, "sliding_speed")
+    ),
+    "film": Plot(
+        "Does the oil film separate the flanks?", _of_group("meshes", plot_along_path, "film_ratio")
+    ),
+    "friction-power": Plot(
+        "Where on the flanks is power lost?",
+        _of_group("meshes", plot_plane_of_action, "friction_power"),
+    ),
+    "roller-loads": Plot(
+        "Which rollers of the planet bearing carry?",
+        _of_group("bearings", plot_roller_loads),
+        projection="polar",
+    ),
+    "roller-pressure": Plot(
+        "How is the load distributed along the rollers?",
+        _of_group("bearings", plot_roller_profile),
+    ),
+    "efficiency-map": Plot(
+        "How efficient is it over speed and torque?", _of_map(plot_map, "efficiency")
+    ),
+    "loss-map": Plot("How much power is lost over speed and torque?", _of_map(plot_map, "total")),
+    "torque-loss-map": Plot(
+        "How much torque is lost over speed and torque?", _of_map(plot_map, "torque_loss")
+    ),
+    "loss-over-speed": Plot(
+        "How does the loss grow with speed?", _of_map(plot_map_lines, "total", "speed")
+    ),
+    "loss-over-torque": Plot(
+        "How does the loss grow with torque?", _of_map(plot_map_lines, "total", "torque")
+    ),
+}
+"""By the names that ``epicyclic plot`` takes."""
+
+
+def available(stored: Stored) -> dict[str, Plot]:
+    """The plots for which `stored` holds the data."""
+    return {name: plot for name, plot in PLOTS.items() if plot.panels(stored)}
+
+
+def panels_of(stored: Stored, name: str) -> list[Panel]:
+    """The panels of a plot.
+
+    Raises
+    ------
+    InputError
+        If there is no such plot, or the file lacks what it shows.
+    """
+    found = available(stored)
+    if name in found:
+        return found[name].panels(stored)
+    allowed = "cannot be drawn from this file" if name in PLOTS else "is no plot"
+    problem = Problem(
+        "WHAT", name, f"{allowed}; it has {', '.join(found)}.", "Choose one of these."
+    )
+    raise InputError([problem], "the command")
+
+
+def figure_of(stored: Stored, name: str) -> Figure:
+    """A plot as a figure, its panels side by side.
+
+    Parameters
+    ----------
+    stored : ResultRecord or xarray.Dataset
+        As `epicyclic.open_result` returns it.
+    name : str
+        One of `PLOTS`.
+    """
+    panels = panels_of(stored, name)
+    columns = math.ceil(math.sqrt(len(panels)))
+    rows = math.ceil(len(panels) / columns)
+    title = stored.title if isinstance(stored, ResultRecord) else str(stored.attrs.get("title", ""))
+    plot = PLOTS[name]
+    with styled_figure(rows, columns, title, panel=PANEL, projection=plot.projection) as (
+        figure, axes,
+    ):  # fmt: skip
+        spare = axes.ravel()[len(panels) :]
+        for panel, ax in zip(panels, axes.ravel(), strict=False):
+            panel.draw(ax)
+            if panel.subject:
+                ax.set_title(f"{ax.get_title(loc='left')}: {panel.subject}")
+        for ax in spare:
+            ax.remove()
+    return figure

@@ -1,0 +1,159 @@
+"""Drawings to scale: the gear set in the transverse plane, and the teeth of a mesh in contact."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+from numpy.typing import NDArray
+
+from epicyclic.plots.style import COLOURS
+
+__all__ = ["plot_gear_set", "plot_teeth"]
+
+Floats = NDArray[np.float64]
+
+FILLS = {"sun": "#F6D58A", "pinion": "#F6D58A", "planet": "#BFD9EA", "ring": "0.85", "gear": "0.85"}
+CIRCLE_POINTS = 181
+SHOWN_MODULES = 5.0
+"""Half the width of a drawing of teeth. [transverse modules]"""
+HEIGHT_SHARE = 0.5
+"""Height of a drawing of teeth over its width, at least. [1]"""
+MARGIN = 1.04
+
+
+def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
+    """All gears at their places, to scale, seen along the axis.
+
+    Parameters
+    ----------
+    gears : mapping of str to xarray.Dataset
+        As `epicyclic.analysis.shapes.gear_shapes` returns them.
+    """
+    reach = 0.0
+    for name, gear in gears.items():
+        label = f"{name}, {int(gear.attrs['teeth'])} teeth"
+        outline = _whole_outline(gear)
+        inside = bool(gear.attrs["internal"])
+        for number in range(gear.sizes["place"]):
+            center, turn = _place(gear, number)
+            shape = _path(outline @ _rotation(turn) + center)
+            if inside:
+                rim = _circle(_scalar(gear, "outside_diameter") / 2) + center
+                shape = Path.make_compound_path(_path(rim[::-1]), shape)
+            ax.add_patch(
+                PathPatch(
+                    shape, facecolor=FILLS.get(name, "0.9"), edgecolor="black", linewidth=0.5,
+                    label=label if number == 0 else None,
+                )
+            )  # fmt: skip
+            ax.plot(*center, marker="+", color="black", ms=5, mew=0.6)
+            reach = max(reach, float(np.abs(center).max()) + _scalar(gear, "outside_diameter") / 2)
+    _frame(ax, MARGIN * reach, MARGIN * reach)
+    ax.legend(loc="upper right", fontsize="small", frameon=False)
+    ax.set_title("Gear set to scale" if "ring" in gears else "Gear pair to scale")
+    return ax
+
+
+def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
+    """Teeth of a mesh touching at the pitch point, with line of action and path of contact."""
+    names = [str(name) for name in view["gear"].values]
+    module = max(
+        _scalar(gears[name], "reference_diameter") / gears[name].attrs["teeth"] for name in names
+    )
+    half = SHOWN_MODULES * module
+    for number, name in enumerate(names):
+        gear, center = gears[name], np.array([view["center_x"][number], view["center_y"][number]])
+        turn = math.radians(float(view["direction"][number])) - math.pi / 2
+        ax.add_patch(
+            PathPatch(
+                _path(_some_teeth(gear, turn, half) + center), facecolor=FILLS.get(name, "0.9"),
+                edgecolor="black", linewidth=0.8, label=name,
+            )
+        )  # fmt: skip
+        pitch = _circle(float(view["operating_radius"][number])) + center
+        base = _circle(_scalar(gear, "base_diameter") / 2) + center
+        label = number == 0
+        ax.plot(*pitch.T, color="0.35", lw=0.8, ls="-.", label="operating pitch circles" * label)
+        ax.plot(*base.T, color="0.35", lw=0.8, ls=":", label="base circles" * label)
+    slope = math.tan(math.radians(float(view["pressure_angle"])))
+    ax.axline((0.0, 0.0), slope=slope, color=COLOURS[0], lw=1.0, ls="--", label="line of action")
+    ax.plot(view["path_x"], view["path_y"], color=COLOURS[1], lw=2.4, label="path of contact")
+    ax.plot(0.0, 0.0, marker="o", color="black", ms=4, ls="", label="pitch point")
+    _frame(ax, half, half * HEIGHT_SHARE)
+    ax.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, fontsize="small", frameon=False
+    )
+    ax.set_title("Teeth in contact")
+    return ax
+
+
+def _frame(ax: Axes, half_width: float, half_height: float) -> None:
+    """Millimetres of equal length on both axes; the wider side shows more."""
+    ax.set(xlabel="x, mm", ylabel="y, mm")
+    ax.set_xlim(-half_width, half_width, auto=True)
+    ax.set_ylim(-half_height, half_height, auto=True)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.grid(visible=False)
+
+
+def _scalar(gear: xr.Dataset, name: str) -> float:
+    return float(gear[name])
+
+
+def _place(gear: xr.Dataset, number: int) -> tuple[Floats, float]:
+    """Centre of a gear, and by how much it is turned from a tooth that points along y. [rad]"""
+    center = np.array([gear["center_x"][number], gear["center_y"][number]])
+    return center, math.radians(float(gear["direction"][number])) - math.pi / 2
+
+
+def _rotation(angle: float) -> Floats:
+    """For points in rows."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return np.array([[cosine, sine], [-sine, cosine]])
+
+
+def _circle(radius: float) -> Floats:
+    angle = np.linspace(0, 2 * math.pi, CIRCLE_POINTS)
+    return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def _path(points: Floats) -> Path:
+    return Path(points, closed=False)
+
+
+def _whole_outline(gear: xr.Dataset) -> Floats:
+    """All teeth, or the tip circle of a gear whose teeth have no outline."""
+    if "x" not in gear:
+        return _circle(_scalar(gear, "tip_diameter") / 2)
+    return _teeth(gear, range(int(gear.attrs["teeth"])))
+
+
+def _teeth(gear: xr.Dataset, numbers: range) -> Floats:
+    """Outline of some teeth side by side; tooth 0 points along y."""
+    tooth = np.column_stack([gear["x"], gear["y"]])
+    pitch = 2 * math.pi / int(gear.attrs["teeth"])
+    return np.concatenate([tooth @ _rotation(number * pitch) for number in numbers])
+
+
+def _some_teeth(gear: xr.Dataset, turn: float, half: float) -> Floats:
+    """The teeth within `half` of the origin, closed to a solid, turned by `turn`."""
+    if "x" not in gear:
+        return _circle(_scalar(gear, "tip_diameter") / 2)
+    count = int(gear.attrs["teeth"])
+    radius = _scalar(gear, "reference_diameter") / 2
+    side = min(count // 2, math.ceil(2 * half / (2 * math.pi * radius / count)))
+    outline = _teeth(gear, range(-side, side + 1))
+    if gear.attrs["internal"]:
+        first, last = np.arctan2(outline[[0, -1], 1], outline[[0, -1], 0]).tolist()
+        angle = np.linspace(last, first, CIRCLE_POINTS)
+        outside = _scalar(gear, "outside_diameter") / 2
+        back = outside * np.column_stack([np.cos(angle), np.sin(angle)])
+    else:
+        back = np.zeros((1, 2))
+    return np.concatenate([outline, back, outline[:1]]) @ _rotation(turn)

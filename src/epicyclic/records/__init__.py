@@ -1,0 +1,1 @@
+"""Results with everything that reports and plots show, and the files they are kept in."""

@@ -1,0 +1,111 @@
+"""A result with all that a report shows: every mesh, pocket and roller, shapes, inputs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any
+
+from epicyclic.analysis.bearing_details import bearing_details
+from epicyclic.analysis.mesh_details import mesh_details
+from epicyclic.analysis.result import Result
+from epicyclic.analysis.shapes import gear_shapes, mesh_views
+from epicyclic.analysis.solve import solve
+from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.records.contents import ResultContents
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["ResultRecord", "record"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ResultRecord:
+    """A result and the fields behind it, as `save_result` keeps them.
+
+    Attributes
+    ----------
+    result : ResultContents
+        The JSON form of the result.
+    given : mapping
+        The case without defaults, as it was given.
+    created : str
+        When it was computed, ISO 8601 in UTC.
+    numbers : xarray.Dataset
+        Every number of the result with label and unit.
+    fields : mapping of str to xarray.Dataset
+        By path: ``"meshes/sun_mesh"`` as `mesh_details` returns it, ``"gears/sun"``,
+        ``"views/sun_mesh"``, ``"bearings/planet_bearing"``.
+    """
+
+    result: ResultContents
+    given: Mapping[str, Any]
+    created: str
+    numbers: xr.Dataset
+    fields: Mapping[str, xr.Dataset]
+
+    @property
+    def title(self) -> str:
+        """Of the case, or what kind of gears it is."""
+        return self.result.title or self.result.kind.replace("_", " ")
+
+    def group(self, name: str) -> dict[str, xr.Dataset]:
+        """The fields whose path begins with `name`, by the rest of it."""
+        return {
+            path.removeprefix(f"{name}/"): data
+            for path, data in self.fields.items()
+            if path.startswith(f"{name}/")
+        }
+
+
+def record(case: Case) -> ResultRecord:
+    """Solve a case and keep everything that reports and plots show.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+
+    Returns
+    -------
+    ResultRecord
+
+    Raises
+    ------
+    ConvergenceError
+        As for `solve`.
+    """
+    result = solve(case)
+    # as a file would keep it, so that reports of both are the same
+    contents = ResultContents.model_validate_json(result.to_json())
+    fields = {"gears": gear_shapes(case), "views": mesh_views(case), "bearings": {}}
+    if case.operation.torque != 0:
+        fields["meshes"] = mesh_details(case)
+    if isinstance(case, PlanetaryCase) and case.planet_bearing and result.bearing:
+        loads = result.bearing.loads
+        assert loads is not None
+        fields["bearings"]["planet_bearing"] = bearing_details(
+            case.planet_bearing, case.numerics, loads
+        )
+    return ResultRecord(
+        result=contents,
+        given=json.loads(json.dumps(case.given())),
+        created=datetime.now(UTC).isoformat(timespec="seconds"),
+        numbers=_numbers(result),
+        fields={
+            f"{group}/{name}": data for group, all_ in fields.items() for name, data in all_.items()
+        },
+    )
+
+
+def _numbers(result: Result) -> xr.Dataset:
+    import xarray as xr
+
+    return xr.Dataset(
+        {
+            item.key: ((), item.value, {"long_name": item.label, "units": item.unit})
+            for item in result.numbers()
+        }
+    )

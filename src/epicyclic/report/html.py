@@ -1,0 +1,122 @@
+"""Reports as one HTML file that needs nothing else: style, figures and script lie within it."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+from collections.abc import Callable
+from datetime import datetime
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import jinja2
+import xarray as xr
+from markupsafe import Markup
+
+from epicyclic.plots.catalogue import Stored, available
+from epicyclic.records.record import ResultRecord
+from epicyclic.report.drawings import draw
+from epicyclic.report.map_page import map_inputs, map_key_figures, map_line, map_sections
+from epicyclic.report.page import Drawings
+from epicyclic.report.result_page import key_figures, operation_line, result_sections
+
+__all__ = ["report_html"]
+
+KINDS = {
+    "planetary": "Power losses of a planetary gear set",
+    "gear_pair": "Power losses of a gear pair",
+}
+
+
+def report_html(stored: Stored, progress: Callable[[int, int], None] | None = None) -> str:
+    """The report of a result or of a loss map.
+
+    Parameters
+    ----------
+    stored : ResultRecord or xarray.Dataset
+        As `epicyclic.record` or `epicyclic.loss_map` returns it, or `epicyclic.open_result`.
+    progress : callable, optional
+        Called with the numbers of plots drawn and to draw.
+
+    Returns
+    -------
+    str
+        HTML. The same for the same content, whether computed or read from a file.
+    """
+    drawings = _drawings(stored, progress or (lambda done, total: None))
+    content = (
+        _result_content(stored, drawings)
+        if isinstance(stored, ResultRecord)
+        else _map_content(stored, drawings)
+    )
+    return _template().render(
+        **content,
+        style=_asset("report.css"),
+        script=_asset("report.js"),
+        library=_library(),
+    )
+
+
+def _result_content(record: ResultRecord, drawings: Drawings) -> dict[str, Any]:
+    result = record.result
+    return {
+        "title": record.title,
+        "kind": KINDS[result.kind],
+        "operation": operation_line(result),
+        "source": f"Computed {_time(record.created)} with epicyclic {result.versions['epicyclic']}",
+        "key_figures": key_figures(result),
+        "sections": result_sections(record, drawings),
+    }
+
+
+def _map_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
+    kind = map_inputs(data)["kind"]
+    return {
+        "title": str(data.attrs["title"]) or kind.replace("_", " "),
+        "kind": f"Loss map: {KINDS[kind]}",
+        "operation": map_line(data),
+        "source": f"Computed with {data.attrs['source']}",
+        "key_figures": map_key_figures(data),
+        "sections": map_sections(data, drawings),
+    }
+
+
+def _time(created: str) -> str:
+    return f"{datetime.fromisoformat(created):%Y-%m-%d %H:%M} UTC"
+
+
+def _drawings(stored: Stored, progress: Callable[[int, int], None]) -> Drawings:
+    drawings = {}
+    names = list(available(stored))
+    for done, name in enumerate(names):
+        progress(done, len(names))
+        drawings[name] = draw(stored, name)
+    return drawings
+
+
+@cache
+def _template() -> jinja2.Template:
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("epicyclic.report"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("report.html")
+
+
+def _asset(name: str) -> Markup:
+    """A file of the package that goes into the page as it is."""
+    files = resources.files("epicyclic.report") / "templates"
+    return Markup((files / name).read_text(encoding="utf-8"))
+
+
+@cache
+def _library() -> Markup:
+    """plotly.js, packed: 1.9 MB in place of 4.8."""
+    from plotly.offline import get_plotlyjs
+
+    packed = gzip.compress(get_plotlyjs().encode(), mtime=0)
+    return Markup(base64.b64encode(packed).decode())

@@ -1,0 +1,165 @@
+"""The report of a loss map: its chapters."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from epicyclic.maps.tables import statements
+from epicyclic.plots.loss_map import map_at
+from epicyclic.plots.style import label_of
+from epicyclic.report.inputs import input_tables
+from epicyclic.report.page import (
+    Cell,
+    Drawings,
+    KeyFigure,
+    Listing,
+    Section,
+    Table,
+    gallery,
+    number,
+)
+from epicyclic.status import Status
+from epicyclic.units import unit_text
+
+__all__ = ["map_inputs", "map_key_figures", "map_line", "map_sections"]
+
+MOST_COLUMNS = 8
+"""Of a table of values; larger maps are shown at evenly spaced points."""
+
+
+def map_inputs(data: xr.Dataset) -> dict[str, Any]:
+    """The case of a map."""
+    inputs: dict[str, Any] = json.loads(data.attrs["case"])
+    return inputs
+
+
+def map_line(data: xr.Dataset) -> str:
+    """Which points the map has, in one line."""
+    spans = [f"{name} {_span(data[name])}" for name in ("speed", "torque", "temperature")]
+    return f"at the {data.attrs['reference_shaft']}: {', '.join(spans)}"
+
+
+def map_key_figures(data: xr.Dataset) -> list[KeyFigure]:
+    """What a reader looks for first."""
+    failed = int((data["status"] == Status.FAILED).sum())
+    figures = [KeyFigure("points", number(data["total"].size, ""))]
+    if failed:
+        figures.append(KeyFigure("failed points", number(failed, "")))
+    best = float(data["efficiency"].max())
+    if np.isfinite(best):
+        figures.append(
+            KeyFigure("best efficiency", number(best, "", text=f"{100 * best:.2f}"), "%")
+        )
+    for name, label in (("total", "largest loss"), ("torque_loss", "largest torque loss")):
+        worst = float(data[name].max())
+        if np.isfinite(worst):
+            unit = unit_text(str(data[name].attrs["units"]))
+            figures.append(KeyFigure(label, number(worst, ""), unit))
+    return figures
+
+
+def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
+    """All chapters of a map."""
+    sections = [
+        Section("efficiency", "Efficiency", gallery(drawings, "efficiency-map")),
+        Section("losses", "Losses", gallery(drawings, "loss-map", "torque-loss-map")),
+        Section(
+            "lines",
+            "Over speed and torque",
+            gallery(drawings, "loss-over-speed", "loss-over-torque"),
+        ),
+        Section("tables", "Values", tuple(_tables(data)), _further(data)),
+        Section("validity", "Validity", _validity(data)),
+        Section("conventions", "Conventions", _conventions(data)),
+        Section("inputs", "Inputs", tuple(input_tables(map_inputs(data), map_inputs(data)))),
+        Section("versions", "Versions", _versions(data)),
+    ]  # fmt: skip
+    return [section for section in sections if section.items]
+
+
+def _span(axis: xr.DataArray) -> str:
+    low, high = float(axis.min()), float(axis.max())
+    unit = unit_text(str(axis.attrs["units"]))
+    return f"{low:g} {unit}" if low == high else f"{low:g} to {high:g} {unit}"
+
+
+def _further(data: xr.Dataset) -> str:
+    """Which values of further keys the tables and figures are for."""
+    point = map_at(data)
+    further = [
+        f"{name} = {point[name].item()}"
+        for name in data.dims
+        if name not in ("speed", "torque", "temperature")
+    ]
+    return f"Tables and figures are for {', '.join(further)}." if further else ""
+
+
+def _tables(data: xr.Dataset) -> list[Table]:
+    """Total loss and efficiency over speed and torque at each temperature."""
+    return [
+        _grid(data, name, temperature)
+        for temperature in range(data.sizes["temperature"])
+        for name in ("efficiency", "total")
+    ]
+
+
+def _grid(data: xr.Dataset, name: str, temperature: int) -> Table:
+    celsius = float(data["temperature"][temperature])
+    point = map_at(data, temperature=celsius)
+    speeds, torques = (_some(point.sizes[axis]) for axis in ("speed", "torque"))
+    values = point[name].transpose("speed", "torque").to_numpy()
+    rows = tuple(
+        (
+            Cell(f"{float(point['speed'][i]):g}"),
+            *(number(_finite(values[i, j]), f"{name}[{i},{j},{temperature}]") for j in torques),
+        )
+        for i in speeds
+    )
+    unit = unit_text(str(data["torque"].attrs["units"]))
+    heads = (f"{float(point['torque'][j]):g} {unit}" for j in torques)
+    title = f"{label_of(data[name])}, at {celsius:g} °C"
+    return Table((label_of(data["speed"]), *heads), rows, title.capitalize())
+
+
+def _some(count: int) -> list[int]:
+    """Numbers of at most `MOST_COLUMNS` of `count` points, evenly spaced."""
+    chosen = np.linspace(0, count - 1, min(count, MOST_COLUMNS)).round().astype(int)
+    return [int(one) for one in np.unique(chosen)]
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _validity(data: xr.Dataset) -> tuple[Listing, ...]:
+    """Warnings and failures, each once with the number of its points."""
+    size = data["total"].size
+    lines: list[Listing] = []
+    for name, title in (("message", "Failed points"), ("warnings", "Warnings")):
+        counts = Counter(
+            line for text in data[name].values.ravel() for line in str(text).splitlines() if line
+        )
+        if counts:
+            items = tuple(
+                f"{line} ({count} of {size} points)" for line, count in counts.most_common()
+            )
+            lines.append(Listing(items, title))
+    return tuple(lines) or (Listing(("There are no warnings.",)),)
+
+
+def _conventions(data: xr.Dataset) -> tuple[Table, ...]:
+    rows = tuple((Cell(name), Cell(text)) for name, text in statements(data).items() if text)
+    return (Table(("", "statement"), rows),)
+
+
+def _versions(data: xr.Dataset) -> tuple[Table, ...]:
+    rows = tuple(
+        (Cell(name), Cell(str(version)))
+        for name, version in json.loads(data.attrs["versions"]).items()
+    )
+    return (Table(("", "version"), rows),)

@@ -1,0 +1,122 @@
+"""What a page of a report consists of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+from typing import Any
+
+from epicyclic.report.shown import MISSING, shown
+
+__all__ = [
+    "Cell",
+    "Drawing",
+    "Drawings",
+    "Gallery",
+    "KeyFigure",
+    "Listing",
+    "Section",
+    "Table",
+    "gallery",
+    "number",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """Text of a cell; a number has its exact value and its place in the JSON form beside it."""
+
+    text: str
+    value: float | None = None
+    key: str = ""
+    about: str = ""
+
+    @property
+    def is_number(self) -> bool:
+        """True if it is aligned as numbers are."""
+        return self.value is not None or self.text == MISSING
+
+    @property
+    def style(self) -> str:
+        """Classes of the style sheet."""
+        return " ".join(filter(None, ("number" if self.is_number else "", self.about)))
+
+
+def number(value: float | None, key: str, digits: int = 4, text: str = "") -> Cell:
+    """A cell that shows `value`, as `text` if that is given."""
+    if value is None:
+        return Cell(MISSING)
+    return Cell(text or shown(value, digits), value, key)
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows of cells under a head; rows named in `strong` are sums."""
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    title: str = ""
+    strong: frozenset[int] = frozenset()
+    note: str = ""
+    kind: str = "table"
+
+    def is_numeric(self, column: int) -> bool:
+        """True for a column of numbers."""
+        return any(row[column].value is not None for row in self.rows)
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """Sentences, one below the other."""
+
+    items: tuple[str, ...]
+    title: str = ""
+    kind: str = "listing"
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A figure: a still one, and the data of one to explore if there is such."""
+
+    name: str
+    title: str
+    svg: str
+    plot: dict[str, Any] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Gallery:
+    """Figures side by side."""
+
+    drawings: tuple[Drawing, ...]
+    kind: str = "gallery"
+
+
+@dataclass(frozen=True, slots=True)
+class KeyFigure:
+    """A number at the head of the page."""
+
+    label: str
+    cell: Cell
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A chapter of the page."""
+
+    name: str
+    title: str
+    items: tuple[Table | Listing | Gallery, ...]
+    lead: str = ""
+
+
+Drawings = Mapping[str, Sequence[Drawing]]
+"""The figures of every plot, by its name."""
+
+
+def gallery(drawings: Drawings, *names: str) -> tuple[Gallery, ...]:
+    """One gallery of all figures of the plots `names`; none if there are none."""
+    found = tuple(chain.from_iterable(drawings.get(name, ()) for name in names))
+    return (Gallery(found),) if found else ()

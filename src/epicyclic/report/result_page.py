@@ -1,0 +1,269 @@
+"""The report of one result: its chapters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from epicyclic.records.contents import Measure, ResultContents
+from epicyclic.records.record import ResultRecord
+from epicyclic.report.inputs import input_tables
+from epicyclic.report.page import (
+    Cell,
+    Drawings,
+    Gallery,
+    KeyFigure,
+    Listing,
+    Section,
+    Table,
+    gallery,
+    number,
+)
+from epicyclic.units import format_number, unit_text
+
+__all__ = ["key_figures", "operation_line", "result_sections"]
+
+
+def key_figures(result: ResultContents) -> list[KeyFigure]:
+    """What a reader looks for first."""
+    efficiency = result.efficiency
+    text = "" if efficiency is None else f"{100 * efficiency:.3f}"
+    return [
+        KeyFigure("efficiency", number(efficiency, "efficiency", text=text), "%"),
+        KeyFigure("total loss", _watts(result.total, "total"), "W"),
+        KeyFigure("load-dependent", _watts(result.load_dependent, "load_dependent"), "W"),
+        KeyFigure("load-independent", _watts(result.load_independent, "load_independent"), "W"),
+        KeyFigure("input power", _watts(result.input_power / 1e3, "", 2), "kW"),
+    ]
+
+
+def operation_line(result: ResultContents) -> str:
+    """The operating point in one line."""
+    operation = result.inputs["operation"]
+    words = [f"{operation['speed']}, {operation['torque']}"]
+    if "input" in operation:
+        words.insert(0, f"input {operation['input']}")
+    if operation.get("fixed"):
+        words.append(f"{operation['fixed']} fixed")
+    words.append(f"oil at {operation['oil_inlet_temperature']}")
+    return unit_text(", ".join(words))
+
+
+def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
+    """All chapters for which the record has content."""
+    result = record.result
+    sections = [
+        Section(
+            "losses", "Losses", (_losses(result), *gallery(drawings, "losses", "loss-sum"))
+        ),
+        Section("validity", "Validity", _validity(result), _validity_lead(result)),
+        Section("shafts", "Power flow", (_members(result),), _FLOW_LEAD),
+        Section(
+            "gears", "Gears", (*gallery(drawings, "gear-set", "teeth"), *_planets(result))
+        ),
+        Section(
+            "load",
+            "Load on the teeth",
+            (_meshes(record), *gallery(drawings, "line-load", "pressure", "pair-load"),
+             *gallery(drawings, "transmission-error", "stiffness")),
+        ),
+        Section(
+            "friction",
+            "Friction in the meshes",
+            gallery(drawings, "friction", "sliding", "film", "friction-power"),
+        ),
+        Section("bearing", "Planet bearing", _bearing(record, drawings)),
+        Section("oil", "Oil", (_measures(record, "fluid", "", result.fluid),)),
+        Section("methods", "Methods and sources", _methods(result)),
+        Section("inputs", "Inputs", tuple(input_tables(result.inputs, record.given)), _INPUT_LEAD),
+        Section("versions", "Versions", (_versions(result),)),
+    ]  # fmt: skip
+    return [section for section in sections if section.items]
+
+
+_FLOW_LEAD = (
+    "Speeds are positive in one common sense of rotation; torques act on the gear set from "
+    "outside; positive power enters."
+)
+_INPUT_LEAD = "Values in italics were not given: they are defaults."
+
+
+def _watts(value: float, key: str, digits: int = 1) -> Cell:
+    return number(value, key, text=f"{value:z.{digits}f}")
+
+
+def _losses(result: ResultContents) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    strong = []
+    for group in dict.fromkeys(result.groups.values()):
+        for name, watts in result.losses.items():
+            if result.groups[name] != group:
+                continue
+            words = Cell(name.replace("_", " "))
+            if name in result.not_included:
+                rows.append((words, Cell("not included"), Cell(""), Cell("")))
+            else:
+                rows.append((words, *_shares(result, watts, f"losses.{name}")))
+        key = group.replace("-", "_")
+        strong.append(len(rows))
+        rows.append((Cell(group), *_shares(result, getattr(result, key), key)))
+    strong.append(len(rows))
+    rows.append((Cell("total"), *_shares(result, result.total, "total")))
+    return Table(("", "loss, W", "of total", "of input"), tuple(rows), strong=frozenset(strong))
+
+
+def _shares(result: ResultContents, watts: float, key: str) -> tuple[Cell, Cell, Cell]:
+    of_total = f"{watts / result.total:z.1%}" if result.total else ""
+    of_input = f"{watts / result.input_power:z.3%}" if result.input_power else ""
+    return _watts(watts, key), _aligned(of_total), _aligned(of_input)
+
+
+def _aligned(text: str) -> Cell:
+    return Cell(text, math.nan)
+
+
+def _validity_lead(result: ResultContents) -> str:
+    if not result.validity:
+        return "Every model was used within the range in which it was made."
+    return (
+        "Some models were used outside the range in which they were made. Their conditions are "
+        "held at the limits of the range; the share of the loss concerned is stated."
+    )
+
+
+def _validity(result: ResultContents) -> tuple[Table | Listing, ...]:
+    items: list[Table | Listing] = []
+    if result.validity:
+        rows = tuple(
+            (
+                Cell(flag.quantity),
+                Cell(f"{_number(flag.found_low)} to {_number(flag.found_high)}"),
+                Cell(_limits(flag.low, flag.high)),
+                Cell(unit_text(flag.unit)),
+                Cell(f"{flag.use.role.replace('_', ' ')} {flag.use.model}, {flag.use.where}"),
+                _aligned("under 1%" if flag.share < 0.01 else f"{flag.share:.0%}"),
+                Cell(flag.source),
+            )
+            for flag in sorted(result.validity, key=lambda flag: -flag.share)
+        )
+        head = ("quantity", "found", "range", "unit", "model", "share", "source of the range")
+        items.append(Table(head, rows))
+    notes = tuple(text for text in result.warnings if not text.startswith("Out of range"))
+    if notes:
+        items.append(Listing(notes, "Notes"))
+    return tuple(items) or (Listing(("There are no warnings.",)),)
+
+
+def _limits(low: float | None, high: float | None) -> str:
+    if low is None or high is None:
+        return f"up to {_number(high)}" if low is None else f"from {_number(low)}"
+    return f"{_number(low)} to {_number(high)}"
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else format_number(value, 3)
+
+
+def _members(result: ResultContents) -> Table:
+    rows = tuple(
+        (
+            Cell(name),
+            number(member.speed.value, f"members.{name}.speed", 6),
+            number(member.torque.value, f"members.{name}.torque", 6),
+            number(member.power.value, f"members.{name}.power", 7),
+        )
+        for name, member in result.members.items()
+    )
+    first = next(iter(result.members.values()))
+    units = (first.speed.unit, first.torque.unit, first.power.unit)
+    heads = (
+        f"{name}, {unit_text(unit)}"
+        for name, unit in zip(("speed", "torque", "power"), units, strict=True)
+    )
+    return Table(("", *heads), rows)
+
+
+def _planets(result: ResultContents) -> tuple[Table, ...]:
+    if not result.planet_angles.value:
+        return ()
+    rows = tuple(
+        (
+            Cell(f"{place + 1}"),
+            number(angle, f"planet_angles.{place}", 7),
+            number(share, f"planet_shares.{place}", 4, f"{share:.2%}"),
+        )
+        for place, (angle, share) in enumerate(
+            zip(result.planet_angles.value, result.planet_shares.value, strict=True)
+        )
+    )
+    unit = unit_text(result.planet_angles.unit)
+    return (Table(("planet", f"angle, {unit}", "share of the torque"), rows, "Planets"),)
+
+
+def _meshes(record: ResultRecord) -> Table:
+    """Figures of the meshes side by side."""
+    meshes = record.result.meshes
+    keys = dict.fromkeys(key for figures in meshes.values() for key in figures)
+    rows = []
+    for key in keys:
+        found = {name: figures[key] for name, figures in meshes.items() if key in figures}
+        first = next(iter(found))
+        cells = (
+            number(found[name].value, f"meshes.{name}.{key}") if name in found else Cell("")
+            for name in meshes
+        )
+        rows.append((Cell(_label(record, first, key)), *cells, Cell(unit_text(found[first].unit))))
+    heads = (name.replace("_", " ") for name in meshes)
+    return Table(("", *heads, "unit"), tuple(rows), "Figures of the meshes")
+
+
+def _bearing(record: ResultRecord, drawings: Drawings) -> tuple[Table | Gallery, ...]:
+    figures = record.result.planet_bearing
+    if figures is None:
+        return ()
+    table = _measures(record, "planet_bearing", "planet_bearing", figures)
+    return (*gallery(drawings, "roller-loads", "roller-pressure"), table)
+
+
+def _measures(record: ResultRecord, key: str, prefix: str, figures: Mapping[str, Measure]) -> Table:
+    rows = tuple(
+        (
+            Cell(_label(record, prefix or key, name)),
+            number(measure.value, f"{key}.{name}"),
+            Cell(unit_text(measure.unit)),
+        )
+        for name, measure in figures.items()
+    )
+    return Table(("", "value", "unit"), rows)
+
+
+def _label(record: ResultRecord, part: str, key: str) -> str:
+    """Label of a figure, as the numbers of the record have it."""
+    name = f"{part}_{key}"
+    if name not in record.numbers:
+        return key.replace("_", " ")
+    return str(record.numbers[name].attrs["long_name"]).partition(": ")[2]
+
+
+def _methods(result: ResultContents) -> tuple[Table | Listing, ...]:
+    """Each method once with what it computes and where it is printed."""
+    users: dict[tuple[str, str], list[str]] = {}
+    for name, method in result.methods.items():
+        key = method, result.citations.get(name, "")
+        users.setdefault(key, []).append(name.replace("_", " "))
+    rows = tuple(
+        (Cell(", ".join(names)), Cell(method), Cell(source))
+        for (method, source), names in users.items()
+    )
+    models = tuple((Cell(f"models.{key}"), Cell(value)) for key, value in result.models.items())
+    items: list[Table | Listing] = [
+        Table(("what", "method", "source"), rows),
+        Table(("key of the case", "model used"), models, "Models"),
+        Listing(result.sources, "Literature"),
+    ]
+    return tuple(items)
+
+
+def _versions(result: ResultContents) -> Table:
+    rows = tuple((Cell(name), Cell(version)) for name, version in result.versions.items())
+    return Table(("", "version"), rows)
