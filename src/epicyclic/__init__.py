@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
     from epicyclic.maps.compute import loss_map
     from epicyclic.maps.formats import write_map
+    from epicyclic.measurement.compare import MeasuredComparison, compare_measured
     from epicyclic.sweeps.run import sweep
 
 _HOME = {
@@ -29,10 +30,12 @@ _HOME = {
     "EpicyclicError": "epicyclic.errors",
     "GearPairCase": "epicyclic.case.case",
     "InputError": "epicyclic.errors",
+    "MeasuredComparison": "epicyclic.measurement.compare",
     "PlanetaryCase": "epicyclic.case.case",
     "Problem": "epicyclic.errors",
     "Result": "epicyclic.analysis.result",
     "case_schema": "epicyclic.case.case",
+    "compare_measured": "epicyclic.measurement.compare",
     "load_case": "epicyclic.case.case",
     "loaded_meshes": "epicyclic.analysis.solve",
     "loss_map": "epicyclic.maps.compute",
@@ -48,10 +51,12 @@ __all__ = [
     "EpicyclicError",
     "GearPairCase",
     "InputError",
+    "MeasuredComparison",
     "PlanetaryCase",
     "Problem",
     "Result",
     "case_schema",
+    "compare_measured",
     "load_case",
     "loaded_meshes",
     "loss_map",

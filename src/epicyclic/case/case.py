@@ -77,7 +77,7 @@ class _CaseTable(Table):
         InputError
             With every problem of the changed case.
         """
-        tables = self._tables or plain(self.inputs())
+        tables = self.given()
         problems: list[Problem] = []
         for key, value in changes.items():
             try:
@@ -85,6 +85,11 @@ class _CaseTable(Table):
             except InputError as error:
                 problems += [replace(problem, key=str(key)) for problem in error.problems]
         return _build(type(self), tables, self._source, problems)
+
+    def given(self) -> dict[str, Any]:
+        """The tables as they were given, without defaults; plain values as a file has them."""
+        tables: dict[str, Any] = self._tables or plain(self.inputs())
+        return tables
 
     def inputs(self) -> dict[str, Any]:
         """The case as nested tables of text and numbers, defaults included, as a file has them."""

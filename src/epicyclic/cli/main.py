@@ -12,6 +12,7 @@ from typing import NoReturn
 
 import click
 
+from epicyclic.cli.compare import compare
 from epicyclic.cli.contact import contact
 from epicyclic.cli.exit_codes import (
     EXIT_BROKEN_PIPE,
@@ -44,7 +45,8 @@ def cli() -> None:
 
 
 COMMANDS = (
-    run, check, sweep, loss_map, mesh, contact, friction, validate, cases, oils, init, schema,
+    run, check, sweep, loss_map, mesh, contact, friction, compare, validate, cases, oils, init,
+    schema,
 )  # fmt: skip
 for command in COMMANDS:
     cli.add_command(command)

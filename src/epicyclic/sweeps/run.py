@@ -14,7 +14,7 @@ from epicyclic.errors import EpicyclicError, InputError, is_interrupt
 from epicyclic.status import Status
 from epicyclic.sweeps.dataset import to_dataset
 from epicyclic.sweeps.journal import Journal, Row
-from epicyclic.sweeps.plan import Plan, make_plan
+from epicyclic.sweeps.plan import Points, make_plan
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -78,7 +78,7 @@ def sweep(
 
 
 def run_plan(
-    plan: Plan,
+    plan: Points,
     *,
     jobs: int | None = None,
     journal: Journal | None = None,
@@ -102,7 +102,7 @@ def run_plan(
 
 
 def _run_batches(
-    plan: Plan, indices: list[int], jobs: int | None, journal: Journal | None, batch: int
+    plan: Points, indices: list[int], jobs: int | None, journal: Journal | None, batch: int
 ) -> Iterator[list[tuple[int, Row]]]:
     """Finished points, in any order: here as long as that pays, then in worker processes."""
     start = time.perf_counter()
@@ -126,7 +126,7 @@ def _workers_pay(done: int, seconds: float, left: int) -> bool:
 
 
 def _run_in_workers(
-    plan: Plan, indices: list[int], jobs: int, journal: Journal | None, batch: int
+    plan: Points, indices: list[int], jobs: int, journal: Journal | None, batch: int
 ) -> Iterator[list[tuple[int, Row]]]:
     from joblib import Parallel, delayed, effective_n_jobs
 
@@ -138,7 +138,7 @@ def _run_in_workers(
     )
 
 
-def _batches(plan: Plan, indices: list[int], size: int) -> Iterator[list[int]]:
+def _batches(plan: Points, indices: list[int], size: int) -> Iterator[list[int]]:
     """`indices` cut at multiples of `size` in the order of all points, whatever is done already."""
     place = {index: i for i, index in enumerate(plan.order())}
     for _, points in groupby(indices, key=lambda index: place[index] // size):
@@ -146,7 +146,7 @@ def _batches(plan: Plan, indices: list[int], size: int) -> Iterator[list[int]]:
 
 
 def _solve_batch(
-    plan: Plan, indices: Sequence[int], journal: Journal | None
+    plan: Points, indices: Sequence[int], journal: Journal | None
 ) -> list[tuple[int, Row]]:
     rows = []
     for index in indices:
@@ -157,7 +157,7 @@ def _solve_batch(
     return rows
 
 
-def _solve_point(plan: Plan, index: int) -> Row:
+def _solve_point(plan: Points, index: int) -> Row:
     """One point of `plan` as a flat record; one that fails becomes a row with its reason."""
     try:
         result = solve(plan.case.updated(plan.changes(index)))
