@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from epicyclic.exchange.rexs.importing import RexsImport, read_rexs
     from epicyclic.maps.compute import loss_map
     from epicyclic.maps.formats import write_map
+    from epicyclic.measurement.compare import MeasuredComparison, compare_measured
     from epicyclic.records.files import open_result, save_result
     from epicyclic.records.record import ResultRecord, record
     from epicyclic.report.html import report_html
@@ -35,6 +36,7 @@ _HOME = {
     "EpicyclicError": "epicyclic.errors",
     "GearPairCase": "epicyclic.case.case",
     "InputError": "epicyclic.errors",
+    "MeasuredComparison": "epicyclic.measurement.compare",
     "PlanetaryCase": "epicyclic.case.case",
     "Problem": "epicyclic.errors",
     "Result": "epicyclic.analysis.result",
@@ -42,6 +44,7 @@ _HOME = {
     "ResultRecord": "epicyclic.records.record",
     "case_schema": "epicyclic.case.case",
     "load_case": "epicyclic.exchange.load",
+    "compare_measured": "epicyclic.measurement.compare",
     "loaded_meshes": "epicyclic.analysis.solve",
     "loss_map": "epicyclic.maps.compute",
     "mesh_contacts": "epicyclic.analysis.solve",
@@ -62,12 +65,14 @@ __all__ = [
     "EpicyclicError",
     "GearPairCase",
     "InputError",
+    "MeasuredComparison",
     "PlanetaryCase",
     "Problem",
     "Result",
     "ResultRecord",
     "RexsImport",
     "case_schema",
+    "compare_measured",
     "load_case",
     "loaded_meshes",
     "loss_map",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +52,7 @@ from epicyclic.pocketing.similarity import FlowFigures
 from epicyclic.units import CELSIUS, SQUARE_MM_PER_SECOND
 
 __all__ = [
+    "NOT_INCLUDED",
     "Body",
     "Fluids",
     "MeshDuty",
@@ -69,11 +70,14 @@ __all__ = [
     "load_mesh",
     "load_notes",
     "loss_terms",
+    "oil_at",
     "resolve_models",
     "solve_mesh",
     "used_sources",
 ]
 
+NOT_INCLUDED = "Not included"
+"""Begins the note that names loss terms which are missing."""
 FloatArray = NDArray[np.float64]
 
 PEAK_SHARE = 0.01
@@ -193,10 +197,17 @@ def resolve_models(case: Case) -> dict[str, str]:
     return {key: automatic[key] if choice == "auto" else choice for key, choice in chosen.items()}
 
 
+def oil_at(case: Case, temperature: float) -> OilState:
+    """Properties of the oil of a case at `temperature` in kelvin, with the factor of the case."""
+    state = oil_state(case.lubricant.oil, temperature)
+    factor = case.lubricant.pressure_viscosity_factor
+    return replace(state, pressure_viscosity=factor * state.pressure_viscosity)
+
+
 def fluids_of(case: Case) -> Fluids:
     """Oil and mixture at the oil inlet temperature."""
     temperature = case.operation.oil_inlet_temperature
-    oil = oil_state(case.lubricant.oil, temperature)
+    oil = oil_at(case, temperature)
     mixture = mixture_state(oil, case.surroundings.oil_air_ratio, case.surroundings.pressure)
     viscosity = extrapolated_viscosity(case.lubricant.oil, temperature)
     flags = check_ranges(
@@ -429,19 +440,23 @@ def drag_part(
 
 
 def fluid_notes(case: Case) -> tuple[str, ...]:
-    """A note for every regression that was made for another oil than that of the case."""
+    """What was made for another oil than that of the case, and what the case changes in it."""
     oil, models = case.lubricant.oil, resolve_models(case)
     fluids = {
         "friction": friction_model(models["friction"], friction_settings(case)).made_for,
         "rolling": ROLLING_MODELS[models["rolling"]].made_for,
         "bearing": TALBOT_FLUID if models.get("bearing") == "mixed-ehl" else None,
     }
-    return tuple(
+    notes = [
         f"models.{key}: the regression {models[key]} was made for {fluid.title}, not for "
         f"{oil.name}."
         for key, fluid in fluids.items()
         if fluid is not None and fluid.key != oil.friction_regression
-    )
+    ]
+    factor = case.lubricant.pressure_viscosity_factor
+    if factor != 1:
+        notes.append(f"The pressure-viscosity coefficient of the oil is multiplied by {factor:g}.")
+    return tuple(notes)
 
 
 def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:
@@ -518,7 +533,9 @@ def general_notes(
             missing.setdefault(term.left_out, []).append(term.name)
         elif term.factor != 1.0:
             notes.append(f"{term.name} is multiplied by {term.factor:g}.")
-    notes += [f"Not included: {', '.join(names)} ({reason})." for reason, names in missing.items()]
+    notes += [
+        f"{NOT_INCLUDED}: {', '.join(names)} ({reason})." for reason, names in missing.items()
+    ]
     if efficiency == 0.0 and input_power > 0:
         notes.append(
             "The losses exceed the power passed on: no power leaves, and the output must be driven."

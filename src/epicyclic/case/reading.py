@@ -7,11 +7,12 @@ import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple
 
 from epicyclic.case.plain import changed_at, plain
 from epicyclic.case.wording import dotted, one_line
 from epicyclic.errors import InputError, Problem
+from epicyclic.text_file import read_text, refuse
 from epicyclic.units import format_number
 
 __all__ = ["read_file"]
@@ -58,53 +59,18 @@ def read_file(path: Path) -> tuple[dict[str, Any], list[Problem]]:
         If it is no file, no text, or no TOML that can be read around its mistakes.
     """
     try:
-        tables, bad_lines = _parse(_decode(_read(path)))
+        tables, bad_lines = _parse(read_text(path, "case", _LARGEST_FILE))
         if not tables and not bad_lines:
-            _refuse("is empty.", "Fill it; 'epicyclic init' writes one to start from.")
+            refuse("is empty.", "Fill it; 'epicyclic init' writes one to start from.")
         return _take_marks(plain(tables), bad_lines)
     except InputError as error:
         raise InputError(error.problems, one_line(str(path), _LONGEST_PATH)) from None
 
 
-def _refuse(allowed: str, remedy: str) -> NoReturn:
-    raise InputError([Problem("", "", f"the file {allowed}", remedy)])
-
-
-def _read(path: Path) -> bytes:
-    kind, content = "a file", b""
-    try:
-        # a pipe or a device could keep the program waiting for ever
-        if path.exists() and not path.is_file():
-            kind = "a folder" if path.is_dir() else "not a regular file"
-        else:
-            with path.open("rb") as file:
-                content = file.read(_LARGEST_FILE + 1)
-    except OSError as error:
-        _refuse(f"cannot be read: {error.strerror}.", "Check the path.")
-    except ValueError:
-        _refuse("cannot be read: no path has a zero character.", "Check the path.")
-    if kind != "a file":
-        _refuse(f"cannot be read: it is {kind}.", "Name a case file.")
-    if len(content) > _LARGEST_FILE:
-        _refuse("is too large to be a case (over 1 MB).", "Name a case file.")
-    return content
-
-
-def _decode(content: bytes) -> str:
-    if b"\0" in content:
-        _refuse("is not text: it has zero bytes.", "Name a case file, saved as UTF-8 text.")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = content[: error.start].count(b"\n") + 1
-        where = f"byte 0x{content[error.start]:02x} in line {line}"
-        _refuse(f"is not UTF-8 text: {where}.", "Save it as UTF-8 text.")
-
-
 def _parse(text: str) -> tuple[dict[str, Any], list[_BadLine]]:
     """The tables of a text, its bad lines mended where that is possible."""
     if any(len(_KEY_DOT.findall(part)) > _DEEPEST_KEY for part in _BETWEEN_KEYS.split(text)):
-        _refuse("has too deeply nested tables.", "Name a case file.")
+        refuse("has too deeply nested tables.", "Name a case file.")
     lines = text.replace("\r\n", "\n").split("\n")
     bad_lines: list[_BadLine] = []
     while True:
@@ -112,7 +78,7 @@ def _parse(text: str) -> tuple[dict[str, Any], list[_BadLine]]:
             # with an empty line at the end every mistake lies in a line
             return tomllib.loads("\n".join([*lines, "", ""])), bad_lines
         except RecursionError:
-            _refuse("has too deeply nested tables.", "Name a case file.")
+            refuse("has too deeply nested tables.", "Name a case file.")
         except ValueError as error:
             line = _bad_line(error, lines)
         mended = None
@@ -127,7 +93,7 @@ def _parse(text: str) -> tuple[dict[str, Any], list[_BadLine]]:
 def _bad_line(error: ValueError, lines: list[str]) -> _BadLine:
     place = _PLACE.search(str(error))
     if place is None:  # a whole number of thousands of digits
-        _refuse(f"is not TOML: {error}.", "Shorten that number.")
+        refuse(f"is not TOML: {error}.", "Shorten that number.")
     number = min(int(place["line"]), len(lines))
     reason = str(error)[: place.start()]
     if reason == r"Illegal character '\n'":

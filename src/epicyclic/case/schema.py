@@ -516,8 +516,16 @@ class LoadSharing(Table):
 class Lubricant(Table):
     """The oil."""
 
+    STAND_INS: ClassVar[dict[str, object]] = {"pressure_viscosity_factor": None}
+
     oil: NamedOil = Field(
         description="A name of the oil library (epicyclic oils) or a table of properties."
+    )
+    pressure_viscosity_factor: Number = Field(
+        default=1.0,
+        ge=0.1,
+        le=10,
+        description="Multiplies the pressure-viscosity coefficient of the oil.",
     )
 
 

@@ -13,6 +13,7 @@ from typing import NoReturn
 
 import click
 
+from epicyclic.cli.compare import compare
 from epicyclic.cli.contact import contact
 from epicyclic.cli.exit_codes import (
     EXIT_BROKEN_PIPE,
@@ -56,6 +57,7 @@ COMMANDS = (
     pockets,
     contact,
     friction,
+    compare,
     validate,
     cases,
     oils,

@@ -13,6 +13,7 @@ from epicyclic.units import Quantity, format_number
 
 __all__ = [
     "OF_THIS_PACKAGE",
+    "OUT_OF_RANGE",
     "ModelUse",
     "Range",
     "RegressionFluid",
@@ -26,6 +27,8 @@ FloatArray = NDArray[np.float64]
 Real = TypeVar("Real", float, FloatArray)
 
 SMALLEST_SHOWN_SHARE = 0.01
+OUT_OF_RANGE = "Out of range"
+"""Begins what `describe_flags` says of a flag."""
 OF_THIS_PACKAGE = "limit of this package; none is in print"
 """Source of a range that no publication states."""
 
@@ -160,7 +163,7 @@ def _sentence(group: list[ValidityFlag]) -> str:
     unit = f" {first.unit}" if first.unit else ""
     models = ", ".join(f"{flag.use} {_percent(flag.share)}" for flag in group)
     return (
-        f"Out of range: {first.quantity} {found}{unit}; range {_limits(first)}{unit} "
+        f"{OUT_OF_RANGE}: {first.quantity} {found}{unit}; range {_limits(first)}{unit} "
         f"({first.source}). Share of the loss: {models}."
     )
 

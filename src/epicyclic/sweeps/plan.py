@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from pydantic_core import PydanticCustomError
@@ -31,7 +31,7 @@ from epicyclic.case.wording import sentence, written
 from epicyclic.errors import InputError, Problem
 from epicyclic.units import Quantity, format_number
 
-__all__ = ["Axis", "Plan", "make_plan", "parse_vary"]
+__all__ = ["Axis", "Plan", "PointList", "Points", "make_plan", "parse_vary"]
 
 _RANGE = re.compile(
     r"\s*(?P<start>[^:,]+?)\s*:\s*(?P<stop>[^:,]+?)\s*:\s*(?P<count>\d+)\s*(?P<unit>[^:,\d][^:,]*)?"
@@ -45,6 +45,24 @@ _LARGEST_WHOLE = 2**53
 
 # Tables whose keys leave geometry alone: varied innermost, so that geometry is built once.
 _OPERATING_TABLES = ("operation", "lubricant", "surroundings", "models", "losses")
+
+
+class Points(Protocol):
+    """Cases to be solved: one case, and what each point changes in it."""
+
+    @property
+    def case(self) -> Case:
+        """The case that is changed."""
+
+    @property
+    def size(self) -> int:
+        """Number of points."""
+
+    def changes(self, index: int) -> dict[str, Any]:
+        """The keys that point number `index` changes."""
+
+    def order(self) -> list[int]:
+        """Indices of all points, those that share geometry next to each other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +124,37 @@ class Plan:
             "version": metadata.version("epicyclic"),
         }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
+
+
+@dataclass(frozen=True, slots=True)
+class PointList:
+    """Single points: a case and the keys that each point changes."""
+
+    case: Case
+    points: tuple[Mapping[str, Any], ...]
+
+    @property
+    def size(self) -> int:
+        """Number of points."""
+        return len(self.points)
+
+    def changes(self, index: int) -> dict[str, Any]:
+        """The keys that point number `index` changes."""
+        return dict(self.points[index])
+
+    def order(self) -> list[int]:
+        """Indices of all points, by geometry, then operation, then torque, as in a loss map."""
+        return sorted(range(self.size), key=lambda index: self._place(index))
+
+    def _place(self, index: int) -> tuple[list[str], list[str], str]:
+        torque = "operation.torque"
+        changes = {key: str(value) for key, value in sorted(self.points[index].items())}
+        inner = [key for key in changes if key.split(".")[0] in _OPERATING_TABLES]
+        return (
+            [f"{key}={text}" for key, text in changes.items() if key not in inner],
+            [f"{key}={changes[key]}" for key in inner if key != torque],
+            changes.get(torque, ""),
+        )
 
 
 def make_plan(case: Case, vary: Mapping[str, Iterable[Any]]) -> Plan:

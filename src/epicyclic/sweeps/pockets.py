@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
 from typing import Any
-
-import numpy as np
 
 from epicyclic.analysis.solve import pocket_flow_numbers
 from epicyclic.errors import InputError
 from epicyclic.pocketing.similarity import FlowFamily
 from epicyclic.pocketing.table import FlowTables, make_tables
-from epicyclic.sweeps.plan import Plan
+from epicyclic.sweeps.plan import Points
 
 __all__ = ["flow_tables"]
 
@@ -29,16 +26,17 @@ _TORQUE = "operation.torque"
 """Only its sign matters to the pockets."""
 
 
-def flow_tables(plan: Plan, jobs: int | None = None) -> FlowTables:
-    """Tables for all points of `plan`, whichever of them are done; none where that does not pay."""
-    bound = plan.case.numerics.pocket_interpolation
-    alike = [len(axis.values) for axis in plan.axes if axis.key in _LIKE_SPEED]
-    if bound == 0 or np.prod(alike, dtype=int) < _FEWEST:
+def flow_tables(points: Points, jobs: int | None = None) -> FlowTables:
+    """Tables for all of `points`, whichever of them are done; none where that does not pay."""
+    bound = points.case.numerics.pocket_interpolation
+    samples = _samples(points)
+    alike = {tuple(changes.get(key) for key in _LIKE_SPEED) for changes in samples}
+    if bound == 0 or len(alike) < _FEWEST:
         return {}
     asked: dict[FlowFamily, set[float]] = defaultdict(set)
-    for changes in _samples(plan):
+    for changes in samples:
         try:
-            for family, number in pocket_flow_numbers(plan.case.updated(changes)):
+            for family, number in pocket_flow_numbers(points.case.updated(changes)):
                 asked[family].add(number)
         except InputError:
             continue  # the point reports it
@@ -46,15 +44,12 @@ def flow_tables(plan: Plan, jobs: int | None = None) -> FlowTables:
     return make_tables(many, bound, jobs)
 
 
-def _samples(plan: Plan) -> Iterator[dict[str, Any]]:
+def _samples(points: Points) -> list[dict[str, Any]]:
     """Changes of one point for each set of points that differ in the magnitude of torque only."""
-    seen = set()
-    for index in range(plan.size):
-        place = np.unravel_index(index, plan.shape)
-        kind = tuple(
-            np.sign(axis.coordinate[i]) if axis.key == _TORQUE else i
-            for axis, i in zip(plan.axes, place, strict=True)
-        )
-        if kind not in seen:
-            seen.add(kind)
-            yield plan.changes(index)
+    samples = {}
+    for index in range(points.size):
+        changes = points.changes(index)
+        coasting = str(changes.get(_TORQUE, "")).lstrip().startswith("-")
+        others = (str(value) for key, value in changes.items() if key != _TORQUE)
+        samples[coasting, *others] = changes
+    return list(samples.values())

@@ -12,7 +12,7 @@ from epicyclic.case.case import Case
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.sweeps.dataset import to_dataset
 from epicyclic.sweeps.journal import Journal, Row
-from epicyclic.sweeps.plan import Plan, make_plan
+from epicyclic.sweeps.plan import Points, make_plan
 from epicyclic.sweeps.pockets import flow_tables
 from epicyclic.sweeps.work import BATCH, Progress, guarded, run_work
 
@@ -68,14 +68,14 @@ def sweep(
 
 @dataclass(frozen=True, slots=True)
 class _Cases:
-    """The cases of a plan as work, with what they share."""
+    """Cases as work, with what they share."""
 
-    plan: Plan
+    points: Points
     flow_tables: FlowTables
 
     def order(self) -> Sequence[int]:
         """Those that share geometry next to each other."""
-        return self.plan.order()
+        return self.points.order()
 
     def solve(self, index: int) -> Row:
         """One case as a flat record."""
@@ -83,7 +83,7 @@ class _Cases:
 
 
 def run_plan(
-    plan: Plan,
+    plan: Points,
     *,
     jobs: int | None = None,
     journal: Journal | None = None,
@@ -105,7 +105,7 @@ def run_plan(
 
 
 def _solve_point(work: _Cases, index: int) -> Row:
-    case = work.plan.case.updated(work.plan.changes(index))
+    case = work.points.case.updated(work.points.changes(index))
     result = solve(case, flow_tables=work.flow_tables)
     return Row(
         status=str(result.status),

@@ -1,0 +1,138 @@
+"""The command compare: measured losses beside computed ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from epicyclic.cli.options import case_argument, load_with, set_option
+from epicyclic.cli.output import check_picture, draw, write_file
+from epicyclic.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    from epicyclic.measurement.compare import MeasuredComparison
+
+__all__ = ["compare"]
+
+
+@click.command()
+@case_argument
+@click.argument("measured", metavar="MEASURED", type=click.Path(path_type=Path))
+@set_option
+@click.option(
+    "--component",
+    metavar="NAME",
+    default="total",
+    help="The loss that was measured, if no column says so: a term, load_dependent, "
+    "load_independent, total (default), or several joined by +.",
+)
+@click.option("--group", metavar="COLUMN", default="temperature", help="Errors by its values too.")
+@click.option(
+    "--fit",
+    metavar="KEY,...",
+    help="Calibrate these keys of the case, within the ranges that a case file allows.",
+)
+@click.option(
+    "--hold-out",
+    metavar="COLUMN=VALUE|SHARE",
+    help="Points that the fit must not see: where a column has a value, or a random share.",
+)
+@click.option("--seed", type=click.IntRange(0), default=0, help="Of that share; default 0.")
+@click.option(
+    "-o", "--output", metavar="FILE", type=click.Path(path_type=Path),
+    help="Write the calibrated case (.toml).",
+)  # fmt: skip
+@click.option(
+    "--plot",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Draw parity and residuals to .png, .svg or .pdf.",
+)
+@click.option(
+    "--json",
+    "json_file",
+    metavar="[FILE]",
+    is_flag=False,
+    flag_value="-",
+    help="Write everything as JSON, to standard output if no FILE or - is given.",
+)
+@click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
+def compare(
+    case: str,
+    measured: Path,
+    changes: tuple[str, ...],
+    component: str,
+    group: str,
+    fit: str | None,
+    hold_out: str | None,
+    seed: int,
+    output: Path | None,
+    plot: Path | None,
+    json_file: str | None,
+    jobs: int | None,
+) -> None:
+    """Compare measured losses with computed ones; with --fit, calibrate inputs to them.
+
+    MEASURED is a .csv, .xlsx or .parquet file with columns such as "speed [rpm]", "torque [N*m]",
+    "temperature [degC]", "loss [W]"; optionally "uncertainty [W]" or [%], component, and any key of
+    the case.
+    """
+    from epicyclic.cli.progress import progress_bar
+    from epicyclic.measurement.compare import compare_measured
+    from epicyclic.report.measured_table import measured_tables
+    from epicyclic.report.tables import terminal
+
+    keys = [key.strip() for key in (fit or "").split(",") if key.strip()]
+    _check_outputs(output, plot, keys)
+    loaded = load_with(case, changes)
+    with progress_bar("points") as progress:
+        comparison = compare_measured(
+            loaded, measured, component=component, group=group, fit=keys, hold_out=hold_out,
+            seed=seed, jobs=jobs, progress=progress,
+        )  # fmt: skip
+    if json_file == "-":
+        click.echo(comparison.to_json())
+    else:
+        terminal().print(measured_tables(comparison))
+        if json_file is not None:
+            write_file(Path(json_file), comparison.to_json() + "\n")
+    if output is not None:
+        write_file(output, _calibrated_text(comparison))
+    if plot is not None:
+        from epicyclic.plots.measured import measured_figure
+
+        draw(measured_figure(comparison), plot)
+
+
+def _check_outputs(output: Path | None, plot: Path | None, keys: list[str]) -> None:
+    if plot is not None:
+        check_picture("--plot", plot)
+    if output is not None and output.suffix != ".toml":
+        raise InputError(
+            [Problem("-o", str(output), "must end in .toml.", "Name a case file.")], "the command"
+        )
+    if output is not None and not keys:
+        allowed = "holds the calibrated case, and nothing is calibrated."
+        raise InputError(
+            [Problem("-o", str(output), allowed, "Name the keys with --fit.")], "the command"
+        )
+
+
+def _calibrated_text(comparison: MeasuredComparison) -> str:
+    """The calibrated case as a case file that says which values are fitted, and to what."""
+    from epicyclic.measurement.compare import CALIBRATED
+    from epicyclic.report.case_file import case_text
+    from epicyclic.report.measured_table import fitted_comment
+
+    calibrated, fit = comparison.calibrated_case, comparison.fit
+    assert calibrated is not None
+    assert fit is not None
+    heading = [
+        f"{CALIBRATED}: the values marked so were fitted to {fit.points} measured losses of",
+        f"{comparison.measured.source}. Agreement with these is no validation.",
+        *(f"Warning: {note}" for note in fit.warnings),
+    ]
+    comments = {item.key: fitted_comment(item, fit) for item in fit.parameters}
+    return case_text(calibrated, comments, heading)

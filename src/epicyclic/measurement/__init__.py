@@ -1,0 +1,1 @@
+"""Measured losses against the model, and fits of uncertain inputs to them."""

@@ -1,0 +1,427 @@
+"""Measured losses beside computed ones, with or without a fit of uncertain inputs.
+
+A fit never passes for a prediction: what it touched is named ``calibrated`` everywhere, and its
+errors are given apart for the points it used and for those held out.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.analysis.parts import NOT_INCLUDED
+from epicyclic.analysis.result import versions
+from epicyclic.case.case import Case
+from epicyclic.errors import InputError, Problem
+from epicyclic.losses.validity import OUT_OF_RANGE
+from epicyclic.measurement.files import read_frame, read_grid
+from epicyclic.measurement.fit import Fit, fit_parameters
+from epicyclic.measurement.model import Computed, MeasuredPoints
+from epicyclic.measurement.parameters import make_parameters
+from epicyclic.measurement.table import Measurements, parse_measurements
+from epicyclic.sweeps.work import Progress
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["AS_GIVEN", "CALIBRATED", "ErrorFigures", "MeasuredComparison", "compare_measured"]
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+AS_GIVEN, CALIBRATED = "as given", "CALIBRATED"
+"""State of the case behind computed losses."""
+ALL, USED, HELD_OUT = "all points", "fitted points", "held-out points"
+_EQUATION = re.compile(r"(?P<column>[^=]+)=(?P<value>.*)")
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorFigures:
+    """How far computed losses are from measured ones, in one set of points.
+
+    Errors are computed less measured; relative ones are over the measured loss, of points where
+    that is positive.
+
+    Attributes
+    ----------
+    state : str
+        ``"as given"`` or ``"CALIBRATED"``.
+    points : str
+        Which points: all, those of the fit, or those held out from it.
+    group : str
+        The group within these, such as ``"temperature 40"``; empty for all of them.
+    count : int
+        How many of them could be computed.
+    bias, rms : float
+        Mean error, and root of the mean squared error. [W]
+    relative_bias, mean_percentage : float
+        Mean relative error, and mean of its magnitude. [1]
+    largest, relative_largest : float
+        Error of largest magnitude [W], and relative error of largest magnitude [1].
+    largest_line : int
+        Line of the error of largest magnitude.
+    chi_squared : float
+        Sum of squared errors over uncertainties; NaN without uncertainties. [1]
+    """
+
+    state: str
+    points: str
+    group: str
+    count: int
+    bias: float
+    rms: float
+    relative_bias: float
+    mean_percentage: float
+    largest: float
+    relative_largest: float
+    largest_line: int
+    chi_squared: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeasuredComparison:
+    """Measured and computed losses of one case.
+
+    Attributes
+    ----------
+    case : PlanetaryCase or GearPairCase
+        As it was given.
+    measured : Measurements
+    computed : ndarray, shape (n,)
+        With the case as given; NaN where a point failed. [W]
+    calibrated : ndarray, shape (n,), or None
+        With the fitted values. [W]
+    held_out : ndarray of bool, shape (n,)
+        Points that the fit did not see.
+    group : str
+        Column by whose values the errors are given.
+    errors : tuple of ErrorFigures
+    fit : Fit or None
+    notes : tuple of str
+        What to know: failed points, models outside their ranges.
+    """
+
+    case: Case
+    measured: Measurements
+    computed: FloatArray
+    calibrated: FloatArray | None
+    held_out: BoolArray
+    group: str
+    errors: tuple[ErrorFigures, ...]
+    fit: Fit | None
+    notes: tuple[str, ...]
+
+    @property
+    def states(self) -> dict[str, FloatArray]:
+        """Computed losses by the state of the case. [W]"""
+        given = {AS_GIVEN: self.computed}
+        return given if self.calibrated is None else given | {CALIBRATED: self.calibrated}
+
+    @property
+    def calibrated_case(self) -> Case | None:
+        """The case with the fitted values; None without a fit."""
+        return None if self.fit is None else self.case.updated(self.fit.settings)
+
+    def table(self) -> pd.DataFrame:
+        """One row for each measurement, units in the column names."""
+        import pandas as pd
+
+        own = {"loss", "uncertainty", "component"}
+        labels = {
+            name: list(text) for name, text in self.measured.labels.items() if name not in own
+        }
+        units = {"speed": "rpm", "torque": "N*m", "temperature": "degC"}
+        conditions = {f"{name} [{units[name]}]": v for name, v in self.measured.conditions.items()}
+        columns: dict[str, Any] = {"line": self.measured.lines} | conditions
+        columns |= {name: text for name, text in labels.items() if name not in units}
+        columns |= {"component": self.measured.component, "measured [W]": self.measured.loss}
+        if self.measured.uncertainty is not None:
+            columns["uncertainty [W]"] = self.measured.uncertainty
+        columns["computed [W]"] = self.computed
+        if self.calibrated is not None:
+            columns["CALIBRATED [W]"] = self.calibrated
+            columns["held out"] = self.held_out
+        return pd.DataFrame(columns)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain numbers and text; None stands for NaN."""
+        content = {
+            "title": self.case.title,
+            "measurements": self.measured.source,
+            "points": self.table().to_dict(orient="records"),
+            "errors": [asdict(row) for row in self.errors],
+            "error_units": {"bias": "W", "rms": "W", "largest": "W", "others": "1"},
+            "fit": None if self.fit is None else _fit_dict(self.fit),
+            "notes": list(self.notes),
+            "case": self.case.inputs(),
+            "versions": versions(),
+        }
+        clean: dict[str, Any] = _without_nan(content)
+        return clean
+
+    def to_json(self) -> str:
+        """`to_dict` as indented JSON text."""
+        return json.dumps(self.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
+
+
+def compare_measured(
+    case: Case,
+    measured: str | Path | pd.DataFrame,
+    *,
+    component: str = "total",
+    group: str = "temperature",
+    fit: Iterable[str] = (),
+    hold_out: str | float | None = None,
+    seed: int = 0,
+    confidence: float = 0.95,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> MeasuredComparison:
+    """Compare measured losses with those of a case, and fit uncertain inputs if asked to.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+        Everything that the table does not state.
+    measured : str, Path or pandas.DataFrame
+        CSV, Excel or Parquet file, or a table: columns ``speed``, ``torque``, ``temperature`` and
+        ``loss`` with units, ``"speed [rpm]"``; optionally ``uncertainty``, ``component``, any
+        dotted key of the case, and labels.
+    component : str, optional
+        The loss that was measured, where no column says so: a term, terms joined by ``+``,
+        ``"load_dependent"``, ``"load_independent"`` or ``"total"``.
+    group : str, optional
+        Column by whose values the errors are given.
+    fit : iterable of str, optional
+        Keys of the case to be fitted, from their values there and within the range of the schema.
+    hold_out : str or float, optional
+        Points that the fit must not see: ``"COLUMN=VALUE"``, or a share of all points, drawn with
+        `seed`.
+    seed : int, optional
+    confidence : float, optional
+        Of the intervals of fitted values. [1]
+    jobs, progress
+        As for `sweep`; the progress starts again with every round of a fit.
+
+    Returns
+    -------
+    MeasuredComparison
+
+    Raises
+    ------
+    InputError
+        With every mistake in the table, or if the fit cannot be made.
+    ConvergenceError
+        If the fit does not converge.
+    """
+    import pandas as pd
+
+    grid = read_frame(measured) if isinstance(measured, pd.DataFrame) else read_grid(Path(measured))
+    table = parse_measurements(grid, case, component)
+    keys = tuple(dict.fromkeys(fit))
+    varied = {key for change in table.changes for key in change}
+    _check_options(table, keys, group, hold_out, confidence)
+    parameters = make_parameters(case, keys, varied)
+    held_out = _held_out(table, hold_out, seed)
+    points = MeasuredPoints(case, table, jobs, progress)
+    (given,) = points.compute({})
+    _check_any(given)
+    found = calibrated = None
+    if parameters:
+        used = np.isfinite(given.loss) & ~held_out
+        found = fit_parameters(points, parameters, used, confidence)
+        (calibrated,) = points.compute(found.settings)
+    states = {AS_GIVEN: given.loss}
+    if calibrated is not None:
+        states[CALIBRATED] = calibrated.loss
+    return MeasuredComparison(
+        case=case,
+        measured=table,
+        computed=given.loss,
+        calibrated=None if calibrated is None else calibrated.loss,
+        held_out=held_out,
+        group=group,
+        errors=tuple(_all_errors(table, states, held_out, group)),
+        fit=found,
+        notes=tuple(_notes(table, given if calibrated is None else calibrated)),
+    )
+
+
+def _check_options(
+    table: Measurements,
+    keys: tuple[str, ...],
+    group: str,
+    hold_out: str | float | None,
+    confidence: float,
+) -> None:
+    problems = []
+    known = ", ".join(table.labels)
+    if group not in table.labels:
+        problems.append(Problem("group", group, "is no column.", f"Columns are {known}."))
+    if hold_out is not None and not keys:
+        problems.append(
+            Problem("hold_out", str(hold_out), "keeps points from a fit, and there is none.",
+                    "Name the keys to fit.")
+        )  # fmt: skip
+    if not 0 < confidence < 1:
+        problems.append(
+            Problem("confidence", f"{confidence:g}", "must be > 0 and < 1.", "Give 0.95.")
+        )
+    if problems:
+        raise InputError(problems, "the comparison")
+
+
+def _held_out(table: Measurements, hold_out: str | float | None, seed: int) -> BoolArray:
+    """Which points the fit must not see."""
+    count = len(table)
+    if hold_out is None:
+        return np.zeros(count, dtype=bool)
+    share = _share(hold_out)
+    if share is not None:
+        chosen = np.zeros(count, dtype=bool)
+        drawn = np.random.default_rng(seed).permutation(count)[: round(share * count)]
+        chosen[drawn] = True
+        return chosen
+    match = _EQUATION.fullmatch(str(hold_out))
+    column = match["column"].strip() if match else ""
+    if match is None or column not in table.labels:
+        allowed = "must be COLUMN=VALUE, or a share between 0 and 1."
+        remedy = f"Columns are {', '.join(table.labels)}."
+        raise InputError([Problem("hold_out", str(hold_out), allowed, remedy)], "the comparison")
+    wanted = match["value"].strip()
+    chosen = np.array([_same(cell, wanted) for cell in table.labels[column]])
+    if not chosen.any():
+        values = ", ".join(dict.fromkeys(table.labels[column]))
+        allowed = f"holds for no row; {column} has {values[:200]}."
+        raise InputError(
+            [Problem("hold_out", str(hold_out), allowed, "Name one of them.")], "the comparison"
+        )
+    return chosen
+
+
+def _share(hold_out: str | float) -> float | None:
+    try:
+        share = float(hold_out)
+    except ValueError:
+        return None
+    return share if 0 < share < 1 else None
+
+
+def _same(cell: str, wanted: str) -> bool:
+    """Equal as text or as numbers."""
+    try:
+        return cell == wanted or float(cell) == float(wanted)
+    except ValueError:
+        return False
+
+
+def _check_any(given: Computed) -> None:
+    if not np.isfinite(given.loss).any():
+        reason = next(message for message in given.messages if message)
+        problem = Problem("measurements", "", f"no point can be computed: {reason}", "")
+        raise InputError([problem], "the comparison")
+
+
+def _all_errors(
+    table: Measurements, states: Mapping[str, FloatArray], held_out: BoolArray, group: str
+) -> Iterator[ErrorFigures]:
+    """Errors of every state and set of points, then of the groups within the set."""
+    sets = {ALL: np.ones(len(table), dtype=bool)}
+    if CALIBRATED in states:
+        sets = {USED: ~held_out} | ({HELD_OUT: held_out} if held_out.any() else {})
+    labels = np.array(table.labels[group])
+    values = list(dict.fromkeys(table.labels[group]))
+    for state, computed in states.items():
+        for name, members in sets.items():
+            yield _errors(table, computed, members, (state, name, ""))
+            for value in values if len(values) > 1 else ():
+                part = members & (labels == value)
+                if part.any():
+                    yield _errors(table, computed, part, (state, name, f"{group} {value}"))
+
+
+def _errors(
+    table: Measurements, computed: FloatArray, members: BoolArray, names: tuple[str, str, str]
+) -> ErrorFigures:
+    kept = np.flatnonzero(members & np.isfinite(computed))
+    error, measured = (computed - table.loss)[kept], table.loss[kept]
+    if kept.size == 0:
+        none = math.nan
+        return ErrorFigures(*names, 0, none, none, none, none, none, none, 0, none)
+    positive = measured > 0
+    relative = error[positive] / measured[positive] if positive.any() else np.array([math.nan])
+    worst = int(np.argmax(np.abs(error)))
+    sigma = None if table.uncertainty is None else table.uncertainty[kept]
+    return ErrorFigures(
+        *names,
+        count=kept.size,
+        bias=float(error.mean()),
+        rms=float(np.sqrt(np.mean(error**2))),
+        relative_bias=float(relative.mean()),
+        mean_percentage=float(np.abs(relative).mean()),
+        largest=float(error[worst]),
+        relative_largest=float(relative[np.argmax(np.abs(relative))]),
+        largest_line=table.lines[kept[worst]],
+        chi_squared=math.nan if sigma is None else float(np.sum((error / sigma) ** 2)),
+    )
+
+
+def _notes(table: Measurements, computed: Computed) -> Iterator[str]:
+    failed = [
+        (line, text) for line, text in zip(table.lines, computed.messages, strict=True) if text
+    ]
+    if failed:
+        line, reason = failed[0]
+        yield f"{len(failed)} of {len(table)} points could not be computed; line {line}: {reason}"
+    warned = {
+        line: text.split(" | ")
+        for line, text in zip(table.lines, computed.warnings, strict=True)
+        if text
+    }
+    missing = (note for notes in warned.values() for note in notes if note.startswith(NOT_INCLUDED))
+    yield from dict.fromkeys(missing)
+    flagged = [line for line, notes in warned.items() if any(map(_is_flag, notes))]
+    if flagged:
+        yield (
+            f"{len(flagged)} of {len(table)} points use a model outside its range, the first in "
+            f"line {flagged[0]}; 'epicyclic run' at its conditions names the model."
+        )
+    if (table.loss < 0).any():
+        yield "some measured losses are negative."
+
+
+def _is_flag(note: str) -> bool:
+    return note.startswith(OUT_OF_RANGE)
+
+
+def _fit_dict(fit: Fit) -> dict[str, Any]:
+    return {
+        "state": CALIBRATED,
+        "parameters": [asdict(item) for item in fit.parameters],
+        "confidence": fit.confidence,
+        "correlation": fit.correlation.tolist(),
+        "points": fit.points,
+        "degrees_of_freedom": fit.degrees_of_freedom,
+        "chi_squared": fit.chi_squared,
+        "widening": fit.widening,
+        "evaluations": fit.evaluations,
+        "warnings": list(fit.warnings),
+    }
+
+
+def _without_nan(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _without_nan(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_without_nan(item) for item in value]
+    if isinstance(value, float):
+        return None if not math.isfinite(value) else value
+    return value

@@ -1,0 +1,332 @@
+"""Fit of uncertain inputs to measured losses: weighted least squares, bounded by the schema.
+
+`scipy.optimize.least_squares` with its trust-region-reflective method, which keeps to bounds.
+The intervals are those of the linearised model at the solution, from its derivatives there: losses
+are nearly linear in these inputs, and a profile of the likelihood would take tens of fits.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.measurement.model import MeasuredPoints
+from epicyclic.measurement.parameters import Parameter
+from epicyclic.units import format_number
+
+__all__ = ["Fit", "FittedParameter", "fit_parameters"]
+
+FloatArray = NDArray[np.float64]
+
+STEP = 1e-3
+"""Of the differences that give the derivatives, over the start value. [1]"""
+MOST_ROUNDS = 50
+"""Trial solutions after which the fit is given up."""
+TOLERANCE = 1e-6
+"""Relative change of parameters, and of the sum of squares, that ends the fit. [1]"""
+NO_INFLUENCE = 1e-9
+"""Relative change of every loss, over that of a parameter, below which it has no influence. [1]"""
+SINGULAR = 1e-7
+"""Ratio of singular values of the derivatives below which parameters cannot be told apart. [1]"""
+ALIKE = 0.95
+"""Magnitude of a correlation from which a warning names it. [1]"""
+NEAR_BOUND = 1e-4
+"""Distance from a bound, over the start value, that counts as at the bound. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class FittedParameter:
+    """A calibrated value of a key, with its confidence interval.
+
+    Attributes
+    ----------
+    key, unit : str
+    start, value : float
+        In the case, and calibrated; in `unit`.
+    standard_error, low, high : float
+        Of the value, and its confidence interval, in `unit`; NaN if they do not exist.
+    at_bound : bool
+        True if it ended at a bound of the schema.
+    """
+
+    key: str
+    unit: str
+    start: float
+    value: float
+    standard_error: float
+    low: float
+    high: float
+    at_bound: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fit:
+    """What a calibration found.
+
+    Attributes
+    ----------
+    parameters : tuple of FittedParameter
+    settings : mapping of str to object
+        The calibrated values as a case file has them.
+    confidence : float
+        Of the intervals. [1]
+    correlation : ndarray, shape (p, p)
+        Of the parameters; NaN where it does not exist.
+    points, degrees_of_freedom : int
+        Points used, and these less the parameters.
+    chi_squared : float
+        Sum of squared deviations over uncertainties; NaN without uncertainties. [1]
+    widening : float
+        Factor by which the intervals are wider than the uncertainties alone make them. [1]
+    evaluations : int
+        Computed points.
+    warnings : tuple of str
+        What to know before using the values.
+    """
+
+    parameters: tuple[FittedParameter, ...]
+    settings: Mapping[str, Any]
+    confidence: float
+    correlation: FloatArray
+    points: int
+    degrees_of_freedom: int
+    chi_squared: float
+    widening: float
+    evaluations: int
+    warnings: tuple[str, ...]
+
+
+@dataclass(slots=True)
+class _Residuals:
+    """Deviations over weights at the points of calibration, and their derivatives."""
+
+    points: MeasuredPoints
+    parameters: Sequence[Parameter]
+    used: NDArray[np.bool_]
+    _known: dict[tuple[float, ...], FloatArray] = field(default_factory=dict)
+
+    @property
+    def evaluations(self) -> int:
+        """Computed points."""
+        return len(self._known) * len(self.points.measured)
+
+    def settings(self, scaled: FloatArray) -> dict[str, Any]:
+        return {
+            item.key: item.value(float(z)) for item, z in zip(self.parameters, scaled, strict=True)
+        }
+
+    def __call__(self, scaled: FloatArray) -> FloatArray:
+        return self._weighted([scaled])[0]
+
+    def derivatives(self, scaled: FloatArray) -> FloatArray:
+        """d(residual)/d(scaled parameter), all from one batch of points, shape (n, p)."""
+        steps = [
+            -STEP if z + STEP > item.ends[1] else STEP
+            for item, z in zip(self.parameters, scaled, strict=True)
+        ]
+        moved = [
+            scaled + step * unit for step, unit in zip(steps, np.eye(scaled.size), strict=True)
+        ]
+        base, *others = self._weighted([scaled, *moved])
+        table = np.array([(other - base) / step for other, step in zip(others, steps, strict=True)])
+        if not np.isfinite(table).all():
+            raise ConvergenceError(
+                f"near {self.settings(scaled)} points cannot be computed; fit fewer keys, or "
+                "start from other values."
+            )
+        return table.T
+
+    def _weighted(self, scaled: Sequence[FloatArray]) -> list[FloatArray]:
+        """Deviations for each of several parameter sets; those that are not known in one batch."""
+        sets = [tuple(map(float, one)) for one in scaled]
+        new = [one for one in dict.fromkeys(sets) if one not in self._known]
+        measured = self.points.measured
+        weight = 1.0 if measured.uncertainty is None else 1 / measured.uncertainty[self.used]
+        settings = [self.settings(np.array(one)) for one in new]
+        for one, computed in zip(new, self.points.compute(*settings) if new else [], strict=True):
+            self._known[one] = (computed.loss[self.used] - measured.loss[self.used]) * weight
+        return [self._known[one] for one in sets]
+
+
+def fit_parameters(
+    points: MeasuredPoints,
+    parameters: Sequence[Parameter],
+    used: NDArray[np.bool_],
+    confidence: float,
+) -> Fit:
+    """Fit `parameters` to the measured losses of the points `used`.
+
+    Raises
+    ------
+    InputError
+        If there are fewer points than parameters, or a parameter has no influence.
+    ConvergenceError
+        If the fit does not converge.
+    """
+    from scipy.optimize import least_squares
+
+    count, size = int(used.sum()), len(parameters)
+    if count < size:
+        allowed = f"{size} inputs cannot be fitted to {count} usable points."
+        raise InputError(
+            [Problem("fit", "", allowed, "Fit fewer, or give more points.")], "the fit"
+        )
+    residuals = _Residuals(points, parameters, used)
+    start = np.ones(size)
+    _check_influence(residuals, start)
+    ends = np.array([item.ends for item in parameters])
+    found = least_squares(
+        residuals, start, residuals.derivatives, (ends[:, 0], ends[:, 1]),
+        xtol=TOLERANCE, ftol=TOLERANCE**2, gtol=TOLERANCE**2, max_nfev=MOST_ROUNDS,
+    )  # fmt: skip
+    if found.status < 1:
+        raise ConvergenceError(
+            f"the fit did not converge in {MOST_ROUNDS} rounds; fit fewer keys, or start from "
+            "other values with --set."
+        )
+    at_bound = (found.active_mask != 0) | (np.abs(found.x[:, None] - ends) < NEAR_BOUND).any(axis=1)
+    return _described(residuals, found.x, found.fun, found.jac, at_bound, confidence)
+
+
+def _check_influence(residuals: _Residuals, start: FloatArray) -> None:
+    loss = residuals.points.measured.loss[residuals.used]
+    sigma = residuals.points.measured.uncertainty
+    scale = np.abs(loss) if sigma is None else np.abs(loss) / sigma[residuals.used]
+    slopes = np.abs(residuals.derivatives(start)).max(axis=0)
+    problems = [
+        Problem(item.key, "", "has no influence on the measured losses.", "Do not fit it.")
+        for item, slope in zip(residuals.parameters, slopes, strict=True)
+        if slope <= NO_INFLUENCE * scale.max()
+    ]
+    if problems:
+        raise InputError(problems, "the fit")
+
+
+def _described(
+    residuals: _Residuals,
+    solution: FloatArray,
+    deviations: FloatArray,
+    derivatives: FloatArray,
+    at_bound: NDArray[np.bool_],
+    confidence: float,
+) -> Fit:
+    """The fit with intervals and warnings; parameters at a bound have no interval."""
+    parameters = residuals.parameters
+    free = np.flatnonzero(~at_bound)
+    freedom = deviations.size - len(parameters)
+    weighted = residuals.points.measured.uncertainty is not None
+    chi_squared = float(deviations @ deviations)
+    covariance, separable = _covariance(derivatives[:, free])
+    widening, quantile = _spread(chi_squared, freedom, weighted, confidence)
+    errors = np.full(len(parameters), np.nan)
+    errors[free] = np.sqrt(np.diag(covariance)) * widening
+    correlation = np.full((len(parameters), len(parameters)), np.nan)
+    deviation = np.sqrt(np.diag(covariance))
+    correlation[np.ix_(free, free)] = covariance / np.outer(deviation, deviation)
+    fitted = tuple(
+        _fitted(item, float(z), float(error), quantile, bool(bound))
+        for item, z, error, bound in zip(parameters, solution, errors, at_bound, strict=True)
+    )
+    return Fit(
+        parameters=fitted,
+        settings=residuals.settings(solution),
+        confidence=confidence,
+        correlation=correlation,
+        points=deviations.size,
+        degrees_of_freedom=freedom,
+        chi_squared=chi_squared if weighted else math.nan,
+        widening=widening if weighted else math.nan,
+        evaluations=residuals.evaluations,
+        warnings=tuple(_warnings(fitted, correlation, separable, freedom, weighted, widening)),
+    )
+
+
+def _covariance(derivatives: FloatArray) -> tuple[FloatArray, bool]:
+    """Inverse of J'J, and whether it exists; NaN if not."""
+    size = derivatives.shape[1]
+    if size == 0:
+        return np.zeros((0, 0)), True
+    lengths = np.linalg.norm(derivatives, axis=0)
+    if not (lengths > 0).all():
+        return np.full((size, size), np.nan), False
+    _, singular, directions = np.linalg.svd(derivatives / lengths, full_matrices=False)
+    if singular[-1] < SINGULAR * singular[0]:
+        return np.full((size, size), np.nan), False
+    scaled = directions.T / singular / lengths[:, None]
+    return scaled @ scaled.T, True
+
+
+def _spread(
+    chi_squared: float, freedom: int, weighted: bool, confidence: float
+) -> tuple[float, float]:
+    """Standard deviation of the weighted deviations, and the quantile that goes with it.
+
+    With uncertainties it is 1, or what the scatter shows if that is more (R. T. Birge, Phys. Rev.
+    40 (1932) 207); without them the scatter, with Student's distribution.
+    """
+    from scipy import stats
+
+    tail = (1 + confidence) / 2
+    scatter = math.sqrt(chi_squared / freedom) if freedom > 0 else math.nan
+    if weighted:
+        return max(1.0, scatter) if freedom > 0 else 1.0, float(stats.norm.ppf(tail))
+    return scatter, float(stats.t.ppf(tail, freedom)) if freedom > 0 else math.nan
+
+
+def _fitted(
+    item: Parameter, scaled: float, error: float, quantile: float, at_bound: bool
+) -> FittedParameter:
+    value = min(max(scaled * item.start, item.low), item.high)
+    spread = error * abs(item.start)
+    reach = quantile * spread
+    return FittedParameter(
+        key=item.key,
+        unit=item.unit,
+        start=item.start,
+        value=value,
+        standard_error=spread,
+        low=max(value - reach, item.low) if math.isfinite(reach) else math.nan,
+        high=min(value + reach, item.high) if math.isfinite(reach) else math.nan,
+        at_bound=at_bound,
+    )
+
+
+def _warnings(
+    fitted: Sequence[FittedParameter],
+    correlation: FloatArray,
+    separable: bool,
+    freedom: int,
+    weighted: bool,
+    widening: float,
+) -> Iterable[str]:
+    for item in fitted:
+        if item.at_bound:
+            yield (
+                f"{item.key} ended at the bound {format_number(item.value)} {item.unit}".rstrip()
+                + ": it has no interval, and something else in the model or the data is amiss."
+            )
+        elif item.high - item.low > 2 * abs(item.value):
+            yield f"{item.key} is hardly determined: its interval is wider than twice its value."
+    if not separable:
+        keys = ", ".join(item.key for item in fitted if not item.at_bound)
+        yield f"{keys} cannot be told apart by these points: fix some of them."
+    for i, j in combinations(range(len(fitted)), 2):
+        if abs(correlation[i, j]) >= ALIKE:
+            yield (
+                f"{fitted[i].key} and {fitted[j].key} can hardly be told apart (correlation "
+                f"{correlation[i, j]:.3f}): fix one of them."
+            )
+    if freedom == 0:
+        yield "there are as many inputs as points: the fit cannot fail, and proves nothing."
+    if weighted and widening > 1:
+        yield (
+            f"the points scatter {widening:.2f} times as much about the fit as their uncertainties "
+            "allow; the intervals are widened by that factor."
+        )

@@ -1,0 +1,133 @@
+"""Keys of a case that can be fitted: their start values and bounds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from annotated_types import Gt
+
+from epicyclic.case.case import Case
+from epicyclic.case.fields import (
+    all_keys,
+    bounds_of,
+    find_field,
+    is_array,
+    is_whole_number,
+    quantity_of,
+    table_of,
+)
+from epicyclic.case.nearest import did_you_mean
+from epicyclic.errors import InputError, Problem
+from epicyclic.units import Quantity
+
+__all__ = ["Parameter", "make_parameters"]
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A key of the case that is fitted.
+
+    Attributes
+    ----------
+    key : str
+        Dotted key of the case.
+    unit : str
+        Display unit; empty for pure numbers.
+    start, low, high : float
+        Value in the case, and bounds of the schema, in `unit`.
+    """
+
+    key: str
+    unit: str
+    start: float
+    low: float
+    high: float
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The bounds over the start value, rising. [1]"""
+        one, other = sorted((self.low / self.start, self.high / self.start))
+        return one, other
+
+    def value(self, scaled: float) -> Any:
+        """The value at `scaled`, the ratio to the start value, as a case file has it."""
+        number = min(max(scaled * self.start, self.low), self.high)
+        return f"{number!r} {self.unit}" if self.unit else number
+
+
+def make_parameters(
+    case: Case, keys: Iterable[str], varied: Iterable[str]
+) -> tuple[Parameter, ...]:
+    """The keys to be fitted, checked; `varied` are those that the table sets itself.
+
+    Raises
+    ------
+    InputError
+        For keys that are unknown, hold no number, or have no start value.
+    """
+    found: dict[str, Parameter | Problem] = {
+        key: _parameter(case, key, set(varied)) for key in keys
+    }
+    problems = [item for item in found.values() if isinstance(item, Problem)]
+    if problems:
+        raise InputError(problems, "the fit")
+    return tuple(item for item in found.values() if isinstance(item, Parameter))
+
+
+def _parameter(case: Case, key: str, varied: set[str]) -> Parameter | Problem:
+    field = find_field(type(case), key)
+    if field is None:
+        remedy = did_you_mean(key, list(all_keys(type(case)))) or "See 'epicyclic init' for keys."
+        return Problem(key, "", "is not a known key.", remedy)
+    quantity = quantity_of(*field)
+    low, high = _bounds(quantity, field)
+    if not _is_number(field, quantity):
+        return Problem(key, "", "holds no continuous number.", "Fit a key that does.")
+    if key in varied:
+        return Problem(key, "", "is given by a column of the table.", "Fit another key.")
+    start = _start(case, key, quantity)
+    if start is None or start == 0:
+        what = "has no value in the case" if start is None else "is 0 in the case"
+        return Problem(key, "", f"{what}; a fit starts from one.", f'Add --set "{key}=...".')
+    return Parameter(key, "" if quantity is None else quantity.display, start, low, high)
+
+
+def _is_number(field: tuple[Any, tuple[Any, ...]], quantity: Quantity | None) -> bool:
+    annotation = field[0]
+    if is_array(annotation) or is_whole_number(annotation) or table_of(annotation) is not None:
+        return False
+    return quantity is not None or float in _plain_types(annotation)
+
+
+def _plain_types(annotation: Any) -> set[Any]:
+    """The types of an annotation without its metadata."""
+    inner = getattr(annotation, "__origin__", annotation)  # Annotated[float, ...] has float
+    parts = getattr(annotation, "__args__", ()) if inner is not float else ()
+    return {inner}.union(*map(_plain_types, parts))
+
+
+def _bounds(quantity: Quantity | None, field: tuple[Any, tuple[Any, ...]]) -> tuple[float, float]:
+    """Bounds of the schema, an open one moved inwards by one part in a million of the range."""
+    if quantity is not None:
+        low, high, is_open = quantity.low, quantity.high, quantity.open_low
+    else:
+        lower, upper = bounds_of(*field)
+        is_open = isinstance(lower, Gt)
+        low = None if lower is None else float(lower.gt if isinstance(lower, Gt) else lower.ge)  # type: ignore[arg-type]
+        high = None if upper is None else float(upper.le)  # type: ignore[arg-type]
+    lowest = -math.inf if low is None else low
+    if is_open:
+        lowest = math.nextafter(lowest, math.inf)
+    return lowest, math.inf if high is None else high
+
+
+def _start(case: Case, key: str, quantity: Quantity | None) -> float | None:
+    value: Any = case
+    for name in key.split("."):
+        value = getattr(value, name, None)
+    if value is None:
+        return None
+    return float(value) if quantity is None else quantity.to_display(value)

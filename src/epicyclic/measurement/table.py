@@ -1,0 +1,350 @@
+"""Measurements as a table states them: conditions, loss, which loss it is, uncertainty."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import PydanticCustomError
+
+from epicyclic.analysis.result import number_fields
+from epicyclic.case.case import Case
+from epicyclic.case.fields import all_keys, find_field, is_array, quantity_of
+from epicyclic.case.nearest import did_you_mean, misspelt
+from epicyclic.case.values import parse_value
+from epicyclic.case.wording import one_line, sentence
+from epicyclic.errors import InputError, Problem
+from epicyclic.measurement.files import Grid
+from epicyclic.units import WATT, Quantity
+
+__all__ = ["CONDITIONS", "Measurements", "loss_names", "parse_measurements"]
+
+FloatArray = NDArray[np.float64]
+
+CONDITIONS = {
+    "speed": "operation.speed",
+    "torque": "operation.torque",
+    "temperature": "operation.oil_inlet_temperature",
+}
+"""Columns that every table has, and their keys."""
+_OWN = (*CONDITIONS, "loss", "uncertainty", "component")
+_EXAMPLES = {"speed": "rpm", "torque": "N*m", "temperature": "degC", "loss": "W"}
+_HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
+_PERCENT = "%"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measurements:
+    """Measured losses, one entry for each row of the table.
+
+    Attributes
+    ----------
+    source : str
+        Where they come from.
+    lines : tuple of int
+        Line of each in its file.
+    changes : tuple of mapping
+        The keys of the case that its row sets, as a case file has them.
+    conditions : mapping of str to ndarray, shape (n,)
+        ``speed`` [rpm], ``torque`` [N m], ``temperature`` [degC].
+    component : tuple of str
+        The loss that was measured: a term, a sum of terms joined by ``+``, ``load_dependent``,
+        ``load_independent`` or ``total``.
+    loss : ndarray, shape (n,)
+        [W]
+    uncertainty : ndarray, shape (n,), or None
+        Standard uncertainty of the loss (coverage factor 1). [W]
+    labels : mapping of str to tuple of str
+        The columns by name, as text; units taken off the names.
+    """
+
+    source: str
+    lines: tuple[int, ...]
+    changes: tuple[Mapping[str, Any], ...]
+    conditions: Mapping[str, FloatArray]
+    component: tuple[str, ...]
+    loss: FloatArray
+    uncertainty: FloatArray | None
+    labels: Mapping[str, tuple[str, ...]]
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+
+def loss_names(kind: str) -> tuple[str, ...]:
+    """Losses of a `kind` of case that can be measured."""
+    fields = (item.key for item in number_fields(kind) if item.unit == WATT.display)
+    return tuple(key for key in fields if key != "input_power")
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    header: str
+    name: str
+    unit: str
+    cells: tuple[str, ...]
+
+
+@dataclass(slots=True)
+class _Problems:
+    """Mistakes in cells; the same mistake in many cells of a column is one problem."""
+
+    lines: tuple[int, ...]
+    found: list[Problem] = field(default_factory=list)
+    _cells: dict[tuple[str, str, str], list[str]] = field(default_factory=dict)
+
+    def cell(self, column: _Column, row: int, allowed: str, remedy: str) -> None:
+        given = f'"{one_line(column.cells[row])}" in line {self.lines[row]}'
+        self._cells.setdefault((column.header, allowed, remedy), []).append(given)
+
+    def all(self) -> list[Problem]:
+        """Every problem, those of columns first."""
+        cells = [
+            Problem(one_line(header), _some(given), allowed, remedy)
+            for (header, allowed, remedy), given in self._cells.items()
+        ]
+        return [*self.found, *cells]
+
+
+def _some(items: list[str], most: int = 3) -> str:
+    more = len(items) - most
+    return ", ".join(items[:most]) + (f" and {more} more" if more > 0 else "")
+
+
+def parse_measurements(grid: Grid, case: Case, component: str = "total") -> Measurements:
+    """What the cells of a table mean for a case.
+
+    Parameters
+    ----------
+    grid : Grid
+    case : PlanetaryCase or GearPairCase
+    component : str
+        The loss that was measured, where the table has no column ``component``.
+
+    Raises
+    ------
+    InputError
+        With every mistake in the table.
+    """
+    problems = _Problems(tuple(line for line, _ in grid.rows))
+    columns = _columns(grid, case, problems)
+    conditions = {
+        name: _numbers(columns.get(name), quantity_of(*_field(case, key)), problems)
+        for name, key in CONDITIONS.items()
+    }
+    loss = _numbers(columns.get("loss"), WATT, problems)
+    uncertainty = _uncertainty(columns.get("uncertainty"), loss, problems)
+    components = _components(columns.get("component"), component, case, grid, problems)
+    keys = {
+        CONDITIONS.get(name, name): column
+        for name, column in columns.items()
+        if name in CONDITIONS or "." in name
+    }
+    values = {key: _values(column, *_field(case, key), problems) for key, column in keys.items()}
+    _check_repeats(grid, problems)
+    changes = tuple(
+        {key: column[row] for key, column in values.items()} for row in range(len(grid.rows))
+    )
+    found = problems.all() or _refused(case, changes, problems.lines)
+    if found:
+        raise InputError(found, grid.source)
+    return Measurements(
+        source=grid.source,
+        lines=problems.lines,
+        changes=changes,
+        conditions=conditions,
+        component=components,
+        loss=loss,
+        uncertainty=uncertainty,
+        labels={name: column.cells for name, column in columns.items()},
+    )
+
+
+def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
+    """The columns by name; the three conditions under their short names."""
+    short = {key: name for name, key in CONDITIONS.items()}
+    columns: dict[str, _Column] = {}
+    for number, header in enumerate(grid.header):
+        match = _HEADER.fullmatch(header)
+        if match is None:
+            allowed, remedy = "is no name with a unit.", "Write it as: speed [rpm]."
+            problems.found.append(
+                Problem(f"column {number + 1}", one_line(header), allowed, remedy)
+            )
+            continue
+        name = match["name"]
+        name = name.lower() if name.lower() in _OWN else short.get(name, name)
+        cells = tuple(row[number] for _, row in grid.rows)
+        column = _Column(header, name, (match["unit"] or "").strip(), cells)
+        if name in columns:
+            allowed, remedy = "is a second column of that name.", "Delete one."
+            problems.found.append(Problem(one_line(header), "", allowed, remedy))
+            continue
+        problem = _name_problem(column, case)
+        if problem is not None:
+            problems.found.append(problem)
+        else:
+            columns[name] = column
+    taken = {problem.key for problem in problems.found}
+    problems.found += [
+        Problem(name, "", "is missing among the columns.", f"Add a column {name} [{unit}].")
+        for name, unit in _EXAMPLES.items()
+        if name not in columns and not any(misspelt(key, [name]) for key in taken)
+    ]
+    return columns
+
+
+def _name_problem(column: _Column, case: Case) -> Problem | None:
+    """What is wrong with the name of a column; names without dots may be labels of the user."""
+    name, shown = column.name, one_line(column.header)
+    if "." not in name:
+        nearest = "" if name in _OWN else misspelt(name, _OWN)
+        if nearest:
+            return Problem(shown, "", "is not a known column.", f'Did you mean "{nearest}"?')
+        return None
+    known = find_field(type(case), name)
+    if known is None:
+        remedy = did_you_mean(name, list(all_keys(type(case)))) or "Remove it, or drop its dots."
+        return Problem(shown, "", "is not a key of the case.", remedy)
+    if is_array(known[0]):
+        return Problem(shown, "", "is a list in the case.", "Compare one table for each list.")
+    return None
+
+
+def _field(case: Case, key: str) -> tuple[Any, tuple[Any, ...]]:
+    found = find_field(type(case), key)
+    assert found is not None
+    return found
+
+
+def _numbers(column: _Column | None, quantity: Quantity | None, problems: _Problems) -> FloatArray:
+    """The cells in the display unit of `quantity`; NaN where they cannot be read."""
+    if column is None:
+        return np.full(len(problems.lines), np.nan)
+    assert quantity is not None
+    kind: Quantity = quantity
+    return _read(
+        column, problems, lambda cell: kind.to_display(kind.parse(_with_unit(column, cell)))
+    )
+
+
+def _with_unit(column: _Column, cell: str) -> str:
+    return f"{cell} {column.unit}" if column.unit else cell
+
+
+def _read(column: _Column, problems: _Problems, parse: Callable[[str], float]) -> FloatArray:
+    numbers = np.full(len(column.cells), np.nan)
+    for row, cell in enumerate(column.cells):
+        if not cell:
+            problems.cell(column, row, "is empty.", "Fill it, or delete the row.")
+            continue
+        try:
+            numbers[row] = parse(cell)
+        except PydanticCustomError as error:
+            remedy = str((error.context or {}).get("remedy", ""))
+            allowed = sentence(error.message(), capital=False)
+            if not column.unit:
+                remedy += f" in every cell, or put the unit into the header: {column.name} [...]"
+            problems.cell(column, row, allowed, sentence(remedy))
+        except ValueError:
+            problems.cell(column, row, "is not a number.", "Write a number, or delete the row.")
+    return numbers
+
+
+def _finite(cell: str) -> float:
+    number = float(cell)
+    if not math.isfinite(number):
+        raise ValueError(cell)
+    return number
+
+
+def _uncertainty(
+    column: _Column | None, loss: FloatArray, problems: _Problems
+) -> FloatArray | None:
+    """Standard uncertainties in W, from W or from per cent of the loss."""
+    if column is None:
+        return None
+    if column.unit == _PERCENT:
+        values = _read(column, problems, _finite) / 100 * np.abs(loss)
+    else:
+        values = _numbers(column, WATT, problems)
+    for row in np.flatnonzero(values <= 0):
+        remedy = "Give the standard uncertainty of every row, or leave the column out."
+        problems.cell(column, int(row), "must be > 0.", remedy)
+    return values
+
+
+def _components(
+    column: _Column | None, given: str, case: Case, grid: Grid, problems: _Problems
+) -> tuple[str, ...]:
+    names = loss_names(case.kind)
+    remedy = f"Known are {', '.join(names)}; join several with +."
+    if column is None:
+        if not _is_sum_of(names, given):
+            problems.found.append(Problem("component", one_line(given), "is no loss.", remedy))
+        return (given,) * len(grid.rows)
+    for row, cell in enumerate(column.cells):
+        if not _is_sum_of(names, cell):
+            problems.cell(column, row, "is no loss.", remedy)
+    return column.cells
+
+
+def _is_sum_of(names: Iterable[str], text: str) -> bool:
+    parts = [part.strip() for part in text.split("+")]
+    return set(parts) <= set(names) and len(set(parts)) == len(parts)
+
+
+def _values(
+    column: _Column, annotation: Any, metadata: tuple[Any, ...], problems: _Problems
+) -> tuple[Any, ...]:
+    """The cells as a case file has them."""
+    if quantity_of(annotation, metadata) is not None:
+        if column.name not in CONDITIONS:
+            _numbers(column, quantity_of(annotation, metadata), problems)
+        return tuple(_with_unit(column, cell) for cell in column.cells)
+    if column.unit not in ("", "1"):
+        allowed, remedy = "has no unit in the case.", f"Name the column {column.name}."
+        problems.found.append(Problem(one_line(column.header), "", allowed, remedy))
+    for row, cell in enumerate(column.cells):
+        if not cell:
+            problems.cell(column, row, "is empty.", "Fill it, or delete the row.")
+    return tuple(map(parse_value, column.cells))
+
+
+def _check_repeats(grid: Grid, problems: _Problems) -> None:
+    """The same row twice is a slip; repeated measurements differ in loss or have a label."""
+    seen: dict[tuple[str, ...], int] = {}
+    repeats = []
+    for line, cells in grid.rows:
+        if cells in seen:
+            repeats.append(f"line {line} is line {seen[cells]}")
+        seen.setdefault(cells, line)
+    if repeats:
+        remedy = "Delete them; number repeated measurements in a column of their own, such as run."
+        problems.found.append(Problem("rows", _some(repeats), "are the same twice.", remedy))
+
+
+def _refused(
+    case: Case, changes: tuple[Mapping[str, Any], ...], lines: tuple[int, ...]
+) -> list[Problem]:
+    """What the case refuses of the keys that rows set, apart from its operating point."""
+    first: dict[str, int] = {}
+    for row, change in enumerate(changes):
+        keys = {key: value for key, value in change.items() if key not in CONDITIONS.values()}
+        first.setdefault(repr(keys), row)
+    problems = []
+    for row in first.values():
+        try:
+            case.updated(changes[row])
+        except InputError as error:
+            problems += [
+                Problem(f"line {lines[row]}: {problem.key}", problem.value, problem.allowed,
+                        problem.remedy)
+                for problem in error.problems
+            ]  # fmt: skip
+    return problems

@@ -1,0 +1,131 @@
+"""Measured losses beside computed ones: parity, and residuals over the conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from epicyclic.measurement.compare import AS_GIVEN, CALIBRATED, MeasuredComparison
+from epicyclic.plots.style import COLOURS, styled_figure
+from epicyclic.units import format_number, unit_text
+
+__all__ = ["measured_figure", "plot_parity", "plot_residuals"]
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+BAND = 0.10
+"""Lines beside those of equal losses. [1]"""
+MARKERS = "osD^vP"
+"""One for each group, beside its colour; for print without colours."""
+AXES = {"speed": "speed, rpm", "torque": "torque, N·m", "temperature": "oil temperature, °C"}
+_FADED = {"color": "0.6", "mfc": "none", "ls": "none", "ms": 5, "zorder": 1}
+
+
+def measured_figure(comparison: MeasuredComparison) -> Figure:
+    """Parity, and residuals over speed, torque and temperature."""
+    with styled_figure(2, 2, _title(comparison)) as (figure, axes):
+        plot_parity(comparison, axes[0, 0])
+        for name, ax in zip(AXES, axes.flat[1:], strict=True):
+            plot_residuals(comparison, name, ax)
+        handles, labels = axes[0, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
+    return figure
+
+
+def plot_parity(comparison: MeasuredComparison, ax: Axes) -> Axes:
+    """Computed over measured loss, with standard uncertainties and lines at ±10 %."""
+    measured = comparison.measured
+    for members, style in _series(comparison):
+        computed = style.pop("computed")[members]
+        bars = _bars(comparison, members, style)
+        ax.errorbar(measured.loss[members], computed, xerr=bars, **style)
+    values = np.concatenate([measured.loss, *comparison.states.values()])
+    top = 1.08 * float(np.nanmax(values))
+    line = np.array([min(0.0, 1.08 * float(np.nanmin(values))), top])
+    ax.plot(line, line, color="black", lw=0.9)
+    for side in (1 - BAND, 1 + BAND):
+        ax.plot(line, side * line, color="black", lw=0.8, ls="--")
+    ax.plot([], [], color="black", lw=0.8, ls="--", label=f"±{BAND:.0%}")
+    ax.set(
+        title="Computed against measured",
+        xlabel="measured loss, W",
+        ylabel="computed loss, W",
+        xlim=line,
+        ylim=line,
+    )
+    return ax
+
+
+def plot_residuals(comparison: MeasuredComparison, over: str, ax: Axes) -> Axes:
+    """Computed less measured loss over ``"speed"``, ``"torque"`` or ``"temperature"``."""
+    measured = comparison.measured
+    where = measured.conditions[over]
+    for members, style in _series(comparison):
+        error = (style.pop("computed") - measured.loss)[members]
+        ax.errorbar(where[members], error, yerr=_bars(comparison, members, style), **style)
+    ax.axhline(0.0, color="black", lw=0.9)
+    ax.set(title=f"Residuals over {over}", xlabel=AXES[over], ylabel="computed − measured, W")
+    ax.margins(x=0.08)
+    return ax
+
+
+def _bars(
+    comparison: MeasuredComparison, members: BoolArray, style: Mapping[str, Any]
+) -> FloatArray | None:
+    """Standard uncertainties of a series; drawn once, not at what stands below in grey."""
+    sigma = comparison.measured.uncertainty
+    hidden = comparison.fit is not None and style["label"] == AS_GIVEN
+    return None if sigma is None or hidden else sigma[members]
+
+
+def _series(comparison: MeasuredComparison) -> Iterator[tuple[BoolArray, dict[str, Any]]]:
+    """Points and style of each series: as given in grey below what is calibrated."""
+    states = comparison.states
+    state = CALIBRATED if CALIBRATED in states else AS_GIVEN
+    if state == CALIBRATED:
+        everywhere = np.ones(len(comparison.measured), dtype=bool)
+        grey = {"marker": "o", "label": AS_GIVEN, "computed": states[AS_GIVEN]}
+        yield everywhere, _FADED | grey
+    labels = np.array(comparison.measured.labels[comparison.group])
+    for number, value in enumerate(dict.fromkeys(comparison.measured.labels[comparison.group])):
+        for held_out in (False, True):
+            members = (labels == value) & (comparison.held_out == held_out)
+            if members.any():
+                colour = COLOURS[number % len(COLOURS)]
+                yield (
+                    members,
+                    {
+                        "color": colour,
+                        "marker": MARKERS[number % len(MARKERS)],
+                        "mfc": "white" if held_out else colour,
+                        "ms": 5,
+                        "ls": "none",
+                        "label": _label(comparison, value, state, held_out),
+                        "computed": states[state],
+                    },
+                )
+
+
+def _label(comparison: MeasuredComparison, value: str, state: str, held_out: bool) -> str:
+    unit = " °C" if comparison.group == "temperature" else ""
+    parts = [f"{comparison.group} {value}{unit}"]
+    if state == CALIBRATED:
+        parts += [CALIBRATED] + ["held out"] * held_out
+    return ", ".join(parts)
+
+
+def _title(comparison: MeasuredComparison) -> str:
+    title = comparison.case.title or "Measured and computed losses"
+    if comparison.fit is None:
+        return title
+    values = ", ".join(
+        f"{item.key} = {format_number(item.value, 4)} {unit_text(item.unit)}".rstrip()
+        for item in comparison.fit.parameters
+    )
+    return f"{title}\n{CALIBRATED}: {values}"

@@ -1,0 +1,126 @@
+"""Measured losses beside computed ones, for a terminal."""
+
+from __future__ import annotations
+
+import math
+
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from epicyclic.measurement.compare import CALIBRATED, ErrorFigures, MeasuredComparison
+from epicyclic.measurement.fit import Fit, FittedParameter
+from epicyclic.report.shown import MISSING, shown
+from epicyclic.report.tables import plain_table
+from epicyclic.units import unit_text
+
+__all__ = ["fitted_comment", "measured_tables"]
+
+
+def measured_tables(comparison: MeasuredComparison) -> RenderableType:
+    """Errors by set of points; with a fit, the calibrated values and what limits them."""
+    parts: list[RenderableType] = [_error_table(comparison), Text(_legend(comparison))]
+    if comparison.fit is not None:
+        parts += [Text(), _fit_table(comparison.fit)]
+        if len(comparison.fit.parameters) > 1:
+            parts.append(_correlation_table(comparison.fit))
+        parts.append(Text(_fit_line(comparison.fit)))
+        parts += [Text(f"Warning: {note}", style="bold") for note in comparison.fit.warnings]
+    return Group(*parts, *(Text(f"Note: {note}") for note in comparison.notes))
+
+
+def _error_table(comparison: MeasuredComparison) -> Table:
+    table = plain_table("Computed less measured loss")
+    table.add_column("case, points", no_wrap=True)
+    names = ["n", "mean W", "mean %", "rms W", "size %", "largest W", "largest %", "line"]
+    weighted = comparison.measured.uncertainty is not None
+    for name in [*names, *["χ²"] * weighted]:
+        table.add_column(name, justify="right", no_wrap=True)
+    for number, row in enumerate(comparison.errors):
+        if number and not row.group:
+            table.add_section()
+        name = f"  {row.group}" if row.group else f"{row.state}: {row.points}"
+        cells = _error_cells(row)[: len(names) + weighted]
+        table.add_row(name, *cells, style="" if row.group else "bold")
+    return table
+
+
+def _error_cells(row: ErrorFigures) -> list[str]:
+    return [
+        str(row.count),
+        shown(row.bias, 3),
+        _percent(row.relative_bias),
+        shown(row.rms, 3),
+        _percent(row.mean_percentage),
+        shown(row.largest, 3),
+        _percent(row.relative_largest),
+        str(row.largest_line) if row.count else MISSING,
+        shown(row.chi_squared, 3),
+    ]
+
+
+def _percent(value: float) -> str:
+    return MISSING if math.isnan(value) else f"{100 * value:z.1f}"
+
+
+def _legend(comparison: MeasuredComparison) -> str:
+    text = (
+        "mean: of the errors; size: mean of their magnitude; largest: by magnitude, with its line; "
+        "%: over the measured loss."
+    )
+    if comparison.fit is not None:
+        text += f" {CALIBRATED}: with values fitted to these measurements; that is no validation."
+    return text
+
+
+def _fit_table(fit: Fit) -> Table:
+    table = plain_table(f"{CALIBRATED} values")
+    table.add_column("key", no_wrap=True)
+    for name in ("start", CALIBRATED, "std. error", f"{100 * fit.confidence:.4g} % interval"):
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("unit")
+    for item in fit.parameters:
+        table.add_row(
+            item.key,
+            shown(item.start),
+            shown(item.value),
+            shown(item.standard_error, 2),
+            _interval(item),
+            unit_text(item.unit),
+        )
+    return table
+
+
+def _interval(item: FittedParameter) -> str:
+    if item.at_bound:
+        return "at its bound"
+    return MISSING if math.isnan(item.low) else f"{shown(item.low)} to {shown(item.high)}"
+
+
+def _correlation_table(fit: Fit) -> Table:
+    table = plain_table("Correlations")
+    table.add_column("", no_wrap=True)
+    for number in range(len(fit.parameters)):
+        table.add_column(f"({number + 1})", justify="right")
+    for number, (item, row) in enumerate(zip(fit.parameters, fit.correlation, strict=True)):
+        table.add_row(f"({number + 1}) {item.key}", *(shown(value, 3) for value in row))
+    return table
+
+
+def _fit_line(fit: Fit) -> str:
+    text = (
+        f"Weighted least squares, {fit.points} points, {fit.degrees_of_freedom} degrees of freedom"
+    )
+    if math.isfinite(fit.chi_squared):
+        text += f", χ² {shown(fit.chi_squared, 4)}"
+    return (
+        f"{text}; {fit.evaluations} computed points. Intervals are those of the linearised model."
+    )
+
+
+def fitted_comment(item: FittedParameter, fit: Fit) -> str:
+    """What a case file says behind a calibrated value."""
+    start = f"{shown(item.start)} {unit_text(item.unit)}".rstrip()
+    return (
+        f"{CALIBRATED}; {100 * fit.confidence:.4g} % interval: {_interval(item)}; before: {start}"
+    )

@@ -1,0 +1,74 @@
+"""Text files that users give: read whole if they are no larger than such a file can be, as UTF-8.
+
+Everything that reads a file of the user goes through here, so that devices, folders, huge files and
+other encodings end in the same messages.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NoReturn
+
+from epicyclic.errors import InputError, Problem
+
+__all__ = ["decode", "read_bytes", "read_text", "refuse"]
+
+_MEGABYTE = 1_000_000
+
+
+def read_text(path: Path, noun: str, largest: int) -> str:
+    """The text of a file.
+
+    Parameters
+    ----------
+    path : Path
+    noun : str
+        What the file should be, ``"case"`` for a case file, for messages.
+    largest : int
+        Size beyond which it is something else. [bytes]
+
+    Raises
+    ------
+    InputError
+        If it is no file, too large, or no UTF-8 text.
+    """
+    return decode(read_bytes(path, noun, largest), noun)
+
+
+def read_bytes(path: Path, noun: str, largest: int) -> bytes:
+    """The content of a file. Parameters and errors as for `read_text`."""
+    kind, content = "a file", b""
+    try:
+        # a pipe or a device could keep the program waiting for ever
+        if path.exists() and not path.is_file():
+            kind = "a folder" if path.is_dir() else "not a regular file"
+        else:
+            with path.open("rb") as file:
+                content = file.read(largest + 1)
+    except OSError as error:
+        refuse(f"cannot be read: {error.strerror}.", "Check the path.")
+    except ValueError:
+        refuse("cannot be read: no path has a zero character.", "Check the path.")
+    if kind != "a file":
+        refuse(f"cannot be read: it is {kind}.", f"Name a {noun} file.")
+    if len(content) > largest:
+        size = f"{largest / _MEGABYTE:g} MB"
+        refuse(f"is too large to be a {noun} file (over {size}).", f"Name a {noun} file.")
+    return content
+
+
+def decode(content: bytes, noun: str) -> str:
+    """`content` as text; raises `InputError` unless it is UTF-8."""
+    if b"\0" in content:
+        refuse("is not text: it has zero bytes.", f"Name a {noun} file, saved as UTF-8 text.")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        where = f"byte 0x{content[error.start]:02x} in line {line}"
+        refuse(f"is not UTF-8 text: {where}.", "Save it as UTF-8 text.")
+
+
+def refuse(allowed: str, remedy: str) -> NoReturn:
+    """Raise the `InputError` of a file as a whole."""
+    raise InputError([Problem("", "", f"the file {allowed}", remedy)])

@@ -1,0 +1,294 @@
+"""Measured losses against computed ones, and fits to them, on measurements made by the model."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.optimize import curve_fit
+
+import epicyclic as ep
+from epicyclic.measurement.fit import fit_parameters
+from epicyclic.measurement.parameters import Parameter
+from epicyclic.measurement.table import Measurements
+
+TRUTH = {"mesh_sliding": 1.2, "drag": 0.8}
+KEYS = [f"losses.{name}.factor" for name in TRUTH]
+
+
+@pytest.fixture(scope="module")
+def case():
+    """A pair without pockets: a millisecond a point."""
+    return ep.load_case("talbot-2012-pair").updated(
+        {"losses.mesh_pocketing.include": False, "operation.torque": "100 N*m"}
+    )
+
+
+@pytest.fixture(scope="module")
+def tests(case):
+    """Conditions and losses of a gear pair whose sliding and drag differ from the model's."""
+    truth = case.updated({f"losses.{name}.factor": value for name, value in TRUTH.items()})
+    rows = []
+    for speed in (2000, 4000, 8000):
+        for torque in (0, 120):
+            for temperature in (60, 90):
+                operation = {
+                    "operation.speed": f"{speed} rpm",
+                    "operation.torque": f"{torque} N*m",
+                    "operation.oil_inlet_temperature": f"{temperature} degC",
+                }
+                rows.append((speed, torque, temperature, ep.solve(truth.updated(operation)).total))
+    names = ["speed [rpm]", "torque [N*m]", "temperature [degC]", "loss [W]"]
+    return pd.DataFrame(rows, columns=names)
+
+
+def noisy(tests, seed, relative=0.02, absolute=0.2):
+    """`tests` with normal errors of stated size."""
+    sigma = relative * tests["loss [W]"] + absolute
+    loss = tests["loss [W]"] + sigma * np.random.default_rng(seed).standard_normal(len(tests))
+    return tests.assign(**{"loss [W]": loss, "uncertainty [W]": sigma})
+
+
+def test_the_model_meets_its_own_losses(case, tests):
+    exact = case.updated({f"losses.{name}.factor": value for name, value in TRUTH.items()})
+    comparison = ep.compare_measured(exact, tests)
+    # the table keeps 14 digits
+    np.testing.assert_allclose(comparison.computed, comparison.measured.loss, rtol=1e-13)
+    assert all(row.rms < 1e-11 for row in comparison.errors)
+    assert [row.group for row in comparison.errors] == ["", "temperature 60", "temperature 90"]
+    assert [row.count for row in comparison.errors] == [12, 6, 6]
+    assert comparison.calibrated is None
+
+
+def test_error_figures_are_those_of_the_table(case, tests):
+    measured = tests["loss [W]"].to_numpy()
+    comparison = ep.compare_measured(case, noisy(tests.assign(), 1, relative=0.0, absolute=1e-12))
+    error = comparison.computed - measured
+    figures = comparison.errors[0]
+    # noise of 1e-12 W
+    assert figures.bias == pytest.approx(error.mean(), rel=1e-9)
+    assert figures.rms == pytest.approx(math.sqrt((error**2).mean()), rel=1e-9)
+    assert figures.mean_percentage == pytest.approx(np.abs(error / measured).mean(), rel=1e-9)
+    worst = np.argmax(np.abs(error))
+    assert figures.largest == pytest.approx(error[worst], rel=1e-9)
+    assert figures.largest_line == worst + 1
+    assert figures.chi_squared == pytest.approx((error**2).sum() * 1e24, rel=1e-6)
+
+
+def test_a_fit_without_noise_finds_the_inputs(case, tests):
+    fit = ep.compare_measured(case, tests, fit=KEYS).fit
+    found = [item.value for item in fit.parameters]
+    # losses are linear in these factors: what is left is the tolerance of the fit
+    assert found == pytest.approx(list(TRUTH.values()), rel=1e-6)
+    assert fit.degrees_of_freedom == 10
+
+
+DECAY = {"a": 50.0, "b": 2.0, "c": 5.0}
+
+
+class Decay:
+    """Points of a model without physics, a exp(-b x) + c, that is nonlinear and costs nothing."""
+
+    def __init__(self, seed, weighted):
+        self.x = np.linspace(0, 2, 15)
+        exact = self.losses(**DECAY)
+        sigma = 0.5 + 0.02 * exact if weighted else np.full(15, 1.0)
+        loss = exact + sigma * np.random.default_rng(seed).standard_normal(15)
+        self.measured = Measurements(
+            "made up", (1,) * 15, ({},) * 15, {}, ("total",) * 15, loss,
+            sigma if weighted else None, {},
+        )  # fmt: skip
+
+    def losses(self, a, b, c):
+        return a * np.exp(-b * self.x) + c
+
+    def compute(self, *settings):
+        return [SimpleNamespace(loss=self.losses(**keys)) for keys in settings]
+
+
+@pytest.mark.parametrize("weighted", [True, False], ids=["with uncertainties", "from the scatter"])
+def test_intervals_cover_the_inputs_as_often_as_they_say(weighted):
+    parameters = [Parameter(key, "", 1.3 * value, 0.0, 1e3) for key, value in DECAY.items()]
+    hits = np.zeros(3)
+    for seed in range(200):
+        points = Decay(seed, weighted)
+        fit = fit_parameters(points, parameters, np.ones(15, dtype=bool), 0.8)
+        hits += [item.low <= DECAY[item.key] <= item.high for item in fit.parameters]
+    # 160 of 200 expected; the binomial distribution leaves 145 to 174 with 99 %. Intervals that are
+    # widened where the scatter exceeds the uncertainties cover more often.
+    assert (hits >= 145).all(), hits
+    assert (hits <= (190 if weighted else 174)).all(), hits
+
+
+def test_intervals_and_correlations_are_those_of_curve_fit():
+    points = Decay(1, weighted=True)
+    parameters = [Parameter(key, "", 1.3 * value, 0.0, 1e3) for key, value in DECAY.items()]
+    fit = fit_parameters(points, parameters, np.ones(15, dtype=bool), 0.95)
+    values, covariance = curve_fit(
+        lambda x, a, b, c: a * np.exp(-b * x) + c,
+        points.x,
+        points.measured.loss,
+        p0=[65, 2.6, 6.5],
+        sigma=points.measured.uncertainty,
+        absolute_sigma=True,
+    )
+    errors = np.sqrt(np.diag(covariance)) * fit.widening
+    # derivatives from differences of 0.1 %
+    assert [item.value for item in fit.parameters] == pytest.approx(list(values), rel=1e-4)
+    assert [item.standard_error for item in fit.parameters] == pytest.approx(list(errors), rel=5e-3)
+    deviation = np.sqrt(np.diag(covariance))
+    np.testing.assert_allclose(
+        fit.correlation, covariance / np.outer(deviation, deviation), atol=5e-3
+    )
+
+
+@pytest.mark.slow
+def test_intervals_of_the_model_cover_the_inputs(case, tests):
+    hits = 0
+    for seed in range(20):
+        fit = ep.compare_measured(case, noisy(tests, seed), fit=KEYS, confidence=0.8).fit
+        for item, truth in zip(fit.parameters, TRUTH.values(), strict=True):
+            hits += item.low <= truth <= item.high
+    # 32 of 40 expected, or some more where intervals are widened; binomial, 99 %
+    assert 25 <= hits <= 39
+
+
+def test_a_fit_of_physical_inputs_of_a_planetary_set(talbot):
+    keys = ["surroundings.oil_air_ratio", "lubricant.pressure_viscosity_factor", "planet.roughness"]
+    values = [0.08, 1.1, "0.3 um"]
+    bare = talbot.updated(
+        {f"losses.{mesh}_mesh_pocketing.include": False for mesh in ("sun", "ring")}
+    )
+    truth = bare.updated(dict(zip(keys, values, strict=True)))
+    data = ep.sweep(
+        truth,
+        {
+            "operation.speed": ["1000 rpm", "2000 rpm", "4000 rpm"],
+            "operation.torque": ["0 N*m", "400 N*m", "1000 N*m"],
+            "operation.oil_inlet_temperature": ["40 degC", "90 degC"],
+        },
+        jobs=1,
+    )
+    table = data["total"].to_dataframe().reset_index()
+    table.columns = ["speed [rpm]", "torque [N*m]", "temperature [degC]", "loss [W]"]
+    fit = ep.compare_measured(bare, noisy(table, 3, 0.003, 0.5), fit=keys, jobs=1).fit
+    for item, wanted in zip(fit.parameters, [0.08, 1.1, 0.3], strict=True):
+        # three standard errors: one in 370 by chance, with this seed settled
+        assert abs(item.value - wanted) < 3 * item.standard_error, item
+        assert item.standard_error < 0.2 * item.value
+    assert fit.parameters[2].unit == "um"
+
+
+def test_calibrated_and_held_out_points_are_kept_apart(case, tests):
+    table = noisy(tests, 5)
+    table.loc[table["temperature [degC]"] == 90, "loss [W]"] *= 1.5
+    comparison = ep.compare_measured(case, table, fit=KEYS, hold_out="temperature=90")
+    alone = ep.compare_measured(case, table[table["temperature [degC]"] == 60], fit=KEYS)
+    assert [item.value for item in comparison.fit.parameters] == pytest.approx(
+        [item.value for item in alone.fit.parameters], rel=1e-9
+    )
+    sets = {(row.state, row.points): row for row in comparison.errors if not row.group}
+    assert [row.count for row in sets.values()] == [6, 6, 6, 6]
+    assert sets["CALIBRATED", "held-out points"].rms > 5 * sets["CALIBRATED", "fitted points"].rms
+    assert "CALIBRATED [W]" in comparison.table().columns
+
+
+def test_a_random_share_is_that_of_the_seed(case, tests):
+    one, again, other = (
+        ep.compare_measured(case, tests, fit=KEYS, hold_out=0.25, seed=seed).held_out
+        for seed in (1, 1, 2)
+    )
+    assert one.sum() == round(0.25 * len(tests))
+    assert (one == again).all()
+    assert (one != other).any()
+
+
+def test_what_cannot_be_told_apart_is_said(case, tests):
+    keys = ["losses.drag.factor", "surroundings.oil_air_ratio", "losses.mesh_sliding.factor"]
+    fit = ep.compare_measured(case, noisy(tests, 7), fit=keys).fit
+    assert any("told apart" in note for note in fit.warnings)
+
+
+def test_a_parameter_at_its_bound_has_no_interval(case, tests):
+    table = tests.assign(**{"loss [W]": tests["loss [W]"] * 20})
+    sticky = case.updated({"models.friction": "constant", "models.constant_friction": 0.9})
+    fit = ep.compare_measured(sticky, table, fit=["models.constant_friction"]).fit
+    (item,) = fit.parameters
+    assert item.at_bound
+    assert item.value == pytest.approx(1.0, rel=1e-9)  # the method stays within its bounds
+    assert math.isnan(item.low)
+    assert any("bound" in note for note in fit.warnings)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"fit": ["losses.mesh_pocketing.factor"]}, "no influence"),
+        ({"fit": ["pinion.teeth"]}, "no continuous number"),
+        ({"fit": ["models.friction"]}, "no continuous number"),
+        ({"fit": ["operation.speed"]}, "given by a column"),
+        ({"fit": ["pinion.roughnes"]}, "pinion.roughness"),
+        ({"fit": ["gear.rim_thickness"]}, "no value in the case"),
+        ({"fit": ["mesh.misalignment"]}, "is 0 in the case"),
+        ({"fit": KEYS, "hold_out": "temperature=70"}, "no row"),
+        ({"fit": KEYS, "hold_out": "1.5"}, "share"),
+        ({"hold_out": 0.3}, "there is none"),
+        ({"group": "rig"}, "no column"),
+        ({"component": "mesh_slidng"}, "no loss"),
+    ],
+)
+def test_what_cannot_be_done_is_refused(case, tests, options, words):
+    with pytest.raises(ep.InputError, match=words):
+        ep.compare_measured(case, tests, **options)
+
+
+def test_more_inputs_than_points_are_refused(case, tests):
+    with pytest.raises(ep.InputError, match="2 inputs cannot be fitted to 1"):
+        ep.compare_measured(case, tests[:1], fit=KEYS)
+
+
+def test_a_fit_that_does_not_converge_says_so(case, tests, monkeypatch):
+    from epicyclic.measurement import fit
+
+    monkeypatch.setattr(fit, "MOST_ROUNDS", 1)
+    with pytest.raises(ep.ConvergenceError, match="did not converge"):
+        ep.compare_measured(case, tests, fit=KEYS)
+
+
+def test_points_that_fail_are_named_and_left_out(case, tests):
+    table = tests.assign(**{"pinion.roughness [um]": 0.4, "mesh.misalignment [um]": 0.0})
+    comparison = ep.compare_measured(case, table)
+    assert comparison.errors[0].count == len(tests)
+    assert not any("could not be computed" in note for note in comparison.notes)
+
+
+def test_terms_and_sums_of_them_can_be_measured(case, tests):
+    table = tests.assign(component=["mesh_sliding", "mesh_sliding + drag", "load_dependent"] * 4)
+    comparison = ep.compare_measured(case, table)
+    by_hand = []
+    for changes, name in zip(
+        comparison.measured.changes, comparison.measured.component, strict=True
+    ):
+        result = ep.solve(case.updated(changes))
+        losses = result.losses | {"load_dependent": result.load_dependent}
+        by_hand.append(sum(losses[part.strip()] for part in name.split("+")))
+    np.testing.assert_array_equal(comparison.computed, by_hand)
+
+
+def test_other_units_mean_the_same(case, tests):
+    other = pd.DataFrame(
+        {
+            "operation.speed [rad/s]": tests["speed [rpm]"] * math.pi / 30,
+            "Torque [kN*m]": tests["torque [N*m]"] / 1e3,
+            "temperature": [f"{value + 273.15} K" for value in tests["temperature [degC]"]],
+            "loss [kW]": tests["loss [W]"] / 1e3,
+            "uncertainty [%]": 2.0,
+        }
+    )
+    one, same = ep.compare_measured(case, tests), ep.compare_measured(case, other)
+    # factors of 60 and 1000 round
+    np.testing.assert_allclose(same.computed, one.computed, rtol=1e-12)
+    np.testing.assert_allclose(same.measured.uncertainty, 0.02 * one.measured.loss, rtol=1e-12)
