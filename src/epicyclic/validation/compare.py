@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 from epicyclic.validation.compute import FIGURES
 
-__all__ = ["Comparison", "compare_published"]
+__all__ = ["Comparison", "compare_published", "published_figures"]
 
 Verdict = Literal["agrees", "differs", "calibrated", "no verdict"]
 
@@ -63,7 +63,7 @@ def compare_published(
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> tuple[Comparison, ...]:
     """Every published figure whose model exists, compared."""
-    figures = _published()
+    figures = published_figures()
     rows = []
     for number, figure in enumerate(figures):
         rows.append(_compare(figure))
@@ -71,7 +71,8 @@ def compare_published(
     return tuple(rows)
 
 
-def _published() -> list[dict[str, Any]]:
+def published_figures() -> list[dict[str, Any]]:
+    """The entries of `published.toml`."""
     file = resources.files("epicyclic.validation").joinpath("published.toml")
     figures: list[dict[str, Any]] = tomllib.loads(file.read_text(encoding="utf-8"))["figure"]
     return figures

@@ -1,0 +1,133 @@
+"""The figures of the parametric study of pocketing losses."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from epicyclic.plots.style import COLOURS, label_of, styled_figure
+from epicyclic.units import format_number, unit_text
+from epicyclic.validation.pocketing import PublishedStudy
+
+__all__ = ["plot_loss", "plot_speed_exponent", "study_figure"]
+
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+PUBLISHED = "Talbot (2012)"
+MOST_COLUMNS = 3
+SAME = 1e-6
+"""Values that differ less than this are the same. [1]"""
+
+
+def study_figure(study: xr.Dataset, published: PublishedStudy | None = None) -> Figure:
+    """Loss over one parameter, a panel and a curve for each value of the others.
+
+    Parameters
+    ----------
+    study : Dataset
+        As `epicyclic.pocketing_study` returns it.
+    published : PublishedStudy, optional
+        Marked where it lies.
+    """
+    *panels, _, _ = study["pocketing_loss"].dims
+    places = list(itertools.product(*(range(study.sizes[panel]) for panel in panels)))
+    exponents = "speed_exponent" in study
+    count = len(places) + exponents
+    columns = count if count <= MOST_COLUMNS else 2
+    rows = -(-count // columns)
+    with styled_figure(rows, columns, str(study.attrs["title"])) as (figure, axes):
+        flat = axes.ravel()
+        for ax, place in zip(flat, places, strict=False):
+            plot_loss(study.isel(dict(zip(panels, place, strict=True))), ax, published)
+        if exponents:
+            plot_speed_exponent(study, flat[1], published)
+        for ax in flat[count:]:
+            ax.remove()
+    return figure
+
+
+def plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None = None) -> Axes:
+    """One panel: all other parameters of `study` but the last two have one value."""
+    loss = study["pocketing_loss"]
+    curves, over = map(str, loss.dims)
+    for number in range(loss.sizes[curves]):
+        curve = loss.isel({curves: number})
+        ax.plot(
+            loss[over],
+            curve,
+            marker=MARKERS[number % len(MARKERS)],
+            ms=4,
+            label=_value(loss[curves][number]),
+        )
+    if published is not None:
+        _mark(loss, over, ax, published)
+    held = [_described(study[name]) for name in study.coords if study[name].ndim == 0]
+    ax.set(title=", ".join(held) or "Loss", xlabel=label_of(loss[over]), ylabel="pocketing loss, W")
+    ax.set_ylim(bottom=0)
+    ax.legend(title=loss[curves].attrs["long_name"])
+    return ax
+
+
+def plot_speed_exponent(
+    study: xr.Dataset, ax: Axes, published: PublishedStudy | None = None
+) -> Axes:
+    """Loss over speed in logarithms, with the slope of each curve."""
+    loss = study["pocketing_loss"]
+    curves = str(loss.dims[0])
+    for number in range(loss.sizes[curves]):
+        slope = float(study["speed_exponent"][number])
+        ax.loglog(
+            loss["speed"],
+            loss[number],
+            marker=MARKERS[number % len(MARKERS)],
+            ms=4,
+            label=f"{_value(loss[curves][number])}: {slope:.2f}",
+        )
+    if published is not None and float(loss[curves][0]) == 0.0:
+        speed = loss["speed"].to_numpy()
+        # through the middle of the curve in logarithms, where lines of all slopes cross
+        scale = np.exp(np.log(loss[0]).mean() - published.exponent * np.log(speed).mean())
+        line = float(scale) * speed**published.exponent
+        label = f"{PUBLISHED}, 0 deg: {published.exponent:.2f}"
+        ax.loglog(speed, line, color="black", ls="--", lw=1.0, label=label)
+    ax.set(title="Exponent of the speed", xlabel=label_of(loss["speed"]))
+    ax.set_ylabel("pocketing loss, W")
+    ax.legend(title=f"{loss[curves].attrs['long_name']}: exponent")
+    return ax
+
+
+def _mark(loss: xr.DataArray, over: str, ax: Axes, published: PublishedStudy) -> None:
+    """The published loss, if it belongs to this panel and one of its curves."""
+    values = {
+        "helix_angle": published.helix_angle,
+        "face_width": published.face_width,
+        "speed": published.speed,
+    }
+    if not values.keys() >= set(loss.coords):
+        return
+    for name, value in values.items():
+        known = np.atleast_1d(loss[name].to_numpy()) if name in loss.coords else np.array([])
+        if not np.isclose(known, value, rtol=SAME).any():
+            return
+    ax.plot(
+        values[over],
+        published.loss,
+        "*",
+        color=COLOURS[-1],
+        ms=12,
+        label=f"{PUBLISHED}, {published.speed:g} rpm",
+        zorder=3,
+    )
+
+
+def _value(coordinate: xr.DataArray) -> str:
+    """``"5000 rpm"``"""
+    number = format_number(float(coordinate), 5)
+    return f"{number} {unit_text(str(coordinate.attrs['units']))}".rstrip()
+
+
+def _described(coordinate: xr.DataArray) -> str:
+    return f"{coordinate.attrs['long_name']} {_value(coordinate)}"

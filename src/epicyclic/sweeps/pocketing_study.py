@@ -1,0 +1,448 @@
+"""The parametric study of pocketing losses of Talbot (2012), section 4.4, for any mesh."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import PydanticCustomError
+
+from epicyclic.analysis.parts import MeshDuty
+from epicyclic.analysis.pocket_details import mesh_duties
+from epicyclic.analysis.pocket_variants import (
+    PocketVariant,
+    base_variant,
+    solve_variant,
+    teeth_for_module,
+)
+from epicyclic.analysis.result import versions
+from epicyclic.case.case import Case
+from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.wording import sentence, written
+from epicyclic.errors import InputError, Problem
+from epicyclic.pocketing.fluid import PocketFlow
+from epicyclic.status import Status
+from epicyclic.sweeps.journal import Journal, Row
+from epicyclic.sweeps.work import Progress, guarded, run_work
+from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT, Quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = [
+    "PARAMETERS",
+    "STUDIES",
+    "StudyPlan",
+    "make_study",
+    "pocketing_study",
+    "run_study",
+    "study_datasets",
+]
+
+FEWEST_TEETH = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """What a study varies: its name in print, its unit and range."""
+
+    label: str
+    quantity: Quantity
+
+
+PARAMETERS = {
+    "speed": Parameter(
+        "speed of member 1",
+        Quantity("a rotational speed", "rad/s", "rpm", low=0.0, high=1e6, open_low=True),
+    ),
+    "helix-angle": Parameter("helix angle", Quantity("an angle", "rad", "deg", low=0.0, high=45.0)),
+    "face-width": Parameter(
+        "face width", Quantity("a length", "m", "mm", low=0.0, high=1e5, open_low=True)
+    ),
+    "oil-fraction": Parameter("share of oil by volume", Quantity("a number", "", "", 0.0, 1.0)),
+    "backlash": Parameter("backlash", Quantity("a length", "m", "um", low=0.0, high=1e4)),
+    "module": Parameter(
+        "transverse module", Quantity("a length", "m", "mm", low=0.0, high=1e3, open_low=True)
+    ),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """Which curves and panels a figure over one parameter has.
+
+    Attributes
+    ----------
+    figure : str
+        Of Talbot (2012).
+    panels : tuple of str
+        Parameters with one panel for each value.
+    curves : str
+        Parameter with one curve for each value.
+    levels : mapping of str to tuple of float
+        Values of these: helix angles in degrees, the others over those of the case.
+    """
+
+    figure: str
+    panels: tuple[str, ...]
+    curves: str
+    levels: Mapping[str, tuple[float, ...]]
+
+
+_SPEEDS = {"speed": (0.5, 0.75, 1.0)}
+_FOUR = {"helix-angle": (0.0, 30.0), "face-width": (1.0, 5 / 3)}
+STUDIES = {
+    "speed": Study("Fig. 4.8", (), "helix-angle", {"helix-angle": (0.0, 15.0, 30.0)}),
+    "helix-angle": Study(
+        "Fig. 4.9", ("face-width",), "speed", {"face-width": (1.0, 5 / 3, 7 / 3), **_SPEEDS}
+    ),
+    "face-width": Study(
+        "Fig. 4.10", ("helix-angle",), "speed", {"helix-angle": (0.0, 10.0, 20.0, 30.0), **_SPEEDS}
+    ),
+    "oil-fraction": Study("Fig. 4.11", tuple(_FOUR), "speed", _FOUR | _SPEEDS),
+    "backlash": Study("Fig. 4.12", tuple(_FOUR), "speed", _FOUR | _SPEEDS),
+    "module": Study("Fig. 4.13", tuple(_FOUR), "speed", _FOUR | _SPEEDS),
+}
+
+_NUMBERS: dict[str, tuple[str, Quantity, Callable[[PocketFlow], float]]] = {
+    "pocketing_loss": ("pocketing loss of one mesh", WATT, lambda flow: flow.power),
+    "power_difference": (
+        "energy balance over work, less 1", NUMBER, lambda flow: flow.difference
+    ),
+    "pressure_max": (
+        "highest pressure above ambient", BAR, lambda flow: float(flow.pressure.max())
+    ),
+    "pressure_min": (
+        "lowest pressure above ambient", BAR, lambda flow: float(flow.pressure.min())
+    ),
+    "speed_max": (
+        "fastest flow through any opening", METRE_PER_SECOND, lambda flow: flow.speed_max
+    ),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class StudyAxis:
+    """Values of one parameter, in SI and as `PocketVariant` has them."""
+
+    name: str
+    values: tuple[float, ...]
+    variants: tuple[Any, ...]
+
+    @property
+    def field(self) -> str:
+        """Of `PocketVariant`."""
+        return "teeth" if self.name == "module" else self.dimension
+
+    @property
+    def dimension(self) -> str:
+        """Of the dataset."""
+        return self.name.replace("-", "_")
+
+
+@dataclass(frozen=True, slots=True)
+class StudyPlan:
+    """All points of some studies of one mesh, each point once.
+
+    Attributes
+    ----------
+    case : Case
+    duty : MeshDuty
+    axes : dict of str to tuple of StudyAxis
+        By study: panels, curves, and last the parameter itself.
+    points : tuple of PocketVariant
+    """
+
+    case: Case
+    duty: MeshDuty
+    axes: dict[str, tuple[StudyAxis, ...]]
+    points: tuple[PocketVariant, ...]
+
+    def order(self) -> Sequence[int]:
+        """Those of the same geometry next to each other."""
+        return sorted(range(len(self.points)), key=lambda index: _geometry(self.points[index]))
+
+    def solve(self, index: int) -> Row:
+        """One point as a flat record."""
+        return guarded(lambda: _solve_point(self, index))
+
+    def fingerprint(self) -> str:
+        """Follows the case, the points and the version."""
+        content = {
+            "case": self.case.inputs(),
+            "mesh": self.duty.key,
+            "points": [asdict(point) for point in self.points],
+            "versions": versions(),
+        }
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
+
+
+def pocketing_study(
+    case: Case,
+    what: Iterable[str] = tuple(STUDIES),
+    *,
+    mesh: str | None = None,
+    ranges: Mapping[str, Iterable[Any]] | None = None,
+    levels: Mapping[str, Iterable[Any]] | None = None,
+    jobs: int | None = None,
+    journal: str | Path | None = None,
+    progress: Progress | None = None,
+) -> dict[str, xr.Dataset]:
+    """Pocketing loss of a mesh over its main parameters, as Talbot (2012), section 4.4.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+    what : iterable of str
+        Of ``"speed"``, ``"helix-angle"``, ``"face-width"``, ``"oil-fraction"``, ``"backlash"``,
+        ``"module"``; default: all.
+    mesh : str, optional
+        ``"sun_mesh"`` (default) or ``"ring_mesh"`` of a planetary set.
+    ranges : mapping, optional
+        Parameters to the values over which their study goes, as text with units; a share of oil
+        is a number. A module becomes the nearest one with whole teeth.
+    levels : mapping, optional
+        Parameters to the values that have curves and panels of their own in the other studies.
+    jobs : int, optional
+        Worker processes. Default: one for each core if the work is worth it, else none.
+    journal : str or Path, optional
+        File that keeps finished points.
+    progress : callable, optional
+        Called with the number of finished points and of all points.
+
+    Returns
+    -------
+    dict of str to xarray.Dataset
+        By study. What each parameter keeps constant is told in its how-to page. Points that
+        failed have NaN, the status ``"failed"`` and the reason in ``message``.
+
+    Raises
+    ------
+    InputError
+        If a study, mesh or value cannot be, or the journal is that of another study.
+    """
+    plan = make_study(case, what, mesh=mesh, ranges=ranges or {}, levels=levels or {})
+    kept = None if journal is None else Journal(Path(journal).absolute(), plan.fingerprint())
+    return study_datasets(plan, run_study(plan, jobs=jobs, journal=kept, progress=progress))
+
+
+def make_study(
+    case: Case,
+    what: Iterable[str],
+    *,
+    mesh: str | None = None,
+    ranges: Mapping[str, Iterable[Any]],
+    levels: Mapping[str, Iterable[Any]],
+) -> StudyPlan:
+    """Check what is to be studied. Parameters as for `pocketing_study`."""
+    duty = _duty(case, mesh)
+    names = list(dict.fromkeys(what))
+    problems = [
+        Problem("what", written(name), "is no study.", did_you_mean(name, list(STUDIES)) or _ONE_OF)
+        for name in names
+        if name not in STUDIES
+    ]
+    given_ranges, found = _parsed("range", ranges)
+    given_levels, more = _parsed("level", levels)
+    problems += found + more
+    if problems:
+        raise InputError(problems, "the study")
+    base = base_variant(case, duty)
+    axes = {}
+    for name in names:
+        study = STUDIES[name]
+        values = {
+            parameter: given_levels.get(parameter) or _levels(base, parameter, shares)
+            for parameter, shares in study.levels.items()
+        } | {name: given_ranges.get(name) or _range(duty, base, name)}
+        order = (*study.panels, study.curves, name)
+        axes[name] = tuple(_axis(duty, parameter, values[parameter]) for parameter in order)
+    points = dict.fromkeys(point for name in names for point in _variants(base, axes[name]))
+    return StudyPlan(case, duty, axes, tuple(points))
+
+
+_ONE_OF = f"Choose of {', '.join(STUDIES)}."
+
+
+def _duty(case: Case, mesh: str | None) -> MeshDuty:
+    duties = {duty.key: duty for duty in mesh_duties(case)}
+    key = next(iter(duties)) if mesh is None else mesh
+    if key not in duties:
+        allowed = f"must be {' or '.join(duties)}."
+        raise InputError(
+            [Problem("mesh", written(key), allowed, "Name one of these.")], "the study"
+        )
+    if duties[key].speed1 == 0:
+        problem = Problem(key, "", "does not turn.", "Change operation.speed.")
+        raise InputError([problem], case.source)
+    return duties[key]
+
+
+def _parsed(
+    what: str, given: Mapping[str, Iterable[Any]]
+) -> tuple[dict[str, tuple[float, ...]], list[Problem]]:
+    """Values in SI and the problems of those that cannot be read."""
+    parsed: dict[str, tuple[float, ...]] = {}
+    problems = []
+    for name, values in given.items():
+        if name not in PARAMETERS:
+            remedy = did_you_mean(name, list(PARAMETERS)) or _ONE_OF
+            problems.append(Problem(what, written(name), "is no parameter of the study.", remedy))
+            continue
+        found = []
+        for value in values:
+            try:
+                found.append(_parse(PARAMETERS[name].quantity, value))
+            except PydanticCustomError as error:
+                remedy = sentence(str((error.context or {}).get("remedy", "")))
+                allowed = sentence(error.message(), capital=False)
+                problems.append(Problem(f"{what} {name}", written(value), allowed, remedy))
+        parsed[name] = tuple(sorted(set(found)))
+    return parsed, problems
+
+
+def _parse(quantity: Quantity, value: Any) -> float:
+    if quantity.si:
+        return quantity.parse(value)
+    if isinstance(value, int | float) and quantity.low <= value <= quantity.high:
+        return float(value)
+    raise PydanticCustomError(
+        "share", "must be a number from 0 to 1", {"remedy": "give a number without a unit"}
+    )
+
+
+def _levels(base: PocketVariant, name: str, shares: tuple[float, ...]) -> tuple[float, ...]:
+    if name == "helix-angle":
+        return tuple(math.radians(angle) for angle in shares)
+    own = base.speed if name == "speed" else base.face_width
+    return tuple(share * own for share in shares)
+
+
+def _range(duty: MeshDuty, base: PocketVariant, name: str) -> tuple[float, ...]:
+    """Values of the source for its example, over those of the case where they have a unit."""
+    module = duty.mesh.gear1.rack.transverse_module
+    values: Mapping[str, NDArray[np.float64]] = {
+        "speed": base.speed * np.linspace(0.1, 1.0, 10),
+        "helix-angle": np.radians(np.arange(0.0, 36.0, 5.0)),
+        "face-width": base.face_width * np.linspace(1.0, 7 / 3, 5),
+        "oil-fraction": np.array([0.01, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]),
+        "backlash": module * np.linspace(0.025, 0.1125, 8),
+        "module": module * 25 / np.arange(28.0, 22.0, -1.0),
+    }
+    return tuple(map(float, values[name]))
+
+
+def _axis(duty: MeshDuty, name: str, values: tuple[float, ...]) -> StudyAxis:
+    if name != "module":
+        return StudyAxis(name, values, values)
+    found = teeth_for_module(duty.mesh, values)
+    return StudyAxis(name, tuple(found), tuple(found.values()))
+
+
+def _variants(base: PocketVariant, axes: Sequence[StudyAxis]) -> Iterable[PocketVariant]:
+    """All points of a study, the last axis fastest."""
+    for values in product(*(axis.variants for axis in axes)):
+        yield replace(base, **dict(zip((axis.field for axis in axes), values, strict=True)))
+
+
+def _geometry(point: PocketVariant) -> tuple[Any, ...]:
+    """Equal for points of the same geometry."""
+    return (point.teeth, point.backlash, point.helix_angle, point.face_width)
+
+
+def _solve_point(plan: StudyPlan, index: int) -> Row:
+    flow = solve_variant(plan.case, plan.duty, plan.points[index])
+    warning = "" if flow.periodic else "the flow does not repeat; the loss is a mean"
+    numbers = {name: value(flow) for name, (_, _, value) in _NUMBERS.items()}
+    return Row(str(Status.CONVERGED), warnings=warning, numbers=numbers)
+
+
+def run_study(
+    plan: StudyPlan,
+    *,
+    jobs: int | None = None,
+    journal: Journal | None = None,
+    progress: Progress | None = None,
+) -> list[Row]:
+    """Rows of all points of `plan`, in their order. Parameters as for `pocketing_study`."""
+    rows: dict[int, Row] = {}
+    for finished in run_work(plan, jobs=jobs, journal=journal):
+        rows.update(finished)
+        if progress is not None:
+            progress(len(rows), len(plan.points))
+    return [rows[index] for index in range(len(plan.points))]
+
+
+def study_datasets(plan: StudyPlan, rows: Sequence[Row]) -> dict[str, xr.Dataset]:
+    """The rows of all points over the axes of each study."""
+    found = dict(zip(plan.points, rows, strict=True))
+    base = base_variant(plan.case, plan.duty)
+    return {
+        name: _dataset(plan, name, [found[point] for point in _variants(base, axes)])
+        for name, axes in plan.axes.items()
+    }
+
+
+def _dataset(plan: StudyPlan, name: str, rows: Sequence[Row]) -> xr.Dataset:
+    import xarray as xr
+
+    axes = plan.axes[name]
+    dims = tuple(axis.dimension for axis in axes)
+    shape = tuple(len(axis.values) for axis in axes)
+    coordinates = {axis.dimension: _coordinate(axis) for axis in axes}
+    variables: dict[str, Any] = {}
+    for key, (label, quantity, _) in _NUMBERS.items():
+        values = np.array([row.numbers.get(key, math.nan) for row in rows]).reshape(shape)
+        scale, _ = quantity.scale_and_offset()
+        attributes = {"long_name": label, "units": quantity.display or "1"}
+        variables[key] = (dims, scale * values, attributes)
+    for key, label in (
+        ("status", "how the point ended"),
+        ("message", "why the point failed"),
+        ("warnings", "warnings of the point"),
+    ):
+        texts = np.array([getattr(row, key) for row in rows], dtype=object).reshape(shape)
+        variables[key] = (dims, texts, {"long_name": label})
+    dataset = xr.Dataset(variables, coordinates, _attributes(plan, name))
+    if name == "speed":
+        dataset["speed_exponent"] = _exponents(dataset["pocketing_loss"])
+    return dataset
+
+
+def _coordinate(axis: StudyAxis) -> tuple[str, NDArray[np.float64], dict[str, str]]:
+    parameter = PARAMETERS[axis.name]
+    scale, _ = parameter.quantity.scale_and_offset()
+    attributes = {"long_name": parameter.label, "units": parameter.quantity.display or "1"}
+    # rounded as everything that is shown: 15 mm and not 15.000000000000002
+    values = [float(f"{scale * value:.12g}") for value in axis.values]
+    return (axis.dimension, np.array(values), attributes)
+
+
+def _attributes(plan: StudyPlan, name: str) -> dict[str, str]:
+    mesh = plan.duty.key.replace("_", " ")
+    used = versions()
+    return {
+        "title": f"Pocketing loss of the {mesh} of {plan.case.title or 'the case'}",
+        "figure": STUDIES[name].figure,
+        "mesh": plan.duty.key,
+        "model": plan.case.models.pocketing,
+        "source": f"epicyclic {used['epicyclic']}",
+        "versions": json.dumps(used),
+        "case": json.dumps(plan.case.inputs()),
+    }
+
+
+def _exponents(loss: xr.DataArray) -> xr.DataArray:
+    """Slope of the logarithm of the loss over that of the speed."""
+    speed = np.log(loss["speed"])
+    away = speed - speed.mean()
+    slope = (np.log(loss) * away).sum("speed", skipna=False) / (away**2).sum()
+    return slope.assign_attrs(long_name="exponent of the speed in the loss", units="1")

@@ -1,0 +1,65 @@
+"""What is published of the parametric study of pocketing losses. Talbot (2012), section 4.4."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from epicyclic.case.case import Case, GearPairCase, load_case
+from epicyclic.units import DEGREE, MILLIMETRE, RPM
+from epicyclic.validation.compare import published_figures
+
+__all__ = ["PublishedStudy", "published_study"]
+
+EXAMPLE = "talbot-2012-pair"
+_SAME = ("gears", "pinion", "gear", "lubricant", "surroundings")
+"""Tables in which a case must agree with the example."""
+
+
+@dataclass(frozen=True, slots=True)
+class PublishedStudy:
+    """Values that the text of the source prints, in display units.
+
+    Attributes
+    ----------
+    helix_angle, face_width, speed, loss : float
+        A loss and where it holds. [deg], [mm], [rpm], [W]
+    exponent : float
+        Of the speed in the loss of the spur pair. [1]
+    """
+
+    helix_angle: float
+    face_width: float
+    speed: float
+    loss: float
+    exponent: float
+
+
+def published_study(case: Case) -> PublishedStudy | None:
+    """The published values if they hold for `case`, the example of the source."""
+    example = load_case(EXAMPLE)
+    assert isinstance(example, GearPairCase)
+    if not isinstance(case, GearPairCase) or not _is_example(case, example):
+        return None
+    loss, exponent = _figure("pocketing_loss"), _figure("pocketing_speed_exponent")
+    return PublishedStudy(
+        helix_angle=DEGREE.to_display(DEGREE.parse(loss["with"]["helix_angle"])),
+        face_width=MILLIMETRE.to_display(example.pinion.face_width),
+        speed=RPM.to_display(example.operation.speed),
+        loss=loss["value"],
+        exponent=exponent["value"],
+    )
+
+
+def _is_example(case: GearPairCase, example: GearPairCase) -> bool:
+    same = all(getattr(case, table) == getattr(example, table) for table in _SAME)
+    one, other = (item.operation.oil_inlet_temperature for item in (case, example))
+    return same and one == other
+
+
+def _figure(compute: str) -> dict[str, Any]:
+    return next(
+        figure
+        for figure in published_figures()
+        if figure["compute"] == compute and figure["role"] == "validation"
+    )
