@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from epicyclic.records.files import open_result, save_result
     from epicyclic.records.record import ResultRecord, record
     from epicyclic.report.html import report_html
+    from epicyclic.sweeps.pocketing_study import pocketing_study
     from epicyclic.sweeps.run import sweep
 
 _HOME = {
@@ -50,6 +51,7 @@ _HOME = {
     "mesh_contacts": "epicyclic.analysis.solve",
     "mesh_details": "epicyclic.analysis.mesh_details",
     "pocket_details": "epicyclic.analysis.pocket_details",
+    "pocketing_study": "epicyclic.sweeps.pocketing_study",
     "read_rexs": "epicyclic.exchange.rexs.importing",
     "open_result": "epicyclic.records.files",
     "record": "epicyclic.records.record",
@@ -80,6 +82,7 @@ __all__ = [
     "mesh_details",
     "open_result",
     "pocket_details",
+    "pocketing_study",
     "read_rexs",
     "record",
     "report_html",

@@ -24,3 +24,19 @@ def test_mistakes_are_named_before_anything_is_computed(epicyclic):
     done = epicyclic("pockets", "talbot-2012-pair", "--set", "operation.speed=0 rpm")
     assert done.returncode == 2
     assert "does not turn" in done.stderr
+
+
+def test_study_writes_numbers_and_figures(epicyclic, tmp_path):
+    folder = tmp_path / "new" / "study"
+    done = epicyclic(
+        "study", "talbot-2012-pair", "--what", "helix-angle", "--range", "helix-angle=0:20:2 deg",
+        "--level", "face-width=15 mm", "--level", "speed=5000,10000 rpm", "--picture", "svg",
+        "--set", "numerics.pocket_steps=8", "-o", str(folder),
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "helix-angle.csv", "helix-angle.nc", "helix-angle.svg",
+    ]  # fmt: skip
+    lines = (folder / "helix-angle.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0].startswith("face_width [mm],speed [rpm],helix_angle [deg],pocketing_loss [W]")
+    assert len(lines) == 1 + 4

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
+from epicyclic.analysis.datasets import Variable, variable
 from epicyclic.analysis.pair import pair_duty
 from epicyclic.analysis.parts import MeshDuty, fluids_of
 from epicyclic.analysis.planetary import planetary_duties
@@ -47,7 +48,6 @@ __all__ = ["mesh_duties", "pocket_details"]
 
 Array = NDArray[np.float64] | NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
-Variable = tuple[tuple[str, ...], Array, dict[str, str]]
 
 _LIFE = ("tooth", "roll")
 _AXIS = "axis"
@@ -200,13 +200,15 @@ def _dataset(case: Case, duty: MeshDuty, flow: PocketFlow) -> xr.Dataset:
     stations = np.linspace(0.0, width, flow.station.size)
     coordinates = {
         "tooth": [mesh.gear1.name, mesh.gear2.name],
-        "roll_angle": _variable(_LIFE, life.roll, "roll angle of the pocket", DEGREE),
-        "slice_position": _variable(
-            "slice", (stations[1:] + stations[:-1]) / 2, "position across the face", MILLIMETRE
+        "roll_angle": variable(_LIFE, life.roll, "roll angle of the pocket", DEGREE),
+        "slice_position": variable(
+            ("slice",), (stations[1:] + stations[:-1]) / 2, "position across the face", MILLIMETRE
         ),
-        "station_position": _variable("station", stations, "position across the face", MILLIMETRE),
-        "period_angle": _variable(
-            "mesh_position", flow.angle, f"roll angle of the {mesh.gear1.name}", DEGREE
+        "station_position": variable(
+            ("station",), stations, "position across the face", MILLIMETRE
+        ),
+        "period_angle": variable(
+            ("mesh_position",), flow.angle, f"roll angle of the {mesh.gear1.name}", DEGREE
         ),
         "end": ["first", "last"],
         "axis": ["x", "y"],
@@ -231,15 +233,6 @@ def _dataset(case: Case, duty: MeshDuty, flow: PocketFlow) -> xr.Dataset:
     return xr.Dataset(variables, coordinates, attributes)
 
 
-def _variable(
-    dims: str | tuple[str, ...], values: Array | float, label: str, unit: Quantity
-) -> Variable:
-    scale, offset = unit.scale_and_offset()
-    shown = np.asarray(values) * scale + offset
-    attributes = {"long_name": label, "units": unit.display or "1"}
-    return ((dims,) if isinstance(dims, str) else dims, shown, attributes)
-
-
 def _shapes(life: _Life, width: float) -> dict[str, Variable]:
     """What the geometry tells."""
     area = life.read(life.geometry.area)
@@ -258,14 +251,14 @@ def _shapes(life: _Life, width: float) -> dict[str, Variable]:
         "live": (
             (*_LIFE, "slice"), alive, {"long_name": "whether a slice is a pocket", "units": "1"}
         ),
-        "end_area": _variable(station, known(area), "area of the section", SQUARE_MILLIMETRE),
-        "slice_volume": _variable(
+        "end_area": variable(station, known(area), "area of the section", SQUARE_MILLIMETRE),
+        "slice_volume": variable(
             (*_LIFE, "slice"), slices, "volume of a slice", CUBIC_MILLIMETRE
         ),
-        "volume": _variable(_LIFE, volume, "volume of the pocket", CUBIC_MILLIMETRE),
-        "contact_gap": _variable(station, known(contact), "gap at the contact side", MICROMETRE),
-        "backlash_gap": _variable(station, known(backlash), "gap at the backlash side", MICROMETRE),
-        "centroid": _variable(
+        "volume": variable(_LIFE, volume, "volume of the pocket", CUBIC_MILLIMETRE),
+        "contact_gap": variable(station, known(contact), "gap at the contact side", MICROMETRE),
+        "backlash_gap": variable(station, known(backlash), "gap at the backlash side", MICROMETRE),
+        "centroid": variable(
             (*station, _AXIS),
             np.stack([known(values) for values in centroid], axis=-1),
             "centroid of the section, axis of member 1 at the origin",
@@ -288,22 +281,22 @@ def _flows(life: _Life) -> dict[str, Variable]:
 
     contact, backlash = life.gap_speeds
     return {
-        "pressure": _variable(
+        "pressure": variable(
             cells, known(life.of_pockets(flow.pressure)), "pressure above ambient", BAR
         ),
-        "axial_speed": _variable(
+        "axial_speed": variable(
             (*_LIFE, "station"),
             known(life.of_pockets(flow.axial_speed), opening),
             "axial speed, towards the last end",
             METRE_PER_SECOND,
         ),
-        "contact_gap_speed": _variable(
+        "contact_gap_speed": variable(
             cells, known(contact), "speed out through the contact side", METRE_PER_SECOND
         ),
-        "backlash_gap_speed": _variable(
+        "backlash_gap_speed": variable(
             cells, known(backlash), "speed out through the backlash side", METRE_PER_SECOND
         ),
-        "instant_power": _variable("mesh_position", flow.instant_power, "power", WATT),
+        "instant_power": variable(("mesh_position",), flow.instant_power, "power", WATT),
     }
 
 
@@ -328,30 +321,30 @@ def _pictures(duty: MeshDuty, life: _Life) -> dict[str, Variable]:
     at_end = (*_LIFE, "end")
     leading, trailing = contact_clearances(mesh, duty.drives1)
     variables = {
-        "outline": _variable(
+        "outline": variable(
             (*at_end, "point", _AXIS),
             points(outlines),
             "outline of the pocket, axis of member 1 at the origin",
             MILLIMETRE,
         ),
-        "contact_feet": _variable(
+        "contact_feet": variable(
             (*at_end, "member", _AXIS), contact, "narrowest gap at the contact side", MILLIMETRE
         ),
-        "backlash_feet": _variable(
+        "backlash_feet": variable(
             (*at_end, "member", _AXIS), backlash, "narrowest gap at the backlash side", MILLIMETRE
         ),
-        "center_distance": _variable((), mesh.center_distance, "centre distance", MILLIMETRE),
-        "space_shift": _variable(
+        "center_distance": variable((), mesh.center_distance, "centre distance", MILLIMETRE),
+        "space_shift": variable(
             (),
             (leading - trailing) / 2 / mesh.gear2.base_radius,
             "turn of member 2 that closes the contact side",
             DEGREE,
         ),
-        "twist": _variable((), life.flow.station[-1], "turn of the helix over the face", DEGREE),
+        "twist": variable((), life.flow.station[-1], "turn of the helix over the face", DEGREE),
     }
     for number, gear, tool in zip((1, 2), (mesh.gear1, mesh.gear2), duty.tools, strict=True):
         tooth = tooth_outline(gear, tool).points(teeth=1) @ np.array([[0.0, -1.0], [1.0, 0.0]])
-        variables[f"tooth{number}"] = _variable(
+        variables[f"tooth{number}"] = variable(
             (f"tooth{number}_point", _AXIS),
             tooth,
             f"outline of a tooth of the {gear.name}, along x",
@@ -381,5 +374,5 @@ def _numbers(case: Case, duty: MeshDuty, flow: PocketFlow) -> dict[str, Variable
         ),
     }  # fmt: skip
     return {
-        name: _variable((), value, label, unit) for name, (value, label, unit) in numbers.items()
+        name: variable((), value, label, unit) for name, (value, label, unit) in numbers.items()
     }

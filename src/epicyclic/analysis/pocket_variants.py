@@ -6,7 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from epicyclic.analysis.parts import MeshDuty, fluids_of, solve_pockets
+from epicyclic.analysis.parts import MeshDuty, fluids_of
+from epicyclic.analysis.pockets import flow_family
 from epicyclic.case import build
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem
@@ -15,7 +16,18 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.lubricant.properties import mixture_state
 from epicyclic.pocketing.fluid import PocketFlow
 
-__all__ = ["PocketVariant", "base_variant", "solve_variant", "teeth_for_module", "varied_duty"]
+__all__ = [
+    "PocketVariant",
+    "base_variant",
+    "solve_variant",
+    "teeth_for_module",
+    "transverse_module",
+    "varied_duty",
+]
+
+
+ROUNDING = 1e-9
+"""What is less negative is left over from rounding. [m] or [1]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,30 +96,22 @@ def varied_duty(duty: MeshDuty, variant: PocketVariant) -> MeshDuty:
 
     Raises
     ------
-    InputError
+    ValueError
         If such gears do not mesh or cannot be cut.
     """
     mesh = _varied_mesh(duty.mesh, variant)
-    problems = [
-        Problem("variant", what, f"is {value:.4g}.", "Vary over a smaller range.")
-        for what, value in (
-            ("backlash", mesh.backlash),
-            ("tip clearance of member 1", mesh.tip_clearance1),
-            ("tip clearance of member 2", mesh.tip_clearance2),
-            ("transverse contact ratio", mesh.transverse_contact_ratio),
-        )
-        if value < -1e-9
-    ]
-    if problems:
-        raise InputError(problems, "the study")
-    try:
-        tools = (
-            build.fitted_tool(mesh.gear1, duty.gears[0], mesh.radius1_at_start),
-            build.fitted_tool(mesh.gear2, duty.gears[1], mesh.radius2_at_end),
-        )
-    except ValueError as error:
-        problem = Problem("variant", "", f"{error}.", "Vary over a smaller range.")
-        raise InputError([problem], "the study") from None
+    for what, value in (
+        ("backlash", mesh.backlash),
+        ("tip clearance of member 1", mesh.tip_clearance1),
+        ("tip clearance of member 2", mesh.tip_clearance2),
+        ("transverse contact ratio", mesh.transverse_contact_ratio),
+    ):
+        if value < -ROUNDING:
+            raise ValueError(f"the {what} is negative")
+    tools = (
+        build.fitted_tool(mesh.gear1, duty.gears[0], mesh.radius1_at_start),
+        build.fitted_tool(mesh.gear2, duty.gears[1], mesh.radius2_at_end),
+    )
     return replace(duty, mesh=mesh, tools=tools, speed1=variant.speed)
 
 
@@ -121,10 +125,15 @@ def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketF
     ConvergenceError
         If the flow is not found.
     """
-    mixture = mixture_state(fluids_of(case).oil, variant.oil_fraction, case.surroundings.pressure)
-    flow = solve_pockets(case, varied_duty(duty, variant), mixture)
-    assert flow is not None  # speeds are positive
-    return flow
+    pressure = case.surroundings.pressure
+    mixture = mixture_state(fluids_of(case).oil, variant.oil_fraction, pressure)
+    try:
+        family = flow_family(case, varied_duty(duty, variant))
+        family = replace(family, oil_fraction=variant.oil_fraction)
+        return family.flow(variant.speed, mixture, pressure)
+    except ValueError as error:
+        problem = Problem(duty.key, "", f"cannot be so: {error}.", "Vary over a smaller range.")
+        raise InputError([problem], "the study") from None
 
 
 def _varied_mesh(mesh: Mesh, variant: PocketVariant) -> Mesh:

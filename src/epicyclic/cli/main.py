@@ -24,7 +24,7 @@ from epicyclic.cli.exit_codes import (
 )
 from epicyclic.cli.listing import cases, init, oils, schema
 from epicyclic.cli.many import loss_map, sweep
-from epicyclic.cli.pockets import pockets
+from epicyclic.cli.pockets import pockets, study
 from epicyclic.cli.rexs import rexs
 from epicyclic.cli.show import plot, report
 from epicyclic.cli.single import check, friction, mesh, run
@@ -55,6 +55,7 @@ COMMANDS = (
     loss_map,
     mesh,
     pockets,
+    study,
     contact,
     friction,
     compare,

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from epicyclic.sweeps.journal import Journal, Row
     from epicyclic.sweeps.plan import Plan
 
-__all__ = ["loss_map", "sweep"]
+__all__ = ["kept_in", "loss_map", "open_journal", "print_failures", "sweep"]
 
 SHOWN_FAILURES = 10
 
@@ -146,12 +146,12 @@ def compute_points(
     from epicyclic.cli.progress import progress_bar
     from epicyclic.sweeps.run import run_plan
 
-    journal = _open_journal(plan, output)
-    with _kept_in(journal, plan.size):
+    journal = open_journal(plan.fingerprint(), plan.size, output)
+    with kept_in(journal, plan.size):
         with progress_bar("points") as progress:
             rows = run_plan(plan, jobs=jobs, journal=journal, progress=progress, **options)
         reasons = [row.message for row in rows if row.status == Status.FAILED]
-        _print_failures(reasons)
+        print_failures(reasons)
         with finishing(f"Writing {output}."):
             write(rows)
             journal.remove()
@@ -161,11 +161,13 @@ def compute_points(
         sys.exit(EXIT_FAILED_POINTS)
 
 
-def _open_journal(plan: Plan, output: Path) -> Journal:
-    """The journal of `plan` beside `output`; says what is there from interrupted sweeps."""
+def open_journal(fingerprint: str, size: int, output: Path) -> Journal:
+    """The journal of a sweep beside `output`; says what is there from interrupted sweeps.
+
+    `fingerprint` is that of the sweep, `size` the number of its points.
+    """
     from epicyclic.sweeps.journal import Journal
 
-    fingerprint = plan.fingerprint()
     journal = Journal(output.with_name(f"{output.name}.{fingerprint}.partial"), fingerprint)
     others = [
         path
@@ -181,12 +183,12 @@ def _open_journal(plan: Plan, output: Path) -> Journal:
         )
     kept = len(journal.read())
     if kept:
-        click.echo(f"Going on from {kept} of {plan.size} points in {journal.path}.", err=True)
+        click.echo(f"Going on from {kept} of {size} points in {journal.path}.", err=True)
     return journal
 
 
 @contextmanager
-def _kept_in(journal: Journal, size: int) -> Iterator[None]:
+def kept_in(journal: Journal, size: int) -> Iterator[None]:
     """Say what is left of a sweep that does not reach its end."""
     try:
         yield
@@ -201,7 +203,7 @@ def _kept_in(journal: Journal, size: int) -> Iterator[None]:
         raise
 
 
-def _print_failures(reasons: Sequence[str]) -> None:
+def print_failures(reasons: Sequence[str]) -> None:
     """Each reason once, with the number of points that failed for it."""
     counts = Counter(reasons)
     for reason, count in list(counts.items())[:SHOWN_FAILURES]:

@@ -1,15 +1,26 @@
-"""Commands on the pockets of meshes: pockets."""
+"""Commands on the pockets of meshes: pockets, study."""
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
+from epicyclic.cli.exit_codes import EXIT_FAILED_POINTS
+from epicyclic.cli.many import kept_in, open_journal, print_failures
 from epicyclic.cli.options import case_argument, load_with, set_option
-from epicyclic.cli.output import check_picture, draw, write_file
+from epicyclic.cli.output import PICTURES, check_picture, draw, finishing, write_file
+from epicyclic.errors import InputError, Problem
+from epicyclic.status import Status
 
-__all__ = ["pockets"]
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from epicyclic.case.case import Case
+
+__all__ = ["pockets", "study"]
 
 ANIMATION = ".gif"
 
@@ -62,3 +73,97 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
 def _named(path: Path, part: str) -> Path:
     """The file beside `path` for one part of what is drawn."""
     return path.with_name(f"{path.stem}-{part}{path.suffix}")
+
+
+@click.command()
+@case_argument
+@set_option
+@click.option(
+    "--what",
+    metavar="NAMES",
+    help="Of speed, helix-angle, face-width, oil-fraction, backlash, module, separated by commas; "
+    "default: all.",
+)
+@click.option(
+    "--range",
+    "ranges",
+    metavar="NAME=VALUES",
+    multiple=True,
+    help='What a study goes over, as in "helix-angle=0:30:7 deg".',
+)
+@click.option(
+    "--level",
+    "levels",
+    metavar="NAME=VALUES",
+    multiple=True,
+    help='Curves and panels of the other studies, as in "speed=2000,4000 rpm".',
+)
+@click.option("--mesh", metavar="MESH", help="sun_mesh (default) or ring_mesh of a planetary set.")
+@click.option("--picture", type=click.Choice([kind[1:] for kind in PICTURES]), default="png")
+@click.option(
+    "-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder of the results."
+)
+@click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
+def study(
+    case: str,
+    changes: tuple[str, ...],
+    what: str | None,
+    ranges: tuple[str, ...],
+    levels: tuple[str, ...],
+    mesh: str | None,
+    picture: str,
+    output: Path,
+    jobs: int | None,
+) -> None:
+    """Study the pocketing loss of a mesh over its main parameters, and draw the figures.
+
+    Each study NAME goes to NAME.nc, NAME.csv and a picture in the folder OUTPUT. An interrupted
+    study goes on where it stopped, as a sweep does.
+    """
+    from epicyclic.cli.progress import progress_bar
+    from epicyclic.sweeps.plan import parse_vary
+    from epicyclic.sweeps.pocketing_study import STUDIES, make_study, run_study, study_datasets
+
+    loaded = load_with(case, changes)
+    plan = make_study(
+        loaded,
+        STUDIES if what is None else [name.strip() for name in what.split(",") if name.strip()],
+        mesh=mesh,
+        ranges=parse_vary(loaded, ranges, "--range", "speed"),
+        levels=parse_vary(loaded, levels, "--level", "speed"),
+    )
+    _make_folder(output)
+    size = len(plan.points)
+    journal = open_journal(plan.fingerprint(), size, output / "study")
+    with kept_in(journal, size):
+        with progress_bar("points") as progress:
+            rows = run_study(plan, jobs=jobs, journal=journal, progress=progress)
+        with finishing(f"Writing to {output}."):
+            _write_study(loaded, study_datasets(plan, rows), output, f".{picture}")
+            journal.remove()
+    reasons = [row.message for row in rows if row.status == Status.FAILED]
+    if reasons:
+        print_failures(reasons)
+        sys.exit(EXIT_FAILED_POINTS)
+
+
+def _make_folder(path: Path) -> None:
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        allowed = f"is no place for a folder: {error.strerror}."
+        problem = Problem("-o", str(path), allowed, "Name another folder.")
+        raise InputError([problem], "the command") from None
+
+
+def _write_study(case: Case, studies: dict[str, xr.Dataset], folder: Path, picture: str) -> None:
+    from epicyclic.plots.pocketing_study import study_figure
+    from epicyclic.sweeps.dataset import write_dataset
+    from epicyclic.validation.pocketing import published_study
+
+    published = published_study(case)
+    for name, dataset in studies.items():
+        for suffix in (".nc", ".csv"):
+            write_dataset(dataset, folder / f"{name}{suffix}")
+            click.echo(f"Wrote {folder / name}{suffix}.")
+        draw(study_figure(dataset, published), folder / f"{name}{picture}")

@@ -270,8 +270,12 @@ def _coordinate(value: Any, quantity: Quantity | None) -> float | str:
     )
 
 
-def parse_vary(case: Case, options: Sequence[str]) -> dict[str, list[Any]]:
+def parse_vary(
+    case: Case, options: Sequence[str], name: str = "--vary", example: str = "operation.speed"
+) -> dict[str, list[Any]]:
     """The options ``key=a,b,c`` and ``key=start:stop:count`` of a command line.
+
+    `name` is that of the options, `example` one of their keys that holds a speed.
 
     A unit after the last value, or after the count, holds for all values without one.
 
@@ -288,14 +292,14 @@ def parse_vary(case: Case, options: Sequence[str]) -> dict[str, list[Any]]:
         if not equals or not text.strip():
             problems.append(
                 Problem(
-                    "--vary", f'"{option}"', "must be key=a,b,c or key=start:stop:count.",
-                    'For example --vary "operation.speed=1000:4000:4 rpm".',
+                    name, f'"{option}"', "must be key=a,b,c or key=start:stop:count.",
+                    f'For example {name} "{example}=1000:4000:4 rpm".',
                 )
             )  # fmt: skip
             continue
         if key in vary:
             problems.append(
-                Problem("--vary", f'"{option}"', f"varies {key} again.", "Name a key once.")
+                Problem(name, f'"{option}"', f"varies {key} again.", "Name a key once.")
             )
             continue
         try:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
+from epicyclic.analysis.datasets import variable
 from epicyclic.analysis.parts import MeshDuty
 from epicyclic.analysis.pocket_details import mesh_duties
 from epicyclic.analysis.pocket_variants import (
@@ -47,8 +48,6 @@ __all__ = [
     "study_datasets",
 ]
 
-FEWEST_TEETH = 5
-
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
@@ -67,7 +66,7 @@ PARAMETERS = {
     "face-width": Parameter(
         "face width", Quantity("a length", "m", "mm", low=0.0, high=1e5, open_low=True)
     ),
-    "oil-fraction": Parameter("share of oil by volume", Quantity("a number", "", "", 0.0, 1.0)),
+    "oil-fraction": Parameter("share of oil by volume", NUMBER),
     "backlash": Parameter("backlash", Quantity("a length", "m", "um", low=0.0, high=1e4)),
     "module": Parameter(
         "transverse module", Quantity("a length", "m", "mm", low=0.0, high=1e3, open_low=True)
@@ -97,8 +96,8 @@ class Study:
     levels: Mapping[str, tuple[float, ...]]
 
 
-_SPEEDS = {"speed": (0.5, 0.75, 1.0)}
-_FOUR = {"helix-angle": (0.0, 30.0), "face-width": (1.0, 5 / 3)}
+_SPEEDS: dict[str, tuple[float, ...]] = {"speed": (0.5, 0.75, 1.0)}
+_FOUR: dict[str, tuple[float, ...]] = {"helix-angle": (0.0, 30.0), "face-width": (1.0, 5 / 3)}
 STUDIES = {
     "speed": Study("Fig. 4.8", (), "helix-angle", {"helix-angle": (0.0, 15.0, 30.0)}),
     "helix-angle": Study(
@@ -111,6 +110,9 @@ STUDIES = {
     "backlash": Study("Fig. 4.12", tuple(_FOUR), "speed", _FOUR | _SPEEDS),
     "module": Study("Fig. 4.13", tuple(_FOUR), "speed", _FOUR | _SPEEDS),
 }
+
+LEVELS = ("speed", "helix-angle", "face-width")
+"""Parameters that have curves or panels."""
 
 _NUMBERS: dict[str, tuple[str, Quantity, Callable[[PocketFlow], float]]] = {
     "pocketing_loss": ("pocketing loss of one mesh", WATT, lambda flow: flow.power),
@@ -245,14 +247,9 @@ def make_study(
     """Check what is to be studied. Parameters as for `pocketing_study`."""
     duty = _duty(case, mesh)
     names = list(dict.fromkeys(what))
-    problems = [
-        Problem("what", written(name), "is no study.", did_you_mean(name, list(STUDIES)) or _ONE_OF)
-        for name in names
-        if name not in STUDIES
-    ]
-    given_ranges, found = _parsed("range", ranges)
-    given_levels, more = _parsed("level", levels)
-    problems += found + more
+    given_ranges, range_problems = _parsed("range", ranges, names)
+    given_levels, level_problems = _parsed("level", levels, list(LEVELS))
+    problems = [*_unknown_studies(names), *range_problems, *level_problems]
     if problems:
         raise InputError(problems, "the study")
     base = base_variant(case, duty)
@@ -269,7 +266,18 @@ def make_study(
     return StudyPlan(case, duty, axes, tuple(points))
 
 
-_ONE_OF = f"Choose of {', '.join(STUDIES)}."
+def _unknown_studies(names: Sequence[str]) -> list[Problem]:
+    if not names:
+        return [Problem("what", "", "names no study.", f"Choose of {', '.join(STUDIES)}.")]
+    return [
+        Problem("what", written(name), "is no study.", _choice(name, list(STUDIES)))
+        for name in names
+        if name not in STUDIES
+    ]
+
+
+def _choice(name: str, known: Sequence[str]) -> str:
+    return did_you_mean(name, list(known)) or f"Choose of {', '.join(known)}."
 
 
 def _duty(case: Case, mesh: str | None) -> MeshDuty:
@@ -287,15 +295,19 @@ def _duty(case: Case, mesh: str | None) -> MeshDuty:
 
 
 def _parsed(
-    what: str, given: Mapping[str, Iterable[Any]]
+    what: str, given: Mapping[str, Iterable[Any]], known: Sequence[str]
 ) -> tuple[dict[str, tuple[float, ...]], list[Problem]]:
-    """Values in SI and the problems of those that cannot be read."""
+    """Values in SI, and the problems of names that are not `known` and of values."""
     parsed: dict[str, tuple[float, ...]] = {}
     problems = []
     for name, values in given.items():
         if name not in PARAMETERS:
-            remedy = did_you_mean(name, list(PARAMETERS)) or _ONE_OF
-            problems.append(Problem(what, written(name), "is no parameter of the study.", remedy))
+            allowed = "is no parameter of the study."
+            problems.append(Problem(what, written(name), allowed, _choice(name, known)))
+            continue
+        if name not in known:
+            allowed = f"has no {what} in this study, only {', '.join(known)}."
+            problems.append(Problem(what, written(name), allowed, "Leave it out."))
             continue
         found = []
         for value in values:
@@ -312,7 +324,7 @@ def _parsed(
 def _parse(quantity: Quantity, value: Any) -> float:
     if quantity.si:
         return quantity.parse(value)
-    if isinstance(value, int | float) and quantity.low <= value <= quantity.high:
+    if isinstance(value, int | float) and 0 <= value <= 1:
         return float(value)
     raise PydanticCustomError(
         "share", "must be a number from 0 to 1", {"remedy": "give a number without a unit"}
@@ -401,9 +413,7 @@ def _dataset(plan: StudyPlan, name: str, rows: Sequence[Row]) -> xr.Dataset:
     variables: dict[str, Any] = {}
     for key, (label, quantity, _) in _NUMBERS.items():
         values = np.array([row.numbers.get(key, math.nan) for row in rows]).reshape(shape)
-        scale, _ = quantity.scale_and_offset()
-        attributes = {"long_name": label, "units": quantity.display or "1"}
-        variables[key] = (dims, scale * values, attributes)
+        variables[key] = variable(dims, values, label, quantity)
     for key, label in (
         ("status", "how the point ended"),
         ("message", "why the point failed"),
@@ -412,7 +422,7 @@ def _dataset(plan: StudyPlan, name: str, rows: Sequence[Row]) -> xr.Dataset:
         texts = np.array([getattr(row, key) for row in rows], dtype=object).reshape(shape)
         variables[key] = (dims, texts, {"long_name": label})
     dataset = xr.Dataset(variables, coordinates, _attributes(plan, name))
-    if name == "speed":
+    if name == "speed" and dataset.sizes["speed"] > 1:
         dataset["speed_exponent"] = _exponents(dataset["pocketing_loss"])
     return dataset
 
@@ -444,5 +454,6 @@ def _exponents(loss: xr.DataArray) -> xr.DataArray:
     """Slope of the logarithm of the loss over that of the speed."""
     speed = np.log(loss["speed"])
     away = speed - speed.mean()
-    slope = (np.log(loss) * away).sum("speed", skipna=False) / (away**2).sum()
-    return slope.assign_attrs(long_name="exponent of the speed in the loss", units="1")
+    slope: xr.DataArray = (np.log(loss) * away).sum("speed", skipna=False) / (away**2).sum()
+    slope.attrs = {"long_name": "exponent of the speed in the loss", "units": "1"}
+    return slope
