@@ -132,11 +132,11 @@ def test_exponents_are_slopes(study):
 def test_points_that_cannot_be_say_why(pair):
     found = ep.pocketing_study(
         pair,
-        ["module"],
-        ranges={"module": ["2 mm", "20 mm"]},
+        ["backlash"],
+        ranges={"backlash": ["0.1 mm", "6 mm"]},
         levels={"helix-angle": ["0 deg"], "face-width": ["15 mm"], "speed": ["5000 rpm"]},
         jobs=1,
-    )["module"].squeeze()
+    )["backlash"].squeeze()
     assert list(found["status"].to_numpy()) == ["converged", "failed"]
     assert np.isnan(found["pocketing_loss"][1])
     assert "mesh: cannot be so" in str(found["message"][1].item())
@@ -164,6 +164,8 @@ def test_every_mistake_is_named(pair):
         ep.pocketing_study(ep.load_case("talbot-2012"), mesh="mesh")
     with pytest.raises(ep.InputError, match="does not turn"):
         ep.pocketing_study(pair.updated({"operation.speed": "0 rpm"}))
+    with pytest.raises(ep.InputError, match="leaves 2 and 2 teeth"):
+        ep.pocketing_study(pair, ["module"], ranges={"module": ["20 mm"]})
     with pytest.raises(ep.InputError, match="names no study"):
         ep.pocketing_study(pair, [])
 

@@ -30,6 +30,9 @@ ROUNDING = 1e-9
 """What is less negative is left over from rounding. [m] or [1]"""
 
 
+FEWEST_TEETH = 5
+
+
 @dataclass(frozen=True, slots=True)
 class PocketVariant:
     """A mesh that keeps what is not listed here: centre distance, pressure angle, oil, air.
@@ -82,11 +85,19 @@ def transverse_module(mesh: Mesh, teeth: tuple[int, int]) -> float:
 
 
 def teeth_for_module(mesh: Mesh, modules: Sequence[float]) -> dict[float, tuple[int, int]]:
-    """Whole teeth whose transverse modules come nearest to `modules`, by their modules."""
+    """Whole teeth whose transverse modules come nearest to `modules`, by their modules.
+
+    Raises
+    ------
+    ValueError
+        If a module leaves fewer teeth than a gear can have, or a ring no more than its mate.
+    """
     found = {}
     for module in modules:
         ratio = mesh.gear1.rack.transverse_module / module
         teeth = (round(mesh.gear1.teeth * ratio), round(mesh.gear2.teeth * ratio))
+        if min(teeth) < FEWEST_TEETH or (mesh.internal and teeth[1] <= teeth[0]):
+            raise ValueError(f"{1e3 * module:.4g} mm leaves {teeth[0]} and {teeth[1]} teeth")
         found[transverse_module(mesh, teeth)] = teeth
     return found
 

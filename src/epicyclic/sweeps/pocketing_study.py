@@ -355,7 +355,11 @@ def _range(duty: MeshDuty, base: PocketVariant, name: str) -> tuple[float, ...]:
 def _axis(duty: MeshDuty, name: str, values: tuple[float, ...]) -> StudyAxis:
     if name != "module":
         return StudyAxis(name, values, values)
-    found = teeth_for_module(duty.mesh, values)
+    try:
+        found = teeth_for_module(duty.mesh, values)
+    except ValueError as error:
+        problem = Problem("range module", "", f"{error}.", "Give smaller modules.")
+        raise InputError([problem], "the study") from None
     return StudyAxis(name, tuple(found), tuple(found.values()))
 
 
