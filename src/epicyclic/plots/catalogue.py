@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from epicyclic.errors import InputError, Problem
 from epicyclic.plots.bearing import plot_roller_loads, plot_roller_profile
 from epicyclic.plots.drawing import plot_gear_set, plot_teeth
-from epicyclic.plots.loss_map import map_at, plot_map, plot_map_lines
+from epicyclic.plots.loss_map import map_at, plot_map, plot_map_lines, plot_map_parts
 from epicyclic.plots.losses import plot_loss_sum, plot_losses
 from epicyclic.plots.mesh import (
     plot_along_path,
@@ -81,9 +81,10 @@ def _of_group(
     def panels(stored: Stored) -> list[Panel]:
         if not isinstance(stored, ResultRecord):
             return []
+        found = stored.group(group)
         return [
-            Panel(name.replace("_", " "), partial(draw, data, *more))
-            for name, data in stored.group(group).items()
+            Panel(name.replace("_", " ") if len(found) > 1 else "", partial(draw, data, *more))
+            for name, data in found.items()
         ]
 
     return panels
@@ -98,24 +99,17 @@ def _gear_set(stored: Stored) -> list[Panel]:
 def _teeth(stored: Stored) -> list[Panel]:
     if not isinstance(stored, ResultRecord):
         return []
-    gears = stored.group("gears")
-    return [
-        Panel(name.replace("_", " "), partial(plot_teeth, view, gears))
-        for name, view in stored.group("views").items()
-    ]
+    return _of_group("views", plot_teeth, stored.group("gears"))(stored)
 
 
-def _of_map(draw: Callable[..., Axes], name: str, *more: object) -> Callable[[Stored], list[Panel]]:
+def _of_map(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], list[Panel]]:
     """One panel for each temperature of a map, at the first value of its further keys."""
 
     def panels(stored: Stored) -> list[Panel]:
         if isinstance(stored, ResultRecord):
             return []
         return [
-            Panel(
-                f"{float(value):g} °C",
-                partial(draw, map_at(stored, temperature=value), name, *more),
-            )
+            Panel(f"{float(value):g} °C", partial(draw, map_at(stored, temperature=value), *more))
             for value in stored["temperature"].values
         ]
 
@@ -179,6 +173,7 @@ PLOTS: dict[str, Plot] = {
     "loss-over-torque": Plot(
         "How does the loss grow with torque?", _of_map(plot_map_lines, "total", "torque")
     ),
+    "loss-parts": Plot("Which components make up the loss?", _of_map(plot_map_parts)),
 }
 """By the names that ``epicyclic plot`` takes."""
 

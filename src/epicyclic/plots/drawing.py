@@ -22,6 +22,8 @@ FILLS = {"sun": "#F6D58A", "pinion": "#F6D58A", "planet": "#BFD9EA", "ring": "0.
 CIRCLE_POINTS = 181
 SHOWN_MODULES = 5.0
 """Half the width of a drawing of teeth. [transverse modules]"""
+SKIPPED_POINTS = 4
+"""A whole gear is drawn with one point of so many: the others are too near to be seen."""
 HEIGHT_SHARE = 0.5
 """Height of a drawing of teeth over its width, at least. [1]"""
 MARGIN = 1.04
@@ -38,7 +40,7 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
     reach = 0.0
     for name, gear in gears.items():
         label = f"{name}, {int(gear.attrs['teeth'])} teeth"
-        outline = _whole_outline(gear)
+        outline = _whole_outline(gear, SKIPPED_POINTS)
         inside = bool(gear.attrs["internal"])
         for number in range(gear.sizes["place"]):
             center, turn = _place(gear, number)
@@ -55,7 +57,7 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
             ax.plot(*center, marker="+", color="black", ms=5, mew=0.6)
             reach = max(reach, float(np.abs(center).max()) + _scalar(gear, "outside_diameter") / 2)
     _frame(ax, MARGIN * reach, MARGIN * reach)
-    ax.legend(loc="upper right", fontsize="small", frameon=False)
+    _legend_below(ax)
     ax.set_title("Gear set to scale" if "ring" in gears else "Gear pair to scale")
     return ax
 
@@ -86,9 +88,7 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
     ax.plot(view["path_x"], view["path_y"], color=COLOURS[1], lw=2.4, label="path of contact")
     ax.plot(0.0, 0.0, marker="o", color="black", ms=4, ls="", label="pitch point")
     _frame(ax, half, half * HEIGHT_SHARE)
-    ax.legend(
-        loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, fontsize="small", frameon=False
-    )
+    _legend_below(ax)
     ax.set_title("Teeth in contact")
     return ax
 
@@ -100,6 +100,12 @@ def _frame(ax: Axes, half_width: float, half_height: float) -> None:
     ax.set_ylim(-half_height, half_height, auto=True)
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(visible=False)
+
+
+def _legend_below(ax: Axes) -> None:
+    ax.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, fontsize="small", frameon=False
+    )
 
 
 def _scalar(gear: xr.Dataset, name: str) -> float:
@@ -127,11 +133,12 @@ def _path(points: Floats) -> Path:
     return Path(points, closed=False)
 
 
-def _whole_outline(gear: xr.Dataset) -> Floats:
-    """All teeth, or the tip circle of a gear whose teeth have no outline."""
+def _whole_outline(gear: xr.Dataset, step: int) -> Floats:
+    """All teeth, of their points every `step`-th, or the tip circle if there is no outline."""
     if "x" not in gear:
         return _circle(_scalar(gear, "tip_diameter") / 2)
-    return _teeth(gear, range(int(gear.attrs["teeth"])))
+    thinned = gear.isel(point=slice(None, None, step))
+    return _teeth(thinned, range(int(gear.attrs["teeth"])))
 
 
 def _teeth(gear: xr.Dataset, numbers: range) -> Floats:

@@ -14,8 +14,10 @@ __all__ = [
     "Drawing",
     "Drawings",
     "Gallery",
+    "Item",
     "KeyFigure",
     "Listing",
+    "Row",
     "Section",
     "Table",
     "gallery",
@@ -94,6 +96,14 @@ class Gallery:
 
 
 @dataclass(frozen=True, slots=True)
+class Row:
+    """A table and what stands beside it."""
+
+    items: tuple[Table | Gallery, ...]
+    kind: str = "row"
+
+
+@dataclass(frozen=True, slots=True)
 class KeyFigure:
     """A number at the head of the page."""
 
@@ -102,13 +112,16 @@ class KeyFigure:
     unit: str = ""
 
 
+Item = Table | Listing | Gallery | Row
+
+
 @dataclass(frozen=True, slots=True)
 class Section:
     """A chapter of the page."""
 
     name: str
     title: str
-    items: tuple[Table | Listing | Gallery, ...]
+    items: tuple[Item, ...]
     lead: str = ""
 
 

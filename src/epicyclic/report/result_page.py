@@ -14,6 +14,7 @@ from epicyclic.report.page import (
     Gallery,
     KeyFigure,
     Listing,
+    Row,
     Section,
     Table,
     gallery,
@@ -54,18 +55,30 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
     result = record.result
     sections = [
         Section(
-            "losses", "Losses", (_losses(result), *gallery(drawings, "losses", "loss-sum"))
+            "losses",
+            "Losses",
+            (
+                Row((_losses(result), *gallery(drawings, "losses"))),
+                Row((_members(result), *gallery(drawings, "loss-sum"))),
+            ),
         ),
         Section("validity", "Validity", _validity(result), _validity_lead(result)),
-        Section("shafts", "Power flow", (_members(result),), _FLOW_LEAD),
         Section(
-            "gears", "Gears", (*gallery(drawings, "gear-set", "teeth"), *_planets(result))
+            "gears",
+            "Gears",
+            (
+                Row((*gallery(drawings, "gear-set"), *_planets(result))),
+                *gallery(drawings, "teeth"),
+            ),
         ),
         Section(
             "load",
             "Load on the teeth",
-            (_meshes(record), *gallery(drawings, "line-load", "pressure", "pair-load"),
-             *gallery(drawings, "transmission-error", "stiffness")),
+            (
+                _meshes(record),
+                *gallery(drawings, "line-load", "pressure", "pair-load"),
+                *gallery(drawings, "transmission-error", "stiffness"),
+            ),
         ),
         Section(
             "friction",
@@ -77,11 +90,11 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
         Section("methods", "Methods and sources", _methods(result)),
         Section("inputs", "Inputs", tuple(input_tables(result.inputs, record.given)), _INPUT_LEAD),
         Section("versions", "Versions", (_versions(result),)),
-    ]  # fmt: skip
+    ]
     return [section for section in sections if section.items]
 
 
-_FLOW_LEAD = (
+_FLOW_NOTE = (
     "Speeds are positive in one common sense of rotation; torques act on the gear set from "
     "outside; positive power enters."
 )
@@ -180,7 +193,7 @@ def _members(result: ResultContents) -> Table:
         f"{name}, {unit_text(unit)}"
         for name, unit in zip(("speed", "torque", "power"), units, strict=True)
     )
-    return Table(("", *heads), rows)
+    return Table(("", *heads), rows, "Power flow", note=_FLOW_NOTE)
 
 
 def _planets(result: ResultContents) -> tuple[Table, ...]:
@@ -245,7 +258,7 @@ def _label(record: ResultRecord, part: str, key: str) -> str:
     return str(record.numbers[name].attrs["long_name"]).partition(": ")[2]
 
 
-def _methods(result: ResultContents) -> tuple[Table | Listing, ...]:
+def _methods(result: ResultContents) -> tuple[Table, ...]:
     """Each method once with what it computes and where it is printed."""
     users: dict[tuple[str, str], list[str]] = {}
     for name, method in result.methods.items():
@@ -256,12 +269,10 @@ def _methods(result: ResultContents) -> tuple[Table | Listing, ...]:
         for (method, source), names in users.items()
     )
     models = tuple((Cell(f"models.{key}"), Cell(value)) for key, value in result.models.items())
-    items: list[Table | Listing] = [
+    return (
         Table(("what", "method", "source"), rows),
         Table(("key of the case", "model used"), models, "Models"),
-        Listing(result.sources, "Literature"),
-    ]
-    return tuple(items)
+    )
 
 
 def _versions(result: ResultContents) -> Table:
