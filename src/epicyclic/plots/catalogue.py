@@ -23,6 +23,7 @@ from epicyclic.plots.mesh import (
     plot_plane_of_action,
     plot_transmission_error,
 )
+from epicyclic.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.plots.style import PANEL, styled_figure
 from epicyclic.records.record import ResultRecord
 
@@ -116,6 +117,17 @@ def _of_map(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], list
     return panels
 
 
+def _pocket_pressure(stored: Stored) -> list[Panel]:
+    """Both kinds of pocket of each mesh."""
+    if not isinstance(stored, ResultRecord):
+        return []
+    return [
+        Panel(f"{name.replace('_', ' ')}", partial(plot_life_with_scale, data, "pressure", kind))
+        for name, data in stored.group("pockets").items()
+        for kind in range(data.sizes["tooth"])
+    ]
+
+
 PLOTS: dict[str, Plot] = {
     "gear-set": Plot("What does the gear set look like, to scale?", _gear_set),
     "teeth": Plot("How do the teeth touch, and where is the path of contact?", _teeth),
@@ -159,6 +171,15 @@ PLOTS: dict[str, Plot] = {
     "roller-pressure": Plot(
         "How is the load distributed along the rollers?",
         _of_group("bearings", plot_roller_profile),
+    ),
+    "pocket-pressure": Plot(
+        "How does the pressure in a pocket change through its life?", _pocket_pressure
+    ),
+    "pocket-volume": Plot(
+        "How do the pockets change in volume?", _of_group("pockets", plot_volumes)
+    ),
+    "pocket-power": Plot(
+        "How much power do the pockets take over a mesh period?", _of_group("pockets", plot_power)
     ),
     "efficiency-map": Plot(
         "How efficient is it over speed and torque?", _of_map(plot_map, "efficiency")

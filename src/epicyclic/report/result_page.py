@@ -67,8 +67,9 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
             "gears",
             "Gears",
             (
-                Row((*gallery(drawings, "gear-set"), *_planets(result))),
+                Row((*gallery(drawings, "gear-set"), _gears(record))),
                 *gallery(drawings, "teeth"),
+                *_planets(result),
             ),
         ),
         Section(
@@ -86,6 +87,12 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
             gallery(drawings, "friction", "sliding", "film", "friction-power"),
         ),
         Section("bearing", "Planet bearing", _bearing(record, drawings)),
+        Section(
+            "pockets",
+            "Pockets",
+            gallery(drawings, "pocket-pressure", "pocket-volume", "pocket-power"),
+            _POCKET_LEAD,
+        ),
         Section("oil", "Oil", (_measures(record, "fluid", "", result.fluid),)),
         Section("methods", "Methods and sources", _methods(result)),
         Section("inputs", "Inputs", tuple(input_tables(result.inputs, record.given)), _INPUT_LEAD),
@@ -97,6 +104,11 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
 _FLOW_NOTE = (
     "Speeds are positive in one common sense of rotation; torques act on the gear set from "
     "outside; positive power enters."
+)
+_DIAMETERS = ("reference_diameter", "base_diameter", "tip_diameter", "root_diameter")
+_POCKET_LEAD = (
+    "A pocket is named after the member whose tooth is in a space of the other. Lines from dark "
+    "to light are slices across the face."
 )
 _INPUT_LEAD = "Values in italics were not given: they are defaults."
 
@@ -150,8 +162,8 @@ def _validity(result: ResultContents) -> tuple[Table | Listing, ...]:
         rows = tuple(
             (
                 Cell(flag.quantity),
-                Cell(f"{_number(flag.found_low)} to {_number(flag.found_high)}"),
-                Cell(_limits(flag.low, flag.high)),
+                Cell(f"{_number(flag.found_low)} to {_number(flag.found_high)}", about="nowrap"),
+                Cell(_limits(flag.low, flag.high), about="nowrap"),
                 Cell(unit_text(flag.unit)),
                 Cell(f"{flag.use.role.replace('_', ' ')} {flag.use.model}, {flag.use.where}"),
                 _aligned("under 1%" if flag.share < 0.01 else f"{flag.share:.0%}"),
@@ -194,6 +206,17 @@ def _members(result: ResultContents) -> Table:
         for name, unit in zip(("speed", "torque", "power"), units, strict=True)
     )
     return Table(("", *heads), rows, "Power flow", note=_FLOW_NOTE)
+
+
+def _gears(record: ResultRecord) -> Table:
+    """Teeth and diameters of the gears side by side."""
+    gears = record.group("gears")
+    rows = [(Cell("teeth"), *(Cell(str(gear.attrs["teeth"])) for gear in gears.values()), Cell(""))]
+    for name in _DIAMETERS:
+        shown_ones = (number(float(gear[name]), "", 6) for gear in gears.values())
+        unit = unit_text(str(next(iter(gears.values()))[name].attrs["units"]))
+        rows.append((Cell(name.replace("_", " ")), *shown_ones, Cell(unit)))
+    return Table(("", *gears, "unit"), tuple(rows), "Gears")
 
 
 def _planets(result: ResultContents) -> tuple[Table, ...]:
