@@ -25,6 +25,10 @@ __all__ = [
 ]
 
 
+SHORT = 16
+"""Rows of a table that is not divided between pages."""
+
+
 @dataclass(frozen=True, slots=True)
 class Cell:
     """Text of a cell; a number has its exact value and its place in the JSON form beside it."""
@@ -62,6 +66,11 @@ class Table:
     strong: frozenset[int] = frozenset()
     note: str = ""
     kind: str = "table"
+
+    @property
+    def is_short(self) -> bool:
+        """True if it stays on one page."""
+        return len(self.rows) <= SHORT
 
     def is_numeric(self, column: int) -> bool:
         """True for a column of numbers."""
