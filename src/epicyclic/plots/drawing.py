@@ -12,7 +12,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from epicyclic.plots.style import COLOURS
+from epicyclic.plots.style import COLOURS, legend_below
 
 __all__ = ["plot_gear_set", "plot_teeth"]
 
@@ -37,7 +37,7 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
     gears : mapping of str to xarray.Dataset
         As `epicyclic.analysis.shapes.gear_shapes` returns them.
     """
-    reach = 0.0
+    low, high = np.full(2, math.inf), np.full(2, -math.inf)
     for name, gear in gears.items():
         label = f"{name}, {int(gear.attrs['teeth'])} teeth"
         outline = _whole_outline(gear, SKIPPED_POINTS)
@@ -55,9 +55,10 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
                 )
             )  # fmt: skip
             ax.plot(*center, marker="+", color="black", ms=5, mew=0.6)
-            reach = max(reach, float(np.abs(center).max()) + _scalar(gear, "outside_diameter") / 2)
-    _frame(ax, MARGIN * reach, MARGIN * reach)
-    _legend_below(ax)
+            radius = _scalar(gear, "outside_diameter") / 2
+            low, high = np.minimum(low, center - radius), np.maximum(high, center + radius)
+    _frame(ax, (low + high) / 2, MARGIN * (high - low) / 2)
+    legend_below(ax, ncols=3)
     ax.set_title("Gear set to scale" if "ring" in gears else "Gear pair to scale")
     return ax
 
@@ -87,25 +88,19 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
     ax.axline((0.0, 0.0), slope=slope, color=COLOURS[0], lw=1.0, ls="--", label="line of action")
     ax.plot(view["path_x"], view["path_y"], color=COLOURS[1], lw=2.4, label="path of contact")
     ax.plot(0.0, 0.0, marker="o", color="black", ms=4, ls="", label="pitch point")
-    _frame(ax, half, half * HEIGHT_SHARE)
-    _legend_below(ax)
+    _frame(ax, np.zeros(2), np.array([half, half * HEIGHT_SHARE]))
+    legend_below(ax, ncols=3)
     ax.set_title("Teeth in contact")
     return ax
 
 
-def _frame(ax: Axes, half_width: float, half_height: float) -> None:
+def _frame(ax: Axes, middle: Floats, half: Floats) -> None:
     """Millimetres of equal length on both axes; the wider side shows more."""
     ax.set(xlabel="x, mm", ylabel="y, mm")
-    ax.set_xlim(-half_width, half_width, auto=True)
-    ax.set_ylim(-half_height, half_height, auto=True)
+    ax.set_xlim(middle[0] - half[0], middle[0] + half[0], auto=True)
+    ax.set_ylim(middle[1] - half[1], middle[1] + half[1], auto=True)
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(visible=False)
-
-
-def _legend_below(ax: Axes) -> None:
-    ax.legend(
-        loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, fontsize="small", frameon=False
-    )
 
 
 def _scalar(gear: xr.Dataset, name: str) -> float:

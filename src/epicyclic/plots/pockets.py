@@ -17,7 +17,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from epicyclic.plots.style import COLOUR_MAP, COLOURS, label_of, styled_figure
+from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of, styled_figure
 
 __all__ = [
     "plot_areas",
@@ -77,7 +77,8 @@ def plot_volumes(mesh: xr.Dataset, ax: Axes) -> Axes:
 
 def _plot_kinds(mesh: xr.Dataset, values: xr.DataArray, ax: Axes, title: str) -> Axes:
     for kind in (0, 1):
-        ax.plot(mesh["roll_angle"][kind], values[kind], label=_name(mesh, kind))
+        style = LINE_STYLES[kind]
+        ax.plot(mesh["roll_angle"][kind], values[kind], style, label=_name(mesh, kind))
     ax.set_ylim(bottom=0)
     ax.legend()
     return _over_roll(mesh, ax, title, label_of(values))

@@ -30,7 +30,7 @@ def key_figures(result: ResultContents) -> list[KeyFigure]:
     efficiency = result.efficiency
     text = "" if efficiency is None else f"{100 * efficiency:.3f}"
     return [
-        KeyFigure("efficiency", number(efficiency, "efficiency", text=text), "%"),
+        KeyFigure("efficiency", number(efficiency, "efficiency", text=text), "%" if text else ""),
         KeyFigure("total loss", _watts(result.total, "total"), "W"),
         KeyFigure("load-dependent", _watts(result.load_dependent, "load_dependent"), "W"),
         KeyFigure("load-independent", _watts(result.load_independent, "load_independent"), "W"),
@@ -94,7 +94,7 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
             _POCKET_LEAD,
         ),
         Section("oil", "Oil", (_measures(record, "fluid", "", result.fluid),)),
-        Section("methods", "Methods and sources", _methods(result)),
+        Section("methods", "Methods and assumptions", _methods(result)),
         Section("inputs", "Inputs", tuple(input_tables(result.inputs, record.given)), _INPUT_LEAD),
         Section("versions", "Versions", (_versions(result),)),
     ]
@@ -109,6 +109,15 @@ _DIAMETERS = ("reference_diameter", "base_diameter", "tip_diameter", "root_diame
 _POCKET_LEAD = (
     "A pocket is named after the member whose tooth is in a space of the other. Lines from dark "
     "to light are slices across the face."
+)
+_ASSUMPTIONS = (
+    "Speed and torque are steady; dynamic loads are not modelled.",
+    "Shafts, carrier and housing do not bend; misalignment is that of the case.",
+    "The oil has its inlet temperature at all contacts.",
+    "Inputs in italics, in the tables below, were not given and have their default values.",
+)
+_OF_PLANETS = (
+    "Figures of meshes and bearing are those of the most loaded planet; losses are those of all.",
 )
 _INPUT_LEAD = "Values in italics were not given: they are defaults."
 
@@ -211,7 +220,8 @@ def _members(result: ResultContents) -> Table:
 def _gears(record: ResultRecord) -> Table:
     """Teeth and diameters of the gears side by side."""
     gears = record.group("gears")
-    rows = [(Cell("teeth"), *(Cell(str(gear.attrs["teeth"])) for gear in gears.values()), Cell(""))]
+    teeth = (number(int(gear.attrs["teeth"]), "") for gear in gears.values())
+    rows = [(Cell("teeth"), *teeth, Cell(""))]
     for name in _DIAMETERS:
         shown_ones = (number(float(gear[name]), "", 6) for gear in gears.values())
         unit = unit_text(str(next(iter(gears.values()))[name].attrs["units"]))
@@ -281,7 +291,7 @@ def _label(record: ResultRecord, part: str, key: str) -> str:
     return str(record.numbers[name].attrs["long_name"]).partition(": ")[2]
 
 
-def _methods(result: ResultContents) -> tuple[Table, ...]:
+def _methods(result: ResultContents) -> tuple[Table | Listing, ...]:
     """Each method once with what it computes and where it is printed."""
     users: dict[tuple[str, str], list[str]] = {}
     for name, method in result.methods.items():
@@ -292,9 +302,11 @@ def _methods(result: ResultContents) -> tuple[Table, ...]:
         for (method, source), names in users.items()
     )
     models = tuple((Cell(f"models.{key}"), Cell(value)) for key, value in result.models.items())
+    assumptions = _ASSUMPTIONS + (_OF_PLANETS if result.kind == "planetary" else ())
     return (
         Table(("what", "method", "source"), rows),
         Table(("key of the case", "model used"), models, "Models"),
+        Listing(assumptions, "Assumptions"),
     )
 
 
