@@ -61,6 +61,7 @@ def solve_pair(case: GearPairCase, flow_tables: FlowTables) -> Result:
             *mesh.notes,
         ),
         load_methods={"load_distribution": distribution.title},
+        load_sources={"load_distribution": distribution.source},
         sources=used_sources(terms, distribution.source),
         inputs=case.inputs(),
     )

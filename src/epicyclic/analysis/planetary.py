@@ -134,6 +134,7 @@ def solve_planetary(case: PlanetaryCase, flow_tables: FlowTables) -> Result:
             *_ring_notes(case, speeds),
         ),
         load_methods={"load_distribution": distribution.title, "load_sharing": sharing},
+        load_sources={"load_distribution": distribution.source, "load_sharing": sharing_source},
         sources=used_sources(terms, distribution.source, sharing_source),
         inputs=case.inputs(),
         planet_angles=angles,

@@ -214,7 +214,7 @@ class Result:
         Models used outside their ranges.
     notes : tuple of str
         Other warnings.
-    load_methods : mapping of str to str
+    load_methods, load_sources : mapping of str to str
         How the load is found, along the teeth and between planets.
     sources : tuple of str
         Literature of the models used.
@@ -238,6 +238,7 @@ class Result:
     flags: tuple[ValidityFlag, ...]
     notes: tuple[str, ...]
     load_methods: Mapping[str, str]
+    load_sources: Mapping[str, str]
     sources: tuple[str, ...]
     inputs: Mapping[str, Any]
     planet_angles: tuple[float, ...] = ()
@@ -314,7 +315,10 @@ class Result:
                 **self.load_methods,
             },
             "groups": {term.name: term.group for term in self.terms},
-            "citations": {term.name: term.source for term in self.terms if not term.left_out},
+            "citations": {
+                **{term.name: term.source for term in self.terms if not term.left_out},
+                **self.load_sources,
+            },
             "models": dict(self.models),
             "validity": [dataclasses.asdict(flag) for flag in self.flags],
             "members": {

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["plot", "report"]
 
-PAGE = ".html"
+PAGE, PRINT = ".html", ".pdf"
 stored_argument = click.argument("source", metavar="CASE|FILE.nc")
 
 
@@ -25,22 +25,31 @@ stored_argument = click.argument("source", metavar="CASE|FILE.nc")
 @stored_argument
 @set_option
 @click.option(
-    "-o", "--output", required=True, type=click.Path(path_type=Path), help="The page, .html."
+    "-o", "--output", required=True, type=click.Path(path_type=Path), help=".html, or .pdf."
 )
 def report(source: str, changes: tuple[str, ...], output: Path) -> None:
-    """Write a report as one HTML file that needs nothing else.
+    """Write a report as one file that needs nothing else: a page, or print.
 
     FILE.nc is what run --save or map wrote; a CASE is solved first.
     """
     from epicyclic.cli.progress import progress_bar
 
-    check_picture("-o", output, (PAGE,))
+    check_picture("-o", output, (PAGE, PRINT))
+    if output.suffix == PRINT:
+        from epicyclic.report.pdf import check_pdf
+
+        check_pdf()
     stored = _stored(source, changes)
     from epicyclic.report.html import report_html
 
     with progress_bar("figures") as progress:
         page = report_html(stored, progress)
-    write_file(output, page)
+    if output.suffix == PRINT:
+        from epicyclic.report.pdf import report_pdf
+
+        write_file(output, report_pdf(page))
+    else:
+        write_file(output, page)
     click.echo(f"Wrote {output}.")
 
 

@@ -9,11 +9,14 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.projections.polar import PolarAxes
+from matplotlib.ticker import MaxNLocator
 
 from epicyclic.plots.style import COLOURS, LINE_STYLES, label_of
 
 __all__ = ["plot_roller_loads", "plot_roller_profile"]
 
+CIRCLES = 4
+"""Of the scale of loads, at most."""
 HATCHES = ("", "///", "...", "xxx", "\\\\\\", "+++")
 
 
@@ -32,6 +35,7 @@ def plot_roller_loads(bearing: xr.Dataset, ax: Axes) -> Axes:
         )  # fmt: skip
     polar.set_theta_zero_location("N")
     polar.set_rlabel_position(180.0)
+    polar.yaxis.set_major_locator(MaxNLocator(CIRCLES))
     polar.set_title(f"Load of each roller, {label_of(bearing['load']).rpartition(', ')[2]}")
     polar.set_xlabel("azimuth from the load on the planet, degrees")
     if rows > 1:

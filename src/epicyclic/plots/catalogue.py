@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from epicyclic.errors import InputError, Problem
 from epicyclic.plots.bearing import plot_roller_loads, plot_roller_profile
 from epicyclic.plots.drawing import plot_gear_set, plot_teeth
-from epicyclic.plots.loss_map import map_at, plot_map, plot_map_lines
+from epicyclic.plots.loss_map import map_at, plot_map, plot_map_lines, plot_map_parts
 from epicyclic.plots.losses import plot_loss_sum, plot_losses
 from epicyclic.plots.mesh import (
     plot_along_path,
@@ -23,6 +23,7 @@ from epicyclic.plots.mesh import (
     plot_plane_of_action,
     plot_transmission_error,
 )
+from epicyclic.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.plots.style import PANEL, styled_figure
 from epicyclic.records.record import ResultRecord
 
@@ -81,9 +82,10 @@ def _of_group(
     def panels(stored: Stored) -> list[Panel]:
         if not isinstance(stored, ResultRecord):
             return []
+        found = stored.group(group)
         return [
-            Panel(name.replace("_", " "), partial(draw, data, *more))
-            for name, data in stored.group(group).items()
+            Panel(name.replace("_", " ") if len(found) > 1 else "", partial(draw, data, *more))
+            for name, data in found.items()
         ]
 
     return panels
@@ -98,28 +100,32 @@ def _gear_set(stored: Stored) -> list[Panel]:
 def _teeth(stored: Stored) -> list[Panel]:
     if not isinstance(stored, ResultRecord):
         return []
-    gears = stored.group("gears")
-    return [
-        Panel(name.replace("_", " "), partial(plot_teeth, view, gears))
-        for name, view in stored.group("views").items()
-    ]
+    return _of_group("views", plot_teeth, stored.group("gears"))(stored)
 
 
-def _of_map(draw: Callable[..., Axes], name: str, *more: object) -> Callable[[Stored], list[Panel]]:
+def _of_map(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], list[Panel]]:
     """One panel for each temperature of a map, at the first value of its further keys."""
 
     def panels(stored: Stored) -> list[Panel]:
         if isinstance(stored, ResultRecord):
             return []
         return [
-            Panel(
-                f"{float(value):g} °C",
-                partial(draw, map_at(stored, temperature=value), name, *more),
-            )
+            Panel(f"{float(value):g} °C", partial(draw, map_at(stored, temperature=value), *more))
             for value in stored["temperature"].values
         ]
 
     return panels
+
+
+def _pocket_pressure(stored: Stored) -> list[Panel]:
+    """Both kinds of pocket of each mesh."""
+    if not isinstance(stored, ResultRecord):
+        return []
+    return [
+        Panel(f"{name.replace('_', ' ')}", partial(plot_life_with_scale, data, "pressure", kind))
+        for name, data in stored.group("pockets").items()
+        for kind in range(data.sizes["tooth"])
+    ]
 
 
 PLOTS: dict[str, Plot] = {
@@ -166,6 +172,15 @@ PLOTS: dict[str, Plot] = {
         "How is the load distributed along the rollers?",
         _of_group("bearings", plot_roller_profile),
     ),
+    "pocket-pressure": Plot(
+        "How does the pressure in a pocket change through its life?", _pocket_pressure
+    ),
+    "pocket-volume": Plot(
+        "How do the pockets change in volume?", _of_group("pockets", plot_volumes)
+    ),
+    "pocket-power": Plot(
+        "How much power do the pockets take over a mesh period?", _of_group("pockets", plot_power)
+    ),
     "efficiency-map": Plot(
         "How efficient is it over speed and torque?", _of_map(plot_map, "efficiency")
     ),
@@ -179,6 +194,7 @@ PLOTS: dict[str, Plot] = {
     "loss-over-torque": Plot(
         "How does the loss grow with torque?", _of_map(plot_map_lines, "total", "torque")
     ),
+    "loss-parts": Plot("Which components make up the loss?", _of_map(plot_map_parts)),
 }
 """By the names that ``epicyclic plot`` takes."""
 

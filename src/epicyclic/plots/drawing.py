@@ -12,7 +12,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from epicyclic.plots.style import COLOURS
+from epicyclic.plots.style import COLOURS, legend_below
 
 __all__ = ["plot_gear_set", "plot_teeth"]
 
@@ -22,6 +22,8 @@ FILLS = {"sun": "#F6D58A", "pinion": "#F6D58A", "planet": "#BFD9EA", "ring": "0.
 CIRCLE_POINTS = 181
 SHOWN_MODULES = 5.0
 """Half the width of a drawing of teeth. [transverse modules]"""
+SKIPPED_POINTS = 4
+"""A whole gear is drawn with one point of so many: the others are too near to be seen."""
 HEIGHT_SHARE = 0.5
 """Height of a drawing of teeth over its width, at least. [1]"""
 MARGIN = 1.04
@@ -35,10 +37,10 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
     gears : mapping of str to xarray.Dataset
         As `epicyclic.analysis.shapes.gear_shapes` returns them.
     """
-    reach = 0.0
+    low, high = np.full(2, math.inf), np.full(2, -math.inf)
     for name, gear in gears.items():
         label = f"{name}, {int(gear.attrs['teeth'])} teeth"
-        outline = _whole_outline(gear)
+        outline = _whole_outline(gear, SKIPPED_POINTS)
         inside = bool(gear.attrs["internal"])
         for number in range(gear.sizes["place"]):
             center, turn = _place(gear, number)
@@ -53,9 +55,10 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
                 )
             )  # fmt: skip
             ax.plot(*center, marker="+", color="black", ms=5, mew=0.6)
-            reach = max(reach, float(np.abs(center).max()) + _scalar(gear, "outside_diameter") / 2)
-    _frame(ax, MARGIN * reach, MARGIN * reach)
-    ax.legend(loc="upper right", fontsize="small", frameon=False)
+            radius = _scalar(gear, "outside_diameter") / 2
+            low, high = np.minimum(low, center - radius), np.maximum(high, center + radius)
+    _frame(ax, (low + high) / 2, MARGIN * (high - low) / 2)
+    legend_below(ax, ncols=3)
     ax.set_title("Gear set to scale" if "ring" in gears else "Gear pair to scale")
     return ax
 
@@ -85,19 +88,17 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
     ax.axline((0.0, 0.0), slope=slope, color=COLOURS[0], lw=1.0, ls="--", label="line of action")
     ax.plot(view["path_x"], view["path_y"], color=COLOURS[1], lw=2.4, label="path of contact")
     ax.plot(0.0, 0.0, marker="o", color="black", ms=4, ls="", label="pitch point")
-    _frame(ax, half, half * HEIGHT_SHARE)
-    ax.legend(
-        loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, fontsize="small", frameon=False
-    )
+    _frame(ax, np.zeros(2), np.array([half, half * HEIGHT_SHARE]))
+    legend_below(ax, ncols=3)
     ax.set_title("Teeth in contact")
     return ax
 
 
-def _frame(ax: Axes, half_width: float, half_height: float) -> None:
+def _frame(ax: Axes, middle: Floats, half: Floats) -> None:
     """Millimetres of equal length on both axes; the wider side shows more."""
     ax.set(xlabel="x, mm", ylabel="y, mm")
-    ax.set_xlim(-half_width, half_width, auto=True)
-    ax.set_ylim(-half_height, half_height, auto=True)
+    ax.set_xlim(middle[0] - half[0], middle[0] + half[0], auto=True)
+    ax.set_ylim(middle[1] - half[1], middle[1] + half[1], auto=True)
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(visible=False)
 
@@ -127,11 +128,12 @@ def _path(points: Floats) -> Path:
     return Path(points, closed=False)
 
 
-def _whole_outline(gear: xr.Dataset) -> Floats:
-    """All teeth, or the tip circle of a gear whose teeth have no outline."""
+def _whole_outline(gear: xr.Dataset, step: int) -> Floats:
+    """All teeth, of their points every `step`-th, or the tip circle if there is no outline."""
     if "x" not in gear:
         return _circle(_scalar(gear, "tip_diameter") / 2)
-    return _teeth(gear, range(int(gear.attrs["teeth"])))
+    thinned = gear.isel(point=slice(None, None, step))
+    return _teeth(thinned, range(int(gear.attrs["teeth"])))
 
 
 def _teeth(gear: xr.Dataset, numbers: range) -> Floats:

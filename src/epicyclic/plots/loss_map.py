@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
 from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of
+from epicyclic.units import unit_text
 
-__all__ = ["map_at", "plot_map", "plot_map_lines"]
+__all__ = ["map_at", "plot_map", "plot_map_lines", "plot_map_parts"]
 
 OPERATING = ("speed", "torque")
-LEVELS = 12
+LEVELS = 7
 MOST_LINES = 5
+LOSS_SUMS = ("load_dependent", "load_independent", "total", "input_power")
+"""Powers of a map that are no components."""
 
 
 def map_at(data: xr.Dataset, **values: object) -> xr.Dataset:
@@ -34,46 +35,97 @@ def plot_map(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     data : xarray.Dataset
         Of `map_at`.
     """
-    values = data[name].transpose("torque", "speed")
+    values = _shown(data[name]).transpose("torque", "speed")
     if min(values.shape) < 2 or not np.isfinite(values).any():
         longest = "torque" if data.sizes["torque"] > data.sizes["speed"] else "speed"
         return plot_map_lines(data, name, longest, ax)
+    speed, torque = (data[axis].to_numpy() for axis in OPERATING)
     field = ax.pcolormesh(
-        data["speed"], data["torque"], values, shading="nearest", cmap=COLOUR_MAP, rasterized=True
+        speed, torque, values, shading="gouraud", cmap=COLOUR_MAP, rasterized=True
     )
     figure = ax.get_figure()
     assert figure is not None
-    figure.colorbar(field, ax=ax, label=label_of(data[name]))
-    low, high = float(values.min()), float(values.max())
-    if high > low:
-        lines = ax.contour(
-            data["speed"], data["torque"], values, levels=LEVELS, colors="white", linewidths=0.7
-        )
+    figure.colorbar(field, ax=ax, label=label_of(values))
+    if float(values.max()) > float(values.min()):
+        lines = ax.contour(speed, torque, values, levels=LEVELS, colors="white", linewidths=0.7)
         ax.clabel(lines, fontsize="x-small")
-    return _label(ax, data, name, "speed", "torque")
+    ax.grid(visible=False)
+    ax.set(
+        title=_title(values), xlabel=_axis_label(data, "speed"), ylabel=_axis_label(data, "torque")
+    )
+    return ax
 
 
 def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes) -> Axes:
-    """`name` over speed or torque, one line for some values of the other."""
+    """`name` over speed or torque, one line for some values of the other that are not negative."""
     other = "torque" if over == "speed" else "speed"
-    count = data.sizes[other]
-    chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_LINES)).round().astype(int))
-    _, unit = label_of(data[other]).rsplit(", ", 1)
-    for number, index in enumerate(chosen):
-        line = data.isel({other: int(index)})
+    unit = unit_text(str(data[other].attrs["units"]))
+    for number, index in enumerate(_some(data[other])):
+        line = data.isel({other: index})
         ax.plot(
-            line[over], line[name], color=COLOURS[number], ls=LINE_STYLES[number], marker=".", ms=3,
-            label=f"{float(line[other]):g} {unit}",
+            line[over], _shown(line[name]), color=COLOURS[number], ls=LINE_STYLES[number],
+            marker=".", ms=3, label=f"{float(line[other]):g} {unit}",
         )  # fmt: skip
     ax.legend(title=other, fontsize="small", title_fontsize="small")
-    _label(ax, data, name, over, None)
-    ax.set_ylabel(label_of(data[name]))
+    values = _shown(data[name])
+    ax.set(
+        title=f"{_title(values)} over {over}",
+        xlabel=_axis_label(data, over),
+        ylabel=label_of(values),
+    )
     return ax
 
 
-def _label(ax: Axes, data: xr.Dataset, name: str, x: Hashable, y: Hashable | None) -> Axes:
-    ax.set_title(str(data[name].attrs["long_name"]).capitalize())
-    ax.set_xlabel(label_of(data[x]))
-    if y is not None:
-        ax.set_ylabel(label_of(data[y]))
+def plot_map_parts(data: xr.Dataset, ax: Axes) -> Axes:
+    """Components of the loss over speed, one above the other, at the highest torque."""
+    highest = data.isel(torque=-1)
+    unit = data["total"].attrs["units"]
+    parts = [
+        name for name, values in highest.data_vars.items()
+        if values.attrs.get("units") == unit and name not in LOSS_SUMS
+        and float(values.max()) > 0
+    ]  # fmt: skip
+    areas = ax.stackplot(
+        highest["speed"], [highest[name] for name in parts],
+        labels=[str(name).replace("_", " ") for name in parts],
+        colors=COLOURS, edgecolor="white", linewidth=0.6,
+    )  # fmt: skip
+    for number, area in enumerate(areas):
+        area.set_hatch("//" * (number // len(COLOURS)))
+    torque = f"{float(highest['torque']):g} {unit_text(str(highest['torque'].attrs['units']))}"
+    ax.set(
+        title=f"Components of the loss at {torque}",
+        xlabel=_axis_label(data, "speed"),
+        ylabel=label_of(data["total"]),
+    )
+    handles, labels = ax.get_legend_handles_labels()
+    ax.legend(handles[::-1], labels[::-1], fontsize="x-small", loc="upper left")
     return ax
+
+
+def _shown(values: xr.DataArray) -> xr.DataArray:
+    """`values`, an efficiency in percent."""
+    if values.name != "efficiency":
+        return values
+    return (100 * values).assign_attrs(values.attrs | {"units": "%"})
+
+
+def _some(axis: xr.DataArray) -> list[int]:
+    """Places of some values on an axis, evenly spaced, of one sign if there are both."""
+    places = np.flatnonzero(axis.to_numpy() >= 0)
+    if not places.size:
+        places = np.arange(axis.size)
+    chosen = np.linspace(0, places.size - 1, min(places.size, MOST_LINES)).round().astype(int)
+    return [int(one) for one in places[chosen]]
+
+
+def _title(values: xr.DataArray) -> str:
+    text = str(values.attrs["long_name"])
+    return f"{text[:1].upper()}{text[1:]}"
+
+
+def _axis_label(data: xr.Dataset, name: str) -> str:
+    """``"speed of the sun, rpm"``."""
+    unit = unit_text(str(data[name].attrs["units"]))
+    preposition = "of" if name == "speed" else "on"
+    return f"{name} {preposition} the {data.attrs['reference_shaft']}, {unit}"

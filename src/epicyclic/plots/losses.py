@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Literal
 
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
-from epicyclic.plots.style import COLOURS
+from epicyclic.plots.style import COLOURS, legend_below
 from epicyclic.records.contents import ResultContents
 
 __all__ = ["plot_loss_sum", "plot_losses"]
@@ -31,7 +30,7 @@ def plot_losses(result: ResultContents, ax: Axes) -> Axes:
             f"{value:.1f}{share}", (value, row), xytext=(3, 0), textcoords="offset points",
             va="center", fontsize="small",
         )  # fmt: skip
-    _finish(ax, watts, "lower right")
+    _finish(ax, watts)
     ax.set(title="Losses by component", xlabel="power loss, W")
     return ax
 
@@ -52,7 +51,7 @@ def plot_loss_sum(result: ResultContents, ax: Axes) -> Axes:
             start += watts
     _step(ax, len(labels), 0.0, result.total, SUM_COLOUR)
     ax.set_yticks(range(len(labels) + 1), [*labels, "total"])
-    _finish(ax, [result.total], "center left")
+    _finish(ax, [result.total])
     ax.set(title="How the losses add up", xlabel="power loss, W")
     return ax
 
@@ -69,11 +68,9 @@ def _words(names: Iterable[str]) -> list[str]:
     return [name.replace("_", " ") for name in names]
 
 
-def _finish(
-    ax: Axes, watts: Iterable[float], legend: Literal["lower right", "center left"]
-) -> None:
+def _finish(ax: Axes, watts: Iterable[float]) -> None:
     ax.invert_yaxis()
     ax.grid(visible=False, axis="y")
     ax.set_xlim(0, ROOM * max(watts, default=0.0) or 1.0)
     handles = [Patch(facecolor=colour, label=group) for group, colour in GROUP_COLOURS.items()]
-    ax.legend(handles=handles, loc=legend, fontsize="small")
+    legend_below(ax, handles=handles, ncols=2)

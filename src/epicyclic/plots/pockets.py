@@ -7,6 +7,7 @@ them.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -16,11 +17,12 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from epicyclic.plots.style import COLOUR_MAP, COLOURS, label_of, styled_figure
+from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of, styled_figure
 
 __all__ = [
     "plot_areas",
     "plot_gaps",
+    "plot_life_with_scale",
     "plot_over_life",
     "plot_power",
     "plot_volumes",
@@ -45,9 +47,22 @@ def pocket_figure(mesh: xr.Dataset) -> Figure:
         for kind in (0, 1):
             for ax, name in zip(axes[1 + kind], OVER_LIFE, strict=True):
                 plot_over_life(mesh, name, kind, ax)
-        place = label_of(mesh["station_position"])
-        figure.colorbar(_face_colours(mesh), ax=axes[1:], label=place, aspect=40)
+        _add_face_scale(mesh, figure, axes[1:], aspect=40)
     return figure
+
+
+def plot_life_with_scale(mesh: xr.Dataset, name: str, kind: int, ax: Axes) -> Axes:
+    """`plot_over_life` with a scale of the places across the face."""
+    plot_over_life(mesh, name, kind, ax)
+    figure = ax.get_figure()
+    assert isinstance(figure, Figure)
+    _add_face_scale(mesh, figure, ax)
+    return ax
+
+
+def _add_face_scale(mesh: xr.Dataset, figure: Figure, axes: Any, **options: Any) -> None:
+    place = label_of(mesh["station_position"])
+    figure.colorbar(_face_colours(mesh), ax=axes, label=place, **options)
 
 
 def plot_areas(mesh: xr.Dataset, ax: Axes) -> Axes:
@@ -62,7 +77,8 @@ def plot_volumes(mesh: xr.Dataset, ax: Axes) -> Axes:
 
 def _plot_kinds(mesh: xr.Dataset, values: xr.DataArray, ax: Axes, title: str) -> Axes:
     for kind in (0, 1):
-        ax.plot(mesh["roll_angle"][kind], values[kind], label=_name(mesh, kind))
+        style = LINE_STYLES[kind]
+        ax.plot(mesh["roll_angle"][kind], values[kind], style, label=_name(mesh, kind))
     ax.set_ylim(bottom=0)
     ax.legend()
     return _over_roll(mesh, ax, title, label_of(values))

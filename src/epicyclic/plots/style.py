@@ -9,11 +9,20 @@ from typing import Any
 import matplotlib as mpl
 import xarray as xr
 from matplotlib import rcsetup
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from epicyclic.units import unit_text
 
-__all__ = ["COLOURS", "COLOUR_MAP", "LINE_STYLES", "label_of", "styled_figure"]
+__all__ = [
+    "COLOURS",
+    "COLOUR_MAP",
+    "LINE_STYLES",
+    "PANEL",
+    "label_of",
+    "legend_below",
+    "styled_figure",
+]
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """Of M. Okabe and K. Ito, Color Universal Design (2008)."""
@@ -65,6 +74,13 @@ def styled_figure(
         if title:
             figure.suptitle(title, x=0.01, ha="left", fontweight="bold", parse_math=False)
         yield figure, axes
+
+
+def legend_below(ax: Axes, **options: Any) -> None:
+    """A legend under the label of the x axis, where it hides nothing."""
+    ax.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -0.2), fontsize="small", frameon=False, **options
+    )
 
 
 def label_of(variable: xr.DataArray) -> str:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+import json
+from datetime import datetime
+from typing import Annotated, Any, Literal, Self, get_args
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, model_validator
 
-__all__ = ["Measure", "Member", "ResultContents", "Validity"]
+__all__ = ["MapContents", "Measure", "Member", "RecordContents", "ResultContents", "Validity"]
 
 
 class _Part(BaseModel):
@@ -27,6 +29,39 @@ class Measures(_Part):
 
     value: tuple[float, ...]
     unit: str
+
+
+def _from_text(text: object) -> object:
+    """What JSON text holds."""
+    try:
+        return json.loads(str(text))
+    except RecursionError:
+        raise ValueError("nested too deep") from None
+
+
+def _with_operation(inputs: dict[str, Any]) -> dict[str, Any]:
+    """The inputs of a case, if they name its kind and state its operating point as text."""
+    if inputs.get("kind") not in get_args(Kind):
+        raise ValueError("must name the kind of the case")
+    operation = inputs.get("operation")
+    if not isinstance(operation, dict) or not all(
+        isinstance(operation.get(key), str) for key in _OPERATION
+    ):
+        raise ValueError(f"must state operation with {', '.join(_OPERATION)}")
+    return inputs
+
+
+def _with_own(versions: dict[str, str]) -> dict[str, str]:
+    if "epicyclic" not in versions:
+        raise ValueError("must name the version of epicyclic")
+    return versions
+
+
+Kind = Literal["planetary", "gear_pair"]
+Group = Literal["load-dependent", "load-independent"]
+Inputs = Annotated[dict[str, Any], AfterValidator(_with_operation)]
+Versions = Annotated[dict[str, str], AfterValidator(_with_own)]
+_OPERATION = ("speed", "torque", "oil_inlet_temperature")
 
 
 class Member(_Part):
@@ -63,7 +98,7 @@ class ResultContents(_Part):
     """The JSON form of a result, `epicyclic.Result.to_dict`."""
 
     title: str
-    kind: Literal["planetary", "gear_pair"]
+    kind: Kind
     status: str
     losses: dict[str, float]
     load_dependent: float
@@ -75,7 +110,7 @@ class ResultContents(_Part):
     not_included: dict[str, str]
     factors: dict[str, float]
     methods: dict[str, str]
-    groups: dict[str, str]
+    groups: dict[str, Group]
     citations: dict[str, str]
     models: dict[str, str]
     validity: tuple[Validity, ...]
@@ -87,5 +122,31 @@ class ResultContents(_Part):
     planet_shares: Measures
     mesh_load_factor: Measure
     sources: tuple[str, ...]
-    inputs: dict[str, Any]
-    versions: dict[str, str]
+    inputs: Inputs
+    versions: Versions
+
+    @model_validator(mode="after")
+    def _belong_together(self) -> Self:
+        if self.losses.keys() != self.groups.keys():
+            raise ValueError("losses and groups name different losses")
+        if len(self.planet_angles.value) != len(self.planet_shares.value):
+            raise ValueError("planet_angles and planet_shares count different planets")
+        return self
+
+
+class RecordContents(_Part):
+    """Attributes of the file of a result."""
+
+    created: datetime
+    result: Annotated[ResultContents, BeforeValidator(_from_text)]
+    given: Annotated[dict[str, Any], BeforeValidator(_from_text)]
+
+
+class MapContents(_Part):
+    """Attributes of a loss map."""
+
+    title: str
+    source: str
+    reference_shaft: str
+    case: Annotated[Inputs, BeforeValidator(_from_text)]
+    versions: Annotated[Versions, BeforeValidator(_from_text)]

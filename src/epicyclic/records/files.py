@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
-from epicyclic.records.contents import ResultContents
+from epicyclic.records.checks import RUN_AGAIN, field_problems, map_problems
+from epicyclic.records.contents import MapContents, RecordContents
 from epicyclic.records.record import ResultRecord, record
 from epicyclic.sweeps.dataset import check_place, whole_file
 
@@ -21,32 +22,16 @@ if TYPE_CHECKING:
 
 __all__ = ["is_stored", "open_result", "save_result"]
 
+Stated = TypeVar("Stated", bound=BaseModel)
+
 SUFFIX = ".nc"
 FORMAT = "epicyclic result"
 FORMAT_VERSION = 1
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """Of HDF5, in which NetCDF 4 files are kept."""
-_LARGEST = 200_000_000
+_LARGEST = 400_000_000
 """A result takes a few megabytes, a map of a million points less than this. [bytes]"""
 _MOST_VARIABLES = 2000
-_RUN_AGAIN = (
-    "Write it again: epicyclic run CASE --save FILE.nc, or epicyclic map CASE ... -o FILE.nc."
-)
-
-_NEEDED = {
-    "meshes": {
-        "roll_angle": 1, "weight": 1, "transmission_error": 1, "mesh_stiffness": 1,
-        "pair_load": 2, "path_position": 3, "face_position": 3, "line_load": 3,
-        "hertz_pressure": 3, "sliding_speed": 3, "film_ratio": 3, "friction_coefficient": 3,
-        "friction_power": 3,
-    },
-    "gears": {"center_x": 1, "center_y": 1, "direction": 1, "tip_diameter": 0, "root_diameter": 0,
-        "base_diameter": 0, "reference_diameter": 0, "outside_diameter": 0},
-    "views": {"center_x": 1, "center_y": 1, "direction": 1, "operating_radius": 1, "path_x": 1,
-        "path_y": 1, "pressure_angle": 0},
-    "bearings": {"azimuth": 1, "axial_position": 2, "load": 2, "line_load": 3, "pressure": 3},
-}  # fmt: skip
-"""Variables of each group that plots read, and their numbers of dimensions."""
 
 
 def save_result(result: ResultRecord | PlanetaryCase | GearPairCase, path: str | Path) -> None:
@@ -125,14 +110,15 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
         if root.attrs.get("format") == FORMAT:
             return _record_of(root, fields)
         if "torque_loss" in root and "reference_shaft" in root.attrs:
-            _check(_problems("", root, {"torque_loss": len(root["torque_loss"].dims)}))
+            _check(map_problems(root))
+            _sound(MapContents, dict(root.attrs))
             return root
         _refuse("is neither a stored result nor a loss map.")
     except InputError as error:
         raise InputError(error.problems, str(source)) from None
 
 
-def _refuse(what: str, remedy: str = _RUN_AGAIN) -> NoReturn:
+def _refuse(what: str, remedy: str = RUN_AGAIN) -> NoReturn:
     raise InputError([Problem("", "", f"the file {what}", remedy)])
 
 
@@ -183,46 +169,24 @@ def _record_of(root: xr.Dataset, fields: dict[str, xr.Dataset]) -> ResultRecord:
     version = root.attrs.get("format_version")
     if version != FORMAT_VERSION:
         _refuse(f"has the format version {version}; this program reads {FORMAT_VERSION}.")
-    _check(
-        [
-            problem
-            for path, data in fields.items()
-            for problem in _problems(path, data, _NEEDED.get(path.partition("/")[0], {}))
-        ]
+    _check(problem for path, data in fields.items() for problem in field_problems(path, data))
+    stated = _sound(RecordContents, dict(root.attrs))
+    return ResultRecord(
+        result=stated.result,
+        given=stated.given,
+        created=str(root.attrs["created"]),
+        numbers=root.drop_attrs(deep=False),
+        fields=fields,
     )
-    _check(_problems("", root, {}))
+
+
+def _sound(kind: type[Stated], attributes: dict[str, Any]) -> Stated:
+    """The attributes of a file, checked."""
     try:
-        return ResultRecord(
-            result=ResultContents.model_validate_json(str(root.attrs["result"])),
-            given=_object(str(root.attrs["given"])),
-            created=str(root.attrs["created"]),
-            numbers=root.drop_attrs(deep=False),
-            fields=fields,
-        )
-    except KeyError as error:
-        _refuse(f"lacks the attribute {error}.")
+        return kind.model_validate(attributes)
     except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(map(str, first["loc"]))
-        _refuse(f"holds no sound result: {place}: {one_line(first['msg'])}.")
-    except (ValueError, RecursionError) as error:
-        _refuse(f"holds no sound case: {one_line(str(error))}.")
-
-
-def _object(text: str) -> dict[str, Any]:
-    value = json.loads(text)
-    if not isinstance(value, dict):
-        raise TypeError("not a table of keys")
-    return value
-
-
-def _problems(path: str, data: xr.Dataset, needed: Mapping[str, int]) -> Iterator[Problem]:
-    """What is missing in a group, or is no labelled number with a unit."""
-    for name, dims in needed.items():
-        if name not in data.variables:
-            yield Problem(f"{path}/{name}", "", "is missing.", _RUN_AGAIN)
-        elif data[name].ndim != dims or data[name].dtype.kind != "f" or not data[name].size:
-            yield Problem(f"{path}/{name}", "", f"must be numbers over {dims} axes.", _RUN_AGAIN)
-    for label, array in data.variables.items():
-        if array.dtype.kind == "f" and not {"long_name", "units"} <= array.attrs.keys():
-            yield Problem(f"{path}/{label}", "", "has no label or no unit.", _RUN_AGAIN)
+        _check(
+            Problem(".".join(map(str, one["loc"])), "", f"{one_line(one['msg'])}.", RUN_AGAIN)
+            for one in error.errors()
+        )
+        raise

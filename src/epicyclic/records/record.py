@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from epicyclic.analysis.bearing_details import bearing_details
 from epicyclic.analysis.mesh_details import mesh_details
+from epicyclic.analysis.pocket_details import pocket_details
 from epicyclic.analysis.result import Result
 from epicyclic.analysis.shapes import gear_shapes, mesh_views
 from epicyclic.analysis.solve import solve
@@ -38,7 +39,8 @@ class ResultRecord:
         Every number of the result with label and unit.
     fields : mapping of str to xarray.Dataset
         By path: ``"meshes/sun_mesh"`` as `mesh_details` returns it, ``"gears/sun"``,
-        ``"views/sun_mesh"``, ``"bearings/planet_bearing"``.
+        ``"views/sun_mesh"``, ``"bearings/planet_bearing"``, ``"pockets/sun_mesh"`` as
+        `pocket_details` returns it, without outlines.
     """
 
     result: ResultContents
@@ -89,6 +91,10 @@ def record(case: Case) -> ResultRecord:
         fields["bearings"]["planet_bearing"] = bearing_details(
             case.planet_bearing, case.numerics, loads
         )
+    if all(mesh["pocket_pressure_max"].value is not None for mesh in contents.meshes.values()):
+        # the outlines, for pictures of one moment, would be ten times all the rest
+        pockets = pocket_details(case)
+        fields["pockets"] = {name: data.drop_dims("end") for name, data in pockets.items()}
     return ResultRecord(
         result=contents,
         given=json.loads(json.dumps(case.given())),

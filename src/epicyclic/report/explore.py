@@ -17,7 +17,6 @@ from matplotlib.container import BarContainer
 from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
 from matplotlib.projections.polar import PolarAxes
-from numpy.typing import NDArray
 
 __all__ = ["explorable"]
 
@@ -109,26 +108,19 @@ def _polar_bars(bars: BarContainer) -> dict[str, Any]:
 
 
 def _field(field: QuadMesh) -> dict[str, Any]:
+    """A field with its values at the corners (``shading="gouraud"``)."""
     corners = np.asarray(field.get_coordinates())
     masked: Any = np.ma.asarray(field.get_array())
-    values = masked.filled(math.nan).reshape(corners.shape[0] - 1, corners.shape[1] - 1)
+    values = masked.filled(math.nan).reshape(corners.shape[:2])
     colours = mpl.colormaps[field.get_cmap().name]
     steps = np.linspace(0, 1, COLOUR_STEPS)
     return {
         "type": "heatmap",
-        "x": _list(_centres(corners[0, :, 0])),
-        "y": _list(_centres(corners[:, 0, 1])),
+        "x": _list(corners[0, :, 0]),
+        "y": _list(corners[:, 0, 1]),
         "z": [_list(row) for row in values],
         "colorscale": [[float(step), to_hex(colours(step))] for step in steps],
     }
-
-
-def _centres(edges: NDArray[np.float64]) -> list[float]:
-    """The points between which matplotlib put the edges of cells."""
-    centres = [(edges[0] + edges[1]) / 2]
-    for edge in edges[1:-1]:
-        centres.append(2 * edge - centres[-1])
-    return centres
 
 
 def _list(values: Any) -> list[float | None]:

@@ -16,6 +16,8 @@ __all__ = ["input_tables"]
 MEMBERS = ("sun", "planet", "ring", "pinion", "gear")
 TITLES = {"gears": "All gears", "sun": "Gears", "pinion": "Gears"}
 NOT_SHOWN = ("kind", "title")
+DATUM = {"value", "temperature", "source"}
+"""Keys of a table that states one value."""
 MOST_VALUES = 12
 """Of an array that are shown."""
 _SCHEMAS = {"planetary": PlanetaryCase, "gear_pair": GearPairCase}
@@ -48,7 +50,7 @@ def input_tables(inputs: Mapping[str, Any], given: Mapping[str, Any]) -> list[Ta
                 (Cell(_words(path[1:])), _cell(schema, path, value, given), _about(schema, path))
                 for path, value in _leaves(table, (name,))
             )
-            tables.append(Table(("", "value", "meaning"), rows, title))
+            tables.append(_with_meaning(("", "value"), rows, title))
     return tables
 
 
@@ -68,7 +70,14 @@ def _side_by_side(
         ]
         abouts = [_about(schema, (member, *path)) for member in members if path in leaves[member]]
         rows.append((Cell(_words(path)), *cells, abouts[0]))
-    return Table(("", *members, "meaning"), tuple(rows), title)
+    return _with_meaning(("", *members), tuple(rows), title)
+
+
+def _with_meaning(head: tuple[str, ...], rows: tuple[tuple[Cell, ...], ...], title: str) -> Table:
+    """A table whose last column, the meaning of its keys, is left out if no key has one."""
+    if any(row[-1].text for row in rows):
+        return Table((*head, "meaning"), rows, title)
+    return Table(head, tuple(row[:-1] for row in rows), title)
 
 
 def _changed_losses(title: str, losses: Mapping[str, Any]) -> list[Table]:
@@ -87,7 +96,7 @@ def _changed_losses(title: str, losses: Mapping[str, Any]) -> list[Table]:
 
 def _leaves(value: Any, path: Path) -> Iterator[tuple[Path, Any]]:
     """Every value below a table with its path; entries of arrays of tables count from 0."""
-    if isinstance(value, Mapping):
+    if isinstance(value, Mapping) and not _is_datum(value):
         for key, item in value.items():
             yield from _leaves(item, (*path, key))
     elif isinstance(value, list) and value and isinstance(value[0], Mapping):
@@ -95,6 +104,11 @@ def _leaves(value: Any, path: Path) -> Iterator[tuple[Path, Any]]:
             yield from _leaves(item, (*path, number))
     else:
         yield path, value
+
+
+def _is_datum(value: Any) -> bool:
+    """True for a table of one value, with its temperature and source."""
+    return isinstance(value, Mapping) and "value" in value and value.keys() <= DATUM
 
 
 def _is_given(path: Path, given: Any) -> bool:
@@ -120,6 +134,11 @@ def _text(schema: Any, path: Path, value: Any) -> str:
     if isinstance(value, list):
         shown = ", ".join(_text(schema, path, item) for item in value[:MOST_VALUES])
         return shown if len(value) <= MOST_VALUES else f"{shown}, ... ({len(value)} values)"
+    if _is_datum(value):
+        parts = [_text(schema, (*path, "value"), value["value"])]
+        if "temperature" in value:
+            parts.append(f"at {_text(schema, (*path, 'temperature'), value['temperature'])}")
+        return " ".join(parts) + (f" ({value['source']})" if value.get("source") else "")
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):

@@ -11,7 +11,6 @@ import xarray as xr
 
 from epicyclic.maps.tables import statements
 from epicyclic.plots.loss_map import map_at
-from epicyclic.plots.style import label_of
 from epicyclic.report.inputs import input_tables
 from epicyclic.report.page import (
     Cell,
@@ -23,11 +22,14 @@ from epicyclic.report.page import (
     gallery,
     number,
 )
+from epicyclic.report.shown import MISSING
 from epicyclic.status import Status
 from epicyclic.units import unit_text
 
 __all__ = ["map_inputs", "map_key_figures", "map_line", "map_sections"]
 
+GRIDS = {"efficiency": "Efficiency, %", "total": "Total loss, W"}
+"""Variables of which there are tables of values."""
 MOST_COLUMNS = 8
 """Of a table of values; larger maps are shown at evenly spaced points."""
 
@@ -71,7 +73,7 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
         Section(
             "lines",
             "Over speed and torque",
-            gallery(drawings, "loss-over-speed", "loss-over-torque"),
+            gallery(drawings, "loss-parts", "loss-over-speed", "loss-over-torque"),
         ),
         Section("tables", "Values", tuple(_tables(data)), _further(data)),
         Section("validity", "Validity", _validity(data)),
@@ -104,7 +106,7 @@ def _tables(data: xr.Dataset) -> list[Table]:
     return [
         _grid(data, name, temperature)
         for temperature in range(data.sizes["temperature"])
-        for name in ("efficiency", "total")
+        for name in GRIDS
     ]
 
 
@@ -116,14 +118,14 @@ def _grid(data: xr.Dataset, name: str, temperature: int) -> Table:
     rows = tuple(
         (
             Cell(f"{float(point['speed'][i]):g}"),
-            *(number(_finite(values[i, j]), f"{name}[{i},{j},{temperature}]") for j in torques),
+            *(_value(name, values[i, j], f"{name}[{i},{j},{temperature}]") for j in torques),
         )
         for i in speeds
     )
     unit = unit_text(str(data["torque"].attrs["units"]))
     heads = (f"{float(point['torque'][j]):g} {unit}" for j in torques)
-    title = f"{label_of(data[name])}, at {celsius:g} °C"
-    return Table((label_of(data["speed"]), *heads), rows, title.capitalize())
+    title = f"{GRIDS[name]}, at {celsius:g} °C"
+    return Table((f"speed, {unit_text(str(data['speed'].attrs['units']))}", *heads), rows, title)
 
 
 def _some(count: int) -> list[int]:
@@ -132,8 +134,11 @@ def _some(count: int) -> list[int]:
     return [int(one) for one in np.unique(chosen)]
 
 
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
+def _value(name: str, value: float, key: str) -> Cell:
+    if not np.isfinite(value):
+        return Cell(MISSING)
+    text = f"{100 * value:.2f}" if name == "efficiency" else f"{value:.1f}"
+    return number(float(value), key, text=text)
 
 
 def _validity(data: xr.Dataset) -> tuple[Listing, ...]:

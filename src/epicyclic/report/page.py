@@ -14,13 +14,19 @@ __all__ = [
     "Drawing",
     "Drawings",
     "Gallery",
+    "Item",
     "KeyFigure",
     "Listing",
+    "Row",
     "Section",
     "Table",
     "gallery",
     "number",
 ]
+
+
+SHORT = 16
+"""Rows of a table that is not divided between pages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +67,11 @@ class Table:
     note: str = ""
     kind: str = "table"
 
+    @property
+    def is_short(self) -> bool:
+        """True if it stays on one page."""
+        return len(self.rows) <= SHORT
+
     def is_numeric(self, column: int) -> bool:
         """True for a column of numbers."""
         return any(row[column].value is not None for row in self.rows)
@@ -94,6 +105,14 @@ class Gallery:
 
 
 @dataclass(frozen=True, slots=True)
+class Row:
+    """A table and what stands beside it."""
+
+    items: tuple[Table | Gallery, ...]
+    kind: str = "row"
+
+
+@dataclass(frozen=True, slots=True)
 class KeyFigure:
     """A number at the head of the page."""
 
@@ -102,13 +121,16 @@ class KeyFigure:
     unit: str = ""
 
 
+Item = Table | Listing | Gallery | Row
+
+
 @dataclass(frozen=True, slots=True)
 class Section:
     """A chapter of the page."""
 
     name: str
     title: str
-    items: tuple[Table | Listing | Gallery, ...]
+    items: tuple[Item, ...]
     lead: str = ""
 
 

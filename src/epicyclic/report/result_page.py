@@ -14,6 +14,7 @@ from epicyclic.report.page import (
     Gallery,
     KeyFigure,
     Listing,
+    Row,
     Section,
     Table,
     gallery,
@@ -29,7 +30,7 @@ def key_figures(result: ResultContents) -> list[KeyFigure]:
     efficiency = result.efficiency
     text = "" if efficiency is None else f"{100 * efficiency:.3f}"
     return [
-        KeyFigure("efficiency", number(efficiency, "efficiency", text=text), "%"),
+        KeyFigure("efficiency", number(efficiency, "efficiency", text=text), "%" if text else ""),
         KeyFigure("total loss", _watts(result.total, "total"), "W"),
         KeyFigure("load-dependent", _watts(result.load_dependent, "load_dependent"), "W"),
         KeyFigure("load-independent", _watts(result.load_independent, "load_independent"), "W"),
@@ -54,18 +55,31 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
     result = record.result
     sections = [
         Section(
-            "losses", "Losses", (_losses(result), *gallery(drawings, "losses", "loss-sum"))
+            "losses",
+            "Losses",
+            (
+                Row((_losses(result), *gallery(drawings, "losses"))),
+                Row((_members(result), *gallery(drawings, "loss-sum"))),
+            ),
         ),
         Section("validity", "Validity", _validity(result), _validity_lead(result)),
-        Section("shafts", "Power flow", (_members(result),), _FLOW_LEAD),
         Section(
-            "gears", "Gears", (*gallery(drawings, "gear-set", "teeth"), *_planets(result))
+            "gears",
+            "Gears",
+            (
+                Row((*gallery(drawings, "gear-set"), _gears(record))),
+                *gallery(drawings, "teeth"),
+                *_planets(result),
+            ),
         ),
         Section(
             "load",
             "Load on the teeth",
-            (_meshes(record), *gallery(drawings, "line-load", "pressure", "pair-load"),
-             *gallery(drawings, "transmission-error", "stiffness")),
+            (
+                _meshes(record),
+                *gallery(drawings, "line-load", "pressure", "pair-load"),
+                *gallery(drawings, "transmission-error", "stiffness"),
+            ),
         ),
         Section(
             "friction",
@@ -73,17 +87,37 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
             gallery(drawings, "friction", "sliding", "film", "friction-power"),
         ),
         Section("bearing", "Planet bearing", _bearing(record, drawings)),
+        Section(
+            "pockets",
+            "Pockets",
+            gallery(drawings, "pocket-pressure", "pocket-volume", "pocket-power"),
+            _POCKET_LEAD,
+        ),
         Section("oil", "Oil", (_measures(record, "fluid", "", result.fluid),)),
-        Section("methods", "Methods and sources", _methods(result)),
+        Section("methods", "Methods and assumptions", _methods(result)),
         Section("inputs", "Inputs", tuple(input_tables(result.inputs, record.given)), _INPUT_LEAD),
         Section("versions", "Versions", (_versions(result),)),
-    ]  # fmt: skip
+    ]
     return [section for section in sections if section.items]
 
 
-_FLOW_LEAD = (
+_FLOW_NOTE = (
     "Speeds are positive in one common sense of rotation; torques act on the gear set from "
     "outside; positive power enters."
+)
+_DIAMETERS = ("reference_diameter", "base_diameter", "tip_diameter", "root_diameter")
+_POCKET_LEAD = (
+    "A pocket is named after the member whose tooth is in a space of the other. Lines from dark "
+    "to light are slices across the face."
+)
+_ASSUMPTIONS = (
+    "Speed and torque are steady; dynamic loads are not modelled.",
+    "Shafts, carrier and housing do not bend; misalignment is that of the case.",
+    "The oil has its inlet temperature at all contacts.",
+    "Inputs in italics, in the tables below, were not given and have their default values.",
+)
+_OF_PLANETS = (
+    "Figures of meshes and bearing are those of the most loaded planet; losses are those of all.",
 )
 _INPUT_LEAD = "Values in italics were not given: they are defaults."
 
@@ -137,8 +171,8 @@ def _validity(result: ResultContents) -> tuple[Table | Listing, ...]:
         rows = tuple(
             (
                 Cell(flag.quantity),
-                Cell(f"{_number(flag.found_low)} to {_number(flag.found_high)}"),
-                Cell(_limits(flag.low, flag.high)),
+                Cell(f"{_number(flag.found_low)} to {_number(flag.found_high)}", about="nowrap"),
+                Cell(_limits(flag.low, flag.high), about="nowrap"),
                 Cell(unit_text(flag.unit)),
                 Cell(f"{flag.use.role.replace('_', ' ')} {flag.use.model}, {flag.use.where}"),
                 _aligned("under 1%" if flag.share < 0.01 else f"{flag.share:.0%}"),
@@ -180,7 +214,19 @@ def _members(result: ResultContents) -> Table:
         f"{name}, {unit_text(unit)}"
         for name, unit in zip(("speed", "torque", "power"), units, strict=True)
     )
-    return Table(("", *heads), rows)
+    return Table(("", *heads), rows, "Power flow", note=_FLOW_NOTE)
+
+
+def _gears(record: ResultRecord) -> Table:
+    """Teeth and diameters of the gears side by side."""
+    gears = record.group("gears")
+    teeth = (number(int(gear.attrs["teeth"]), "") for gear in gears.values())
+    rows = [(Cell("teeth"), *teeth, Cell(""))]
+    for name in _DIAMETERS:
+        shown_ones = (number(float(gear[name]), "", 6) for gear in gears.values())
+        unit = unit_text(str(next(iter(gears.values()))[name].attrs["units"]))
+        rows.append((Cell(name.replace("_", " ")), *shown_ones, Cell(unit)))
+    return Table(("", *gears, "unit"), tuple(rows), "Gears")
 
 
 def _planets(result: ResultContents) -> tuple[Table, ...]:
@@ -256,12 +302,12 @@ def _methods(result: ResultContents) -> tuple[Table | Listing, ...]:
         for (method, source), names in users.items()
     )
     models = tuple((Cell(f"models.{key}"), Cell(value)) for key, value in result.models.items())
-    items: list[Table | Listing] = [
+    assumptions = _ASSUMPTIONS + (_OF_PLANETS if result.kind == "planetary" else ())
+    return (
         Table(("what", "method", "source"), rows),
         Table(("key of the case", "model used"), models, "Models"),
-        Listing(result.sources, "Literature"),
-    ]
-    return tuple(items)
+        Listing(assumptions, "Assumptions"),
+    )
 
 
 def _versions(result: ResultContents) -> Table:

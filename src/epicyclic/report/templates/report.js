@@ -29,9 +29,12 @@
         chart.style.height = `${still.offsetHeight}px`;
         still.after(chart);
         Plotly.newPlot(chart, data, {
-          ...layout, title: undefined, font, margin: { t: 24, r: 24, b: 48, l: 64 },
-          legend: { orientation: "h", y: 1.12 },
-        }, { displaylogo: false, responsive: true });
+          ...layout, title: undefined, font, margin: { t: 36, r: 24, b: 56, l: 64 },
+          legend: { orientation: "h", y: -0.25 },
+        }, {
+          displaylogo: false, responsive: true,
+          modeBarButtons: [["zoom2d", "pan2d", "resetScale2d", "toImage"]],
+        });
       }
       chart.hidden = false;
     }

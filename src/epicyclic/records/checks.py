@@ -1,0 +1,129 @@
+"""Checks of what a file holds, so that reports and plots can rely on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from epicyclic.errors import Problem
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["RUN_AGAIN", "field_problems", "map_problems"]
+
+RUN_AGAIN = (
+    "Write it again: epicyclic run CASE --save FILE.nc, or epicyclic map CASE ... -o FILE.nc."
+)
+MOST_TEETH = 5000
+
+_MESH = ("mesh_position", "contact_line", "segment")
+_POCKET = ("tooth", "roll")
+_Needed = Mapping[tuple[str, ...], str]
+
+_NEEDED: dict[str, _Needed] = {
+    "meshes": {
+        _MESH[:1]: "roll_angle weight transmission_error mesh_stiffness",
+        _MESH[:2]: "pair_load",
+        _MESH: "path_position face_position line_load hertz_pressure sliding_speed film_ratio "
+        "friction_coefficient friction_power",
+    },
+    "gears": {
+        ("place",): "center_x center_y direction",
+        (): "reference_diameter base_diameter tip_diameter root_diameter outside_diameter",
+    },
+    "views": {
+        ("gear",): "center_x center_y direction operating_radius",
+        ("end",): "path_x path_y",
+        (): "pressure_angle",
+    },
+    "bearings": {
+        ("roller",): "azimuth",
+        ("row", "slice"): "axial_position",
+        ("row", "roller"): "load",
+        ("row", "roller", "slice"): "line_load pressure",
+    },
+    "pockets": {
+        _POCKET: "roll_angle volume",
+        (*_POCKET, "slice"): "pressure contact_gap_speed backlash_gap_speed",
+        (*_POCKET, "station"): "end_area contact_gap backlash_gap axial_speed",
+        ("mesh_position",): "period_angle instant_power",
+        ("slice",): "slice_position",
+        ("station",): "station_position",
+        (): "power",
+    },
+}
+"""Numbers that plots read in each group, by their dimensions."""
+_ATTRIBUTES: dict[str, tuple[tuple[str, type], ...]] = {
+    "meshes": (("title", str), ("pitch_angle_deg", float)),
+    "gears": (("name", str),),
+}
+_OPERATING = ("speed", "torque", "temperature")
+_MAP_NUMBERS = ("torque_loss", "total", "efficiency")
+_MAP_TEXTS = ("status", "message", "warnings")
+
+
+def field_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
+    """What plots would miss in one field of a result."""
+    group = path.partition("/")[0]
+    if group not in _NEEDED:
+        return  # of a later version
+    for dims, names in _NEEDED[group].items():
+        for variable in names.split():
+            yield from _number_problems(f"{path}/{variable}", data, variable, dims)
+    yield from _label_problems(path, data)
+    for attribute, kind in _ATTRIBUTES.get(group, ()):
+        if not isinstance(data.attrs.get(attribute), kind):
+            yield Problem(f"{path}/{attribute}", "", "is missing.", RUN_AGAIN)
+    if group == "gears":
+        yield from _gear_problems(path, data)
+
+
+def map_problems(data: xr.Dataset) -> Iterator[Problem]:
+    """What plots and reports would miss in a loss map."""
+    dims = data["torque_loss"].dims
+    for axis in _OPERATING:
+        if axis not in dims:
+            yield Problem(axis, "", "is no axis of the map.", RUN_AGAIN)
+        else:
+            yield from _number_problems(axis, data, axis, (axis,))
+    for name in _MAP_NUMBERS:
+        yield from _number_problems(name, data, name, tuple(map(str, dims)))
+    for name in _MAP_TEXTS:
+        if name not in data or data[name].dtype.kind not in "OU":
+            yield Problem(name, "", "must be text for every point.", RUN_AGAIN)
+    yield from _label_problems("", data)
+
+
+def _number_problems(
+    place: str, data: xr.Dataset, name: str, dims: tuple[str, ...]
+) -> Iterator[Problem]:
+    if name not in data.variables:
+        yield Problem(place, "", "is missing.", RUN_AGAIN)
+        return
+    array = data[name]
+    if array.dtype.kind != "f" or set(array.dims) != set(dims) or not array.size:
+        over = f"over {', '.join(dims)}" if dims else "alone"
+        yield Problem(place, "", f"must be numbers {over}.", RUN_AGAIN)
+
+
+def _label_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
+    for name, array in data.variables.items():
+        labels = (array.attrs.get("long_name"), array.attrs.get("units"))
+        if array.dtype.kind == "f" and not all(isinstance(label, str) for label in labels):
+            yield Problem(f"{path}/{name}", "", "has no label or no unit.", RUN_AGAIN)
+
+
+def _gear_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
+    """Teeth are counted, and drawn one by one."""
+    teeth, internal = (data.attrs.get(name) for name in ("teeth", "internal"))
+    if internal not in (0, 1):
+        yield Problem(f"{path}/internal", str(internal), "must be 0 or 1.", RUN_AGAIN)
+    if not isinstance(teeth, int | np.integer) or not 1 <= teeth <= MOST_TEETH:
+        allowed = f"must be a whole number from 1 to {MOST_TEETH}."
+        yield Problem(f"{path}/teeth", str(teeth), allowed, RUN_AGAIN)
+    for name in ("x", "y"):
+        if name in data:
+            yield from _number_problems(f"{path}/{name}", data, name, ("point",))

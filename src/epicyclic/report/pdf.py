@@ -1,0 +1,45 @@
+"""Reports as PDF: the page of `report_html`, set by WeasyPrint."""
+
+from __future__ import annotations
+
+import logging
+
+from epicyclic.errors import InputError, Problem
+
+__all__ = ["check_pdf", "report_pdf"]
+
+
+def check_pdf() -> None:
+    """Raise `InputError` if WeasyPrint, which is optional, cannot be used."""
+    try:
+        import weasyprint  # noqa: F401
+    except (ImportError, OSError) as error:  # it needs Pango, a library of the system
+        problem = Problem(
+            "-o", ".pdf", f"needs WeasyPrint, which cannot be used: {error}.",
+            'Install it (pip install "epicyclic[pdf]"), or print the .html page from a browser.',
+        )  # fmt: skip
+        raise InputError([problem], "the command") from None
+
+
+def report_pdf(page: str) -> bytes:
+    """A page as PDF, of its still figures.
+
+    Parameters
+    ----------
+    page : str
+        As `report_html` returns it.
+
+    Raises
+    ------
+    InputError
+        If WeasyPrint cannot be used.
+    """
+    check_pdf()
+    import weasyprint
+
+    # it reports every property of style sheets for screens
+    logging.getLogger("weasyprint").setLevel(logging.CRITICAL)
+    fetcher = weasyprint.urls.URLFetcher(allowed_protocols=["data"])  # nothing from elsewhere
+    document = weasyprint.HTML(string=page, url_fetcher=fetcher)
+    pdf: bytes = document.write_pdf()
+    return pdf
