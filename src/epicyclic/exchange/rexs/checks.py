@@ -125,8 +125,10 @@ def closing_shift(tables: Mapping[str, Any], member1: str, member2: str) -> floa
 
 def shift_notes(tables: Mapping[str, Any], member1: str, member2: str) -> Iterator[str]:
     """A note if the profile shift of an internal gear seems to count the other way."""
-    closing = closing_shift(tables, member1, member2)
-    shift = tables.get(member2, {}).get("profile_shift_coefficient")
+    table = tables.get(member2, {})
+    shift = table.get("profile_shift_coefficient")
+    is_ring = member2 == "ring" or table.get("internal", False)
+    closing = closing_shift(tables, member1, member2) if is_ring else None
     if closing is None or shift is None or abs(shift) < SHIFT_AGREES:
         return
     if abs(shift - closing) > SHIFT_AGREES >= abs(-shift - closing):

@@ -19,7 +19,7 @@ from epicyclic.exchange.rexs.model import refuse
 if TYPE_CHECKING:
     from epicyclic.exchange.rexs.content import Content
 
-__all__ = ["Document", "is_rexs", "new_content", "read_document", "stem"]
+__all__ = ["Document", "is_rexs", "new_document", "read_document", "stem"]
 
 _XML, _JSON, _ZIP = (".rexs", ".rexs.xml"), (".rexsj", ".rexs.json"), (".rexsz", ".rexs.zip")
 
@@ -77,13 +77,14 @@ def stem(path: str | Path) -> str:
     return name[: len(name) - len(found)]
 
 
-def new_content(path: str | Path, head: dict[str, str]) -> Content:
+def new_document(path: str | Path, head: dict[str, str]) -> Document:
     """An empty file in the form that the end of its name stands for."""
     from epicyclic.exchange.rexs.json_form import JsonContent
     from epicyclic.exchange.rexs.xml_form import XmlContent
 
-    is_json = str(path).lower().endswith(_JSON)
-    return JsonContent.empty(head) if is_json else XmlContent.empty(head)
+    name = str(path).lower()
+    content = JsonContent.empty(head) if name.endswith(_JSON) else XmlContent.empty(head)
+    return Document(content, "rexs-model.rexs" if name.endswith(_ZIP) else "")
 
 
 def read_document(path: Path, *, with_others: bool = False) -> Document:

@@ -159,8 +159,13 @@ def _appended(parent: etree._Element, name: str, head: dict[str, str]) -> etree.
     """A new last child, indented like the others, in the namespace of its parent."""
     namespace = etree.QName(parent).namespace
     children = list(parent)
+    before = parent.getprevious()
+    outside = before.tail if before is not None else getattr(parent.getparent(), "text", None)
     child = etree.SubElement(parent, f"{{{namespace}}}{name}" if namespace else name, head)
     if children:
         child.tail = children[-1].tail
         children[-1].tail = parent.text
+    elif outside is not None and not outside.strip():
+        parent.text = f"{outside}  "
+        child.tail = outside
     return child
