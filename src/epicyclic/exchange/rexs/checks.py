@@ -25,14 +25,13 @@ SHIFT_AGREES = 0.02
 
 def file_notes(chosen: PlanetarySet | Pair) -> Iterator[str]:
     """Contradictions within the file: hands of helices."""
-    said = set()
+    said: set[bool] = set()
     for mesh in chosen.meshes:
         first, second = map(_signed_helix, mesh.gears)
         internal = any(map(is_internal, mesh.gears))
-        pair = (mesh.gears[0].id, mesh.gears[1].id)
-        if first * second == 0 or (first * second > 0) == internal or pair in said:
+        if first * second == 0 or (first * second > 0) == internal or internal in said:
             continue
-        said.add(pair)
+        said.add(internal)
         hands = "the same hand, as on internal gears" if internal else "opposite hands"
         yield f"{mesh.gears[0]} and {mesh.gears[1]} should have {hands}: check the helix angles."
 
