@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema
     from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
     from epicyclic.exchange.load import load_case
+    from epicyclic.exchange.rexs.exporting import write_rexs
     from epicyclic.exchange.rexs.importing import RexsImport, read_rexs
     from epicyclic.maps.compute import loss_map
     from epicyclic.maps.formats import write_map
@@ -60,6 +61,7 @@ _HOME = {
     "solve": "epicyclic.analysis.solve",
     "sweep": "epicyclic.sweeps.run",
     "write_map": "epicyclic.maps.formats",
+    "write_rexs": "epicyclic.exchange.rexs.exporting",
 }
 
 __all__ = [
@@ -90,6 +92,7 @@ __all__ = [
     "solve",
     "sweep",
     "write_map",
+    "write_rexs",
 ]
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from epicyclic.cli.exit_codes import EXIT_INCOMPLETE
-from epicyclic.cli.options import parse_changes, set_option
+from epicyclic.cli.options import case_argument, load_with, parse_changes, set_option
 from epicyclic.cli.output import write_file
 from epicyclic.errors import InputError, Problem
 
@@ -72,6 +72,48 @@ def import_(
         click.echo(f"Set what is missing, then: epicyclic run {target}", err=True)
         sys.exit(EXIT_INCOMPLETE)
     click.echo(f"Next: epicyclic run {target}")
+
+
+@rexs.command()
+@case_argument
+@click.argument("original", required=False)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    required=True,
+    help="The file to write: .rexs, .rexsj or .rexsz.",
+)
+@component_option
+@set_option
+def export(
+    case: str,
+    original: str | None,
+    output: Path,
+    component: int | None,
+    changes: tuple[str, ...],
+) -> None:
+    """Compute a CASE and write its results into a copy of the REXS file ORIGINAL.
+
+    All that ORIGINAL holds stays as it is. Without it a new file describes the gear set; if CASE
+    is a REXS file, it is the original.
+    """
+    from epicyclic.analysis.solve import solve
+    from epicyclic.exchange.rexs.exporting import rexs_bytes
+    from epicyclic.exchange.rexs.file import is_rexs
+    from epicyclic.exchange.rexs.importing import read_rexs
+
+    if not is_rexs(output):
+        allowed = "must end in .rexs, .rexsj or .rexsz."
+        raise InputError([Problem("--output", str(output), allowed, "Name such a file.")])
+    if is_rexs(case):
+        original = original or case
+        loaded = read_rexs(case, component).case(parse_changes(changes))
+    else:
+        loaded = load_with(case, changes)
+    write_file(output, rexs_bytes(output, solve(loaded), original, component))
+    click.echo(f"Wrote {output}.")
 
 
 def _is_key(found: RexsImport, key: str) -> bool:

@@ -41,8 +41,8 @@ def import_tables(
                 table.add_row(Text(lack.key), Text(f"{lack.attribute}. {lack.instead}".rstrip()))
         if table.row_count:
             parts.append(table)
-    told = {lack.key for lack in lacking if lack.needed}
-    others = [problem for problem in problems if not _is_told(problem, told)]
+    needed_ones = [lack for lack in lacking if lack.needed]
+    others = [item for item in problems if not any(lack.explains(item) for lack in needed_ones)]
     parts += [Text(f"Problem: {problem}") for problem in others]
     parts += [Text(f"Note: {note}") for note in (*found.notes, *notes)]
     return Group(*parts)
@@ -51,13 +51,3 @@ def import_tables(
 def _is_set(key: str, given: Collection[str]) -> bool:
     """True if the user set the key, or the table that it belongs to."""
     return any(key == other or key.startswith(f"{other}.") for other in given)
-
-
-def _is_told(problem: Problem, told: Collection[str]) -> bool:
-    """True if a table of lacking keys tells of it already."""
-    owner = problem.key.rpartition(".")[0]
-    return any(
-        key == problem.key
-        or (key.rpartition(".")[0] == owner and key.rpartition(".")[2] in problem.allowed)
-        for key in told
-    )

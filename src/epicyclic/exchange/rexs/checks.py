@@ -25,14 +25,13 @@ SHIFT_AGREES = 0.02
 
 def file_notes(chosen: PlanetarySet | Pair) -> Iterator[str]:
     """Contradictions within the file: hands of helices."""
-    said = set()
+    said: set[bool] = set()
     for mesh in chosen.meshes:
         first, second = map(_signed_helix, mesh.gears)
         internal = any(map(is_internal, mesh.gears))
-        pair = (mesh.gears[0].id, mesh.gears[1].id)
-        if first * second == 0 or (first * second > 0) == internal or pair in said:
+        if first * second == 0 or (first * second > 0) == internal or internal in said:
             continue
-        said.add(pair)
+        said.add(internal)
         hands = "the same hand, as on internal gears" if internal else "opposite hands"
         yield f"{mesh.gears[0]} and {mesh.gears[1]} should have {hands}: check the helix angles."
 
@@ -125,8 +124,10 @@ def closing_shift(tables: Mapping[str, Any], member1: str, member2: str) -> floa
 
 def shift_notes(tables: Mapping[str, Any], member1: str, member2: str) -> Iterator[str]:
     """A note if the profile shift of an internal gear seems to count the other way."""
-    closing = closing_shift(tables, member1, member2)
-    shift = tables.get(member2, {}).get("profile_shift_coefficient")
+    table = tables.get(member2, {})
+    shift = table.get("profile_shift_coefficient")
+    is_ring = member2 == "ring" or table.get("internal", False)
+    closing = closing_shift(tables, member1, member2) if is_ring else None
     if closing is None or shift is None or abs(shift) < SHIFT_AGREES:
         return
     if abs(shift - closing) > SHIFT_AGREES >= abs(-shift - closing):

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from epicyclic.case.plain import with_value
+from epicyclic.case.wording import path_of
 from epicyclic.errors import Problem
 from epicyclic.exchange.rexs.model import Attribute, Component
 from epicyclic.exchange.rexs.vocabulary import term
@@ -56,13 +57,20 @@ class Lack:
     needed: bool
     instead: str
 
+    def explains(self, problem: Problem) -> bool:
+        """True if a problem of a case is that this key, or its whole table, is missing."""
+        path, own = path_of(problem.key), path_of(self.key)
+        is_alternative = own[:-1] == path[:-1] and str(own[-1]) in problem.allowed
+        return own == path or own[:-1] == path or is_alternative
+
     def __str__(self) -> str:
         return f"The file has no {self.attribute}. {self.instead}".rstrip()
 
 
 def amount_text(number: float, unit: str) -> Any:
     """A number as a case file has it: with its unit, or bare without one."""
-    return f"{format_number(number + 0.0, DIGITS)} {unit}" if unit else number + 0.0
+    text = format_number(number + 0.0, DIGITS)
+    return f"{text} {unit}" if unit else float(text)
 
 
 def at(components: Sequence[Component]) -> str:

@@ -19,15 +19,16 @@ from epicyclic.exchange.rexs.model import refuse
 if TYPE_CHECKING:
     from epicyclic.exchange.rexs.content import Content
 
-__all__ = ["Document", "is_rexs", "new_content", "read_document", "stem"]
+__all__ = ["Document", "is_rexs", "new_document", "read_document", "stem"]
 
 _XML, _JSON, _ZIP = (".rexs", ".rexs.xml"), (".rexsj", ".rexs.json"), (".rexsz", ".rexs.zip")
 
 LARGEST = 20_000_000
 """A gear unit takes some hundred kilobytes; more than this is not read. [bytes]"""
 
-MOST_PARTS = 500_000
-"""Elements or objects in a file of that size; more of them would need too much memory."""
+MOST_SIGNS = 600_000
+"""Signs that open elements, attributes, objects and lists: each takes memory beyond its length.
+A file of a gear unit has ten thousand."""
 
 _LARGEST_REST = 50_000_000
 """Other members of an archive are copied up to this size, all together. [bytes]"""
@@ -77,13 +78,14 @@ def stem(path: str | Path) -> str:
     return name[: len(name) - len(found)]
 
 
-def new_content(path: str | Path, head: dict[str, str]) -> Content:
+def new_document(path: str | Path, head: dict[str, str]) -> Document:
     """An empty file in the form that the end of its name stands for."""
     from epicyclic.exchange.rexs.json_form import JsonContent
     from epicyclic.exchange.rexs.xml_form import XmlContent
 
-    is_json = str(path).lower().endswith(_JSON)
-    return JsonContent.empty(head) if is_json else XmlContent.empty(head)
+    name = str(path).lower()
+    content = JsonContent.empty(head) if name.endswith(_JSON) else XmlContent.empty(head)
+    return Document(content, "rexs-model.rexs" if name.endswith(_ZIP) else "")
 
 
 def read_document(path: Path, *, with_others: bool = False) -> Document:
@@ -171,9 +173,7 @@ def _parse(data: bytes) -> Content:
     if not data.strip():
         raise refuse("is empty.", "Name a REXS file.")
     is_json = data.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"[")
-    openers = b"{[" if is_json else b"<"
-    if sum(data.count(bytes([sign])) for sign in openers) > MOST_PARTS * (1 if is_json else 2):
-        raise refuse(
-            f"has more than {MOST_PARTS} parts.", "Export the gears without local results."
-        )
+    signs = (b"{", b"[", b":") if is_json else (b"<", b"=")
+    if sum(map(data.count, signs)) > MOST_SIGNS:
+        raise refuse("has too many parts.", "Export the gears without local results.")
     return JsonContent.parse(data) if is_json else XmlContent.parse(data)

@@ -182,7 +182,8 @@ def _material(draft: Draft, model: Model, key: str, gears: Sequence[Component]) 
     target = f"{key}.material"
     modulus = draft.read("elastic_modulus", sources, target)
     if modulus is None:
-        draft.lack(target, "elastic_modulus", sources, "Default: steel of the material library.")
+        instead = "Default: steel of the material library."
+        draft.lack(target, "material with an elastic_modulus", sources or gears, instead)
         return
     title = sources[0].get("material_designation")
     table: dict[str, object] = {"title": title.text() if title else str(sources[0])}

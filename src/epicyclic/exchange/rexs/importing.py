@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any
 
 from epicyclic.case.case import Case, build_case, changed_tables
 from epicyclic.case.template import case_text
-from epicyclic.case.wording import one_line, path_of
+from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.exchange.rexs import checks, planetary
 from epicyclic.exchange.rexs.content import build_model
@@ -24,6 +25,11 @@ from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, choose, is_internal
 from epicyclic.units import format_number
 
 __all__ = ["RexsImport", "read_rexs"]
+
+ROUNDING = 1e-3
+"""Sum of the profile shifts of a mesh, as printed with three decimals, less the exact sum. [1]"""
+
+_SHIFT = "profile_shift_coefficient"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,14 +115,8 @@ class RexsImport:
 
     def _explained(self, problem: Problem) -> Problem:
         """A problem of a key that the file lacks, with what the file should have."""
-        path = path_of(problem.key)
-        for lack in self.missing:
-            *owner, name = path_of(lack.key)
-            is_it = [*owner, name] == [*path[: len(owner) + 1]]
-            is_alternative = owner == [*path[:-1]] and str(name) in problem.allowed
-            if lack.needed and (is_it or is_alternative):
-                return replace(problem, remedy=str(lack))
-        return problem
+        lacks = [lack for lack in self.missing if lack.needed and lack.explains(problem)]
+        return replace(problem, remedy=" ".join(map(str, lacks))) if lacks else problem
 
 
 def read_rexs(
@@ -203,8 +203,8 @@ def _planetary(draft: Draft, model: Model, chosen: PlanetarySet) -> None:
         micro_geometry(draft, model, key, own)
     draft.give("planet.count", len(chosen.planets), f"counted: planets of {chosen.component}")
     draft.take("planet.mass", "mass_of_component", chosen.planets, None)
-    _hint(draft, "sun", "planet")
-    _hint(draft, "planet", "ring")
+    _shifts(draft, "sun", "planet", "sun")
+    _shifts(draft, "planet", "ring", "ring")
     planetary.planet_angles(draft, chosen)
     planetary.bearing_table(draft, model, chosen)
     planetary.carrier_table(draft, model, chosen)
@@ -220,15 +220,27 @@ def _pair(draft: Draft, model: Model, chosen: Pair) -> None:
         micro_geometry(draft, model, key, own)
     if is_internal(chosen.gear):
         draft.give("gear.internal", True, f"{chosen.gear}")
-    _hint(draft, "pinion", "gear")
+    _shifts(draft, "pinion", "gear", "gear")
 
 
-def _hint(draft: Draft, member1: str, member2: str) -> None:
-    """Say which profile shift would close the mesh, and if one seems to have the wrong sign."""
+def _shifts(draft: Draft, member1: str, member2: str, changed: str) -> None:
+    """Look at the profile shifts of a mesh.
+
+    Say which one would close it if one is lacking, and if one seems to have the wrong sign. Shifts
+    of a mesh without backlash may overlap by the last digit that is printed of them; the one of
+    `changed` is then reduced.
+    """
     draft.notes += checks.shift_notes(draft.tables, member1, member2)
-    for lacking, other in ((member2, member1), (member1, member2)):
-        key = f"{lacking}.profile_shift_coefficient"
-        closing = checks.closing_shift(draft.tables, other, lacking)
-        if key in draft.lacks and closing is not None:
-            text = f"With the {other}, {format_number(round(closing, 4) + 0.0)} leaves no backlash."
+    for own, other in ((member2, member1), (member1, member2)):
+        key = f"{own}.profile_shift_coefficient"
+        closing = checks.closing_shift(draft.tables, other, own)
+        if closing is None:
+            continue
+        shown = math.floor(closing * 1e6) / 1e6 + 0.0
+        if key in draft.lacks:
+            text = f"With the {other}, {format_number(shown)} leaves no backlash."
             draft.lacks[key] = replace(draft.lacks[key], instead=text)
+        elif own == changed and 0 < draft.tables[own].get(_SHIFT, shown) - shown <= ROUNDING:
+            was = draft.tables[own][_SHIFT]
+            origin = f"{draft.origins[key]}: {was}, less what the printed digits are too much"
+            draft.give(key, shown, origin)

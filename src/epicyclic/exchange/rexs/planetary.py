@@ -72,7 +72,7 @@ def bearing_table(draft: Draft, model: Model, planetary: PlanetarySet) -> None:
     else:
         draft.lack(f"{key}.diametral_clearance", _CLEARANCES[-1], rolling)
     for name in ("roller_roughness", "race_roughness"):
-        draft.lack(f"{key}.{name}", "roughness, which the standard has not,", rolling)
+        draft.lack(f"{key}.{name}", "roughness (there is no attribute for it)", rolling)
 
 
 def _rows(

@@ -8,6 +8,8 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
+from epicyclic.units import Quantity
+
 __all__ = [
     "CUSTOM",
     "Term",
@@ -18,6 +20,7 @@ __all__ = [
     "types_of",
     "unit_of",
     "versions",
+    "written",
 ]
 
 CUSTOM = "custom_epicyclic_"
@@ -96,10 +99,19 @@ def unit_of(name: str) -> str | None:
     return unit
 
 
-def rexs_unit(unit: str) -> str | None:
-    """The unit of REXS for a unit of this package; None if it has none."""
-    names = [name for name, here in _file()["units"].items() if here == unit]
-    return names[-1] if names else None
+def rexs_unit(unit: str) -> str:
+    """The unit of REXS in which a number with a unit of this package is written."""
+    data = _file()
+    if unit in data["written"]:
+        return str(data["written"][unit])
+    names: list[str] = [name for name, here in data["units"].items() if here == unit]
+    return names[-1]
+
+
+def written(value: float, unit: str, name: str) -> float:
+    """A number in a unit of this package, as one in a unit of REXS of that `name`."""
+    here = _file()["units"][name]
+    return value if unit == here else Quantity("a number", here, here).parse(f"{value!r} {unit}")
 
 
 def oil_kind(text: str) -> str | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -13,12 +14,18 @@ from epicyclic.exchange.rexs.model import Attribute, Coded, Component, Relation,
 
 __all__ = ["XmlContent"]
 
+_DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
+
+_BEFORE_ROOT = re.compile(r"\ufeff?(?:\s+|<\?.*?\?>|<!--.*?-->)*", re.DOTALL)
+"""Declaration and comments; the library that reads the elements does not keep them as they are."""
+
 
 class XmlContent:
     """A file in XML, as its elements."""
 
-    def __init__(self, root: etree._Element) -> None:
+    def __init__(self, root: etree._Element, before: str = _DECLARATION) -> None:
         self.root = root
+        self.before = before
         self._by_id: dict[str, etree._Element] | None = None
 
     @classmethod
@@ -34,7 +41,9 @@ class XmlContent:
             raise refuse("has a document type, which REXS has not.", "Remove it.")
         if _name(root) != "model":
             raise refuse("is not REXS: its first element is not model.", "Name a REXS file.")
-        return cls(root)
+        encoding = root.getroottree().docinfo.encoding or "UTF-8"
+        before = _BEFORE_ROOT.match(data.decode(encoding, "replace"))
+        return cls(root, before[0] if before else "")
 
     @classmethod
     def empty(cls, head: dict[str, str]) -> XmlContent:
@@ -95,17 +104,18 @@ class XmlContent:
         tree = self.root.getroottree()
         if not self.root.text:  # made here, not read
             etree.indent(tree)
-        info = tree.docinfo
-        alone = {True: ' standalone="yes"', False: ' standalone="no"', None: ""}[info.standalone]
-        encoding = info.encoding or "UTF-8"
-        head = f'<?xml version="1.0" encoding="{encoding}"{alone}?>'
-        return f"{head}\n{etree.tostring(tree, encoding='unicode')}\n".encode(
-            encoding, "xmlcharrefreplace"
-        )
+        after = "".join(map(_written, self.root.itersiblings()))
+        text = f"{self.before}{_written(self.root)}\n{after}"
+        return text.encode(tree.docinfo.encoding or "UTF-8", "xmlcharrefreplace")
 
     def _component_elements(self) -> Iterator[etree._Element]:
         for holder in _children(self.root, "components"):
             yield from _children(holder, "component")
+
+
+def _written(element: etree._Element) -> str:
+    text: str = etree.tostring(element, encoding="unicode", with_tail=False)
+    return text
 
 
 def _name(element: etree._Element) -> str:
@@ -159,8 +169,13 @@ def _appended(parent: etree._Element, name: str, head: dict[str, str]) -> etree.
     """A new last child, indented like the others, in the namespace of its parent."""
     namespace = etree.QName(parent).namespace
     children = list(parent)
+    before = parent.getprevious()
+    outside = before.tail if before is not None else getattr(parent.getparent(), "text", None)
     child = etree.SubElement(parent, f"{{{namespace}}}{name}" if namespace else name, head)
     if children:
         child.tail = children[-1].tail
         children[-1].tail = parent.text
+    elif outside is not None and not outside.strip():
+        parent.text = f"{outside}  "
+        child.tail = outside
     return child
