@@ -9,8 +9,8 @@ import tomllib
 import pytest
 
 import epicyclic as ep
-from epicyclic.report.shown import shown
 from epicyclic.case.template import case_template
+from epicyclic.report.shown import shown
 from epicyclic.units import unit_text
 
 
