@@ -122,8 +122,8 @@ def _check_outputs(output: Path | None, plot: Path | None, keys: list[str]) -> N
 
 def _calibrated_text(comparison: MeasuredComparison) -> str:
     """The calibrated case as a case file that says which values are fitted, and to what."""
+    from epicyclic.case.template import case_text
     from epicyclic.measurement.compare import CALIBRATED
-    from epicyclic.report.case_file import case_text
     from epicyclic.report.measured_table import fitted_comment
 
     calibrated, fit = comparison.calibrated_case, comparison.fit
@@ -134,5 +134,11 @@ def _calibrated_text(comparison: MeasuredComparison) -> str:
         f"{comparison.measured.source}. Agreement with these is no validation.",
         *(f"Warning: {note}" for note in fit.warnings),
     ]
-    comments = {item.key: fitted_comment(item, fit) for item in fit.parameters}
-    return case_text(calibrated, comments, heading)
+    about = {}
+    for item in fit.parameters:
+        comment = fitted_comment(item, fit)
+        about[item.key] = comment
+        table, _, name = item.key.rpartition(".")
+        if "." in table:  # a table within a table may stand on one line
+            about[table] = f"{name}: {comment}"
+    return case_text(calibrated.given(), heading, about)

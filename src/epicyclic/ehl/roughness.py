@@ -10,11 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.errors import InputError, Problem
+from epicyclic.text_file import read_text
 
 __all__ = ["SMOOTH", "Profile", "generate_profile", "read_profile", "sinusoidal_profile"]
 
 FloatArray = NDArray[np.float64]
 
+_LARGEST_FILE = 10_000_000
+"""Of a measured profile. [bytes]"""
+_MOST_POINTS = 200_000
+"""Of a measured profile; those in print have some ten thousand."""
 POINTS_PER_CORRELATION = 8
 """Points of a generated profile within one correlation length."""
 
@@ -135,10 +140,12 @@ def read_profile(path: Path, cutoff: float | None = None) -> Profile:
     Lines that start with # or letters are skipped.
     """
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise _profile_error(path, f"cannot be read: {error}.", "Give a text file.") from None
-    rows = [line.replace(";", ",").split(",") for line in lines if _is_data(line)]
+        lines = read_text(path, "profile", _LARGEST_FILE).splitlines()
+    except InputError as error:
+        raise InputError(error.problems, str(path)) from None
+    if len(lines) > _MOST_POINTS:
+        raise _profile_error(path, f"has more than {_MOST_POINTS} lines.", "Cut it.")
+    rows = [line.replace(";", ",").split(",", 2) for line in lines if _is_data(line)]
     try:
         table = np.array([[float(row[0]), float(row[1])] for row in rows])
     except (ValueError, IndexError):

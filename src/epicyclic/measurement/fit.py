@@ -191,8 +191,11 @@ def fit_parameters(
             f"the fit did not converge in {MOST_ROUNDS} rounds; fit fewer keys, or start from "
             "other values with --set."
         )
-    at_bound = (found.active_mask != 0) | (np.abs(found.x[:, None] - ends) < NEAR_BOUND).any(axis=1)
-    return _described(residuals, found.x, found.fun, found.jac, at_bound, confidence)
+    distance = np.abs(found.x[:, None] - ends)
+    at_bound = (found.active_mask != 0) | (distance < NEAR_BOUND).any(axis=1)
+    nearest = ends[np.arange(size), distance.argmin(axis=1)]
+    solution = np.where(at_bound, nearest, found.x)  # the method itself stays off the bounds
+    return _described(residuals, solution, found.fun, found.jac, at_bound, confidence)
 
 
 def _check_influence(residuals: _Residuals, start: FloatArray) -> None:

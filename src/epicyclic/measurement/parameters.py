@@ -25,6 +25,9 @@ from epicyclic.units import Quantity
 
 __all__ = ["Parameter", "make_parameters"]
 
+OFF_OPEN_BOUND = 1e-6
+"""Distance kept from a bound that is no value itself, over that of the start value. [1]"""
+
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
@@ -83,7 +86,6 @@ def _parameter(case: Case, key: str, varied: set[str]) -> Parameter | Problem:
         remedy = did_you_mean(key, list(all_keys(type(case)))) or "See 'epicyclic init' for keys."
         return Problem(key, "", "is not a known key.", remedy)
     quantity = quantity_of(*field)
-    low, high = _bounds(quantity, field)
     if not _is_number(field, quantity):
         return Problem(key, "", "holds no continuous number.", "Fit a key that does.")
     if key in varied:
@@ -92,6 +94,9 @@ def _parameter(case: Case, key: str, varied: set[str]) -> Parameter | Problem:
     if start is None or start == 0:
         what = "has no value in the case" if start is None else "is 0 in the case"
         return Problem(key, "", f"{what}; a fit starts from one.", f'Add --set "{key}=...".')
+    low, high, is_open = _bounds(quantity, field)
+    if is_open:
+        low += OFF_OPEN_BOUND * (start - low)
     return Parameter(key, "" if quantity is None else quantity.display, start, low, high)
 
 
@@ -109,19 +114,23 @@ def _plain_types(annotation: Any) -> set[Any]:
     return {inner}.union(*map(_plain_types, parts))
 
 
-def _bounds(quantity: Quantity | None, field: tuple[Any, tuple[Any, ...]]) -> tuple[float, float]:
-    """Bounds of the schema, an open one moved inwards by one part in a million of the range."""
+def _bounds(
+    quantity: Quantity | None, field: tuple[Any, tuple[Any, ...]]
+) -> tuple[float, float, bool]:
+    """Bounds of the schema, in the display unit, and whether the lower one itself is left out."""
     if quantity is not None:
         low, high, is_open = quantity.low, quantity.high, quantity.open_low
     else:
         lower, upper = bounds_of(*field)
         is_open = isinstance(lower, Gt)
-        low = None if lower is None else float(lower.gt if isinstance(lower, Gt) else lower.ge)  # type: ignore[arg-type]
-        high = None if upper is None else float(upper.le)  # type: ignore[arg-type]
-    lowest = -math.inf if low is None else low
-    if is_open:
-        lowest = math.nextafter(lowest, math.inf)
-    return lowest, math.inf if high is None else high
+        limit: Any = lower.gt if isinstance(lower, Gt) else lower and lower.ge
+        top: Any = upper and upper.le
+        low, high = limit, top
+    return (
+        -math.inf if low is None else float(low),
+        math.inf if high is None else float(high),
+        is_open,
+    )
 
 
 def _start(case: Case, key: str, quantity: Quantity | None) -> float | None:

@@ -36,6 +36,7 @@ _OWN = (*CONDITIONS, "loss", "uncertainty", "component")
 _EXAMPLES = {"speed": "rpm", "torque": "N*m", "temperature": "degC", "loss": "W"}
 _HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 _PERCENT = "%"
+_NUMBER_WITH_UNIT = re.compile(r"[+-]?[\d.,]+(?:[eE][+-]?\d+)?\s*(?![eE][+-]?\d)[^\d\s.,].*")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -242,6 +243,10 @@ def _read(column: _Column, problems: _Problems, parse: Callable[[str], float]) -
     for row, cell in enumerate(column.cells):
         if not cell:
             problems.cell(column, row, "is empty.", "Fill it, or delete the row.")
+            continue
+        if column.unit and _NUMBER_WITH_UNIT.fullmatch(cell):
+            remedy = "Give units in the header or in every cell."
+            problems.cell(column, row, f"has a unit, and the header has [{column.unit}].", remedy)
             continue
         try:
             numbers[row] = parse(cell)

@@ -16,6 +16,11 @@ from epicyclic.errors import InputError, Problem
 
 __all__ = ["Journal", "Row"]
 
+_LONGEST_LINE = 1_000_000
+"""A point takes some kilobytes; longer lines are something else. [bytes]"""
+_MOST_STRANGE_LINES = 100
+"""A file that begins with more lines which are no points of the sweep is something else."""
+
 
 @dataclass(frozen=True, slots=True)
 class Row:
@@ -69,18 +74,22 @@ class Journal:
         InputError
             If the file cannot be read or holds something else than points of this sweep.
         """
+        rows: dict[int, Row] = {}
+        strange = 0
         try:
-            lines = self.path.read_bytes().split(b"\n")
+            with self.path.open("rb") as file:
+                while line := file.readline(_LONGEST_LINE):
+                    record = _parse(line.rstrip(b"\n"))
+                    if record is not None and record.sweep == self.fingerprint:
+                        rows[record.point] = record.row
+                    strange += not self._may_be_cut_short(line.rstrip(b"\n"))
+                    if not rows and strange > _MOST_STRANGE_LINES:
+                        break
         except FileNotFoundError:
             return {}
         except OSError as error:
             raise self._error(f"cannot be read: {error.strerror}.") from None
-        rows = {}
-        for line in lines:
-            record = _parse(line)
-            if record is not None and record.sweep == self.fingerprint:
-                rows[record.point] = record.row
-        if not rows and not all(map(self._may_be_cut_short, lines)):
+        if not rows and strange:
             raise self._error("holds something else than points of this sweep.")
         return rows
 
