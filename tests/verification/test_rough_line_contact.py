@@ -12,7 +12,7 @@ from epicyclic.ehl.conditions import ContactOil, LineContact, Roelands
 from epicyclic.ehl.rough import AsperityContact, solve_rough
 from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, sinusoidal_profile
 from epicyclic.ehl.steady import solve_smooth
-from epicyclic.kernels import ehl_rough
+from epicyclic.kernels import ehl_linear
 from epicyclic.status import Status
 
 RADIUS, MODULUS = 0.01, 2.2e11
@@ -157,9 +157,9 @@ def test_status_tells_of_time_steps_without_solution(monkeypatch, mixed):
 
 def test_status_tells_of_a_breakdown(monkeypatch):
     profile = generate_profile(1e-7, 20e-6, 4e-3, 1)
-    broken = Profile(np.where(np.arange(profile.heights.size) < 60, np.inf, 0.0), profile.spacing)
-    monkeypatch.setattr(Profile, "resampled", lambda self, spacing: self.heights)
-    result = solve_rough(contact_of(20, 8, slip=0.2), broken, nodes=NODES)
+    broken = np.where(np.arange(profile.heights.size) < 60, np.inf, 0.0)
+    monkeypatch.setattr(Profile, "resampled", lambda self, spacing: broken)
+    result = solve_rough(contact_of(20, 8, slip=0.2), profile, nodes=NODES)
     assert result.status is Status.FAILED
     assert result.message == "a time step broke down"
 
@@ -186,16 +186,16 @@ def test_two_level_solver_solves_the_full_equations():
     local[:, 1] = diffusion[:-1] + diffusion[1:]
     by_film = np.tile([-0.05, 1.5, 0.05], (n, 1))
     local[~active], by_film[~active] = 0, 0
-    grouped = np.zeros((-(-n // ehl_rough.GROUP), n))
-    ehl_rough.update_groups(row, active, grouped, np.zeros(n, dtype=bool))
-    band = np.empty((n, 2 * ehl_rough.BAND + 1))
-    ehl_rough.factor_band(local, by_film, ehl_rough.near_coefficients(row), active, band)
-    coarse = ehl_rough.coarse_matrix(local, by_film, grouped, active, 0.1)
+    grouped = np.zeros((-(-n // ehl_linear.GROUP), n))
+    ehl_linear.update_groups(row, active, grouped, np.zeros(n, dtype=bool))
+    band = np.empty((n, 2 * ehl_linear.BAND + 1))
+    ehl_linear.factor_band(local, by_film, ehl_linear.near_coefficients(row), active, band)
+    coarse = ehl_linear.coarse_matrix(local, by_film, grouped, active, 0.1)
     order = np.empty(coarse.shape[0], dtype=np.int64)
-    ehl_rough.factor_dense(coarse, order)
+    ehl_linear.factor_dense(coarse, order)
     right = np.append(np.where(active, rng.standard_normal(n), 0.0), 0.3)
     found = np.empty(n + 1)
-    steps = ehl_rough.solve_linear(
+    steps = ehl_linear.solve_linear(
         right, row, coarse, order, grouped, local, by_film, band, active, 0.1, found
     )
 
@@ -210,7 +210,7 @@ def test_two_level_solver_solves_the_full_equations():
             full[i, :n] += by_film[i, k] * influence[i - 1 + k]
             full[i, n] += by_film[i, k]
     full[n, :n] = 0.1
-    assert steps <= ehl_rough.KRYLOV
+    assert steps <= ehl_linear.KRYLOV
     assert (found[:n][~active] == 0).all()
     residual = full @ found - right
-    assert np.linalg.norm(residual) <= 1.01 * ehl_rough.LINEAR_TOLERANCE * np.linalg.norm(right)
+    assert np.linalg.norm(residual) <= 1.01 * ehl_linear.LINEAR_TOLERANCE * np.linalg.norm(right)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from epicyclic.ehl.conditions import LineContact
 from epicyclic.ehl.roughness import SMOOTH, Profile
 from epicyclic.ehl.steady import SmoothSolution, expected_film, solve_smooth
-from epicyclic.kernels.ehl_rough import GROUP, march, masses
+from epicyclic.kernels.ehl_linear import GROUP
+from epicyclic.kernels.ehl_rough import march, masses
 from epicyclic.kernels.ehl_steady import deflection_matrix
 from epicyclic.status import Status
 
@@ -22,15 +23,19 @@ FloatArray = NDArray[np.float64]
 
 NODES = 512
 """Nodes by default: some 125 in a half-width."""
-TOLERANCE = 2e-3
+TOLERANCE = 1e-2
 """Largest change of a pressure in the last Newton step of a time step, over p_h; what is left is
 its square. [1]"""
 MAX_ITERATIONS = 40
 """Newton steps of a time step, doubled in a second attempt."""
 GROWTH, SETTLING = 1.0, 2.0
 """Times b/u_r in which the roughness grows, and until averages begin. [1]"""
-BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 4, 96
+BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 4, 512
 """Time b/u_r of a block, and numbers of blocks that an average takes."""
+FINEST_FEATURE = 0.2
+"""Largest way of a surface in a time step, over the correlation length of its roughness. [1]"""
+MOST_NODES_A_STEP = 4
+"""Nodes by which the oil moves in a time step at most: 1/32 of a half-width by default."""
 STATIONARY = 0.02
 """Standard error of the mean friction over it at which a simulation ends. [1]"""
 LARGEST_UNSOLVED_SHARE = 0.01
@@ -131,11 +136,13 @@ class _Simulation:
         self.smooth = smooth
         self.contact, self.asperities = contact, asperities
         self.boundary_friction = asperities.friction if contact.sliding_speed else 0.0
-        self.fluid = contact.scaled_fluid()
         parabola = math.sqrt(2 * expected_film(contact))
         inlet, outlet = -(1 + max(1.5, 3 * parabola)), 1 + max(0.5, 1.5 * parabola)
         self.x: FloatArray = np.linspace(inlet, outlet, nodes, dtype=np.float64)
         self.dx = float(self.x[1] - self.x[0])
+        self.stride = _stride(contact, surfaces, self.dx * contact.half_width)
+        fluid = contact.scaled_fluid()
+        self.fluid = fluid._replace(poiseuille=self.stride * fluid.poiseuille)
         reach = self.x - self.x[0]
         cell = np.array([-self.dx, 0.0, self.dx], dtype=np.float64)
         row = deflection_matrix(reach, cell)[:, 1]
@@ -167,7 +174,7 @@ class _Simulation:
         spacing = self.dx * contact.half_width
         self.heights = [surface.resampled(spacing) / contact.film_scale for surface in surfaces]
         self.shifts = [
-            speed / contact.rolling_speed * heights.size * spacing / surface.length
+            self.stride * speed / contact.rolling_speed * heights.size * spacing / surface.length
             for speed, heights, surface in zip(
                 (contact.speed1, contact.speed2), self.heights, surfaces, strict=True
             )
@@ -198,8 +205,8 @@ class _Simulation:
         self.approach = march(
             self.pressure, self.film, self.now, self.before, self.active, self.approach,
             self.smooth_pressure, self.base, self.kernel_row, self.grouped, self.included,
-            self.heights[0], self.heights[1], self.shifts[0], self.shifts[1], self.steps,
-            self.step_count(GROWTH), self.fluid, self.dx, self.load,
+            self.heights[0], self.heights[1], self.shifts[0], self.shifts[1], self.stride,
+            self.steps, self.step_count(GROWTH), self.fluid, self.dx, self.load,
             self.asperities.film / scale, self.boundary_friction, TOLERANCE, MAX_ITERATIONS,
             records,
         )  # fmt: skip
@@ -208,13 +215,27 @@ class _Simulation:
 
     def step_count(self, time: float) -> int:
         """Time steps in `time`, in b/u_r."""
-        return max(1, round(time / self.dx))
+        return max(1, round(time / (self.stride * self.dx)))
 
     def frame(self) -> Frame:
         """This moment."""
         contact = self.contact
-        time = self.steps * self.dx * contact.half_width / contact.rolling_speed
-        return Frame(time, self.pressure * contact.hertz_pressure, self.film * contact.film_scale)
+        way = self.steps * self.stride * self.dx * contact.half_width
+        return Frame(
+            way / contact.rolling_speed,
+            self.pressure * contact.hertz_pressure,
+            self.film * contact.film_scale,
+        )
+
+
+def _stride(contact: LineContact, surfaces: Sequence[Profile], spacing: float) -> int:
+    """Nodes by which the oil may move in a time step without missing any roughness."""
+    ways = [
+        FINEST_FEATURE * surface.correlation_length * contact.rolling_speed / speed
+        for surface, speed in zip(surfaces, (contact.speed1, contact.speed2), strict=True)
+        if surface.rms > 0 and speed > 0
+    ]
+    return max(1, min([MOST_NODES_A_STEP, *(int(way / spacing) for way in ways)]))
 
 
 def solve_rough(

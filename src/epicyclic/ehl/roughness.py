@@ -50,6 +50,12 @@ class Profile:
         return float(np.sqrt(np.mean(self.heights**2)))
 
     @property
+    def correlation_length(self) -> float:
+        """Of the Gaussian autocorrelation with the same slopes. Theory (H26). [m]"""
+        slopes = (np.roll(self.heights, -1) - np.roll(self.heights, 1)) / (2 * self.spacing)
+        return math.sqrt(2) * self.rms / float(np.sqrt(np.mean(slopes**2)))
+
+    @property
     def skewness(self) -> float:
         """Rsk. [1]"""
         return float(np.mean(self.heights**3)) / self.rms**3

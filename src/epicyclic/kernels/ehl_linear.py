@@ -1,0 +1,332 @@
+"""Linear systems of the transient line contact: flow, deflection by all pressures, load.
+
+Solved by GMRES with two levels: a banded matrix with the near part of the deflection, and a dense
+matrix for sums of nodes.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.kernels._jit import kernel
+
+__all__ = [
+    "BAND",
+    "GROUP",
+    "apply_rows",
+    "coarse_matrix",
+    "deflect",
+    "factor_band",
+    "factor_dense",
+    "near_coefficients",
+    "solve_linear",
+    "update_groups",
+]
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+GROUP = 8
+"""Nodes summed into one unknown of the coarse level."""
+BAND = 6
+"""Nodes to either side whose deflection the banded matrix holds."""
+KRYLOV = 12
+"""Largest number of GMRES steps of one linear solution."""
+LINEAR_TOLERANCE = 0.05
+"""Residual at which a linear solution stops, over that at its start. [1]"""
+LEAST_DIAGONAL = 0.1
+"""Least diagonal by which a residual is divided, over the compliance of a node. [1]"""
+
+
+@kernel
+def deflect(kernel_row: FloatArray, pressure: FloatArray, out: FloatArray) -> None:
+    """Deflection by the pressures of an even grid into `out`. Theory (H9).
+
+    `kernel_row`, shape (2 n - 1,), holds the coefficients of the offsets 1 - n to n - 1. The
+    pressures of the first and last node are fixed, and their deflection is part of the gap.
+    """
+    n = pressure.size
+    out[:] = 0.0
+    for j in range(1, n - 1):
+        p = pressure[j]
+        row = kernel_row[n - 1 - j : 2 * n - 1 - j]  # indices from 0 only: the loop vectorises
+        for i in range(n):
+            out[i] += row[i] * p
+
+
+@kernel
+def apply_rows(
+    local: FloatArray, by_film: FloatArray, pressure: FloatArray, film: FloatArray,
+    out: FloatArray,
+) -> None:  # fmt: skip
+    """Change of the excess of mass by changes of pressure and film, into `out`."""
+    n = pressure.size
+    out[0] = out[n - 1] = 0.0
+    for i in range(1, n - 1):
+        out[i] = (
+            local[i, 0] * pressure[i - 1] + local[i, 1] * pressure[i]
+            + local[i, 2] * pressure[i + 1]
+            + by_film[i, 0] * film[i - 1] + by_film[i, 1] * film[i] + by_film[i, 2] * film[i + 1]
+        )  # fmt: skip
+
+
+@kernel
+def factor_band(
+    local: FloatArray, by_film: FloatArray, near: FloatArray, active: BoolArray, band: FloatArray
+) -> None:
+    """LU of the banded matrix, in place in `band`, shape (n, 2 width + 1)."""
+    n, width = band.shape[0], band.shape[1] // 2
+    reach = near.size - 1
+    band[:] = 0.0
+    for i in range(n):
+        if not active[i]:
+            band[i, width] = 1.0
+            continue
+        for k in range(-width, width + 1):
+            j = i + k
+            if 0 <= j < n and active[j]:
+                value = 0.0
+                for side in range(3):
+                    distance = abs(k + 1 - side)
+                    if distance <= reach:
+                        value += by_film[i, side] * near[distance]
+                if -1 <= k <= 1:
+                    value += local[i, k + 1]
+                band[i, width + k] = value
+    for i in range(n):
+        pivot = 1.0 / band[i, width]
+        for k in range(1, min(width, n - 1 - i) + 1):
+            factor = band[i + k, width - k] * pivot
+            if factor != 0.0:
+                band[i + k, width - k] = factor
+                for m in range(1, width + 1):
+                    band[i + k, width - k + m] -= factor * band[i, width + m]
+
+
+@kernel
+def solve_band(band: FloatArray, x: FloatArray) -> None:
+    """Solve with the factors of `factor_band`; `x` holds the right side and then the solution."""
+    n, width = band.shape[0], band.shape[1] // 2
+    for i in range(n):
+        value = x[i]
+        for k in range(1, min(width, i) + 1):
+            value -= band[i, width - k] * x[i - k]
+        x[i] = value
+    for i in range(n - 1, -1, -1):
+        value = x[i]
+        for k in range(1, min(width, n - 1 - i) + 1):
+            value -= band[i, width + k] * x[i + k]
+        x[i] = value / band[i, width]
+
+
+@kernel
+def update_groups(
+    kernel_row: FloatArray, active: BoolArray, grouped: FloatArray, included: BoolArray
+) -> None:
+    """Bring `grouped`, shape (groups, n), up to date with the active nodes.
+
+    It holds the deflection of every node by unit pressure on the `included` nodes of each group.
+    """
+    n = active.size
+    for j in range(n):
+        if active[j] != included[j]:
+            included[j] = active[j]
+            sign = 1.0 if active[j] else -1.0
+            group = grouped[j // GROUP]
+            row = kernel_row[n - 1 - j : 2 * n - 1 - j]
+            for i in range(n):
+                group[i] += sign * row[i]
+
+
+@kernel
+def coarse_matrix(
+    local: FloatArray, by_film: FloatArray, grouped: FloatArray, active: BoolArray, weight: float
+) -> FloatArray:
+    """Matrix of the coarse level: groups, then the approach and the load."""
+    n, groups = active.size, grouped.shape[0]
+    matrix = np.zeros((groups + 1, groups + 1))
+    for g in range(groups):
+        film = grouped[g]
+        for i in range(1, n - 1):
+            if active[i]:
+                matrix[i // GROUP, g] += (
+                    by_film[i, 0] * film[i - 1] + by_film[i, 1] * film[i]
+                    + by_film[i, 2] * film[i + 1]
+                )  # fmt: skip
+    for i in range(1, n - 1):
+        row = i // GROUP
+        if active[i]:
+            matrix[groups, row] += weight
+            matrix[row, groups] += by_film[i, 0] + by_film[i, 1] + by_film[i, 2]
+            for side in range(3):
+                j = i - 1 + side
+                if active[j]:
+                    matrix[row, j // GROUP] += local[i, side]
+    for g in range(groups):
+        if matrix[groups, g] == 0.0:  # a group of ruptured nodes
+            matrix[g, g] = 1.0
+    return matrix
+
+
+@kernel
+def factor_dense(matrix: FloatArray, order: NDArray[np.int64]) -> None:
+    """LU with row exchanges, in place; `order` becomes the order of the rows."""
+    n = matrix.shape[0]
+    for i in range(n):
+        order[i] = i
+    for k in range(n - 1):
+        best = k
+        for i in range(k + 1, n):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        if best != k:
+            order[k], order[best] = order[best], order[k]
+            for j in range(n):
+                matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+        upper = matrix[k]
+        for i in range(k + 1, n):
+            row = matrix[i]
+            factor = row[k] / upper[k]
+            row[k] = factor
+            if factor != 0.0:
+                for j in range(k + 1, n):
+                    row[j] -= factor * upper[j]
+
+
+@kernel
+def solve_dense(matrix: FloatArray, order: NDArray[np.int64], right: FloatArray) -> FloatArray:
+    """Solve with the factors of `factor_dense`."""
+    n = matrix.shape[0]
+    x = np.empty(n)
+    for i in range(n):
+        value = right[order[i]]
+        for j in range(i):
+            value -= matrix[i, j] * x[j]
+        x[i] = value
+    for i in range(n - 1, -1, -1):
+        value = x[i]
+        for j in range(i + 1, n):
+            value -= matrix[i, j] * x[j]
+        x[i] = value / matrix[i, i]
+    return x
+
+
+@kernel
+def precondition(
+    right: FloatArray, coarse: FloatArray, rows: NDArray[np.int64], grouped: FloatArray,
+    local: FloatArray, by_film: FloatArray, band: FloatArray, active: BoolArray,
+    film: FloatArray, work: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """Approximate solution for the right side (nodes, then load): coarse level, then band."""
+    n, groups = active.size, grouped.shape[0]
+    sums = np.zeros(groups + 1)
+    for i in range(n):
+        if active[i]:
+            sums[i // GROUP] += right[i]
+    sums[groups] = right[n]
+    sums = solve_dense(coarse, rows, sums)
+    out[n] = sums[groups]
+    film[:] = sums[groups]
+    for g in range(groups):
+        row = grouped[g]
+        value = sums[g]
+        for i in range(n):
+            film[i] += value * row[i]
+    for i in range(n):
+        out[i] = sums[i // GROUP] if active[i] else 0.0
+    apply_rows(local, by_film, out[:n], film, work)
+    for i in range(n):
+        work[i] = right[i] - work[i] if active[i] else 0.0
+    solve_band(band, work)
+    for i in range(n):
+        if active[i]:
+            out[i] += work[i]
+
+
+@kernel
+def solve_linear(
+    right: FloatArray, kernel_row: FloatArray, coarse: FloatArray, rows: NDArray[np.int64],
+    grouped: FloatArray, local: FloatArray, by_film: FloatArray, band: FloatArray,
+    active: BoolArray, weight: float, solution: FloatArray,
+) -> int:  # fmt: skip
+    """GMRES with `precondition` on the right; returns its steps.
+
+    Residuals are measured over the diagonal, as pressures, lest a few stiff nodes hide the others.
+    """
+    n = active.size
+    scale, unscaled = np.ones(n + 1), np.empty(n + 1)
+    here, beside = kernel_row[n - 1], kernel_row[n]
+    for i in range(1, n - 1):
+        if active[i]:
+            diagonal = local[i, 1] + by_film[i, 1] * here + (by_film[i, 0] + by_film[i, 2]) * beside
+            scale[i] = 1.0 / max(abs(diagonal), LEAST_DIAGONAL * here)
+    basis = np.empty((KRYLOV + 1, n + 1))
+    ahead = np.empty((KRYLOV, n + 1))
+    hessenberg = np.zeros((KRYLOV + 1, KRYLOV))
+    cosine, sine = np.zeros(KRYLOV), np.zeros(KRYLOV)
+    rest = np.zeros(KRYLOV + 1)
+    film, work = np.zeros(n), np.zeros(n)
+    solution[:] = 0.0
+    basis[0] = right * scale
+    norm = math.sqrt((basis[0] * basis[0]).sum())
+    if norm == 0.0:
+        return 0
+    basis[0] /= norm
+    rest[0] = norm
+    steps = 0
+    for k in range(KRYLOV):
+        unscaled[:] = basis[k] / scale
+        precondition(
+            unscaled, coarse, rows, grouped, local, by_film, band, active, film, work, ahead[k]
+        )
+        deflect(kernel_row, ahead[k, :n], film)
+        film += ahead[k, n]
+        new = basis[k + 1]
+        apply_rows(local, by_film, ahead[k, :n], film, work)
+        total = 0.0
+        for i in range(n):
+            new[i] = work[i] * scale[i] if active[i] else 0.0
+            total += ahead[k, i]
+        new[n] = weight * total
+        for m in range(k + 1):
+            product = 0.0
+            old = basis[m]
+            for i in range(n + 1):
+                product += new[i] * old[i]
+            hessenberg[m, k] = product
+            for i in range(n + 1):
+                new[i] -= product * old[i]
+        size = math.sqrt((new * new).sum())
+        hessenberg[k + 1, k] = size
+        if size > 0.0:
+            new /= size
+        for m in range(k):
+            upper = cosine[m] * hessenberg[m, k] + sine[m] * hessenberg[m + 1, k]
+            hessenberg[m + 1, k] = -sine[m] * hessenberg[m, k] + cosine[m] * hessenberg[m + 1, k]
+            hessenberg[m, k] = upper
+        radius = math.hypot(hessenberg[k, k], hessenberg[k + 1, k])
+        cosine[k], sine[k] = hessenberg[k, k] / radius, hessenberg[k + 1, k] / radius
+        hessenberg[k, k] = radius
+        rest[k + 1] = -sine[k] * rest[k]
+        rest[k] *= cosine[k]
+        steps = k + 1
+        if abs(rest[k + 1]) <= LINEAR_TOLERANCE * norm:
+            break
+    for k in range(steps - 1, -1, -1):
+        for m in range(k + 1, steps):
+            rest[k] -= hessenberg[k, m] * rest[m]
+        rest[k] /= hessenberg[k, k]
+    for k in range(steps):
+        solution += rest[k] * ahead[k]
+    return steps
+
+
+@kernel
+def near_coefficients(kernel_row: FloatArray) -> FloatArray:
+    """Coefficients of the offsets 0 to `BAND` less that of the next."""
+    middle = kernel_row.size // 2
+    near: FloatArray = kernel_row[middle : middle + BAND + 1] - kernel_row[middle + BAND + 1]
+    return near
