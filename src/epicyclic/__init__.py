@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema, load_case
     from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
     from epicyclic.maps.compute import loss_map
+    from epicyclic.maps.duty import duty_cycle
     from epicyclic.maps.formats import write_map
     from epicyclic.sweeps.run import sweep
 
@@ -33,6 +34,7 @@ _HOME = {
     "Problem": "epicyclic.errors",
     "Result": "epicyclic.analysis.result",
     "case_schema": "epicyclic.case.case",
+    "duty_cycle": "epicyclic.maps.duty",
     "load_case": "epicyclic.case.case",
     "loaded_meshes": "epicyclic.analysis.solve",
     "loss_map": "epicyclic.maps.compute",
@@ -52,6 +54,7 @@ __all__ = [
     "Problem",
     "Result",
     "case_schema",
+    "duty_cycle",
     "load_case",
     "loaded_meshes",
     "loss_map",

@@ -13,6 +13,7 @@ from typing import NoReturn
 import click
 
 from epicyclic.cli.contact import contact
+from epicyclic.cli.duty import duty
 from epicyclic.cli.exit_codes import (
     EXIT_BROKEN_PIPE,
     EXIT_ERROR,
@@ -44,7 +45,7 @@ def cli() -> None:
 
 
 COMMANDS = (
-    run, check, sweep, loss_map, mesh, contact, friction, validate, cases, oils, init, schema,
+    run, check, sweep, loss_map, duty, mesh, contact, friction, validate, cases, oils, init, schema,
 )  # fmt: skip
 for command in COMMANDS:
     cli.add_command(command)
