@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from epicyclic.exchange.rexs.exporting import write_rexs
     from epicyclic.exchange.rexs.importing import RexsImport, read_rexs
     from epicyclic.maps.compute import loss_map
+    from epicyclic.maps.duty import duty_cycle
     from epicyclic.maps.formats import write_map
     from epicyclic.measurement.compare import MeasuredComparison, compare_measured
     from epicyclic.records.files import open_result, save_result
@@ -47,6 +48,8 @@ _HOME = {
     "case_schema": "epicyclic.case.case",
     "load_case": "epicyclic.exchange.load",
     "compare_measured": "epicyclic.measurement.compare",
+    "duty_cycle": "epicyclic.maps.duty",
+    "load_case": "epicyclic.case.case",
     "loaded_meshes": "epicyclic.analysis.solve",
     "loss_map": "epicyclic.maps.compute",
     "mesh_contacts": "epicyclic.analysis.solve",
@@ -77,6 +80,7 @@ __all__ = [
     "RexsImport",
     "case_schema",
     "compare_measured",
+    "duty_cycle",
     "load_case",
     "loaded_meshes",
     "loss_map",

@@ -27,6 +27,7 @@ __all__ = [
     "DEGREE",
     "GIGAPASCAL",
     "KILOGRAM_PER_CUBIC_METRE",
+    "KILOJOULE",
     "METRE_PER_SECOND",
     "MICROMETRE",
     "MILLIMETRE",
@@ -39,6 +40,7 @@ __all__ = [
     "PER_GIGAPASCAL",
     "RPM",
     "SQUARE_MILLIMETRE",
+    "SECOND",
     "SQUARE_MM_PER_SECOND",
     "WATT",
     "Angle",
@@ -226,15 +228,31 @@ class Quantity:
             With the allowed form and range, when `value` is not such a quantity.
         """
         number, unit = self._split(value)
+        result = self._converted(number, unit)
+        self._check_range(self.to_display(result))
+        return result
+
+    def scale_from(self, unit: str) -> tuple[float, float]:
+        """What arrays of numbers in `unit` are multiplied by, and what is added, for display.
+
+        Raises
+        ------
+        PydanticCustomError
+            With the allowed form, when `unit` does not measure this quantity.
+        """
+        zero, one = (
+            self.to_display(self._converted(number, unit.strip().translate(_PLAIN_SIGNS)))
+            for number in (0.0, 1.0)
+        )
+        return one - zero, zero
+
+    def _converted(self, number: float, unit: str) -> float:
         try:
-            result = _convert(number, unit, self.si)
-            shown = self.to_display(result)
+            return _convert(number, unit, self.si)
         except _UnitError as error:
             raise self._error(str(error), error.remedy or self._form(number)) from None
         except Exception:  # pint's own errors have no common base
             raise self._error("has an unknown unit", self._form(number)) from None
-        self._check_range(shown)
-        return result
 
     def to_display(self, value: float) -> float:
         """SI `value` in the display unit."""
@@ -353,6 +371,7 @@ CUBIC_MILLIMETRE = Quantity("a volume", "m^3", "mm^3")
 DEGREE = Quantity("an angle", "rad", "deg")
 GIGAPASCAL = Quantity("a pressure", "Pa", "GPa")
 KILOGRAM_PER_CUBIC_METRE = Quantity("a density", "kg/m^3", "kg/m^3")
+KILOJOULE = Quantity("an energy", "J", "kJ")
 METRE_PER_SECOND = Quantity("a speed", "m/s", "m/s")
 MICROMETRE = Quantity("a length", "m", "um")
 MILLIMETRE = Quantity("a length", "m", "mm")
@@ -366,6 +385,7 @@ NUMBER = Quantity("a number", "", "")
 PER_GIGAPASCAL = Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa")
 RPM = Quantity("a rotational speed", "rad/s", "rpm")
 SQUARE_MILLIMETRE = Quantity("an area", "m^2", "mm^2")
+SECOND = Quantity("a time", "s", "s")
 SQUARE_MM_PER_SECOND = Quantity("a viscosity", "m^2/s", "mm^2/s")
 WATT = Quantity("a power", "W", "W")
 WATT_PER_MM = Quantity("a power per length", "W/m", "W/mm")

@@ -15,6 +15,7 @@ import click
 
 from epicyclic.cli.compare import compare
 from epicyclic.cli.contact import contact
+from epicyclic.cli.duty import duty
 from epicyclic.cli.exit_codes import (
     EXIT_BROKEN_PIPE,
     EXIT_ERROR,
@@ -68,6 +69,8 @@ COMMANDS = (
     rexs,
     schema,
 )
+    run, check, sweep, loss_map, duty, mesh, contact, friction, validate, cases, oils, init, schema,
+)  # fmt: skip
 for command in COMMANDS:
     cli.add_command(command)
 

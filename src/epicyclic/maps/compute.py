@@ -185,8 +185,8 @@ def to_map(plan: Plan, rows: Sequence[Row]) -> xr.Dataset:
     }
     data = data.assign(torque_loss=torque_loss.transpose(*data["total"].dims))
     data = _at_rest(data)
-    for name, key in AXES.items():
-        data[name].attrs["case_key"] = key
+    for axis in plan.axes:
+        data[axis_name(axis.key)].attrs["case_key"] = axis.key
     data.attrs = _attributes(plan, data.attrs)
     return data[["torque_loss", *(name for name in data.data_vars if name != "torque_loss")]]
 

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from epicyclic.errors import InputError, Problem
 from epicyclic.maps import simulation, tables, workbook
 from epicyclic.sweeps.dataset import check_place, whole_file
@@ -79,10 +77,11 @@ def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> 
         If there is no such format, it cannot hold the map, or there is no place for the file.
     """
     target = Path(path)
+    tables.check_map(data)
     axes = {name: list(data[name].values) for name in map(str, data["torque_loss"].dims)}
     chosen = check_map_output(target, format, axes, data.attrs["held_shaft"])
     if chosen.single:
-        _check_gaps(data)
+        tables.check_gaps(data)
     with whole_file(target) as temporary:
         chosen.write(data, temporary)
 
@@ -133,13 +132,3 @@ def _several(axes: Coordinates) -> list[Problem]:
         for name, values in axes.items()
         if name not in ("speed", "torque") and len(values) > 1
     ]  # fmt: skip
-
-
-def _check_gaps(data: xr.Dataset) -> None:
-    missing = int(np.isnan(data["torque_loss"].values).sum())
-    if missing:
-        problem = Problem(
-            "torque_loss", "", f"is missing at {missing} points; the format must have all.",
-            "Write a .csv to see why, and leave these points out.",
-        )  # fmt: skip
-        raise InputError([problem], "the map")

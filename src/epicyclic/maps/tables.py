@@ -1,17 +1,28 @@
-"""Maps as tables of points: NetCDF, CSV, Parquet."""
+"""Maps as tables of points: NetCDF, CSV, Parquet; what makes a dataset a map."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from epicyclic.case.wording import one_line
+from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.dataset import to_table
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["statements", "write_csv", "write_netcdf", "write_parquet"]
+__all__ = [
+    "check_gaps",
+    "check_map",
+    "read_netcdf",
+    "statements",
+    "write_csv",
+    "write_netcdf",
+    "write_parquet",
+]
 
 _STATED = (
     "title",
@@ -25,6 +36,8 @@ _STATED = (
     "conventions",
 )
 _LONGEST_STATEMENT = 1000
+_NEEDED = ("reference_shaft", "output_shaft", "held_shaft", "case")
+"""Attributes without which a dataset is no map."""
 
 
 def statements(data: xr.Dataset) -> dict[str, str]:
@@ -33,6 +46,50 @@ def statements(data: xr.Dataset) -> dict[str, str]:
         name.replace("_", " "): one_line(str(data.attrs.get(name, "")), _LONGEST_STATEMENT)
         for name in _STATED
     }
+
+
+def check_map(data: xr.Dataset, source: str = "the map") -> None:
+    """Raise `InputError` unless `data` is a loss map."""
+    axes = ("speed", "torque", "temperature")
+    lacks = [name for name in _NEEDED if name not in getattr(data, "attrs", ())]
+    variables = getattr(data, "data_vars", ())
+    lacks += [name for name in ("torque_loss", "total") if name not in variables]
+    if "torque_loss" in variables:
+        dims = data["torque_loss"].dims
+        lacks += [f"axis {name}" for name in axes if name not in dims or name not in data.coords]
+    if lacks:
+        allowed = f"is no loss map; it lacks {', '.join(lacks)}."
+        remedy = "Give what epicyclic map or loss_map made, all of its axes kept."
+        raise InputError([Problem("", "", f"This dataset {allowed}", remedy)], source)
+
+
+def check_gaps(data: xr.Dataset) -> None:
+    """Raise `InputError` if points of a map failed."""
+    gaps = np.isnan(data["torque_loss"].values)
+    if not gaps.any():
+        return
+    reasons = data["message"].values[gaps] if "message" in data else []
+    reason = next((f" The first: {one_line(str(text))}" for text in reasons if text), "")
+    allowed = f"is missing at {int(gaps.sum())} points; all are needed.{reason}"
+    problem = Problem("torque_loss", "", allowed, "Leave these points out.")
+    raise InputError([problem], "the map")
+
+
+def read_netcdf(path: Path) -> xr.Dataset:
+    """A map that `write_netcdf` wrote; raises `InputError` for any other file."""
+    import xarray as xr
+
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as stored:
+            data = stored.load()
+    except (OSError, ValueError, RuntimeError) as error:
+        reason = one_line(str(error))
+        problem = Problem(
+            "MAP", str(path), f"cannot be read as NetCDF: {reason}.", "Give a map from epicyclic."
+        )
+        raise InputError([problem], "the command") from None
+    check_map(data, str(path))
+    return data
 
 
 def write_netcdf(data: xr.Dataset, path: Path) -> None:

@@ -1,0 +1,302 @@
+"""Duty cycles: what the columns of their tables are, and their points in pieces.
+
+A cycle is a time series (a column of time) or a histogram (a column of durations or shares). It is
+read once to check it, which finds every problem, and once more for each use; it is never in memory
+as a whole.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import PydanticCustomError
+
+from epicyclic.case.wording import one_line, sentence
+from epicyclic.errors import InputError, Problem
+from epicyclic.maps.cycle_source import Source, open_source
+from epicyclic.units import CELSIUS, NEWTON_METRE, RPM, SECOND, Quantity
+
+__all__ = ["SHARE", "TIME", "Cycle", "Piece", "open_cycle"]
+
+Array = NDArray[np.float64]
+
+TIME, DURATION, SHARE = "time", "duration", "share"
+_WEIGHTINGS = (TIME, DURATION, SHARE)
+_OPTIONAL = ("temperature",)
+_QUANTITIES: dict[str, Quantity | None] = {
+    "speed": RPM,
+    "torque": NEWTON_METRE,
+    "temperature": CELSIUS,
+    TIME: SECOND,
+    DURATION: SECOND,
+    SHARE: None,
+}
+_HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
+_NUMBER = r"^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$"
+_SHOWN_HEADERS = 20
+SHARE_DURATION = 3600.0
+"""What a cycle of shares lasts. [s]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column of a cycle: its header, and what turns it into the display unit."""
+
+    header: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """Some points of a cycle, with the time for which each stands.
+
+    Attributes
+    ----------
+    speed, torque, temperature : array, shape (n,)
+        In rpm, N m, degC; the temperature is None if the cycle has none.
+    duration : array, shape (n,)
+        [s]
+    """
+
+    speed: Array
+    torque: Array
+    temperature: Array | None
+    duration: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Cycle:
+    """A checked duty cycle.
+
+    Attributes
+    ----------
+    source : Source
+    columns : mapping of str to Column
+        By quantity.
+    weighting : str
+        ``"time"``, ``"duration"`` or ``"share"``.
+    rows : int
+    ranges : mapping of str to (float, float)
+        Smallest and largest value of every quantity, in display units.
+    """
+
+    source: Source
+    columns: Mapping[str, Column]
+    weighting: str
+    rows: int
+    ranges: Mapping[str, tuple[float, float]]
+
+    def pieces(self) -> Iterator[Piece]:
+        """All points.
+
+        Of a time series each stands for half of the time to each neighbour, the trapezoidal rule.
+        Rows at which two pieces meet are in both, each time with a part of their time.
+        """
+        last: dict[str, Array] = {}
+        for batch in self.source.batches([column.header for column in self.columns.values()]):
+            rows = {
+                name: column.factor * _numbers(batch[column.header]) + column.offset
+                for name, column in self.columns.items()
+            }
+            if self.weighting == TIME:
+                rows = {name: np.append(last.get(name, []), rows[name]) for name in rows}
+                last = {name: values[-1:] for name, values in rows.items()}
+                steps = np.diff(rows[TIME])
+                duration = (np.append(steps, 0.0) + np.append(0.0, steps)) / 2
+            else:
+                duration = rows[self.weighting]
+            yield Piece(rows["speed"], rows["torque"], rows.get("temperature"), duration)
+
+
+def open_cycle(table: Any) -> Cycle:
+    """Read a whole cycle once and check it.
+
+    Parameters
+    ----------
+    table : str, Path, pandas.DataFrame or mapping
+        A file that ends in .csv or .parquet, or columns by name. Names carry units,
+        ``"speed [rpm]"``.
+
+    Raises
+    ------
+    InputError
+        With every problem found.
+    """
+    source = open_source(table)
+    columns, problems = _find_columns(source.headers)
+    checks = _Checks(columns)
+    if columns:
+        for batch in source.batches([column.header for column in columns.values()]):
+            checks.add({name: batch[column.header] for name, column in columns.items()})
+        problems += checks.problems()
+    if problems:
+        raise InputError(problems, source.name)
+    (weighting,) = (name for name in _WEIGHTINGS if name in columns)
+    if weighting == SHARE:
+        columns[SHARE] = Column(columns[SHARE].header, SHARE_DURATION / checks.sums[SHARE])
+    ranges = {
+        name: (
+            column.factor * checks.low[name] + column.offset,
+            column.factor * checks.high[name] + column.offset,
+        )
+        for name, column in columns.items()
+    }
+    return Cycle(source, columns, weighting, checks.rows, ranges)
+
+
+# --- headers --------------------------------------------------------------------------------------
+
+
+def _find_columns(headers: tuple[str, ...]) -> tuple[dict[str, Column], list[Problem]]:
+    """The columns that a cycle needs, in what there is; none of those that are not clear."""
+    found: dict[str, list[tuple[str, str | None]]] = {name: [] for name in _QUANTITIES}
+    for header in headers:
+        match = _HEADER.fullmatch(header.strip())
+        if match is not None and match["name"].lower() in found:
+            found[match["name"].lower()].append((header, match["unit"]))
+    columns, problems = {}, []
+    for name, candidates in found.items():
+        if len(candidates) > 1:
+            problems.append(_repeated(name, [header for header, _ in candidates]))
+        elif candidates:
+            try:
+                columns[name] = _column(*candidates[0], _QUANTITIES[name])
+            except PydanticCustomError as error:
+                problems.append(_unit_problem(name, candidates[0][0], error))
+    return columns, problems + _missing(found, headers)
+
+
+def _column(header: str, unit: str | None, quantity: Quantity | None) -> Column:
+    if quantity is None:
+        return Column(header)  # shares of any unit: their sum is the whole
+    return Column(header, *quantity.scale_from(unit or ""))
+
+
+def _repeated(name: str, headers: list[str]) -> Problem:
+    shown = ", ".join(f'"{one_line(header)}"' for header in headers)
+    return Problem(name, shown, "is there more than once.", "Leave one.")
+
+
+def _unit_problem(name: str, header: str, error: PydanticCustomError) -> Problem:
+    quantity = _QUANTITIES[name]
+    unit = quantity.display if quantity is not None else ""
+    allowed = sentence(error.message(), capital=False)
+    return Problem(name, f'"{one_line(header)}"', allowed, f'Call it "{name} [{unit}]".')
+
+
+def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[Problem]:
+    """Columns that a cycle must have."""
+    problems = []
+    shown = ", ".join(f'"{one_line(header)}"' for header in headers[:_SHOWN_HEADERS])
+    for name, quantity in _QUANTITIES.items():
+        if name not in (*_WEIGHTINGS, *_OPTIONAL) and not found[name] and quantity is not None:
+            remedy = f'Name a column "{name} [{quantity.display}]".'
+            problems.append(Problem(name, "", f"is not among the columns {shown}.", remedy))
+    weightings = [name for name in _WEIGHTINGS if found[name]]
+    if not weightings:
+        allowed = "none of them is among the columns."
+        remedy = 'Name a column "time [s]" in a time series; "duration [s]" or "share" otherwise.'
+        problems.append(Problem("time, duration, share", "", allowed, remedy))
+    if len(weightings) > 1:
+        allowed = "are there together."
+        problems.append(Problem(" and ".join(weightings), "", allowed, "Leave one of them."))
+    return problems
+
+
+# --- values ---------------------------------------------------------------------------------------
+
+
+def _numbers(column: Any) -> Array:
+    """A column of `pyarrow` as numbers, NaN for what is no finite number."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    kind = column.type
+    if pa.types.is_dictionary(kind):
+        column, kind = column.dictionary_decode(), kind.value_type
+    if pa.types.is_string(kind) or pa.types.is_large_string(kind):
+        column = pc.utf8_trim_whitespace(column)
+        column = pc.if_else(pc.match_substring_regex(column, _NUMBER), column, None)
+    elif not (pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_decimal(kind)):
+        return np.full(len(column), np.nan)
+    values = np.array(pc.cast(column, pa.float64(), safe=False), dtype=float)
+    values[~np.isfinite(values)] = np.nan
+    return values
+
+
+@dataclass(slots=True)
+class _Fault:
+    """Rows with one kind of mistake: how many, and the first."""
+
+    name: str
+    allowed: str
+    remedy: str
+    count: int = 0
+    row: int = 0
+    value: str = ""
+
+    def problem(self) -> Problem:
+        more = f", and {self.count - 1} rows more" if self.count > 1 else ""
+        return Problem(self.name, f"{self.value} (row {self.row}{more})", self.allowed, self.remedy)
+
+
+class _Checks:
+    """What is wrong with the rows of a cycle, and their ranges."""
+
+    def __init__(self, columns: Mapping[str, Column]) -> None:
+        self.columns = columns
+        self.rows = 0
+        self.low = dict.fromkeys(columns, np.inf)
+        self.high = dict.fromkeys(columns, -np.inf)
+        self.sums = dict.fromkeys(columns, 0.0)
+        self._faults: dict[tuple[str, str], _Fault] = {}
+        self._last_time = -np.inf
+
+    def add(self, batch: Mapping[str, Any]) -> None:
+        """Take in a piece; arrays of `pyarrow` by quantity."""
+        for name, column in batch.items():
+            values = _numbers(column)
+            bad = np.isnan(values)
+            self._note(bad, column, _Fault(name, "must be a finite number.", "Correct the row."))
+            if name == TIME:
+                early = values <= np.append(self._last_time, values[:-1])
+                remedy = "Sort the rows, and give each time once."
+                self._note(early, column, _Fault(name, "must be later than before.", remedy))
+                self._last_time = values[-1] if values.size else self._last_time
+            if name in (DURATION, SHARE):
+                fault = _Fault(name, "must not be negative.", "Correct the row.")
+                self._note(values < 0, column, fault)
+            sound = values[~bad]
+            if sound.size:
+                self.low[name] = min(self.low[name], float(sound.min()))
+                self.high[name] = max(self.high[name], float(sound.max()))
+                self.sums[name] += float(sound.sum())
+        self.rows += len(column)
+
+    def _note(self, bad: NDArray[np.bool_], column: Any, fault: _Fault) -> None:
+        """Count rows with a mistake; `fault` is what to keep of the first."""
+        count = int(bad.sum())
+        if count:
+            kept = self._faults.setdefault((fault.name, fault.allowed), fault)
+            if kept is fault:
+                first = int(bad.argmax())
+                fault.row = self.rows + first + 1
+                fault.value = one_line(f'"{column[first].as_py()}"')
+            kept.count += count
+
+    def problems(self) -> list[Problem]:
+        found = [fault.problem() for fault in self._faults.values()]
+        least = 2 if TIME in self.columns else 1
+        if self.rows < least:
+            allowed = f"There are {self.rows} rows; a cycle needs {least} or more."
+            found.append(Problem("", "", allowed, "Give more rows."))
+        for name in (DURATION, SHARE):
+            if self.rows and name in self.columns and not self.sums[name] > 0:
+                found.append(Problem(name, "", "is zero in all rows.", "Give positive values."))
+        return found

@@ -1,0 +1,355 @@
+"""Energy that a duty cycle puts in, takes out and loses, by interpolation in a loss map.
+
+Linear interpolation is a weighted sum of the values at the nodes of the map. The weights of all
+points are added up first, each times the angle turned through; multiplied by the torque losses at
+the nodes they give the energy of every component at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import PydanticCustomError
+
+from epicyclic.case.case import Case
+from epicyclic.case.wording import sentence, written
+from epicyclic.errors import InputError, Problem
+from epicyclic.maps.compute import AXES, loss_map
+from epicyclic.maps.cycle import Cycle, open_cycle
+from epicyclic.maps.interpolation_error import (
+    Deviation,
+    Sample,
+    leave_out,
+    map_case,
+    solve_sample,
+)
+from epicyclic.maps.lookup import Lookup, loss_power, make_lookup
+from epicyclic.units import (
+    CELSIUS,
+    KILOJOULE,
+    NEWTON_METRE,
+    RPM,
+    SECOND,
+    Quantity,
+    format_number,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["MODES", "SAMPLES", "cycle_map", "duty_cycle", "make_duty", "parse_temperatures"]
+
+Array = NDArray[np.float64]
+Progress = Callable[[int, int], None]
+
+MODES = ("driving", "coasting", "idling")
+"""The reference shaft drives, is driven, or passes no power: no torque or no speed."""
+
+_SPEEDS, _TORQUES, _TEMPERATURES = 9, 9, 4
+"""Values of the axes of a map that is made for a cycle."""
+_CROWDING = 1.5
+"""Exponent by which its speeds and torques crowd at zero, where losses bend most."""
+SAMPLES = 20
+"""Points that are solved to measure the error of the interpolation."""
+
+
+def duty_cycle(
+    map_or_case: xr.Dataset | Case,
+    cycle: Any,
+    temperature: Iterable[Any] | None = None,
+    *,
+    clamp: bool = False,
+    samples: int = SAMPLES,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Energy in, out and lost over a duty cycle, by component.
+
+    Parameters
+    ----------
+    map_or_case : xarray.Dataset, PlanetaryCase or GearPairCase
+        A loss map. For a case a map that covers the cycle is computed first.
+    cycle : str, Path, pandas.DataFrame or mapping
+        A file that ends in .csv or .parquet, or columns by name: ``"speed [rpm]"``,
+        ``"torque [N*m]"`` of the input member, ``"temperature [degC]"`` if it varies, and
+        ``"time [s]"`` of a time series, or ``"duration [s]"`` or ``"share"`` of a histogram.
+        Any units; other columns are left alone.
+    temperature : iterable, optional
+        Oil inlet temperatures as text with units, for a cycle without a column of them. Default:
+        that of the case, or of a map that has one.
+    clamp : bool
+        True: points outside of the map lose what the point at its border loses. False: they are
+        refused.
+    samples : int
+        Points of the cycle that are solved directly to measure the error of the interpolation.
+    jobs, progress
+        As for `sweep`, for the map of a case.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``energy_in``, ``energy_out`` [kJ], ``duration`` [s] and ``efficiency`` over ``mode``;
+        ``energy_lost`` [kJ] over ``mode`` and ``component``; ``total_efficiency``;
+        ``share_outside`` of the duration; ``interpolation_error`` [kJ] of the energy lost, its
+        ``interpolation_standard_error`` and the ``largest_deviation`` of a point, with the way they
+        were found in the attributes. With `temperature` all have that dimension.
+
+    Raises
+    ------
+    InputError
+        With all problems of the cycle; for points outside of the map; for a map with gaps,
+        further axes of several values, or two driven members.
+    """
+    checked = open_cycle(cycle)
+    celsius = parse_temperatures(checked, temperature)
+    data = map_or_case
+    if isinstance(data, Case):
+        data = cycle_map(data, checked, celsius, jobs=jobs, progress=progress)
+    return make_duty(data, checked, celsius, clamp=clamp, samples=samples)
+
+
+def parse_temperatures(cycle: Cycle, temperature: Iterable[Any] | None) -> tuple[float, ...] | None:
+    """Temperatures that were asked for; None if none were. [degC]"""
+    if temperature is None:
+        return None
+    texts = [temperature] if isinstance(temperature, str) else list(temperature)
+    problems, values = [], []
+    for text in texts:
+        try:
+            values.append(CELSIUS.to_display(CELSIUS.parse(text)))
+        except PydanticCustomError as error:
+            remedy = sentence(str((error.context or {}).get("remedy", "")))
+            allowed = sentence(error.message(), capital=False)
+            problems.append(Problem("temperature", written(text), allowed, remedy))
+    if "temperature" in cycle.ranges:
+        allowed = "is a column of the cycle too."
+        problems.append(Problem("temperature", "", allowed, "Leave one of them."))
+    if not texts or len(set(values)) < len(values):
+        problems.append(Problem("temperature", "", "must name each value once.", "Name others."))
+    if problems:
+        raise InputError(problems, "the command")
+    return tuple(values)
+
+
+def cycle_map(
+    case: Case,
+    cycle: Cycle,
+    celsius: tuple[float, ...] | None,
+    *,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """A map of `case` that covers a cycle."""
+    speeds = _crowded(*cycle.ranges["speed"], _SPEEDS)
+    torques = _crowded(*cycle.ranges["torque"], _TORQUES)
+    temperatures = celsius
+    if "temperature" in cycle.ranges:
+        low, high = cycle.ranges["temperature"]
+        temperatures = tuple(np.unique(np.linspace(low, high, _TEMPERATURES)).tolist())
+    return loss_map(
+        case,
+        _texts(speeds, RPM),
+        _texts(torques, NEWTON_METRE),
+        None if temperatures is None else _texts(temperatures, CELSIUS),
+        jobs=jobs,
+        progress=progress,
+    )
+
+
+def _crowded(low: float, high: float, count: int) -> Array:
+    """About `count` values from `low` to `high`, and zero, where they crowd."""
+    ends = [end for end in (min(low, 0.0), max(high, 0.0)) if end]
+    steps = np.linspace(0, 1, (count - 1) // max(len(ends), 1) + 1) ** _CROWDING
+    return np.unique(np.concatenate([[0.0], *(end * steps for end in ends)]))
+
+
+def _texts(values: Iterable[float], quantity: Quantity) -> list[str]:
+    return [f"{float(value)!r} {quantity.display}" for value in values]
+
+
+def make_duty(
+    data: xr.Dataset,
+    cycle: Cycle,
+    celsius: tuple[float, ...] | None = None,
+    *,
+    clamp: bool = False,
+    samples: int = SAMPLES,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """The result of `duty_cycle` from a map and a checked cycle."""
+    import xarray as xr
+
+    lookup = make_lookup(data)
+    case = map_case(data)
+    results = []
+    for value in _temperatures(lookup, cycle, celsius):
+        sample = Sample(samples)
+        totals = _sum_up(lookup, cycle, value, sample)
+        if totals.outside and not clamp:
+            raise _outside(lookup, cycle, value, totals)
+        error = (
+            leave_out(lookup, totals.node_work.sum(axis=0))
+            if case is None
+            else solve_sample(case, sample, progress)
+        )
+        results.append(_to_dataset(lookup, totals, error))
+    (result, *_) = results
+    if celsius is not None:
+        axis = xr.Variable("temperature", list(celsius), {"units": CELSIUS.display})
+        result = xr.concat(results, axis)
+    result.attrs = _attributes(data, cycle, clamp) | {"interpolation_error_method": error.method}
+    return result
+
+
+def _temperatures(
+    lookup: Lookup, cycle: Cycle, celsius: tuple[float, ...] | None
+) -> tuple[float | None, ...]:
+    """The oil temperatures at which to run a cycle; None stands for that of its column."""
+    if "temperature" in cycle.ranges:
+        return (None,)
+    if celsius is not None:
+        return celsius
+    (*_, axis) = lookup.axes
+    if axis.size > 1:
+        allowed = f"is not a column of the cycle, and the map has {axis.size} of them."
+        remedy = f'Choose some, as "{format_number(float(axis[0]))} degC".'
+        raise InputError([Problem("temperature", "", allowed, remedy)], "the command")
+    return (float(axis[0]),)
+
+
+@dataclass(slots=True)
+class _Totals:
+    """Sums over a cycle; arrays have one row for each of `MODES`.
+
+    Attributes
+    ----------
+    node_work : array, shape (modes, nodes)
+        Angle turned through at each node of the map. [rad]
+    duration : array, shape (modes,)
+        [s]
+    energy_in, energy_out : array, shape (modes,)
+        [J]
+    outside : float
+        Duration outside of the map. [s]
+    """
+
+    node_work: Array
+    duration: Array
+    energy_in: Array
+    energy_out: Array
+    outside: float = 0.0
+
+
+def _sum_up(lookup: Lookup, cycle: Cycle, celsius: float | None, sample: Sample) -> _Totals:
+    """All points of a cycle added up, at its own temperatures or at one."""
+    modes, nodes = len(MODES), lookup.size
+    totals = _Totals(np.zeros((modes, nodes)), *np.zeros((3, modes)))
+    torque_loss = lookup.total
+    for piece in cycle.pieces():
+        temperature = np.full_like(piece.speed, celsius) if celsius is not None else None
+        point = (piece.speed, piece.torque, _given(piece.temperature, temperature))
+        corners, weights = lookup.corners(*point)
+        loss = loss_power((torque_loss[corners] * weights).sum(axis=0), piece.speed)
+        at_shaft = loss_power(piece.torque, piece.speed) * np.sign(piece.speed)
+        mode = np.select([at_shaft > 0, at_shaft < 0], [0, 1], 2)
+        turned = loss_power(piece.duration, piece.speed)
+        totals.node_work += np.bincount(
+            (corners + nodes * mode).ravel(), (weights * turned).ravel(), modes * nodes
+        ).reshape(modes, nodes)
+        # power enters at either shaft: what the reference shaft does not bring comes from the other
+        entering = np.maximum(at_shaft, 0) + np.maximum(loss - at_shaft, 0)
+        leaving = np.maximum(-at_shaft, 0) + np.maximum(at_shaft - loss, 0)
+        totals.duration += np.bincount(mode, piece.duration, modes)
+        totals.energy_in += np.bincount(mode, entering * piece.duration, modes)
+        totals.energy_out += np.bincount(mode, leaving * piece.duration, modes)
+        totals.outside += float(piece.duration[lookup.outside(*point)].sum())
+        sample.add(point, loss, loss * piece.duration)
+    return totals
+
+
+def _given(first: Array | None, second: Array | None) -> Array:
+    chosen = first if first is not None else second
+    if chosen is None:
+        raise ValueError("a cycle has a column of temperatures, or one temperature")
+    return chosen
+
+
+def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: _Totals) -> InputError:
+    """What of a cycle is not in the map."""
+    ranges = dict(cycle.ranges)
+    if celsius is not None:
+        ranges["temperature"] = (celsius, celsius)
+    share = totals.outside / totals.duration.sum()
+    problems = []
+    for name, axis, unit in zip(AXES, lookup.axes, (RPM, NEWTON_METRE, CELSIUS), strict=True):
+        low, high = (format_number(value) for value in ranges[name])
+        first, last = (format_number(float(value)) for value in (axis[0], axis[-1]))
+        if ranges[name][0] < axis[0] or ranges[name][1] > axis[-1]:
+            allowed = f"leaves the map, which has {first} to {last} {unit.display}."
+            problems.append(
+                Problem(name, f"{low} to {high} {unit.display}", allowed,
+                        f"Make a larger map, or clamp; {share:.3g} of the duration is outside.")
+            )  # fmt: skip
+    return InputError(problems, "the cycle")
+
+
+def _to_dataset(lookup: Lookup, totals: _Totals, error: Deviation) -> xr.Dataset:
+    import xarray as xr
+
+    entering, leaving = totals.energy_in, totals.energy_out
+    by_component = totals.node_work @ lookup.torques.reshape(len(lookup.components), -1).T
+    seconds, energy, pure = SECOND.display, KILOJOULE.display, "1"
+    kilo, _ = KILOJOULE.scale_and_offset()
+    outside = totals.outside / totals.duration.sum()
+    of_mode, of_both = ("mode",), ("mode", "component")
+    table = (
+        ("duration", of_mode, totals.duration, seconds, "duration"),
+        ("energy_in", of_mode, entering * kilo, energy, "energy that enters"),
+        ("energy_out", of_mode, leaving * kilo, energy, "energy that leaves"),
+        ("energy_lost", of_both, by_component * kilo, energy, "energy lost"),
+        ("efficiency", of_mode, _ratio(leaving, entering), pure, "efficiency"),
+        ("total_efficiency", (), _ratio(leaving.sum(), entering.sum()), pure,
+         "efficiency over the cycle"),
+        ("share_outside", (), outside, pure, "share of the duration outside of the map"),
+        ("interpolation_error", (), error.energy * kilo, energy,
+         "energy lost that interpolation adds, estimate"),
+        ("interpolation_standard_error", (), error.standard_error * kilo, energy,
+         "standard error of the estimate"),
+        ("largest_deviation", (), error.largest, pure, "largest deviation of a checked point"),
+    )  # fmt: skip
+    return xr.Dataset(
+        {
+            name: (dims, values, {"long_name": label, "units": unit})
+            for name, dims, values, unit, label in table
+        },
+        {"mode": list(MODES), "component": list(lookup.components)},
+    )
+
+
+def _ratio(part: Any, whole: Any) -> Any:
+    """`part` over `whole`, NaN where there is nothing."""
+    return np.divide(part, whole, out=np.full(np.shape(whole), np.nan), where=whole > 0)
+
+
+def _attributes(data: xr.Dataset, cycle: Cycle, clamp: bool) -> dict[str, str]:
+    shaft, output = data.attrs["reference_shaft"], data.attrs["output_shaft"]
+    basis = {"time": "time series, trapezoidal rule over time", "duration": "histogram"}
+    outside = "taken at its border" if clamp else "any would be refused"
+    return {
+        "title": data.attrs.get("title", ""),
+        "source": data.attrs.get("source", ""),
+        "cycle": f"{cycle.source.name}, {cycle.rows} rows",
+        "reference_shaft": shaft,
+        "output_shaft": output,
+        "sign_convention": data.attrs.get("sign_convention", ""),
+        "modes": f"driving: power enters at the {shaft}; coasting: power leaves there; idling: no "
+        "speed or no torque. Energy in and out is counted at both shafts, never negative",
+        "basis": basis.get(cycle.weighting, "histogram of shares; energies are those of one hour"),
+        "interpolation": "linear, of the loss over the speed",
+        "points_outside": outside,
+        "case": data.attrs["case"],
+    }

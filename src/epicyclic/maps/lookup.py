@@ -1,0 +1,187 @@
+"""Interpolation in a loss map: linear in speed, torque and temperature.
+
+Interpolated is the loss of each component over the magnitude of the speed of the reference shaft,
+its share of the torque loss, and not the power. Over the speed it is nearer to a straight line, and
+its limit at rest is in the map.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.errors import InputError, Problem
+from epicyclic.maps.compute import AXES
+from epicyclic.maps.tables import check_gaps, check_map
+from epicyclic.units import RPM, WATT
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Lookup", "loss_power", "make_lookup"]
+
+Array = NDArray[np.float64]
+
+_SUMS = ("load_dependent", "load_independent", "total", "input_power")
+"""Variables in W of a map that are no component."""
+_ROUNDING = 1e-9
+"""Part of an axis by which a point may leave the map, from conversions of units."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lookup:
+    """A loss map, ready for interpolation.
+
+    Attributes
+    ----------
+    axes : tuple of array
+        Rising values of speed [rpm], torque [N m] and temperature [degC].
+    components : tuple of str
+        Names of the losses.
+    torques : array, shape (components, speeds, torques, temperatures)
+        Loss of each component over the magnitude of the speed. [N m]
+    """
+
+    axes: tuple[Array, Array, Array]
+    components: tuple[str, ...]
+    torques: Array
+
+    @property
+    def size(self) -> int:
+        """Number of nodes."""
+        return int(np.prod(self.torques.shape[1:]))
+
+    @property
+    def total(self) -> Array:
+        """Torque loss at all nodes, in one row. [N m]"""
+        sums: Array = self.torques.sum(axis=0).ravel()
+        return sums
+
+    def corners(self, *point: Array) -> tuple[NDArray[np.intp], Array]:
+        """The nodes around points, and their weights. A point outside is taken at the border.
+
+        Parameters
+        ----------
+        *point : arrays, shape (n,)
+            Speed, torque, temperature, in the units of the axes.
+
+        Returns
+        -------
+        nodes : array, shape (corners, n)
+            Numbers of the nodes, counted as in `total`.
+        weights : array, shape (corners, n)
+        """
+        brackets = [_bracket(axis, values) for axis, values in zip(self.axes, point, strict=True)]
+        sides = [range(min(axis.size, 2)) for axis in self.axes]
+        nodes, weights = [], []
+        for corner in itertools.product(*sides):
+            index = [low + side for (low, _), side in zip(brackets, corner, strict=True)]
+            nodes.append(np.ravel_multi_index(index, self.torques.shape[1:]))
+            parts = [
+                part if side else 1 - part for (_, part), side in zip(brackets, corner, strict=True)
+            ]
+            weights.append(parts[0] * parts[1] * parts[2])
+        return np.array(nodes), np.array(weights)
+
+    def outside(self, *point: Array) -> NDArray[np.bool_]:
+        """Which points lie outside of the map. Parameters as for `corners`."""
+        found = np.zeros(point[0].shape, dtype=bool)
+        for axis, values in zip(self.axes, point, strict=True):
+            slack = _ROUNDING * max(float(np.ptp(axis)), float(np.abs(axis).max()))
+            found |= (values < axis[0] - slack) | (values > axis[-1] + slack)
+        return found
+
+    def thinned(self) -> Lookup:
+        """The same with every second node of each axis left out, interpolated at all nodes."""
+        kept = [_every_second(axis.size) for axis in self.axes]
+        axes = [axis[chosen] for axis, chosen in zip(self.axes, kept, strict=True)]
+        count = len(self.components)
+        coarse = Lookup(
+            (axes[0], axes[1], axes[2]),
+            self.components,
+            self.torques[np.ix_(np.arange(count), *kept)],
+        )
+        grid = [values.ravel() for values in np.meshgrid(*self.axes, indexing="ij")]
+        nodes, weights = coarse.corners(*grid)
+        values = (coarse.torques.reshape(count, -1)[:, nodes] * weights).sum(axis=1)
+        return replace(self, torques=values.reshape(self.torques.shape))
+
+
+def _bracket(axis: Array, values: Array) -> tuple[NDArray[np.intp], Array]:
+    """Number of the value of `axis` below each of `values`, and the part of the way to the next."""
+    if axis.size == 1:
+        return np.zeros(values.shape, dtype=np.intp), np.zeros(values.shape)
+    low = np.clip(np.searchsorted(axis, values, side="right") - 1, 0, axis.size - 2)
+    return low, np.clip((values - axis[low]) / np.diff(axis)[low], 0, 1)
+
+
+def _every_second(count: int) -> NDArray[np.intp]:
+    """Every second of `count` numbers from 0, and the last."""
+    return np.unique(np.append(np.arange(0, count, 2), count - 1))
+
+
+def loss_power(torque_loss: Array, speed: Array) -> Array:
+    """Power in W of a torque loss in N m at a speed in rpm."""
+    to_rpm, _ = RPM.scale_and_offset()
+    power: Array = torque_loss * np.abs(speed) / to_rpm
+    return power
+
+
+def make_lookup(data: xr.Dataset) -> Lookup:
+    """A loss map for interpolation.
+
+    At rest, where no power is lost, the torque loss is split between the components as at the
+    slowest speed beside it.
+
+    Raises
+    ------
+    InputError
+        If `data` is no map, has gaps, further axes, or two driven members.
+    """
+    check_map(data)
+    _check_usable(data)
+    check_gaps(data)
+    chosen = data.isel({name: 0 for name in data["torque_loss"].dims if name not in AXES})
+    axes = tuple(chosen[name].values.astype(float) for name in AXES)
+    names = [
+        str(name)
+        for name, array in chosen.data_vars.items()
+        if array.attrs.get("units") == WATT.display and name not in _SUMS
+        if not array.isnull().all()  # left out of the case
+    ]
+    watts = np.stack([chosen[name].transpose(*AXES).fillna(0).values for name in names])
+    watts = watts[:, _nearest_moving(axes[0])]
+    total = watts.sum(axis=0)
+    shares = watts / np.where(total > 0, total, 1.0)
+    torque_loss = chosen["torque_loss"].transpose(*AXES).values
+    return Lookup((axes[0], axes[1], axes[2]), tuple(names), shares * torque_loss)
+
+
+def _nearest_moving(speed: Array) -> NDArray[np.intp]:
+    """For each speed its own number, for rest that of the nearest, rather the positive one."""
+    moving = np.flatnonzero(speed)[::-1]
+    distance = np.abs(moving[:, None] - np.arange(speed.size))
+    nearest: NDArray[np.intp] = moving[distance.argmin(axis=0)]
+    return nearest
+
+
+def _check_usable(data: xr.Dataset) -> None:
+    problems = [
+        Problem(str(name), "", f"has {data.sizes[name]} values; a single one can be used.",
+                f"Select one, as with .isel({name}=[0]).")
+        for name in data["torque_loss"].dims
+        if name not in AXES and data.sizes[name] > 1
+    ]  # fmt: skip
+    if not data.attrs["held_shaft"]:
+        allowed = "is driven; only one speed and one torque can be looked up."
+        problems.append(
+            Problem("operation.second_input", "", allowed, "Set operation.fixed instead.")
+        )
+    if not data["speed"].values.any():
+        problems.append(Problem("speed", "", "is zero only.", "Make a map with other speeds."))
+    if problems:
+        raise InputError(problems, "the map")
