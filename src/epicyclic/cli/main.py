@@ -24,6 +24,7 @@ from epicyclic.cli.exit_codes import (
 )
 from epicyclic.cli.listing import cases, init, oils, schema
 from epicyclic.cli.many import loss_map, sweep
+from epicyclic.cli.oil import oil
 from epicyclic.cli.pockets import pockets
 from epicyclic.cli.rexs import rexs
 from epicyclic.cli.show import plot, report
@@ -56,6 +57,7 @@ COMMANDS = (
     mesh,
     pockets,
     contact,
+    oil,
     friction,
     compare,
     validate,
