@@ -66,6 +66,7 @@ __all__ = [
     "distribute_load",
     "drag_part",
     "elastic_loads",
+    "fitted_rolling",
     "fluid_notes",
     "fluids_of",
     "friction_of",
@@ -265,8 +266,13 @@ def rolling_of(case: Case) -> RollingModel:
     """The rolling-loss model of a case."""
     name = resolve_models(case)["rolling"]
     if name == FittedRolling.name:
-        return FittedRolling(_oil_model(case), case.models.fitted_form)
+        return fitted_rolling(case, "rolling_loss")
     return ROLLING_MODELS[name]
+
+
+def fitted_rolling(case: Case, quantity: str) -> FittedRolling:
+    """The fitted rolling loss of the teeth or of the bearings of a case."""
+    return FittedRolling(_oil_model(case), case.models.fitted_form, quantity)
 
 
 def _oil_model(case: Case) -> OilModel:

@@ -33,7 +33,7 @@ SCATTER = 0.05
 QUANTITIES = {
     "friction": ("gear", "friction", "1"),
     "rolling_loss": ("gear", "smooth_rolling_loss", "W/m"),
-    "bearing_rolling_loss": ("bearing", "smooth_rolling_loss", "W/m"),
+    "bearing_rolling_loss": ("bearing", "rolling_loss", "W/m"),
 }
 """What is fitted: to which contacts, to which column, in which unit."""
 
@@ -57,7 +57,7 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
         frame["friction"].gt(0)
         & frame["unsolved_share"].le(LARGEST_UNSOLVED_SHARE)
         & frame["friction_error"].le(LARGEST_ERROR * frame["friction"])
-    ) | (frame["part"].eq("bearing") & frame["smooth_rolling_loss"].gt(0))
+    ) | (frame["part"].eq("bearing") & frame["unsolved_share"].le(LARGEST_UNSOLVED_SHARE))
     case = campaign.case(0)
     modulus = contact_model(case).contact.equivalent_modulus
     fits: dict[str, QuantityFit] = {}
@@ -88,7 +88,8 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
             "fitted": int(good.sum()),
         },
         notes=(
-            "Rolling losses are those of the smooth contacts.",
+            "Rolling losses of gear contacts are those of the smooth contacts, of bearing contacts "
+            "those of the rough ones.",
             "Errors are those against the simulations, not against measurements.",
         ),
         equivalent_modulus=modulus,
@@ -106,7 +107,7 @@ def _states(rows: pd.DataFrame, folder: CampaignFolder, modulus: float) -> Conta
     states = [oil_state(oil, float(temperature)) for temperature in values.pop("temperature")]
     return ContactStates(
         **values,
-        viscosity=np.array([state.dynamic_viscosity for state in states]),
+        dynamic_viscosity=np.array([state.dynamic_viscosity for state in states]),
         pressure_viscosity=np.array([state.pressure_viscosity for state in states]),
         equivalent_modulus=modulus,
     )

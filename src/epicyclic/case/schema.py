@@ -614,7 +614,7 @@ class ContactSolver(Table):
     )
     seed: int = Field(default=1, ge=0, description="Of the generated profiles.")
     error: Number = Field(
-        default=0.03, gt=0, le=1, description="Mean error wanted at contacts that take no part."
+        default=0.05, gt=0, le=1, description="Mean error wanted at contacts that take no part."
     )
     most_contacts: int = Field(
         default=48, ge=12, le=5000, description="Solved for one mesh at most."
@@ -691,7 +691,7 @@ class GearPairModels(Table):
 class PlanetaryModels(GearPairModels):
     """Which method computes what, with the planet bearing."""
 
-    bearing: Literal["auto", "mixed-ehl", "palmgren"] = Field(
+    bearing: Literal["auto", "mixed-ehl", "palmgren", "fitted"] = Field(
         default="auto", description="auto: mixed-ehl for the fluid it was made for, else palmgren."
     )
     bearing_viscous: Literal["harris"] = "harris"

@@ -29,18 +29,16 @@ __all__ = ["FittedFriction", "FittedRolling", "contact_states"]
 
 FloatArray = NDArray[np.float64]
 
-_QUANTITIES: dict[str, tuple[str, str, Quantity]] = {
-    "slide_to_roll_ratio": ("slide_to_roll_ratio", "slide-to-roll ratio", NUMBER),
-    "rolling_speed": ("rolling_speed", "rolling speed", METRE_PER_SECOND),
-    "radius": ("radius", "equivalent radius", MILLIMETRE),
-    "hertz_pressure": ("hertz_pressure", "Hertz pressure", GIGAPASCAL),
-    "roughness1": ("roughness", "rms roughness", MICROMETRE),
-    "viscosity": ("dynamic_viscosity", "dynamic viscosity", MILLIPASCAL_SECOND),
-    "pressure_viscosity": (
-        "pressure_viscosity", "pressure-viscosity coefficient", PER_GIGAPASCAL,
-    ),
-}  # fmt: skip
-"""Attribute of `MeshContact`, label and unit of each condition that spans a domain."""
+_LABELS: dict[str, tuple[str, Quantity]] = {
+    "slide_to_roll_ratio": ("slide-to-roll ratio", NUMBER),
+    "rolling_speed": ("rolling speed", METRE_PER_SECOND),
+    "radius": ("equivalent radius", MILLIMETRE),
+    "hertz_pressure": ("Hertz pressure", GIGAPASCAL),
+    "roughness": ("rms roughness", MICROMETRE),
+    "dynamic_viscosity": ("dynamic viscosity", MILLIPASCAL_SECOND),
+    "pressure_viscosity": ("pressure-viscosity coefficient", PER_GIGAPASCAL),
+}
+"""Label and unit of each condition that spans a domain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,15 +79,22 @@ class FittedRolling:
 
     Beyond the loads and speeds of the simulations the loss goes on as that of the regressions,
     Theory (R5).
+
+    Attributes
+    ----------
+    model : OilModel
+    form : str
+    quantity : str
+        ``"rolling_loss"`` of gear teeth or ``"bearing_rolling_loss"``.
     """
 
     name: ClassVar = "fitted"
     title: ClassVar = "fit to simulated contacts of the oil"
     made_for: ClassVar[RegressionFluid | None] = None
-    QUANTITY: ClassVar = "rolling_loss"
 
     model: OilModel
     form: str
+    quantity: str = "rolling_loss"
 
     @property
     def source(self) -> str:
@@ -99,13 +104,16 @@ class FittedRolling:
     @property
     def ranges(self) -> tuple[Range, ...]:
         """The domain of the fit."""
-        return tuple(_ranges(self.model, self.QUANTITY))
+        return tuple(_ranges(self.model, self.quantity))
 
     def loss_density(self, contact: MeshContact) -> FloatArray:
         """See the class. [W/m]"""
-        states = contact_states(contact)
-        held = states.held(self.model.fits[self.QUANTITY].domain)
-        density: FloatArray = self.model.value(self.QUANTITY, states, self.form) * beyond_data(
+        return self.density(contact_states(contact))
+
+    def density(self, states: ContactStates) -> FloatArray:
+        """See the class. [W/m]"""
+        held = states.held(self.model.fits[self.quantity].domain)
+        density: FloatArray = self.model.value(self.quantity, states, self.form) * beyond_data(
             states.line_load, held.line_load, states.rolling_speed, held.rolling_speed
         )
         return density
@@ -121,7 +129,7 @@ def contact_states(contact: MeshContact) -> ContactStates:
         hertz_pressure=contact.hertz_pressure,
         roughness1=contact.flanks.roughness1 * ones,
         roughness2=contact.flanks.roughness2 * ones,
-        viscosity=contact.dynamic_viscosity * ones,
+        dynamic_viscosity=contact.dynamic_viscosity * ones,
         pressure_viscosity=contact.pressure_viscosity * ones,
         equivalent_modulus=contact.flanks.equivalent_modulus,
     )
@@ -135,10 +143,10 @@ def _source(model: OilModel) -> str:
 
 
 def _ranges(model: OilModel, quantity: str) -> Iterator[Range]:
-    """The domain of a fit; both flanks share one range of roughness."""
+    """The domain of a fit; both surfaces share one range of roughness."""
     domain = dict(model.fits[quantity].domain)
     pairs = [domain["roughness1"], domain["roughness2"]]
-    domain["roughness1"] = (min(low for low, _ in pairs), max(high for _, high in pairs))
-    for name, (attribute, label, unit) in _QUANTITIES.items():
+    domain["roughness"] = (min(low for low, _ in pairs), max(high for _, high in pairs))
+    for name, (label, unit) in _LABELS.items():
         low, high = (unit.to_display(value) if unit.si else value for value in domain[name])
-        yield Range(attribute, label, low, high, unit, f"the simulations of {model.oil.name}")
+        yield Range(name, label, low, high, unit, f"the simulations of {model.oil.name}")

@@ -26,6 +26,8 @@ Columns = Callable[[ContactStates], Sequence[FloatArray | float]]
 
 SMALLEST_SLIP = 1e-4
 """Slide-to-roll ratio put into the logarithms. [1]"""
+SMALLEST_SINGULAR = 1e-10
+"""Singular value over the largest one below which columns count as dependent. [1]"""
 
 
 @dataclass(frozen=True)
@@ -58,34 +60,36 @@ class Regression:
 
     def value(self, states: ContactStates, coefficients: FloatArray) -> FloatArray:
         """See the class."""
-        parts = np.split(coefficients, np.cumsum(self._sizes())[:-1])
-        logarithm = np.zeros(states.radius.shape)
-        for columns, weight, part in zip(self.branches, self._weights(states), parts, strict=True):
-            logarithm += weight * (_matrix(columns, states) @ part)
-        value: FloatArray = np.exp(logarithm) * self.scale(states)
+        value: FloatArray = np.exp(self._matrix(states) @ coefficients) * self.scale(states)
         return value
 
     def fit(self, states: ContactStates, target: FloatArray, weight: FloatArray) -> FloatArray:
-        """Linear least squares in each branch.
+        """Linear least squares of the logarithm, all branches at once.
 
         Raises
         ------
         ValueError
             If a branch has fewer contacts than coefficients.
         """
-        logarithm = np.log(target / self.scale(states))
-        parts = []
-        for columns, share in zip(self.branches, self._weights(states), strict=True):
-            matrix = _matrix(columns, states)
-            if np.count_nonzero(share) <= matrix.shape[1]:
-                raise ValueError("too few contacts in a range of film ratios")
-            size = np.sqrt((matrix**2).mean(axis=0))
-            factor = np.sqrt(share * weight)[:, None]
-            found, *_ = np.linalg.lstsq(
-                factor * matrix / size, factor[:, 0] * logarithm, rcond=1e-10
-            )
-            parts.append(found / size)
-        return np.concatenate(parts)
+        shares, sizes = self._weights(states), self._sizes()
+        if any(np.count_nonzero(s) <= size for s, size in zip(shares, sizes, strict=True)):
+            raise ValueError("too few contacts in a range of film ratios")
+        matrix = np.sqrt(weight)[:, None] * self._matrix(states)
+        size = np.sqrt((matrix**2).mean(axis=0))
+        logarithm = np.sqrt(weight) * np.log(target / self.scale(states))
+        found, *_ = np.linalg.lstsq(matrix / size, logarithm, rcond=SMALLEST_SINGULAR)
+        coefficients: FloatArray = found / size
+        return coefficients
+
+    def _matrix(self, states: ContactStates) -> FloatArray:
+        """Columns of all branches, each times the share of its branch, shape (n, size)."""
+        shape = states.radius.shape
+        columns = [
+            share * column
+            for branch, share in zip(self.branches, self._weights(states), strict=True)
+            for column in branch(states)
+        ]
+        return np.stack([np.broadcast_to(column, shape) for column in columns], axis=1)
 
     def _sizes(self) -> list[int]:
         one = np.ones(1)
@@ -105,11 +109,6 @@ def _blend(ratio: FloatArray, limit: float) -> FloatArray:
     t = np.clip((np.log(ratio / limit) + BLEND_HALF_WIDTH) / (2 * BLEND_HALF_WIDTH), 0, 1)
     weight: FloatArray = t * t * (3 - 2 * t)
     return weight
-
-
-def _matrix(columns: Columns, states: ContactStates) -> FloatArray:
-    shape = states.radius.shape
-    return np.stack([np.broadcast_to(column, shape) for column in columns(states)], axis=1)
 
 
 @dataclass(frozen=True)
@@ -189,14 +188,14 @@ def _rolling_film(states: ContactStates) -> Sequence[FloatArray | float]:
 
 def _power_scale(states: ContactStates) -> FloatArray:
     """mu u_r^2. Theory (R4). [W/m]"""
-    scale: FloatArray = states.viscosity * states.rolling_speed**2
+    scale: FloatArray = states.dynamic_viscosity * states.rolling_speed**2
     return scale
 
 
 def _needle_film(states: ContactStates) -> Sequence[FloatArray | float]:
     """Columns of Eq. 3.5. Theory (B14)."""
     q = _groups(states)
-    flow = states.rolling_speed * states.viscosity
+    flow = states.rolling_speed * states.dynamic_viscosity
     theta = flow / (states.hertz_pressure * states.composite_roughness)
     rough = states.composite_roughness / NEEDLE_ROUGHNESS_REFERENCE
     log_theta, log_p = np.log(theta), np.log(q.p)

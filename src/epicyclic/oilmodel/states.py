@@ -23,7 +23,7 @@ CONDITIONS = (
     "hertz_pressure",
     "roughness1",
     "roughness2",
-    "viscosity",
+    "dynamic_viscosity",
     "pressure_viscosity",
 )
 """Names of the arrays of `ContactStates`, which span the domain of a fit."""
@@ -45,8 +45,8 @@ class ContactStates:
         p_h. [Pa]
     roughness1, roughness2 : ndarray
         Rq. [m]
-    viscosity : ndarray
-        Dynamic, of the oil at the inlet. [Pa s]
+    dynamic_viscosity : ndarray
+        Of the oil at the inlet. [Pa s]
     pressure_viscosity : ndarray
         alpha. [1/Pa]
     equivalent_modulus : float
@@ -59,7 +59,7 @@ class ContactStates:
     hertz_pressure: FloatArray
     roughness1: FloatArray
     roughness2: FloatArray
-    viscosity: FloatArray
+    dynamic_viscosity: FloatArray
     pressure_viscosity: FloatArray
     equivalent_modulus: float
 
@@ -93,7 +93,7 @@ class ContactStates:
     def speed_number(self) -> FloatArray:
         """U. Theory (O1). [1]"""
         number: FloatArray = (
-            self.viscosity * self.rolling_speed / (self.equivalent_modulus * self.radius)
+            self.dynamic_viscosity * self.rolling_speed / (self.equivalent_modulus * self.radius)
         )
         return number
 
@@ -123,6 +123,11 @@ class ContactStates:
     def composite_roughness(self) -> FloatArray:
         """sqrt(Rq1^2 + Rq2^2). Theory (O1). [m]"""
         return np.hypot(self.roughness1, self.roughness2)
+
+    @property
+    def roughness(self) -> FloatArray:
+        """Rq of both surfaces, shape (2, n). [m]"""
+        return np.stack([self.roughness1, self.roughness2])
 
     @property
     def reduced_roughness(self) -> FloatArray:

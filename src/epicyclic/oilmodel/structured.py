@@ -1,7 +1,8 @@
 """Forms with physical structure: smooth over all film ratios, and safe to continue beyond the data.
 
-Friction is a mixture of touching asperities and of a sheared film, rolling loss that of a smooth
-contact times what the roughness adds. Both have few coefficients, each with a meaning.
+Friction is that of a sheared film and of the asperities that touch through it, rolling loss that
+of a smooth contact times what the roughness adds. Both have few coefficients, each with a meaning,
+and neither falls when the film becomes thinner than the roughness.
 """
 
 from __future__ import annotations
@@ -29,6 +30,9 @@ FLASH = 100.0
 """Unit of the temperature rise. [K]"""
 LARGEST_EXPONENT = 300.0
 """Of the viscosity under pressure: what is larger is solid, and overflows."""
+
+SMALLEST_SLIP = 0.01
+"""Added to the slide-to-roll ratio where it is raised to a power. [1]"""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _ANGLES = math.pi / 4 * (_NODES + 1)
@@ -100,9 +104,9 @@ def eyring_friction(states: ContactStates, stress: float) -> FloatArray:
     film = states.radius * pan_hamrock_central_film(
         states.speed_number, states.material_number, states.load_number
     )
-    limit = np.log(states.viscosity) + ROELANDS_OFFSET
+    limit = np.log(states.dynamic_viscosity) + ROELANDS_OFFSET
     index = states.pressure_viscosity * ROELANDS_PRESSURE / limit
-    rate = states.viscosity * states.sliding_speed / (film * stress)
+    rate = states.dynamic_viscosity * states.sliding_speed / (film * stress)
     total = np.zeros(states.radius.shape)
     for angle, weight in zip(_ANGLES, _WEIGHTS, strict=True):
         pressure = states.hertz_pressure * math.cos(angle)
@@ -122,18 +126,13 @@ def _flash(states: ContactStates, friction: FloatArray) -> FloatArray:
 
 
 def _friction(states: ContactStates, c: FloatArray) -> FloatArray:
-    """Touching asperities and a sheared film. Theory (O5). [1]"""
-    stress, boundary, ratio, steepness, factor, pressure, speed, radius, heat = c
+    """A sheared film and, the more the thinner it is, touching asperities. Theory (O5). [1]"""
+    stress, factor, heat, asperities, ratio, steepness, slip, pressure = c
     film = eyring_friction(states, EYRING_STRESS * math.exp(stress))
-    film = film / (1 + heat * _flash(states, film))
-    film = film * np.exp(
-        factor
-        + pressure * np.log(states.hertz_pressure / 1e9)
-        + speed * np.log(states.rolling_speed / 10)
-        + radius * np.log(states.radius / 0.01)
-    )
-    share = 1 / (1 + (states.film_ratio / math.exp(ratio)) ** steepness)
-    friction: FloatArray = share * boundary + (1 - share) * film
+    film = math.exp(factor) * film / (1 + heat * _flash(states, film))
+    even = math.exp(ratio) * (states.slide_to_roll_ratio + SMALLEST_SLIP) ** slip
+    share = 1 / (1 + (states.film_ratio / even) ** steepness)
+    friction: FloatArray = film + asperities * share * (states.hertz_pressure / 1e9) ** pressure
     return friction
 
 
@@ -148,22 +147,22 @@ def _rolling(states: ContactStates, c: FloatArray) -> FloatArray:
         * (states.load_number * 1e4) ** load
     )  # fmt: skip
     added = math.exp(rough) * states.film_ratio**-thinness
-    loss: FloatArray = smooth * (1 + added * (0.01 + states.slide_to_roll_ratio) ** slip)
+    loss: FloatArray = smooth * (1 + added * (SMALLEST_SLIP + states.slide_to_roll_ratio) ** slip)
     return loss
 
 
 STRUCTURED_FRICTION = Structured(
     name="structured",
-    title="asperities and Eyring film, shared by the film ratio",
+    title="Eyring film, and asperities by the film ratio",
     labels=(
-        "ln of the Eyring stress over 5 MPa", "friction of asperities",
-        "ln of the film ratio of even shares", "steepness of the shares", "ln of the film's factor",
-        "exponent of the pressure", "exponent of the speed", "exponent of the radius",
-        "softening by heat",
+        "ln of the Eyring stress over 5 MPa", "ln of the film's factor", "softening by heat",
+        "friction of asperities at 1 GPa", "ln of the film ratio of even shares",
+        "steepness of the shares", "exponent of the slip in that ratio",
+        "exponent of the pressure in the friction of asperities",
     ),
-    start=(0.0, 0.1, -2.0, 1.5, 0.0, 0.0, 0.0, 0.0, 0.1),
-    low=(-4.0, 0.0, -8.0, 0.2, -3.0, -2.0, -2.0, -2.0, 0.0),
-    high=(4.0, 0.5, 3.0, 8.0, 3.0, 2.0, 2.0, 2.0, 50.0),
+    start=(0.0, 0.0, 0.1, 0.1, -1.0, 1.5, 0.0, 0.0),
+    low=(-4.0, -3.0, 0.0, 0.0, -8.0, 0.2, -1.0, -3.0),
+    high=(4.0, 3.0, 50.0, 0.5, 3.0, 8.0, 1.0, 3.0),
     function=_friction,
 )  # fmt: skip
 STRUCTURED_ROLLING = Structured(
