@@ -108,6 +108,10 @@ class Design:
             scale, offset = quantity.scale_and_offset()
             box = SOLVER_BOX.get(name, (-math.inf, math.inf))
             low, high = (limit * scale + offset for limit in box)
+            if self.size is not None and name in LOGARITHMIC and min(values) <= 0:
+                allowed = "must be above zero: it is filled evenly in the logarithm."
+                lowest = format_number(min(values))
+                problems.append(Problem(f"{self.part}.{name}", lowest, allowed, "Raise it."))
             slack = 1e-9 * max(abs(value) for value in values)
             if min(values) < low - slack or max(values) > high + slack:
                 unit = f" {quantity.display}".rstrip()

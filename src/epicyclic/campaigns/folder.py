@@ -110,7 +110,7 @@ class CampaignFolder:
         import pandas as pd
 
         try:
-            frame = pd.read_csv(self.table, float_precision="round_trip", keep_default_na=True)
+            frame = pd.read_csv(self.table)
         except (OSError, ValueError) as error:
             allowed = f"cannot be read: {error}."
             raise _folder_error(self.table, allowed) from None
