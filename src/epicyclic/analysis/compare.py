@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from epicyclic.analysis.parts import friction_settings, resolve_models
+from epicyclic.analysis.parts import friction_of, friction_settings, resolve_models
 from epicyclic.analysis.result import LOAD_DEPENDENT, Result
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case
-from epicyclic.losses.friction import FRICTION_MODELS, friction_model
+from epicyclic.losses.friction import FRICTION_MODELS
 
 __all__ = ["FrictionComparison", "compare_friction"]
 
@@ -47,17 +47,18 @@ class FrictionComparison:
 def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
     """Every friction model on `case`, by the local and by the quick method.
 
-    The model ``table`` takes part if the case has a friction table.
+    The model ``table`` takes part if the case has a friction table, ``fitted`` and ``ehl-direct``
+    if the case chooses them.
     """
     chosen = resolve_models(case)["friction"]
     settings = friction_settings(case)
     rows = []
-    for name in FRICTION_MODELS:
+    for name in dict.fromkeys([*FRICTION_MODELS, chosen]):
         if name == "table" and settings.table is None:
             continue
         local = solve(case.updated({"models.friction": name, "models.mesh": "local"}))
         quick = solve(case.updated({"models.friction": name, "models.mesh": "loss-factor"}))
-        model = friction_model(name, settings)
+        model = friction_of(case.updated({"models.friction": name}))
         rows.append(
             FrictionComparison(
                 name=name,

@@ -15,14 +15,12 @@ from epicyclic.analysis.parts import (
     contact_under,
     distribute_load,
     fluids_of,
-    friction_settings,
+    friction_of,
     load_notes,
-    resolve_models,
 )
 from epicyclic.analysis.solve import loaded_duties
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem
-from epicyclic.losses.friction import friction_model
 from epicyclic.losses.load_distribution import LineLoads
 from epicyclic.units import (
     DEGREE,
@@ -163,8 +161,7 @@ def _contact(case: Case, duty: MeshDuty, loads: LineLoads) -> dict[str, Variable
 
     film = friction = np.full(contact.line_load.shape, math.nan)
     if duty.speed1 != 0:
-        model = friction_model(resolve_models(case)["friction"], friction_settings(case))
-        film, friction = contact.film_ratio, model.coefficient(contact)
+        film, friction = contact.film_ratio, friction_of(case).coefficient(contact)
     power = friction * contact.line_load * np.abs(contact.sliding_speed)
     return {
         "hertz_pressure": _points(spread(contact.hertz_pressure), "contact pressure", GIGAPASCAL),

@@ -32,12 +32,14 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.contact import Flanks, MeshContact, mesh_contact
-from epicyclic.losses.friction import FrictionSettings, friction_model
+from epicyclic.losses.direct import DirectSettings, EhlDirect
+from epicyclic.losses.fitted import FittedFriction, FittedRolling
+from epicyclic.losses.friction import FrictionModel, FrictionSettings, friction_model
 from epicyclic.losses.friction.user import FrictionMap
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS, LineLoads, MeshLoad
 from epicyclic.losses.mesh import MeshLoss, local_loss, loss_factor_loss, ohlendorf_loss_factor
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
-from epicyclic.losses.rolling import ROLLING_MODELS
+from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
 from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.viscous import DRAG_METHOD, DRAG_SOURCE, disc_drag, disc_drag_flags
 from epicyclic.lubricant.oil import Oil
@@ -48,6 +50,7 @@ from epicyclic.lubricant.properties import (
     mixture_state,
     oil_state,
 )
+from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.similarity import FlowFigures
 from epicyclic.units import CELSIUS, SQUARE_MM_PER_SECOND
 
@@ -63,8 +66,10 @@ __all__ = [
     "distribute_load",
     "drag_part",
     "elastic_loads",
+    "fitted_rolling",
     "fluid_notes",
     "fluids_of",
+    "friction_of",
     "friction_settings",
     "general_notes",
     "load_mesh",
@@ -72,6 +77,7 @@ __all__ = [
     "loss_terms",
     "oil_at",
     "resolve_models",
+    "rolling_of",
     "solve_mesh",
     "used_sources",
 ]
@@ -234,6 +240,47 @@ def friction_settings(case: Case) -> FrictionSettings:
     )
 
 
+def friction_of(case: Case) -> FrictionModel:
+    """The friction model of a case."""
+    name = resolve_models(case)["friction"]
+    if name == FittedFriction.name:
+        return FittedFriction(_oil_model(case), case.models.fitted_form)
+    if name == EhlDirect.name:
+        return EhlDirect(_direct_settings(case))
+    return friction_model(name, friction_settings(case))
+
+
+def _direct_settings(case: Case) -> DirectSettings:
+    solver = case.contact_solver
+    return DirectSettings(
+        eyring_stress=solver.eyring_stress,
+        boundary_friction=case.models.boundary_friction,
+        correlation_length=solver.correlation_length,
+        seed=solver.seed,
+        error=solver.error,
+        most_contacts=solver.most_contacts,
+    )
+
+
+def rolling_of(case: Case) -> RollingModel:
+    """The rolling-loss model of a case."""
+    name = resolve_models(case)["rolling"]
+    if name == FittedRolling.name:
+        return fitted_rolling(case, "rolling_loss")
+    return ROLLING_MODELS[name]
+
+
+def fitted_rolling(case: Case, quantity: str) -> FittedRolling:
+    """The fitted rolling loss of the teeth or of the bearings of a case."""
+    return FittedRolling(_oil_model(case), case.models.fitted_form, quantity)
+
+
+def _oil_model(case: Case) -> OilModel:
+    """The file of fitted models that the case names, and was checked to have."""
+    assert case.models.oil_model is not None
+    return read_oil_model(case.folder / case.models.oil_model)
+
+
 def distribute_load(duty: MeshDuty, models: GearPairModels, numerics: Numerics) -> LineLoads:
     """Contact lines of a mesh and the load on them under the torque of its duty."""
     model = LOAD_DISTRIBUTIONS[models.load_distribution]
@@ -300,8 +347,7 @@ def solve_mesh(
 ) -> MeshOutcome:
     """Losses and figures of one mesh, `count` of which work in parallel."""
     models = resolve_models(case)
-    friction = friction_model(models["friction"], friction_settings(case))
-    rolling = ROLLING_MODELS[models["rolling"]]
+    friction, rolling = friction_of(case), rolling_of(case)
     quick = models["mesh"] == "loss-factor"
     contact = load_mesh(duty, case.models, case.numerics, fluids.oil)
     elastic = None
@@ -325,6 +371,8 @@ def solve_mesh(
     }
     figures = _mesh_figures(duty, contact, loss.mean_friction, elastic, flow.figures)
     notes = pocket_notes(case, duty.mesh, flow.figures)
+    if contact is not None and isinstance(friction, EhlDirect):
+        notes += friction.remarks(contact)
     return MeshOutcome(parts, figures, loss.flags, notes)
 
 
@@ -443,15 +491,17 @@ def fluid_notes(case: Case) -> tuple[str, ...]:
     """What was made for another oil than that of the case, and what the case changes in it."""
     oil, models = case.lubricant.oil, resolve_models(case)
     fluids = {
-        "friction": friction_model(models["friction"], friction_settings(case)).made_for,
-        "rolling": ROLLING_MODELS[models["rolling"]].made_for,
+        "friction": friction_of(case).made_for,
+        "rolling": rolling_of(case).made_for,
         "bearing": TALBOT_FLUID if models.get("bearing") == "mixed-ehl" else None,
     }
+from epicyclic.oilmodel.model import OilModel, read_oil_model
     notes = [
         f"models.{key}: the regression {models[key]} was made for {fluid.title}, not for "
         f"{oil.name}."
         for key, fluid in fluids.items()
         if fluid is not None and fluid.key != oil.friction_regression
+from epicyclic.oilmodel.model import OilModel, read_oil_model
     ]
     factor = case.lubricant.pressure_viscosity_factor
     if factor != 1:

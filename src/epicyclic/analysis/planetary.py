@@ -16,6 +16,7 @@ from epicyclic.analysis.parts import (
     Part,
     contact_notes,
     drag_part,
+    fitted_rolling,
     fluid_notes,
     fluids_of,
     general_notes,
@@ -48,11 +49,13 @@ from epicyclic.kinematics import (
     planetary_power_flow,
     planetary_speeds,
 )
+from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.planet_bearing import (
     BearingLoss,
     RollerBearing,
     RollerLoads,
+    fitted_rolling_loss,
     mixed_ehl_rolling_loss,
     palmgren_flags,
     palmgren_loss,
@@ -307,9 +310,14 @@ def _solve_bearing(
         )
     speed = planet_speed(case.sun.teeth, case.planet.teeth, speeds)
     loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
-    if resolve_models(case)["bearing"] == "mixed-ehl":
+    name = resolve_models(case)["bearing"]
+    if name == "mixed-ehl":
         loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil)
         method, source = BEARING_METHOD, BEARING_SOURCE
+    elif name == FittedRolling.name:
+        model = fitted_rolling(case, "bearing_rolling_loss")
+        loss = fitted_rolling_loss(bearing, loads, speed, oil, model)
+        method, source = model.title, model.source
     else:
         watts = palmgren_loss(
             palmgren_coefficient(table), load.force, bearing.pitch_diameter, speed

@@ -18,6 +18,7 @@ from epicyclic.case.plain import plain, value_at, with_value, without
 from epicyclic.case.reading import read_file
 from epicyclic.case.schema import (
     Carrier,
+    ContactSolver,
     FrictionTable,
     GearPairLosses,
     GearPairModels,
@@ -65,6 +66,11 @@ class _CaseTable(Table):
     def source(self) -> str:
         """The file or built-in case it was read from."""
         return self._source
+
+    @property
+    def folder(self) -> Path:
+        """Where the files lie that it names: that of its file, or the current one."""
+        return Path(self._source).parent
 
     def updated(self, changes: Mapping[str, Any]) -> Self:
         """A copy of the case with some keys changed, validated afresh.
@@ -124,6 +130,7 @@ class PlanetaryCase(_CaseTable):
     surroundings: Surroundings = Surroundings()
     friction_table: FrictionTable | None = None
     models: PlanetaryModels = PlanetaryModels()
+    contact_solver: ContactSolver = ContactSolver()
     numerics: Numerics = Numerics()
     losses: PlanetaryLosses = PlanetaryLosses()
 
@@ -142,6 +149,7 @@ class GearPairCase(_CaseTable):
     surroundings: Surroundings = Surroundings()
     friction_table: FrictionTable | None = None
     models: GearPairModels = GearPairModels()
+    contact_solver: ContactSolver = ContactSolver()
     numerics: Numerics = Numerics()
     losses: GearPairLosses = GearPairLosses()
 
@@ -271,7 +279,10 @@ def _build(
     found = [
         *problems,
         *(problem for problem in validation.problems if problem.key not in known),
-        *(_as_given(problem, tables) for problem in cross_check(validation.sections, tables)),
+        *(
+            _as_given(problem, tables)
+            for problem in cross_check(validation.sections, tables, Path(source).parent)
+        ),
     ]
     case = validation.case
     if case is None or found:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Mapping
 from itertools import pairwise
+from pathlib import Path
 
 from epicyclic.case import build
 from epicyclic.case.gear_checks import check_pair, check_planetary
@@ -28,8 +29,9 @@ from epicyclic.case.schema import (
     Table,
 )
 from epicyclic.case.wording import millimetres
-from epicyclic.errors import Problem
+from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.assembly import are_evenly_spaced
+from epicyclic.oilmodel.model import read_oil_model
 
 __all__ = ["cross_check"]
 
@@ -37,7 +39,9 @@ MOST_COEFFICIENTS = 5_000_000
 """Largest number of influence coefficients for each contact line: 40 MB, for three lines 120 MB."""
 
 
-def cross_check(sections: Mapping[str, Table], given: Collection[str]) -> list[Problem]:
+def cross_check(
+    sections: Mapping[str, Table], given: Collection[str], folder: Path
+) -> list[Problem]:
     """Problems between keys and tables of a case.
 
     Parameters
@@ -46,11 +50,14 @@ def cross_check(sections: Mapping[str, Table], given: Collection[str]) -> list[P
         The tables that are valid by themselves.
     given : collection of str
         Names of the tables that the case has, valid or not.
+    folder : Path
+        Where the files lie that the case names.
     """
     problems: list[Problem] = []
     models = sections.get("models")
     if isinstance(models, GearPairModels):
         problems += _check_friction_model(models, {*given, *sections})
+        problems += _check_oil_model(models, folder)
     if isinstance(models, PlanetaryModels):
         problems += _check_planet_tilt(models, {*given, *sections})
     for check, needed in _CHECKS:
@@ -240,6 +247,36 @@ def _check_friction_model(models: GearPairModels, given: Collection[str]) -> lis
             "Add [friction_table], or choose another model.",
         )
     ]
+
+
+def _check_oil_model(models: GearPairModels, folder: Path) -> list[Problem]:
+    """A fitted model needs its file, and in it what is asked of it."""
+    needed = {"friction": "friction", "rolling": "rolling_loss", "bearing": "bearing_rolling_loss"}
+    asked = {
+        key: quantity for key, quantity in needed.items() if getattr(models, key, "") == "fitted"
+    }
+    if not asked:
+        return []
+    if models.oil_model is None:
+        return [
+            Problem(
+                f"models.{key}", '"fitted"', "needs a file of fitted models.",
+                "Give models.oil_model, a file of 'epicyclic oil characterise'.",
+            )
+            for key in asked
+        ]  # fmt: skip
+    try:
+        fits = read_oil_model(folder / models.oil_model).fits
+    except InputError as error:
+        return list(error.problems)
+    problems = []
+    for key, quantity in asked.items():
+        forms = [fitted.form for fitted in fits[quantity].forms] if quantity in fits else []
+        if models.fitted_form not in forms:
+            allowed = f"has no {quantity.replace('_', ' ')} of the form {models.fitted_form}."
+            remedy = f"Choose another models.{key} or models.fitted_form."
+            problems.append(Problem("models.oil_model", models.oil_model, allowed, remedy))
+    return problems
 
 
 def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Problem]:

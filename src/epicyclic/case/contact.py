@@ -11,7 +11,7 @@ from pydantic import Field
 
 from epicyclic.case.plain import plain, with_value
 from epicyclic.case.reading import read_file
-from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Table
+from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Stress, Table
 from epicyclic.case.validation import validate
 from epicyclic.ehl.conditions import Barus, ContactOil, LineContact, Roelands, TwoSlope
 from epicyclic.ehl.rough import NODES, AsperityContact
@@ -37,7 +37,6 @@ RollingSpeed = Annotated[float, Quantity("a speed", "m/s", "m/s", low=0.0, high=
 LoadPressure = Annotated[
     float, Quantity("a pressure", "Pa", "GPa", low=0.0, high=100.0, open_low=True)
 ]
-Stress = Annotated[float, Quantity("a stress", "Pa", "MPa", low=0.0, high=1e6, open_low=True)]
 
 PERIOD = 200.0
 """Length of a generated profile, over its correlation length. [1]"""

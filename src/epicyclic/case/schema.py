@@ -549,6 +549,8 @@ FrictionName = Literal[
     "xu-2007",
     "constant",
     "table",
+    "fitted",
+    "ehl-direct",
 ]
 
 
@@ -597,6 +599,28 @@ class FrictionTable(Table):
         return (len(self.friction), lengths.pop() if len(lengths) == 1 else -1)
 
 
+Stress = Annotated[float, Quantity("a stress", "Pa", "MPa", low=0.0, high=1e6, open_low=True)]
+
+
+class ContactSolver(Table):
+    """How the contacts of a mesh are solved for friction = ehl-direct."""
+
+    eyring_stress: Stress = Field(
+        default=_as_text("5 MPa"),
+        description="Stress beyond which the oil thins (estimate; mineral oils 2 to 10 MPa).",
+    )
+    correlation_length: SmallLength = Field(
+        default=_as_text("20 um"), description="Of the roughness of both flanks (estimate)."
+    )
+    seed: int = Field(default=1, ge=0, description="Of the generated profiles.")
+    error: Number = Field(
+        default=0.05, gt=0, le=1, description="Mean error wanted at contacts that take no part."
+    )
+    most_contacts: int = Field(
+        default=48, ge=12, le=5000, description="Solved for one mesh at most."
+    )
+
+
 class GearPairModels(Table):
     """Which method computes what."""
 
@@ -605,6 +629,8 @@ class GearPairModels(Table):
         "boundary_friction": None,
         "fluid_friction": None,
         "rolling": None,
+        "oil_model": None,
+        "fitted_form": None,
         "load_distribution": None,
         "mesh": None,
         "pocketing": None,
@@ -615,7 +641,8 @@ class GearPairModels(Table):
 
     friction: FrictionName = Field(
         default="auto",
-        description="auto: mixed-ehl for the fluid it was made for, else schlenk.",
+        description="auto: mixed-ehl for the fluid it was made for, else schlenk; ehl-direct: the "
+        "contacts of the mesh solved.",
     )
     constant_friction: Number = Field(
         default=0.04, ge=0, le=1, description="For friction = constant."
@@ -633,9 +660,17 @@ class GearPairModels(Table):
         le=1,
         description="Of separated contact, for matsumoto and doleschel (estimate, as above).",
     )
-    rolling: Literal["auto", "mixed-ehl", "goksem-hargreaves"] = Field(
+    rolling: Literal["auto", "mixed-ehl", "goksem-hargreaves", "fitted"] = Field(
         default="auto",
         description="auto: mixed-ehl for the fluid it was made for, else goksem-hargreaves.",
+    )
+    oil_model: str | None = Field(
+        default=None,
+        description="For fitted: the file of 'epicyclic oil characterise', from the folder of the "
+        "case.",
+    )
+    fitted_form: Literal["structured", "regression"] = Field(
+        default="structured", description="For fitted: which form of the file."
     )
     load_distribution: Literal["uniform", "minimum-energy", "compliance"] = Field(
         default="compliance",
@@ -656,7 +691,7 @@ class GearPairModels(Table):
 class PlanetaryModels(GearPairModels):
     """Which method computes what, with the planet bearing."""
 
-    bearing: Literal["auto", "mixed-ehl", "palmgren"] = Field(
+    bearing: Literal["auto", "mixed-ehl", "palmgren", "fitted"] = Field(
         default="auto", description="auto: mixed-ehl for the fluid it was made for, else palmgren."
     )
     bearing_viscous: Literal["harris"] = "harris"

@@ -26,6 +26,8 @@ from epicyclic.cli.exit_codes import (
 from epicyclic.cli.listing import cases, init, oils, schema
 from epicyclic.cli.many import loss_map, sweep
 from epicyclic.cli.pockets import pockets, study
+from epicyclic.cli.oil import oil
+from epicyclic.cli.pockets import pockets
 from epicyclic.cli.rexs import rexs
 from epicyclic.cli.show import plot, report
 from epicyclic.cli.single import check, friction, mesh, run
@@ -58,6 +60,7 @@ COMMANDS = (
     pockets,
     study,
     contact,
+    oil,
     friction,
     compare,
     validate,

@@ -20,8 +20,8 @@ __all__ = ["progress_bar"]
 
 
 @contextmanager
-def progress_bar(noun: str) -> Iterator[Callable[[int, int], None]]:
-    """A callback ``(done, total)`` that draws a bar with the time left.
+def progress_bar(noun: str) -> Iterator[Callable[..., None]]:
+    """A callback ``(done, total, failed=0)`` that draws a bar with the time left.
 
     ``EPICYCLIC_PROGRESS=0`` turns it off.
     """
@@ -33,10 +33,16 @@ def progress_bar(noun: str) -> Iterator[Callable[[int, int], None]]:
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),
+        TextColumn("{task.fields[failures]}"),
         console=console,
         transient=True,
         disable=not console.is_terminal or os.environ.get("EPICYCLIC_PROGRESS") == "0",
     )
     with bar:
-        task = bar.add_task(noun, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+        task = bar.add_task(noun, total=None, failures="")
+
+        def update(done: int, total: int, failed: int = 0) -> None:
+            failures = f"{failed} not converged" if failed else ""
+            bar.update(task, completed=done, total=total, failures=failures)
+
+        yield update

@@ -57,7 +57,7 @@ def line_load_at_pressure(p_h: Real, r_eq: Real, e_eq: float) -> Real:
     return load
 
 
-def pan_hamrock_minimum_film(u: Real, g: float, w: Real) -> Real:
+def pan_hamrock_minimum_film(u: Real, g: Real | float, w: Real) -> Real:
     """h_min/R_eq = 1.714 U^0.694 G^0.568 W^-0.128.
 
     Theory (C10).
@@ -69,7 +69,7 @@ def pan_hamrock_minimum_film(u: Real, g: float, w: Real) -> Real:
     return film
 
 
-def pan_hamrock_central_film(u: Real, g: float, w: Real) -> Real:
+def pan_hamrock_central_film(u: Real, g: Real | float, w: Real) -> Real:
     """h_c/R_eq = 2.922 U^0.692 G^0.470 W^-0.166. Pan and Hamrock (1989), as above. Theory (C11)."""
     film: Real = 2.922 * u**0.692 * g**0.470 * w ** (-0.166)
     return film

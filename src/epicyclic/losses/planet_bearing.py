@@ -17,6 +17,7 @@ from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.line_contact import hertz_pressure, line_load_at_pressure
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss_at
 from epicyclic.kernels.roller_bearing import solve_roller_loads
+from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.mixed_ehl_groups import (
     PRESSURE_VISCOSITY_RANGE,
     VISCOSITY_RANGE,
@@ -31,6 +32,7 @@ from epicyclic.losses.validity import (
 )
 from epicyclic.losses.viscous import SPEED_PARAMETER, speed_parameter
 from epicyclic.lubricant.properties import OilState
+from epicyclic.oilmodel.states import ContactStates
 from epicyclic.units import (
     CELSIUS,
     GIGAPASCAL,
@@ -43,6 +45,7 @@ __all__ = [
     "BearingLoss",
     "RollerBearing",
     "RollerLoads",
+    "fitted_rolling_loss",
     "mixed_ehl_rolling_loss",
     "palmgren_flags",
     "palmgren_loss",
@@ -333,6 +336,37 @@ def mixed_ehl_rolling_loss(
     use = ModelUse("bearing", "mixed-ehl", "planet bearing")
     flags = check_ranges(use, NEEDLE_RANGES, values)
     flags += check_ranges(use, (_PRESSURE,), {"hertz_pressure": pressure}, local)
+    return BearingLoss(float(local.sum()), flags)
+
+
+def fitted_rolling_loss(
+    bearing: RollerBearing, loads: RollerLoads, speed: float, oil: OilState, model: FittedRolling
+) -> BearingLoss:
+    """As `mixed_ehl_rolling_loss`, with rolling losses fitted to simulated contacts. [W]
+
+    Theory (O9).
+    """
+    intensity = loads.intensity[loads.intensity > 0]
+    if intensity.size == 0 or speed == 0:
+        return BearingLoss(0.0)
+    ones = np.ones(intensity.size)
+    modulus, radius = bearing.equivalent_modulus, bearing.outer_radius
+    states = ContactStates(
+        slide_to_roll_ratio=0.0 * ones,
+        rolling_speed=bearing.rolling_speed(speed) * ones,
+        radius=radius * ones,
+        hertz_pressure=hertz_pressure(intensity, radius * ones, modulus),
+        roughness1=bearing.race_roughness * ones,
+        roughness2=bearing.roller_roughness * ones,
+        dynamic_viscosity=oil.dynamic_viscosity * ones,
+        pressure_viscosity=oil.pressure_viscosity * ones,
+        equivalent_modulus=modulus,
+    )
+    local = bearing.slice_width * model.density(states)
+    flags = check_ranges(
+        ModelUse("bearing", model.name, "planet bearing"), model.ranges,
+        {item.name: item.found_in(states) for item in model.ranges}, local,
+    )  # fmt: skip
     return BearingLoss(float(local.sum()), flags)
 
 

@@ -32,9 +32,12 @@ class RollingModel(Protocol):
 
     name: ClassVar[str]
     title: ClassVar[str]
-    source: ClassVar[str]
     made_for: ClassVar[RegressionFluid | None]
-    ranges: ClassVar[tuple[Range, ...]]
+
+    @property
+    def source(self) -> str: ...
+    @property
+    def ranges(self) -> tuple[Range, ...]: ...
 
     def loss_density(self, contact: MeshContact) -> FloatArray:
         """Rolling loss per contact length at each point, shape (n,). [W/m]"""

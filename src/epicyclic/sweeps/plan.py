@@ -44,7 +44,9 @@ _LARGEST_WHOLE = 2**53
 """Larger whole numbers are no exact coordinates."""
 
 # Tables whose keys leave geometry alone: varied innermost, so that geometry is built once.
-_OPERATING_TABLES = ("operation", "lubricant", "surroundings", "models", "losses")
+_OPERATING_TABLES = (
+    "operation", "lubricant", "surroundings", "models", "contact_solver", "losses",
+)  # fmt: skip
 
 
 class Points(Protocol):
@@ -122,8 +124,16 @@ class Plan:
             "case": self.case.inputs(),
             "axes": [[axis.key, axis.coordinate] for axis in self.axes],
             "version": metadata.version("epicyclic"),
+            "oil_model": self._oil_model(),
         }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
+
+    def _oil_model(self) -> str | None:
+        """Content of the file of fitted models, which may change while its name does not."""
+        file = self.case.models.oil_model
+        if file is None:
+            return None
+        return hashlib.sha256((self.case.folder / file).read_bytes()).hexdigest()
 
 
 @dataclass(frozen=True, slots=True)

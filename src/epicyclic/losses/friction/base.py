@@ -43,9 +43,10 @@ class FrictionModel(Protocol):
 
     name: ClassVar[str]
     title: ClassVar[str]
-    source: ClassVar[str]
     made_for: ClassVar[RegressionFluid | None]
 
+    @property
+    def source(self) -> str: ...
     @property
     def ranges(self) -> tuple[Range, ...]:
         """Where the model was made; leaving it is flagged."""

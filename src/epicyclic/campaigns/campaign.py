@@ -1,0 +1,205 @@
+"""A campaign: an oil, its designs, and one simulated contact for each point."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from epicyclic import library
+from epicyclic.analysis.contact import ContactResult, solve_contact
+from epicyclic.campaigns.design import AXES, BEARING_TABLE, GEAR_TABLE, Design, quantity_of_axis
+from epicyclic.case.contact import ContactCase, load_contact_case
+from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.plain import plain, without
+from epicyclic.case.reading import read_file
+from epicyclic.elasticity.threads import one_thread
+from epicyclic.errors import InputError, Problem
+from epicyclic.sweeps.journal import Row
+from epicyclic.sweeps.work import guarded
+
+__all__ = ["Campaign", "make_campaign", "oil_tables"]
+
+SCHEMA = 1
+"""Version of the files of a campaign."""
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """What is simulated.
+
+    Attributes
+    ----------
+    settings : str
+        The tables of a line contact that all points share, as JSON: oil, shear stress, spectra.
+    designs : tuple of Design
+    seed : int
+        Every profile of every point follows from it and the number of the point.
+    """
+
+    settings: str
+    designs: tuple[Design, ...]
+    seed: int = 0
+
+    @property
+    def size(self) -> int:
+        """Number of simulations."""
+        return sum(design.count for design in self.designs)
+
+    def order(self) -> Sequence[int]:
+        """Numbers of all simulations."""
+        return range(self.size)
+
+    def part(self, index: int) -> str:
+        """What the contact is one of: ``"gear"`` or ``"bearing"``."""
+        return self._place(index)[0].part
+
+    def point(self, index: int) -> dict[str, float]:
+        """Conditions of simulation number `index`, in display units."""
+        design, row = self._place(index)
+        return {"slide_to_roll_ratio": 0.0} | design.point(row)
+
+    def case(self, index: int) -> ContactCase:
+        """The line contact of simulation number `index`."""
+        changes = _varied(self.point(index))
+        seeds = np.random.SeedSequence([self.seed, index]).generate_state(2)
+        for surface, seed in zip(("surface1", "surface2"), seeds, strict=True):
+            changes[f"{surface}.seed"] = int(seed)
+        return load_contact_case(json.loads(self.settings), changes)
+
+    def solve(self, index: int) -> Row:
+        """Results of one simulation; the same bits wherever and whenever it runs."""
+        with one_thread():
+            return guarded(lambda: _row(solve_contact(self.case(index))))
+
+    def describe(self) -> dict[str, Any]:
+        """As plain data: equal for equal results."""
+        return {
+            "schema": SCHEMA,
+            "version": metadata.version("epicyclic"),
+            "settings": json.loads(self.settings),
+            "designs": [design.describe() for design in self.designs],
+            "seed": self.seed,
+        }
+
+    def fingerprint(self) -> str:
+        """Follows everything that results follow."""
+        text = json.dumps(self.describe(), sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+    def _place(self, index: int) -> tuple[Design, int]:
+        row = index
+        for design in self.designs:
+            if row < design.count:
+                return design, row
+            row -= design.count
+        raise IndexError(index)
+
+
+def make_campaign(
+    oil: str | Path | Mapping[str, Any],
+    *,
+    size: int | None = None,
+    bearing_size: int | None = None,
+    seed: int = 0,
+    ranges: Mapping[str, tuple[float, float]] | None = None,
+    changes: Mapping[str, Any] | None = None,
+) -> Campaign:
+    """Plan the simulations for an oil.
+
+    Parameters
+    ----------
+    oil : str, Path or mapping
+        A name of the oil library, a TOML file with its properties, or these.
+    size : int, optional
+        Number of gear contacts in a space-filling design; default: the full table.
+    bearing_size : int, optional
+        Number of bearing contacts in a space-filling design, 0 for none; default: the full table,
+        or with `size` none.
+    seed : int
+        Of designs and profiles.
+    ranges : mapping of str to (float, float), optional
+        Other limits of gear axes, in display units; for a space-filling design.
+    changes : mapping of str to object, optional
+        Keys of a line contact that hold for all points, ``"lubricant.eyring_stress"``.
+
+    Raises
+    ------
+    InputError
+        With every problem of oil, ranges and changes.
+    """
+    designs = []
+    if size is None:
+        designs.append(GEAR_TABLE)
+    elif size > 0:
+        designs.append(GEAR_TABLE.within(ranges or {}).filling(size, seed))
+    if bearing_size is None and size is None:
+        designs.append(BEARING_TABLE)
+    elif bearing_size:
+        designs.append(BEARING_TABLE.filling(bearing_size, seed))
+    for design in designs:
+        design.check()
+    given = _varied(designs[0].point(0)) | {"lubricant.oil": oil_tables(oil)} | dict(changes or {})
+    tables = plain(load_contact_case({}, given))
+    for key in (*AXES.values(), "surface1.seed", "surface2.seed"):
+        tables = without(tables, key.split("."))
+    return Campaign(json.dumps(tables, sort_keys=True), tuple(designs), seed)
+
+
+def oil_tables(oil: str | Path | Mapping[str, Any]) -> Any:
+    """The properties in a file; a name or tables are given back as they are."""
+    if isinstance(oil, Mapping) or str(oil) in library.oil_names():
+        return oil
+    path = Path(oil)
+    if path.suffix != ".toml":
+        remedy = did_you_mean(str(oil), library.oil_names()) or "See 'epicyclic oils'."
+        problem = Problem("OIL", str(oil), "is neither a .toml file nor a built-in oil.", remedy)
+        raise InputError([problem], "the command")
+    tables, problems = read_file(path)
+    if problems:
+        raise InputError(problems, str(path))
+    return {"name": path.stem} | tables
+
+
+def _varied(point: Mapping[str, float]) -> dict[str, Any]:
+    """The keys of a line contact that a point sets, as a file has them."""
+    units = {name: quantity_of_axis(name).display for name in point}
+    return {
+        AXES[name]: f"{value!r} {units[name]}" if units[name] else value
+        for name, value in point.items()
+    }
+
+
+def _row(result: ContactResult) -> Row:
+    """What is kept of a simulation."""
+    smooth, rough = result.smooth, result.rough
+    numbers = {
+        "friction": smooth.friction_coefficient,
+        "friction_error": 0.0,
+        "rolling_loss": smooth.rolling_loss,
+        "unsolved_share": 0.0,
+        "smooth_friction": smooth.friction_coefficient,
+        "smooth_rolling_loss": smooth.rolling_loss,
+        "smooth_central_film": smooth.central_film,
+        "smooth_minimum_film": smooth.minimum_film,
+    }
+    if rough is not None:
+        numbers |= {
+            "friction": rough.friction_coefficient,
+            "friction_error": rough.friction_error,
+            "rolling_loss": rough.rolling_loss,
+            "unsolved_share": rough.unsolved_steps / max(rough.steps, 1),
+            "asperity_load_share": rough.asperity_load_share,
+            "asperity_friction_share": rough.asperity_friction_share,
+            "contact_share": rough.contact_share,
+            "mean_least_film": rough.mean_least_film,
+        }
+    finite = {name: float(value) for name, value in numbers.items() if math.isfinite(value)}
+    return Row(str(result.status), result.message, numbers=finite)

@@ -1,0 +1,133 @@
+"""Commands on oils to be characterised: characterise, fit, show."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from epicyclic.cli.options import parse_changes, set_option
+from epicyclic.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    from epicyclic.campaigns.folder import CampaignFolder
+
+__all__ = ["oil"]
+
+
+@click.group()
+def oil() -> None:
+    """Characterise an oil by simulated contacts, and fit friction and rolling loss to them."""
+
+
+@oil.command()
+@click.argument("source", metavar="OIL")
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Folder of simulations and models.",
+)
+@click.option(
+    "--size",
+    type=click.IntRange(1),
+    help="Gear contacts in a space-filling design; default: the 33,600 of Talbot (2012).",
+)
+@click.option(
+    "--bearing-size",
+    type=click.IntRange(0),
+    help="Bearing contacts likewise; default: his 2,880, or none with --size.",
+)
+@click.option("--seed", type=click.IntRange(0), default=0, help="Of points and profiles.")
+@click.option(
+    "--range",
+    "ranges",
+    metavar="NAME=LOW:HIGH",
+    multiple=True,
+    help='Limits of the gear contacts, as in "hertz_pressure=0.3:1.5 GPa"; with --size.',
+)
+@set_option
+@click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
+@click.option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster, tcp://host:8786.")
+def characterise(
+    source: str,
+    output: Path,
+    size: int | None,
+    bearing_size: int | None,
+    seed: int,
+    ranges: tuple[str, ...],
+    changes: tuple[str, ...],
+    jobs: int | None,
+    dask: str | None,
+) -> None:
+    """Simulate contacts of OIL, a name of 'epicyclic oils' or a TOML file, and fit models.
+
+    Finished simulations are kept in DIR at once; the same command goes on where it stopped. KEY of
+    --set is one of a line contact, as in --set "lubricant.eyring_stress=8 MPa".
+
+    \b
+    epicyclic oil characterise atf-talbot-2012 --size 512 --seed 1 -o atf
+    epicyclic run talbot-2012 --set models.friction=fitted --set models.oil_model=atf/model.json
+    """
+    from epicyclic.campaigns.campaign import make_campaign
+    from epicyclic.campaigns.design import parse_ranges
+    from epicyclic.campaigns.folder import CampaignFolder
+    from epicyclic.cli.progress import progress_bar
+
+    if ranges and size is None:
+        problem = Problem("--range", ranges[0], "is for a design of a --size.", "Give --size.")
+        raise InputError([problem], "the command")
+    campaign = make_campaign(
+        source, size=size, bearing_size=bearing_size, seed=seed,
+        ranges=parse_ranges(ranges), changes=parse_changes(changes),
+    )  # fmt: skip
+    folder = CampaignFolder(output, campaign)
+    folder.prepare()
+    try:
+        with progress_bar("contacts") as progress:
+            folder.run(jobs=jobs, cluster=dask, progress=progress)
+    except (KeyboardInterrupt, Exception):
+        kept = len(folder.journal.read())
+        click.echo(
+            f"{kept} of {campaign.size} simulations kept in {output}; give the same command again "
+            "to go on.",
+            err=True,
+        )
+        raise
+    _fit(folder)
+
+
+@oil.command()
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+def fit(folder: Path) -> None:
+    """Fit models to the simulations in DIR again."""
+    from epicyclic.campaigns.folder import open_folder
+
+    _fit(open_folder(folder))
+
+
+@oil.command()
+@click.argument("model", metavar="MODEL", type=click.Path(path_type=Path))
+def show(model: Path) -> None:
+    """Show what a fitted MODEL file holds, and its errors."""
+    from epicyclic.oilmodel.model import read_oil_model
+    from epicyclic.report.oil_model_table import oil_model_tables
+    from epicyclic.report.tables import terminal
+
+    terminal().print(oil_model_tables(read_oil_model(model)))
+
+
+def _fit(folder: CampaignFolder) -> None:
+    """Fit, write and show the models."""
+    from epicyclic.campaigns.fit import fit_campaign
+    from epicyclic.campaigns.folder import write_whole
+    from epicyclic.report.oil_model_table import oil_model_tables
+    from epicyclic.report.tables import terminal
+
+    model = fit_campaign(folder)
+    write_whole(folder.model, model.model_dump_json(indent=2) + "\n")
+    terminal().print(oil_model_tables(model))
+    click.echo(f"Wrote {folder.model}.")

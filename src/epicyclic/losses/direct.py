@@ -1,0 +1,256 @@
+"""Friction of a mesh from its own line contacts, solved one by one.
+
+The contacts of a mesh differ in two quantities only: position on the path of contact, which sets
+curvature, speeds and slip, and load. So a few dozen solved contacts, spread over what occurs, are
+enough; between them the ratio of the friction to a closed form is interpolated, and others, which
+are drawn by the sliding power and take no part, tell the error. Theory (O10).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.ehl.box import SOLVER_BOX
+from epicyclic.ehl.conditions import ContactOil, LineContact, Roelands
+from epicyclic.ehl.rough import LARGEST_UNSOLVED_SHARE, AsperityContact, solve_rough
+from epicyclic.ehl.roughness import generate_profile
+from epicyclic.ehl.steady import solve_smooth
+from epicyclic.elasticity.threads import one_thread
+from epicyclic.errors import ConvergenceError
+from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.fitted import contact_states
+from epicyclic.losses.validity import Range, RegressionFluid
+from epicyclic.oilmodel.structured import eyring_friction
+from epicyclic.status import Status
+from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, MILLIMETRE, NUMBER, Quantity
+
+__all__ = ["DirectSettings", "EhlDirect"]
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+
+BATCH = 12
+"""Contacts solved before the error is looked at, and each time it is too large."""
+CHECKS = 8
+"""Contacts that only tell the error."""
+SMALLEST_SLIP = 0.05
+"""Slide-to-roll ratio below which contacts are interpolated only: they cost no power, and their
+small friction is long not stationary. [1]"""
+SMOOTH_FILM_RATIO = 10.0
+"""Film ratio from which on a whole mesh is solved as smooth. [1]"""
+LARGEST_ERROR = 0.10
+"""Standard error of a friction over it above which a contact is left out. [1]"""
+LARGEST_LEFT_OUT = 0.25
+"""Share of contacts left out above which there is no result. [1]"""
+SMOOTHING = 1e-2
+"""Of the interpolation, about the scatter of 2 % of solved contacts squared over their variance."""
+PROFILE_LENGTHS = 200.0
+"""Period of the profiles over their correlation length. [1]"""
+
+
+def _range(name: str, label: str, unit: Quantity) -> Range:
+    """Where the solver of line contacts is tested."""
+    scale, _ = unit.scale_and_offset()
+    low, high = SOLVER_BOX[name]
+    return Range(name, label, low * scale, high * scale, unit, "tests of the solver")
+
+
+@dataclass(frozen=True, slots=True)
+class DirectSettings:
+    """Numbers that the solver takes from the case.
+
+    Attributes
+    ----------
+    eyring_stress : float
+        [Pa]
+    boundary_friction : float
+        Where surfaces touch. [1]
+    correlation_length : float
+        Of both flanks. [m]
+    seed : int
+    error : float
+        Wanted mean error at contacts that take no part. [1]
+    most_contacts : int
+        Solved for a mesh, those for the error not counted.
+    """
+
+    eyring_stress: float
+    boundary_friction: float
+    correlation_length: float
+    seed: int
+    error: float
+    most_contacts: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Solved:
+    """Friction at every point of a mesh, and what to know about it."""
+
+    friction: FloatArray
+    remark: str
+
+
+@dataclass(frozen=True, slots=True)
+class EhlDirect:
+    """Line contacts of the mesh solved, and interpolated between them.
+
+    Theory (O10).
+    """
+
+    name: ClassVar = "ehl-direct"
+    title: ClassVar = "line contacts of the mesh, solved"
+    source: ClassVar = "solver for line contacts of this package"
+    made_for: ClassVar[RegressionFluid | None] = None
+    ranges: ClassVar[tuple[Range, ...]] = (
+        _range("radius", "equivalent radius", MILLIMETRE),
+        _range("hertz_pressure", "Hertz pressure", GIGAPASCAL),
+        _range("rolling_speed", "rolling speed", METRE_PER_SECOND),
+        _range("slide_to_roll_ratio", "slide-to-roll ratio", NUMBER),
+    )
+
+    settings: DirectSettings
+
+    def coefficient(self, contact: MeshContact) -> FloatArray:
+        """See the class. [1]
+
+        Raises
+        ------
+        ConvergenceError
+            If too many contacts have no solution.
+        """
+        return _solve_mesh(contact, self.settings).friction
+
+    def remarks(self, contact: MeshContact) -> tuple[str, ...]:
+        """How many contacts were solved, how many not, and the error."""
+        return (_solve_mesh(contact, self.settings).remark,)
+
+
+@lru_cache(maxsize=16)
+def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
+    states = contact_states(contact)
+    base = eyring_friction(states, settings.eyring_stress)
+    place = np.stack([_spread(contact.path), _spread(np.log(contact.line_load))], axis=1)
+    power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
+    sliding = np.flatnonzero(states.slide_to_roll_ratio >= SMALLEST_SLIP)
+    usable = sliding if sliding.size > BATCH + CHECKS else np.arange(power.size)
+    checks = _quantiles(contact.path, power, usable)
+    others = np.setdiff1d(usable, checks)
+    order = others[_spread_out(place[others], settings.most_contacts)]
+    known = _ratios(contact, settings, checks, base)
+    trusted = known[np.isfinite(known)]
+    ratio = np.empty(0)
+    error = bias = np.inf
+    while error > settings.error and ratio.size < order.size:
+        more = order[ratio.size : ratio.size + BATCH]
+        ratio = np.append(ratio, _ratios(contact, settings, more, base))
+        found = np.isfinite(ratio)
+        if found.sum() < 4:
+            continue
+        guess = _interpolated(place[order[: ratio.size][found]], ratio[found], place[checks])
+        off = guess[np.isfinite(known)] / trusted - 1
+        error, bias = float(np.mean(np.abs(off))), float(np.mean(off))
+    solved = np.append(order[: ratio.size], checks)
+    ratios = np.append(ratio, known)
+    found = np.isfinite(ratios)
+    if not np.isfinite(error) or np.mean(~found) > LARGEST_LEFT_OUT:
+        raise ConvergenceError(
+            f"{np.count_nonzero(~found)} of {found.size} contacts of the {contact.mesh.name} have "
+            "no solution: use another models.friction."
+        )
+    friction = base * _interpolated(place[solved[found]], ratios[found], place)
+    missed = "" if error <= settings.error else f", more than the {settings.error:.1%} wanted"
+    return _Solved(
+        friction,
+        f"models.friction ehl-direct: {found.size} contacts of the {contact.mesh.name} solved, "
+        f"{np.count_nonzero(~found)} of them without convergence and left out; error of "
+        f"interpolated contacts {error:.1%} in the mean{missed}, of their power {bias:+.1%}.",
+    )
+
+
+def _spread(values: FloatArray) -> FloatArray:
+    """`values` over -1 to 1."""
+    low, high = values.min(), values.max()
+    return np.zeros(values.shape) if high == low else 2 * (values - low) / (high - low) - 1
+
+
+def _quantiles(path: FloatArray, power: FloatArray, usable: IntArray) -> IntArray:
+    """Points at even shares of the sliding power along the path."""
+    order = usable[np.argsort(path[usable], kind="stable")]
+    share = np.cumsum(power[order]) / power[order].sum()
+    wanted = (np.arange(CHECKS) + 0.5) / CHECKS
+    return np.unique(order[np.minimum(np.searchsorted(share, wanted), order.size - 1)])
+
+
+def _spread_out(place: FloatArray, count: int) -> IntArray:
+    """Points each as far as possible from those before it, the first one in the middle."""
+    chosen = [int(np.argmin((place**2).sum(axis=1)))]
+    distance = np.full(len(place), np.inf)
+    while len(chosen) < min(count, len(place)):
+        distance = np.minimum(distance, ((place - place[chosen[-1]]) ** 2).sum(axis=1))
+        chosen.append(int(np.argmax(distance)))
+    return np.array(chosen)
+
+
+def _interpolated(known: FloatArray, ratio: FloatArray, place: FloatArray) -> FloatArray:
+    """Ratios at `place` by thin-plate splines of their logarithm, within what was found."""
+    from scipy.interpolate import RBFInterpolator
+
+    spline = RBFInterpolator(known, np.log(ratio), smoothing=SMOOTHING)
+    values: FloatArray = np.exp(np.clip(spline(place), np.log(ratio.min()), np.log(ratio.max())))
+    return values
+
+
+def _ratios(
+    contact: MeshContact, settings: DirectSettings, points: IntArray, base: FloatArray
+) -> FloatArray:
+    """Friction over `base` at some points; not a number where there is no solution."""
+    oil = ContactOil(
+        contact.dynamic_viscosity, Roelands(contact.pressure_viscosity), settings.eyring_stress
+    )
+    smooth = bool(contact.film_ratio.min() > SMOOTH_FILM_RATIO)
+    found = []
+    for i in points:
+        slide = float(contact.sliding_speed[i])
+        roll = float(contact.rolling_speed[i])
+        line = LineContact(
+            line_load=float(contact.line_load[i]),
+            radius=float(contact.radius[i]),
+            equivalent_modulus=contact.flanks.equivalent_modulus,
+            speed1=roll + slide / 2,
+            speed2=roll - slide / 2,
+            oil=oil,
+        )
+        roughness = (0.0, 0.0) if smooth else contact.roughness
+        seeds = np.random.SeedSequence([settings.seed, int(i)]).generate_state(2)
+        found.append(abs(_friction(line, roughness, (int(seeds[0]), int(seeds[1])), settings)))
+    return np.array(found) / base[points]
+
+
+@lru_cache(maxsize=4096)
+def _friction(
+    line: LineContact,
+    roughness: tuple[float, float],
+    seeds: tuple[int, int],
+    settings: DirectSettings,
+) -> float:
+    """Friction of one contact; not a number without a solution. [1]"""
+    with one_thread():
+        if max(roughness) == 0:
+            smooth = solve_smooth(line)
+            converged = smooth.status is Status.CONVERGED
+            return smooth.friction_coefficient if converged else np.nan
+        length = settings.correlation_length
+        one, two = (
+            generate_profile(rms, length, PROFILE_LENGTHS * length, seed)
+            for rms, seed in zip(roughness, seeds, strict=True)
+        )
+        asperities = AsperityContact(friction=settings.boundary_friction)
+        rough = solve_rough(line, one, two, asperities)
+    known = rough.friction_error <= LARGEST_ERROR * abs(rough.friction_coefficient)
+    unsolved = rough.unsolved_steps > LARGEST_UNSOLVED_SHARE * max(rough.steps, 1)
+    return rough.friction_coefficient if known and not unsolved else np.nan

@@ -1,0 +1,103 @@
+"""Fits of all forms of a quantity, with errors at contacts that they had not seen."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.oilmodel.model import FORMS, REGIMES, FitError, FittedForm, Form, QuantityFit
+from epicyclic.oilmodel.states import CONDITIONS, ContactStates
+
+__all__ = ["fit_quantity"]
+
+FloatArray = NDArray[np.float64]
+
+FOLDS = 10
+"""Parts of the contacts, each of which is predicted from the others."""
+DIGITS = 12
+"""Significant digits of coefficients and errors in a file: what is beyond them is rounding."""
+
+
+def fit_quantity(
+    quantity: str, unit: str, states: ContactStates, target: FloatArray, weight: FloatArray
+) -> QuantityFit:
+    """Every form of a quantity. Theory (O8).
+
+    Parameters
+    ----------
+    quantity : str
+        A key of `FORMS`.
+    unit : str
+    states : ContactStates
+    target, weight : ndarray, shape (n,)
+        Simulated values above zero, and what each counts in the sum of squares.
+
+    Raises
+    ------
+    ValueError
+        If no form can be fitted, with the reason.
+    """
+    fitted, left_out = [], {}
+    for name, form in FORMS[quantity].items():
+        try:
+            coefficients = form.fit(states, target, weight)
+            errors = _cross_validated(form, states, target, weight)
+        except (ValueError, np.linalg.LinAlgError) as error:
+            left_out[name] = str(error)
+            continue
+        fitted.append(
+            FittedForm(
+                form=name,
+                coefficients=tuple(map(_rounded, coefficients)),
+                errors=_errors_of(errors, states.film_ratio),
+            )
+        )
+    if not fitted:
+        raise ValueError("; ".join(f"{name}: {reason}" for name, reason in left_out.items()))
+    return QuantityFit(
+        unit=unit,
+        contacts=target.size,
+        domain={name: _limits(getattr(states, name)) for name in CONDITIONS},
+        forms=tuple(fitted),
+        left_out=left_out,
+    )
+
+
+def _cross_validated(
+    form: Form, states: ContactStates, target: FloatArray, weight: FloatArray
+) -> FloatArray:
+    """|computed/simulated - 1| at each contact, fitted without its part, shape (n,)."""
+    part = np.random.default_rng(0).permutation(target.size) % FOLDS
+    error = np.empty(target.size)
+    for number in range(FOLDS):
+        unseen = part == number
+        if not unseen.any():
+            continue
+        coefficients = form.fit(states.taken(~unseen), target[~unseen], weight[~unseen])
+        error[unseen] = form.value(states.taken(unseen), coefficients) / target[unseen] - 1
+    return np.abs(error)
+
+
+def _errors_of(error: FloatArray, film_ratio: FloatArray) -> tuple[FitError, ...]:
+    """Errors in every range of film ratios that has contacts."""
+    found = []
+    for name, (low, high) in REGIMES.items():
+        here = error[(film_ratio > low) & (film_ratio <= high)]
+        if here.size:
+            found.append(
+                FitError(
+                    regime=name,
+                    contacts=here.size,
+                    median=_rounded(np.median(here)),
+                    largest_of_90_percent=_rounded(np.quantile(here, 0.9)),
+                )
+            )
+    return tuple(found)
+
+
+def _limits(values: FloatArray) -> tuple[float, float]:
+    return _rounded(values.min()), _rounded(values.max())
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{DIGITS}g}")

@@ -1,0 +1,225 @@
+"""The file of the models fitted for an oil: it says what was simulated, what fits, and how well."""
+
+from __future__ import annotations
+
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from epicyclic.errors import InputError, Problem
+from epicyclic.lubricant.oil import Oil
+from epicyclic.oilmodel.regressions import (
+    FRICTION_REGRESSION,
+    NEEDLE_REGRESSION,
+    ROLLING_REGRESSION,
+    Regression,
+)
+from epicyclic.oilmodel.states import CONDITIONS, ContactStates
+from epicyclic.oilmodel.structured import STRUCTURED_FRICTION, STRUCTURED_ROLLING, Structured
+
+__all__ = [
+    "FORMAT",
+    "FORMS",
+    "REGIMES",
+    "FitError",
+    "FittedForm",
+    "OilModel",
+    "QuantityFit",
+    "read_oil_model",
+]
+
+FloatArray = NDArray[np.float64]
+Form = Regression | Structured
+
+FORMAT: Literal["epicyclic oil model 1"] = "epicyclic oil model 1"
+"""Name and version of the file format."""
+FORMS: dict[str, dict[str, Form]] = {
+    "friction": {form.name: form for form in (STRUCTURED_FRICTION, FRICTION_REGRESSION)},
+    "rolling_loss": {form.name: form for form in (STRUCTURED_ROLLING, ROLLING_REGRESSION)},
+    "bearing_rolling_loss": {form.name: form for form in (STRUCTURED_ROLLING, NEEDLE_REGRESSION)},
+}
+"""Forms of every quantity by name, the one that is used by default first."""
+REGIMES: dict[str, tuple[float, float]] = {
+    "all": (0.0, np.inf),
+    "film ratio up to 0.7": (0.0, 0.7),
+    "film ratio 0.7 to 3": (0.7, 3.0),
+    "film ratio above 3": (3.0, np.inf),
+}
+"""Ranges of the film ratio for which errors are stated. [1]"""
+LARGEST_FILE = 5_000_000
+"""A file of coefficients is much smaller. [bytes]"""
+
+
+class _Data(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class FitError(_Data):
+    """Errors of contacts that the fit had not seen, |computed/simulated - 1|. Theory (O8).
+
+    Attributes
+    ----------
+    regime : str
+        One of `REGIMES`.
+    contacts : int
+    median, largest_of_90_percent : float
+        [1]
+    """
+
+    regime: str
+    contacts: int
+    median: float
+    largest_of_90_percent: float
+
+
+class FittedForm(_Data):
+    """Coefficients of a form and its cross-validated errors."""
+
+    form: str
+    coefficients: tuple[float, ...]
+    errors: tuple[FitError, ...]
+
+
+class QuantityFit(_Data):
+    """What was fitted to one quantity.
+
+    Attributes
+    ----------
+    unit : str
+    contacts : int
+        Simulations behind it.
+    domain : dict of str to (float, float)
+        Lowest and highest value of every condition among them, SI.
+    forms : tuple of FittedForm
+        The one that is used by default first.
+    left_out : dict of str to str
+        Forms that could not be fitted, and why.
+    """
+
+    unit: str
+    contacts: int
+    domain: dict[str, tuple[float, float]]
+    forms: tuple[FittedForm, ...] = Field(min_length=1)
+    left_out: dict[str, str] = {}
+
+    @model_validator(mode="after")
+    def _check_domain(self) -> QuantityFit:
+        if set(self.domain) != set(CONDITIONS):
+            raise ValueError(f"the domain must have {', '.join(CONDITIONS)}")
+        return self
+
+
+class OilModel(_Data):
+    """Friction and rolling loss of an oil.
+
+    Attributes
+    ----------
+    format : str
+        `FORMAT`.
+    version : str
+        Of this package, which solved the contacts.
+    settings : dict
+        Tables of a line contact that all simulations shared; the oil is one of them.
+    designs : list
+        The simulated points.
+    seed : int
+    simulations : dict of str to int
+        How many were simulated, failed, and were fitted.
+    notes : tuple of str
+        What to know before using it.
+    equivalent_modulus : float
+        E_eq of the simulations. [Pa]
+    fits : dict of str to QuantityFit
+        By quantity, the keys of `FORMS`.
+    """
+
+    format: Literal["epicyclic oil model 1"]
+    version: str
+    settings: dict[str, Any]
+    designs: tuple[dict[str, Any], ...]
+    seed: int
+    simulations: dict[str, int]
+    notes: tuple[str, ...] = ()
+    equivalent_modulus: float
+    fits: dict[str, QuantityFit]
+
+    @model_validator(mode="after")
+    def _check_fits(self) -> OilModel:
+        try:
+            _ = self.oil
+        except (KeyError, TypeError) as error:
+            raise ValueError("the settings have no oil") from error
+        for quantity, fit in self.fits.items():
+            known = FORMS.get(quantity)
+            if known is None:
+                raise ValueError(f"no quantity {quantity}")
+            for fitted in fit.forms:
+                form = known.get(fitted.form)
+                if form is None or form.size != len(fitted.coefficients):
+                    raise ValueError(f"{quantity}: wrong coefficients of form {fitted.form}")
+        return self
+
+    @cached_property
+    def oil(self) -> Oil:
+        """The oil that was simulated."""
+        return Oil.model_validate(self.settings["lubricant"]["oil"])
+
+    def value(self, quantity: str, states: ContactStates, form: str = "") -> FloatArray:
+        """A quantity at every contact, conditions held in the domain. Theory (O2).
+
+        Parameters
+        ----------
+        quantity : str
+            A key of `fits`.
+        states : ContactStates
+        form : str
+            By default the first one of the file.
+        """
+        fit = self.fits[quantity]
+        fitted = next((item for item in fit.forms if item.form == form), fit.forms[0])
+        coefficients = np.array(fitted.coefficients)
+        limits = dict(fit.domain)
+        if fitted.form == STRUCTURED_FRICTION.name and quantity == "friction":
+            # (O5) goes on to no sliding and to light loads
+            for name in ("slide_to_roll_ratio", "hertz_pressure"):
+                limits[name] = (0.0, limits[name][1])
+        return FORMS[quantity][fitted.form].value(states.held(limits), coefficients)
+
+
+def read_oil_model(path: str | Path) -> OilModel:
+    """The models in a file.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it is not one of these, or damaged.
+    """
+    file = Path(path)
+    try:
+        stat = file.stat()
+        if stat.st_size > LARGEST_FILE:
+            raise _file_error(file, "is too large to be an oil model.")
+        return _read(file.absolute(), stat.st_mtime_ns, stat.st_size)
+    except OSError as error:
+        raise _file_error(file, f"cannot be read: {error.strerror}.") from None
+
+
+@lru_cache(maxsize=16)
+def _read(path: Path, _changed: int, _size: int) -> OilModel:
+    """The file as it was when it was last changed."""
+    try:
+        return OilModel.model_validate_json(path.read_bytes())
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        where = f" at {place}" if place else ""
+        raise _file_error(path, f"is no sound oil model{where}: {first['msg']}.") from None
+
+
+def _file_error(path: Path, allowed: str) -> InputError:
+    remedy = "Give a model.json of 'epicyclic oil characterise' of this version."
+    return InputError([Problem("models.oil_model", str(path), allowed, remedy)], str(path))

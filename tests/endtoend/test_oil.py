@@ -1,0 +1,290 @@
+"""Characterising an oil as a user does: campaigns, interruptions, clusters, models in cases."""
+
+from __future__ import annotations
+
+import json
+import random
+import resource
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+import epicyclic as ep
+from epicyclic.campaigns.campaign import make_campaign
+from epicyclic.campaigns.fit import fit_campaign
+from epicyclic.campaigns.folder import CampaignFolder
+
+# contacts that take a tenth of a second
+RANGES = {
+    "radius": (5.0, 6.0),
+    "slide_to_roll_ratio": (0.3, 1.0),
+    "temperature": (25.0, 60.0),
+    "roughness1": (0.1, 0.2),
+    "roughness2": (0.1, 0.2),
+    "hertz_pressure": (1.0, 2.0),
+    "rolling_speed": (8.0, 20.0),
+}
+UNITS = {"radius": "mm", "temperature": "degC", "roughness1": "um", "roughness2": "um",
+         "hertz_pressure": "GPa", "rolling_speed": "m/s"}  # fmt: skip
+SIZE = 16
+COARSE = {"numerics.nodes": 128}
+PAIR = {
+    "operation.torque": "200 N*m",
+    "operation.speed": "3000 rpm",
+    "losses.mesh_pocketing.include": False,
+}
+FILES = ("simulations.csv", "model.json", "campaign.json")
+
+
+def campaign():
+    return make_campaign("atf-talbot-2012", size=SIZE, ranges=RANGES, changes=COARSE, seed=7)
+
+
+def command(folder, *more):
+    ranges = [
+        part
+        for name, (low, high) in RANGES.items()
+        for part in ("--range", f"{name}={low}:{high} {UNITS.get(name, '')}".strip())
+    ]
+    return [
+        sys.executable, "-m", "epicyclic", "oil", "characterise", "atf-talbot-2012",
+        "--size", str(SIZE), "--seed", "7", "--set", "numerics.nodes=128", "-o", str(folder),
+        *ranges, *more,
+    ]  # fmt: skip
+
+
+def content(folder):
+    return {name: (folder / name).read_bytes() for name in FILES}
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A campaign that nothing disturbed, in one process."""
+    folder = CampaignFolder(tmp_path_factory.mktemp("oil") / "atf", campaign())
+    folder.prepare()
+    folder.run(jobs=1)
+    folder.model.write_text(fit_campaign(folder).model_dump_json(indent=2) + "\n")
+    return folder.path
+
+
+def kept(folder):
+    journal = folder / "simulations.partial"
+    return journal.read_bytes().count(b"\n") if journal.exists() else 0
+
+
+def disturbed(folder, kills, seed):
+    """The campaign with `kills` sudden deaths at random moments while it runs."""
+    rng = random.Random(seed)
+    for _ in range(kills):
+        before = kept(folder)
+        process = subprocess.Popen(
+            command(folder), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        while process.poll() is None and kept(folder) == before:
+            time.sleep(0.01)
+        time.sleep(rng.uniform(0, 0.15))
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    done = subprocess.run(command(folder), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize(
+    "kills", [pytest.param(1, id="once"), pytest.param(10, id="ten times", marks=pytest.mark.slow)]
+)
+def test_a_killed_campaign_ends_with_the_same_bits(finished, tmp_path, kills):
+    printed = disturbed(tmp_path / "atf", kills, seed=kills)
+    assert content(tmp_path / "atf") == content(finished)
+    assert sorted(path.name for path in (tmp_path / "atf").iterdir()) == sorted(FILES)
+    assert "structured" in printed
+
+
+def test_a_cluster_gives_the_same_bits(finished, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    folder = CampaignFolder(tmp_path / "atf", campaign())
+    folder.prepare()
+    counts: list[tuple[int, int, int]] = []
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
+        folder.run(cluster=cluster.scheduler_address, progress=lambda *call: counts.append(call))
+    assert folder.table.read_bytes() == (finished / "simulations.csv").read_bytes()
+    assert counts[-1][:2] == (SIZE, SIZE)
+
+
+def test_a_full_disk_loses_nothing(finished, tmp_path):
+    folder = tmp_path / "atf"
+
+    def small_files():
+        # writing beyond it fails as on a full disk; compiled code is read, not written
+        resource.setrlimit(resource.RLIMIT_FSIZE, (7000, resource.RLIM_INFINITY))
+
+    stopped = subprocess.run(
+        command(folder, "--jobs", "1"), capture_output=True, text=True, check=False,
+        preexec_fn=small_files,
+    )  # fmt: skip
+    assert stopped.returncode == 2
+    assert "simulations kept" in stopped.stderr
+    assert "Traceback" not in stopped.stderr
+    assert kept(folder) > 0
+    assert not (folder / "simulations.csv").exists()
+    done = subprocess.run(command(folder), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert content(folder) == content(finished)
+
+
+def test_an_unknown_scheduler_is_bad_input(tmp_path):
+    pytest.importorskip("distributed")
+    folder = CampaignFolder(tmp_path / "atf", campaign())
+    folder.prepare()
+    with pytest.raises(ep.InputError, match="cannot be reached"):
+        folder.run(cluster="nowhere")
+
+
+def test_the_table_states_every_condition_and_result(finished):
+    import pandas as pd
+
+    table = pd.read_csv(finished / "simulations.csv")
+    assert list(table["number"]) == list(range(SIZE))
+    assert {"temperature [degC]", "hertz_pressure [GPa]", "friction", "status"} <= set(table)
+    assert table["friction"].between(0.001, 0.2).all()
+
+
+def test_a_model_runs_in_a_case_and_flags_its_domain(finished):
+    case = ep.load_case("talbot-2012-pair").updated(PAIR)
+    fitted = {
+        "models.friction": "fitted",
+        "models.rolling": "fitted",
+        "models.oil_model": str(finished / "model.json"),
+    }
+    result = ep.solve(case.updated(fitted))
+    usual = ep.solve(case)
+    assert 0 < result.losses["mesh_sliding"] != usual.losses["mesh_sliding"]
+    assert 0 < result.losses["mesh_rolling"] != usual.losses["mesh_rolling"]
+    assert any("the simulations of atf-talbot-2012" in text for text in result.warnings)
+    other = ep.solve(case.updated(fitted | {"lubricant.oil": "iso-vg-100-mineral"}))
+    assert any("was fitted for atf-talbot-2012" in note for note in other.notes)
+    swept = ep.sweep(case.updated(fitted), {"operation.torque": ["100 N*m", "200 N*m"]})
+    assert list(swept["status"].values) == ["converged", "converged"]
+
+
+def test_a_case_finds_its_model_beside_it(finished, tmp_path):
+    (tmp_path / "atf.json").write_bytes((finished / "model.json").read_bytes())
+    case = ep.load_case("talbot-2012-pair").updated(PAIR)
+    tables = case.inputs()
+    tables["models"] |= {"friction": "fitted", "oil_model": "atf.json"}
+    lines = _toml(tables)
+    (tmp_path / "case.toml").write_text("\n".join(lines))
+    assert ep.solve(ep.load_case(tmp_path / "case.toml")).losses["mesh_sliding"] > 0
+
+
+def _toml(tables, path=""):
+    """Tables as TOML; arrays of tables inline."""
+    lines = [f"[{path}]"] if path else []
+    for key, value in tables.items():
+        if not isinstance(value, dict):
+            lines.append(f"{key} = {_inline(value)}")
+    for key, value in tables.items():
+        if isinstance(value, dict):
+            lines += _toml(value, f"{path}.{key}" if path else key)
+    return lines
+
+
+def _inline(value):
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key} = {_inline(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_inline, value)) + "]"
+    return json.dumps(value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"models.friction": "fitted"}, "needs a file"),
+        ({"models.friction": "fitted", "models.oil_model": "none.json"}, "cannot be read"),
+        ({"models.bearing": "fitted"}, "no bearing rolling loss"),
+        ({"models.friction": "fitted", "models.fitted_form": "regression"}, "form regression"),
+    ],
+)
+def test_a_model_that_lacks_what_is_asked_is_refused(finished, changes, told):
+    case = ep.load_case("talbot-2012")
+    if told.startswith(("no", "form")):
+        changes = changes | {"models.oil_model": str(finished / "model.json")}
+    with pytest.raises(ep.InputError, match=told):
+        case.updated(changes)
+
+
+def test_show_and_fit_print_the_errors(finished, epicyclic):
+    shown = epicyclic("oil", "show", str(finished / "model.json"))
+    fitted = epicyclic("oil", "fit", str(finished))
+    for done in (shown, fitted):
+        assert done.returncode == 0, done.stderr
+        assert "90 % below" in done.stdout
+    assert epicyclic("oil", "show", str(finished / "simulations.csv")).returncode == 2
+
+
+def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
+    # the friction of each contact stands in for a solution: a power of load and radius
+    from epicyclic.losses import direct
+
+    calls = []
+
+    def friction(line, roughness, seeds, settings):
+        calls.append(line)
+        return np.nan if len(calls) == 3 else 0.05 * (line.radius / 0.01) ** 0.3
+
+    monkeypatch.setattr(direct, "_friction", friction)
+    case = ep.load_case("talbot-2012-pair").updated(PAIR | {"models.friction": "ehl-direct"})
+    result = ep.solve(case)
+    contact = result.meshes["mesh"].contact
+    power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
+    exact = float((0.05 * (contact.radius / 0.01) ** 0.3 * power).sum())
+    # the mean error wanted is 5 %, the contacts are many times smoother than that
+    assert result.losses["mesh_sliding"] == pytest.approx(exact, rel=0.02)
+    notes = [note for note in result.notes if "ehl-direct" in note]
+    assert len(notes) == 1
+    assert "contacts of the mesh solved, 1 of them without convergence" in notes[0]
+
+
+def test_too_many_unsolved_contacts_are_no_result(monkeypatch):
+    from epicyclic.losses import direct
+
+    monkeypatch.setattr(direct, "_friction", lambda line, *_: np.nan)
+    case = ep.load_case("talbot-2012-pair").updated(PAIR | {"models.friction": "ehl-direct"})
+    with pytest.raises(ep.ConvergenceError, match="have no solution"):
+        ep.solve(case)
+
+
+@pytest.mark.slow
+def test_direct_contacts_of_smooth_flanks_are_those_of_the_solver():
+    from epicyclic.ehl.conditions import ContactOil, LineContact, Roelands
+    from epicyclic.ehl.steady import solve_smooth
+
+    changes = PAIR | {
+        "models.friction": "ehl-direct",
+        "pinion.roughness": "0.005 um",
+        "gear.roughness": "0.005 um",
+        "operation.oil_inlet_temperature": "40 degC",
+    }
+    result = ep.solve(ep.load_case("talbot-2012-pair").updated(changes))
+    contact = result.meshes["mesh"].contact
+    power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
+    oil = ContactOil(contact.dynamic_viscosity, Roelands(contact.pressure_viscosity), 5e6)
+    every = range(0, power.size, 25)
+    exact = 0.0
+    for i in every:
+        line = LineContact(
+            float(contact.line_load[i]), float(contact.radius[i]),
+            contact.flanks.equivalent_modulus,
+            float(contact.rolling_speed[i] + contact.sliding_speed[i] / 2),
+            float(contact.rolling_speed[i] - contact.sliding_speed[i] / 2), oil,
+        )  # fmt: skip
+        exact += abs(solve_smooth(line).friction_coefficient) * power[i]
+    found = result.losses["mesh_sliding"] / power.sum()
+    assert found == pytest.approx(exact / power[list(every)].sum(), rel=0.05)

@@ -1,0 +1,231 @@
+"""Fits to simulated contacts: their forms, their coefficients, their files."""
+
+from __future__ import annotations
+
+import json
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from epicyclic.case.plain import plain
+from epicyclic.errors import InputError
+from epicyclic.kernels import mixed_ehl
+from epicyclic.oilmodel import regressions, structured
+from epicyclic.oilmodel.fitting import fit_quantity
+from epicyclic.oilmodel.model import FORMAT, FORMS, OilModel, read_oil_model
+from epicyclic.oilmodel.states import CONDITIONS, ContactStates
+
+STEEL = 227.47e9
+# Tables 5.2(a), 5.2(b) and 3.2 of Talbot (2012), in the order of the columns
+FRICTION = (
+    -0.92139, -0.00008711, -4400.2, -208.356, 0.00034889, 0.00000156, 18.9479,
+    0.00201603, -0.0059483, -1.90169, -0.579273, -0.00711570,
+    -4.35656, -0.0060247, 0.00001033, -5940595.0, -0.00009197, -0.0251361, 0.0092455, -0.146072,
+    -21.8661, 0.00007909, 0.00315987, -0.0584464,
+    -54.986, -0.0058891, -0.041242, 0.00000905, 0.48686, -0.00022193, 21.533, 0.0074347, 6.8850,
+    0.035346, -5.2323, -0.00073500, -0.052499,
+)  # fmt: skip
+ROLLING = (
+    -55.5228, -4049775804.0, 0.00036893, 91748360.0, 0.0035756, -2.81418, 0.79315, -1.57573,
+    0.71772, -4.20259, -0.162010,
+    -63.8414, -0.74816, 700205388.0, -4.85987, -0.287849, -0.43762, 2202.89, -0.183452, -0.123683,
+    0.50128, -0.370511,
+)  # fmt: skip
+NEEDLE = (
+    27.3758, 0.0169312, -0.00260401, 55.582, 0.179813, -0.097448, -1.33225, 0.272560, -15.4258,
+    -0.102883, 0.233836,
+)  # fmt: skip
+
+
+def states(count=200, seed=1, **given):
+    """Random gear contacts within Table 5.1."""
+    rng = np.random.default_rng(seed)
+    ranges = {
+        "slide_to_roll_ratio": (0.025, 1.0),
+        "rolling_speed": (1.0, 20.0),
+        "radius": (5e-3, 40e-3),
+        "hertz_pressure": (0.5e9, 2.5e9),
+        "roughness1": (0.1e-6, 0.7e-6),
+        "roughness2": (0.1e-6, 0.7e-6),
+        "dynamic_viscosity": (5e-3, 48e-3),
+        "pressure_viscosity": (11e-9, 16e-9),
+    }
+    values = {name: low * (high / low) ** rng.random(count) for name, (low, high) in ranges.items()}
+    values |= {name: np.broadcast_to(value, (count,)) for name, value in given.items()}
+    return ContactStates(**values, equivalent_modulus=STEEL)
+
+
+def published(kernel, contacts):
+    """A regression of the source by the kernel that evaluates it."""
+    rough = (
+        contacts.composite_roughness / contacts.radius,
+        (contacts.reduced_roughness / contacts.radius),
+    )
+    columns = (
+        contacts.slide_to_roll_ratio, contacts.speed_number, contacts.material_number,
+        contacts.pressure_number, contacts.radius_number, *rough, contacts.film_ratio,
+    )  # fmt: skip
+    return np.array([kernel(*row) for row in np.stack(columns, axis=1)])
+
+
+def test_with_the_published_coefficients_the_forms_are_the_published_regressions():
+    contacts = states()
+    assert len(np.unique(np.digitize(contacts.film_ratio, [0.7, 1.0, 3.0]))) == 4
+    friction = regressions.FRICTION_REGRESSION.value(contacts, np.array(FRICTION))
+    assert friction == pytest.approx(published(mixed_ehl.sliding_friction, contacts), rel=1e-9)
+    rolling = regressions.ROLLING_REGRESSION.value(contacts, np.array(ROLLING))
+    scale = contacts.dynamic_viscosity * contacts.rolling_speed**2
+    expected = published(mixed_ehl.rolling_loss_number, contacts) * scale
+    assert rolling == pytest.approx(expected, rel=1e-9)
+    needle = regressions.NEEDLE_REGRESSION.value(contacts, np.array(NEEDLE))
+    rows = zip(
+        contacts.hertz_pressure, contacts.rolling_speed, contacts.dynamic_viscosity,
+        contacts.pressure_viscosity, contacts.radius, contacts.composite_roughness, strict=True,
+    )  # fmt: skip
+    one_by_one = [mixed_ehl.needle_rolling_loss(*row, STEEL) for row in rows]
+    # the source has a factor of 1e5 in front
+    assert 1e5 * needle == pytest.approx(np.array(one_by_one), rel=1e-9)
+
+
+def test_eyring_friction_of_constant_viscosity_has_a_closed_form():
+    # alpha = 0: one shear stress over the whole contact, of width 2b under pi/2 b p_h
+    contacts = states(20, pressure_viscosity=1e-14)
+    film = contacts.radius * structured.pan_hamrock_central_film(
+        contacts.speed_number, contacts.material_number, contacts.load_number
+    )
+    stress = 5e6
+    rate = contacts.dynamic_viscosity * contacts.sliding_speed / film
+    expected = 4 * stress * np.arcsinh(rate / stress) / (math.pi * contacts.hertz_pressure)
+    # 1e-14/Pa at 2.5 GPa: 2.5e-5
+    assert structured.eyring_friction(contacts, stress) == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize("quantity", ["friction", "rolling_loss"])
+def test_the_structured_forms_never_fall_with_the_roughness(quantity):
+    form = FORMS[quantity]["structured"]
+    rng = np.random.default_rng(3)
+    low, high = (np.maximum(np.minimum(limit, 3), -3) for limit in (form.low, form.high))
+    for _ in range(50):
+        coefficients = low + (high - low) * rng.random(form.size)
+        values = [
+            form.value(states(20, roughness1=rough, roughness2=rough), coefficients)
+            for rough in (1e-8, 1e-7, 3e-7, 1e-6, 1e-5)
+        ]
+        for smoother, rougher in pairwise(values):
+            assert (rougher >= smoother).all()
+            assert np.isfinite(rougher).all()
+
+
+@pytest.mark.parametrize("quantity", sorted(FORMS))
+@pytest.mark.parametrize("name", ["structured", "regression"])
+def test_a_fit_finds_the_values_of_its_own_form(quantity, name):
+    form = FORMS[quantity][name]
+    contacts = states(400)
+    known = {"friction": FRICTION, "rolling_loss": ROLLING, "bearing_rolling_loss": NEEDLE}
+    coefficients = np.array(known[quantity] if name == "regression" else form.start)
+    target = form.value(contacts, coefficients)
+    found = form.fit(contacts, target, np.ones(400))
+    # coefficients of the regressions are nearly dependent; values are what they are for
+    assert form.value(contacts, found) == pytest.approx(target, rel=1e-4)
+
+
+def test_errors_are_those_of_contacts_that_were_not_fitted():
+    contacts = states(400)
+    rng = np.random.default_rng(5)
+    form = FORMS["friction"]["structured"]
+    noise = np.exp(0.1 * rng.standard_normal(400))
+    target = form.value(contacts, np.array(form.start)) * noise
+    fit = fit_quantity("friction", "1", contacts, target, np.ones(400))
+    errors = {error.regime: error for error in fit.forms[0].errors}
+    # median and 90 % of |exp(0.1 z) - 1|, of 400 draws: 0.067 and 0.165
+    assert errors["all"].median == pytest.approx(0.067, rel=0.2)
+    assert errors["all"].largest_of_90_percent == pytest.approx(0.165, rel=0.2)
+    assert errors["all"].contacts == 400
+    assert sum(error.contacts for name, error in errors.items() if name != "all") == 400
+
+
+def test_a_form_with_more_coefficients_than_contacts_is_left_out():
+    contacts = states(20)
+    target = FORMS["friction"]["structured"].value(contacts, np.full(8, 0.1))
+    fit = fit_quantity("friction", "1", contacts, target, np.ones(20))
+    assert [form.form for form in fit.forms] == ["structured"]
+    assert "too few" in fit.left_out["regression"]
+    with pytest.raises(ValueError, match="too few"):
+        fit_quantity("friction", "1", states(5), target[:5], np.ones(5))
+
+
+@pytest.fixture
+def model(talbot):
+    contacts = states(60)
+    form = FORMS["friction"]["structured"]
+    target = form.value(contacts, np.array(form.start))
+    return OilModel(
+        format=FORMAT,
+        version="0",
+        settings={"lubricant": {"oil": plain(talbot.lubricant.oil)}},
+        designs=(),
+        seed=0,
+        simulations={"simulated": 60},
+        equivalent_modulus=STEEL,
+        fits={"friction": fit_quantity("friction", "1", contacts, target, np.ones(60))},
+    )
+
+
+def test_a_file_gives_back_the_model(model, talbot, tmp_path):
+    file = tmp_path / "model.json"
+    file.write_text(model.model_dump_json())
+    back = read_oil_model(file)
+    assert back.model_dump_json() == model.model_dump_json()
+    assert back.oil == talbot.lubricant.oil
+    contacts = states(30)
+    assert np.array_equal(back.value("friction", contacts), model.value("friction", contacts))
+
+
+def test_conditions_are_held_in_the_domain(model):
+    inside = states(10)
+    limits = model.fits["friction"].domain
+    far = {"rolling_speed": 1e3, "radius": 10.0, "roughness1": 1e-3, "dynamic_viscosity": 10.0}
+    held = {name: limits[name][1] for name in far}
+    outside = ContactStates(
+        **{
+            name: np.full(10, far[name]) if name in far else getattr(inside, name)
+            for name in CONDITIONS
+        },
+        equivalent_modulus=STEEL,
+    )
+    at_limit = ContactStates(
+        **{
+            name: np.full(10, held[name]) if name in held else getattr(inside, name)
+            for name in CONDITIONS
+        },
+        equivalent_modulus=STEEL,
+    )
+    assert np.array_equal(model.value("friction", outside), model.value("friction", at_limit))
+
+
+@pytest.mark.parametrize(
+    ("damage", "told"),
+    [
+        (lambda text: text[: len(text) // 2], "no sound oil model"),
+        (lambda text: text.replace("oil model 1", "oil model 7"), "format"),
+        (lambda text: text.replace('"form":"structured"', '"form":"other"'), "other"),
+        (lambda text: text.replace('"lubricant"', '"fluid"'), "no oil"),
+        (lambda text: text.replace('"radius":', '"size":'), "domain"),
+        (lambda text: json.dumps({"coefficients": "x" * 6_000_000}), "too large"),
+        (lambda text: "", "no sound oil model"),
+    ],
+    ids=["cut", "version", "form", "oil", "domain", "large", "empty"],
+)
+def test_a_damaged_file_is_refused(model, tmp_path, damage, told):
+    file = tmp_path / "model.json"
+    file.write_text(damage(model.model_dump_json()))
+    with pytest.raises(InputError, match=told) as caught:
+        read_oil_model(file)
+    assert str(file) in str(caught.value)
+
+
+def test_a_missing_file_is_refused(tmp_path):
+    with pytest.raises(InputError, match="cannot be read"):
+        read_oil_model(tmp_path / "none.json")
