@@ -49,7 +49,6 @@ _HOME = {
     "load_case": "epicyclic.exchange.load",
     "compare_measured": "epicyclic.measurement.compare",
     "duty_cycle": "epicyclic.maps.duty",
-    "load_case": "epicyclic.case.case",
     "loaded_meshes": "epicyclic.analysis.solve",
     "loss_map": "epicyclic.maps.compute",
     "mesh_contacts": "epicyclic.analysis.solve",

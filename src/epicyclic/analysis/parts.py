@@ -495,13 +495,11 @@ def fluid_notes(case: Case) -> tuple[str, ...]:
         "rolling": rolling_of(case).made_for,
         "bearing": TALBOT_FLUID if models.get("bearing") == "mixed-ehl" else None,
     }
-from epicyclic.oilmodel.model import OilModel, read_oil_model
     notes = [
         f"models.{key}: the regression {models[key]} was made for {fluid.title}, not for "
         f"{oil.name}."
         for key, fluid in fluids.items()
         if fluid is not None and fluid.key != oil.friction_regression
-from epicyclic.oilmodel.model import OilModel, read_oil_model
     ]
     factor = case.lubricant.pressure_viscosity_factor
     if factor != 1:

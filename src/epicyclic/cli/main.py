@@ -25,9 +25,8 @@ from epicyclic.cli.exit_codes import (
 )
 from epicyclic.cli.listing import cases, init, oils, schema
 from epicyclic.cli.many import loss_map, sweep
-from epicyclic.cli.pockets import pockets, study
 from epicyclic.cli.oil import oil
-from epicyclic.cli.pockets import pockets
+from epicyclic.cli.pockets import pockets, study
 from epicyclic.cli.rexs import rexs
 from epicyclic.cli.show import plot, report
 from epicyclic.cli.single import check, friction, mesh, run
@@ -56,6 +55,7 @@ COMMANDS = (
     check,
     sweep,
     loss_map,
+    duty,
     mesh,
     pockets,
     study,
@@ -72,8 +72,6 @@ COMMANDS = (
     rexs,
     schema,
 )
-    run, check, sweep, loss_map, duty, mesh, contact, friction, validate, cases, oils, init, schema,
-)  # fmt: skip
 for command in COMMANDS:
     cli.add_command(command)
 
