@@ -36,8 +36,8 @@ WIDTH = 9.6
 PRESSURE_MAP = "RdBu_r"
 """Blue below ambient, red above."""
 NO_POCKET = "#ececec"
-LEAST_BAR = 0.1
-"""Largest pressure below which pressures are shown in kPa. [bar]"""
+PRESSURE_UNITS = ((1.0, "bar", 0.1), (1e2, "kPa", 1e-3), (1e5, "Pa", 0.0))
+"""Units over a bar, and the pressure in bar from which on they are read easily."""
 
 
 def pocket_animation(mesh: xr.Dataset, progress: Progress = lambda done, total: None) -> bytes:
@@ -86,7 +86,9 @@ class MeshScene:
         ]
         pressure = mesh["pressure"].to_numpy()
         largest = float(np.nanmax(np.abs(pressure)))
-        scale, unit = (1.0, "bar") if largest >= LEAST_BAR else (100.0, "kPa")
+        scale, unit = next(
+            (scale, unit) for scale, unit, least in PRESSURE_UNITS if largest >= least
+        )
         self._pressure = scale * pressure
         shades = mpl.colormaps[PRESSURE_MAP].with_extremes(bad=NO_POCKET)
         self._colours = ScalarMappable(Normalize(-scale * largest, scale * largest), shades)

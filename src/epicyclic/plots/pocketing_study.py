@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -13,11 +15,13 @@ from epicyclic.plots.style import COLOURS, label_of, styled_figure
 from epicyclic.units import format_number, unit_text
 from epicyclic.validation.pocketing import PublishedStudy
 
-__all__ = ["plot_loss", "plot_speed_exponent", "study_figure"]
+__all__ = ["study_figure"]
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 PUBLISHED = "Talbot (2012)"
 MOST_COLUMNS = 3
+LEGEND_HEIGHT = 0.6
+"""Below the panels. [inches]"""
 SAME = 1e-6
 """Values that differ less than this are the same. [1]"""
 
@@ -41,15 +45,34 @@ def study_figure(study: xr.Dataset, published: PublishedStudy | None = None) -> 
     with styled_figure(rows, columns, str(study.attrs["title"])) as (figure, axes):
         flat = axes.ravel()
         for ax, place in zip(flat, places, strict=False):
-            plot_loss(study.isel(dict(zip(panels, place, strict=True))), ax, published)
+            _plot_loss(study.isel(dict(zip(panels, place, strict=True))), ax, published)
         if exponents:
-            plot_speed_exponent(study, flat[1], published)
+            _plot_exponents(study, flat[1], published)
         for ax in flat[count:]:
             ax.remove()
+        _explain(study, figure, flat[: len(places)])
+        width, height = figure.get_size_inches()
+        figure.set_size_inches(width, height + LEGEND_HEIGHT)
     return figure
 
 
-def plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None = None) -> Axes:
+def _explain(study: xr.Dataset, figure: Figure, panels: Sequence[Axes]) -> None:
+    """One legend for all panels, below them."""
+    found: dict[str, Artist] = {}
+    for ax in panels:
+        handles, labels = ax.get_legend_handles_labels()
+        found |= dict(zip(labels, handles, strict=True))
+    curves = study[study["pocketing_loss"].dims[-2]]
+    figure.legend(
+        handles=list(found.values()),
+        labels=list(found),
+        title=curves.attrs["long_name"],
+        loc="outside lower center",
+        ncols=len(found),
+    )
+
+
+def _plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) -> None:
     """One panel: all other parameters of `study` but the last two have one value."""
     loss = study["pocketing_loss"]
     curves, over = map(str, loss.dims)
@@ -67,13 +90,9 @@ def plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None = No
     held = [_described(study[name]) for name in study.coords if study[name].ndim == 0]
     ax.set(title=", ".join(held) or "Loss", xlabel=label_of(loss[over]), ylabel="pocketing loss, W")
     ax.set_ylim(bottom=0)
-    ax.legend(title=loss[curves].attrs["long_name"])
-    return ax
 
 
-def plot_speed_exponent(
-    study: xr.Dataset, ax: Axes, published: PublishedStudy | None = None
-) -> Axes:
+def _plot_exponents(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) -> None:
     """Loss over speed in logarithms, with the slope of each curve."""
     loss = study["pocketing_loss"]
     curves = str(loss.dims[0])
@@ -95,8 +114,7 @@ def plot_speed_exponent(
         ax.loglog(speed, line, color="black", ls="--", lw=1.0, label=label)
     ax.set(title="Exponent of the speed", xlabel=label_of(loss["speed"]))
     ax.set_ylabel("pocketing loss, W")
-    ax.legend(title=f"{loss[curves].attrs['long_name']}: exponent")
-    return ax
+    ax.legend(title=f"{loss[curves].attrs['long_name']}: exponent", loc="upper left")
 
 
 def _mark(loss: xr.DataArray, over: str, ax: Axes, published: PublishedStudy) -> None:

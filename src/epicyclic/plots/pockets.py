@@ -34,7 +34,8 @@ OVER_LIFE = ("pressure", "axial_speed", "contact_gap_speed", "backlash_gap_speed
 DRAWN_SLICES = 9
 """Most slices that are drawn one by one."""
 GAP_HEIGHT = 8.0
-"""Height of the axis of gaps, over the smallest gap at the backlash side. [1]"""
+GAP_SHARE = 0.05
+"""Height of the axis of gaps, over the smallest and the largest gap of the backlash side. [1]"""
 
 
 def pocket_figure(mesh: xr.Dataset) -> Figure:
@@ -92,7 +93,8 @@ def plot_gaps(mesh: xr.Dataset, ax: Axes) -> Axes:
             label = f"{side}, {mesh['tooth'].to_numpy()[kind]}"
             values = first[f"{side}_gap"][kind]
             ax.plot(mesh["roll_angle"][kind], values, style, color=COLOURS[kind], label=label)
-    ax.set_ylim(0, GAP_HEIGHT * float(first["backlash_gap"].min()))
+    gap = first["backlash_gap"]
+    ax.set_ylim(0, max(GAP_HEIGHT * float(gap.min()), GAP_SHARE * float(gap.max())))
     ax.legend(loc="upper center")
     return _over_roll(mesh, ax, "Gaps at the first end", "gap, µm")
 

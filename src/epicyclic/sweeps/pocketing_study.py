@@ -25,7 +25,7 @@ from epicyclic.analysis.pocket_variants import (
     teeth_for_module,
 )
 from epicyclic.analysis.result import versions
-from epicyclic.case.case import Case
+from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.wording import sentence, written
 from epicyclic.errors import InputError, Problem
@@ -59,7 +59,7 @@ class Parameter:
 
 PARAMETERS = {
     "speed": Parameter(
-        "speed of member 1",
+        "speed",
         Quantity("a rotational speed", "rad/s", "rpm", low=0.0, high=1e6, open_low=True),
     ),
     "helix-angle": Parameter("helix angle", Quantity("an angle", "rad", "deg", low=0.0, high=45.0)),
@@ -414,6 +414,8 @@ def _dataset(plan: StudyPlan, name: str, rows: Sequence[Row]) -> xr.Dataset:
     dims = tuple(axis.dimension for axis in axes)
     shape = tuple(len(axis.values) for axis in axes)
     coordinates = {axis.dimension: _coordinate(axis) for axis in axes}
+    if "speed" in coordinates:
+        coordinates["speed"][-1]["long_name"] = f"speed of the {_member(plan)}"
     variables: dict[str, Any] = {}
     for key, (label, quantity, _) in _NUMBERS.items():
         values = np.array([row.numbers.get(key, math.nan) for row in rows]).reshape(shape)
@@ -438,6 +440,12 @@ def _coordinate(axis: StudyAxis) -> tuple[str, NDArray[np.float64], dict[str, st
     # rounded as everything that is shown: 15 mm and not 15.000000000000002
     values = [float(f"{scale * value:.12g}") for value in axis.values]
     return (axis.dimension, np.array(values), attributes)
+
+
+def _member(plan: StudyPlan) -> str:
+    """Whose speed it is, and against what."""
+    name = plan.duty.mesh.gear1.name
+    return f"{name} against the carrier" if isinstance(plan.case, PlanetaryCase) else name
 
 
 def _attributes(plan: StudyPlan, name: str) -> dict[str, str]:
