@@ -17,7 +17,7 @@ from epicyclic.analysis.pocket_variants import (
     varied_duty,
 )
 from epicyclic.plots.pocketing_study import study_figure
-from epicyclic.sweeps.pocketing_study import STUDIES, make_study
+from epicyclic.sweeps.pocketing_plan import STUDIES, make_study
 from epicyclic.validation.pocketing import published_study
 
 QUICK = {"numerics.pocket_slices": 4, "numerics.pocket_steps": 8}
@@ -129,6 +129,20 @@ def test_exponents_are_slopes(study):
     assert speed["speed_exponent"].to_numpy() == pytest.approx(slope.to_numpy())
 
 
+def test_finished_points_are_kept(pair, tmp_path, monkeypatch):
+    wanted = {
+        "ranges": {"oil-fraction": [0.1, 0.2]},
+        "levels": {"helix-angle": ["0 deg"], "face-width": ["15 mm"], "speed": ["5000 rpm"]},
+        "journal": tmp_path / "study.partial",
+        "jobs": 1,
+    }
+    first = ep.pocketing_study(pair, ["oil-fraction"], **wanted)["oil-fraction"]
+    monkeypatch.delattr("epicyclic.sweeps.pocketing_study.solve_variant")
+    again = ep.pocketing_study(pair, ["oil-fraction"], **wanted)["oil-fraction"]
+    assert again.equals(first)
+    assert float(first["pocketing_loss"].min()) > 0
+
+
 def test_points_that_cannot_be_say_why(pair):
     found = ep.pocketing_study(
         pair,
@@ -148,7 +162,7 @@ def test_every_mistake_is_named(pair):
             pair,
             ["helix", "speed"],
             ranges={"backlash": ["1 um"], "speed": ["0 rpm"], "width": ["1 mm"]},
-            levels={"helix-angle": ["50 deg"], "oil-fraction": [0.1]},
+            levels={"helix-angle": ["50 deg"], "oil-fraction": [0.1], "speed": []},
         )
     text = str(error.value)
     for words in (
@@ -158,6 +172,7 @@ def test_every_mistake_is_named(pair):
         'range = "width": is no parameter',
         'level helix-angle = "50 deg": is out of range',
         'level = "oil-fraction": has no level',
+        "level speed: has no values",
     ):
         assert words in text, words
     with pytest.raises(ep.InputError, match="sun_mesh or ring_mesh"):

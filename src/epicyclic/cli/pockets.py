@@ -122,7 +122,8 @@ def study(
     """
     from epicyclic.cli.progress import progress_bar
     from epicyclic.sweeps.plan import parse_vary
-    from epicyclic.sweeps.pocketing_study import STUDIES, make_study, run_study, study_datasets
+    from epicyclic.sweeps.pocketing_plan import STUDIES, make_study
+    from epicyclic.sweeps.pocketing_study import run_study, study_datasets
 
     loaded = load_with(case, changes)
     plan = make_study(
