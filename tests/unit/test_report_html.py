@@ -56,8 +56,14 @@ def page(talbot_record):
 
 
 @pytest.fixture(scope="module")
-def map_page(pair_map):
-    return ep.report_html(pair_map)
+def told():
+    """What a report tells of its progress."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def map_page(pair_map, told):
+    return ep.report_html(pair_map, lambda done, total: told.append((done, total)))
 
 
 @pytest.fixture(params=["page", "map_page"])
@@ -188,9 +194,8 @@ def test_figures_to_explore_have_the_data_of_the_still_ones(talbot_record, pair_
     assert draw(talbot_record, "gear-set")[0].plot is None  # a drawing
 
 
-def test_progress_is_told(pair_map):
-    told = []
-    ep.report_html(pair_map, lambda done, total: told.append((done, total)))
+@pytest.mark.usefixtures("map_page")
+def test_progress_is_told(told):
     assert told == [(number, 6) for number in range(6)]
 
 
