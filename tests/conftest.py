@@ -26,6 +26,26 @@ def talbot():
 
 
 @pytest.fixture(scope="session")
+def talbot_record(talbot):
+    """Its result with everything that reports and plots show."""
+    return ep.record(talbot)
+
+
+@pytest.fixture(scope="session")
+def pair_map():
+    """A small loss map of the published gear pair, two temperatures and torques of both signs."""
+    return ep.loss_map(
+        ep.load_case("talbot-2012-pair").updated(
+            {"losses.mesh_pocketing.include": False, "models.load_distribution": "uniform"}
+        ),
+        speed=["0 rpm", "2000 rpm", "6000 rpm"],
+        torque=["-100 N*m", "0 N*m", "100 N*m"],
+        temperature=["40 degC", "90 degC"],
+        jobs=1,
+    )
+
+
+@pytest.fixture(scope="session")
 def talbot_meshes(talbot):
     """Its sun and ring mesh."""
     return build.planetary_meshes(talbot.gears, talbot.sun, talbot.planet, talbot.ring)

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import html
+import json
+import re
 from html.parser import HTMLParser
 
+import numpy as np
 import pytest
 
 import epicyclic as ep
+from epicyclic.plots.loss_map import map_at
+from epicyclic.report.drawings import draw
 
 VOID = {"meta", "br", "link", "img"}
 """Tags without an end."""
@@ -45,26 +51,158 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def record(talbot):
-    return ep.record(talbot)
+def page(talbot_record):
+    return ep.report_html(talbot_record)
 
 
 @pytest.fixture(scope="module")
-def page(record):
-    return ep.report_html(record)
+def told():
+    """What a report tells of its progress."""
+    return []
 
 
-def test_every_tag_is_closed_and_every_id_is_unique(page):
-    parsed = Page(page)
+@pytest.fixture(scope="module")
+def map_page(pair_map, told):
+    return ep.report_html(pair_map, lambda done, total: told.append((done, total)))
+
+
+@pytest.fixture(params=["page", "map_page"])
+def any_page(request):
+    return request.getfixturevalue(request.param)
+
+
+def test_every_tag_is_closed_and_every_id_is_unique(any_page):
+    parsed = Page(any_page)
     assert parsed.open == []
     assert len(set(parsed.ids)) == len(parsed.ids)
 
 
-def test_nothing_is_loaded_from_elsewhere(page):
-    for link in Page(page).links:
+def test_nothing_is_loaded_from_elsewhere(any_page):
+    for link in Page(any_page).links:
         assert link.startswith(("#", "data:")), link[:80]
+    assert "default-src 'none'" in any_page  # the browser enforces it too
+    assert not re.search(r"@import|url\((?!#)", any_page)
 
 
-def test_a_stored_file_gives_the_same_page(record, page, tmp_path):
-    ep.save_result(record, tmp_path / "result.nc")
+def test_every_reference_within_the_page_has_its_target(any_page):
+    parsed = Page(any_page)
+    targets = {link[1:] for link in parsed.links if link.startswith("#")}
+    targets |= set(re.findall(r"url\(#([^)]+)\)", any_page))
+    assert targets <= set(parsed.ids)
+
+
+def test_the_chapters_hold_what_an_engineer_asks_for(page, map_page):
+    assert Page(page).sections == [
+        "losses", "validity", "gears", "load", "friction", "bearing", "pockets", "oil", "methods",
+        "inputs", "versions",
+    ]  # fmt: skip
+    assert Page(map_page).sections == [
+        "efficiency", "losses", "lines", "tables", "validity", "conventions", "inputs", "versions",
+    ]  # fmt: skip
+
+
+def test_a_stored_file_gives_the_same_page(talbot_record, page, tmp_path):
+    ep.save_result(talbot_record, tmp_path / "result.nc")
     assert ep.report_html(ep.open_result(tmp_path / "result.nc")) == page
+
+
+def test_a_stored_map_gives_the_same_page(pair_map, map_page, tmp_path):
+    ep.write_map(pair_map, tmp_path / "map.nc")
+    assert ep.report_html(ep.open_result(tmp_path / "map.nc")) == map_page
+
+
+def value_in(result, key):
+    """What the JSON form has at a dotted key."""
+    for part in key.split("."):
+        if isinstance(result, dict) and "value" in result:
+            result = result["value"]
+        result = result[int(part)] if isinstance(result, list) else result[part]
+    return result["value"] if isinstance(result, dict) else result
+
+
+def test_all_numbers_are_those_of_the_json(talbot, page):
+    result = json.loads(ep.solve(talbot).to_json())
+    shown = Page(page).numbers
+    for key, value in shown.items():
+        assert value == value_in(result, key), key
+    for part in ("losses", "members", "fluid", "planet_bearing"):
+        missing = [
+            key for key in result[part] if not any(f"{part}.{key}" in one for one in shown)
+            and key not in result["not_included"]
+        ]  # fmt: skip
+        assert missing == []
+    for mesh, figures in result["meshes"].items():
+        known = {key for key, figure in figures.items() if figure["value"] is not None}
+        assert known == {key.split(".")[2] for key in shown if key.startswith(f"meshes.{mesh}.")}
+
+
+def test_all_numbers_of_a_map_are_those_of_the_map(pair_map, map_page):
+    shown = Page(map_page).numbers
+    dims = ("speed", "torque", "temperature")
+    for key, value in shown.items():
+        name, place = key[:-1].split("[")
+        at = dict(zip(dims, map(int, place.split(",")), strict=True))
+        assert value == float(pair_map[name].isel(at)), key
+    efficiencies = int(pair_map["efficiency"].notnull().sum())
+    assert len(shown) == pair_map["total"].size + efficiencies
+
+
+def test_warnings_sources_and_inputs_are_complete(talbot, page):
+    result = json.loads(ep.solve(talbot).to_json())
+    text = html.unescape(page)
+    for flag in result["validity"]:
+        assert flag["quantity"] in text
+        assert flag["source"] in text
+    for source in result["sources"]:
+        assert source in text
+    notes = [one for one in result["warnings"] if not one.startswith("Out of range")]
+    assert all(note in text for note in notes)
+    for value in ("139.23 mm", "13.124 deg", "90 °C", "0.4 µm", "29.77 mm²/s at 40 °C"):
+        assert value in text, value
+    # the given tip diameter and the default crown
+    assert '<td class="default">3 µm</td>' in text
+    assert "<td>139.23 mm</td>" in text
+
+
+def test_text_of_the_user_stays_text():
+    title = "<script>alert(1)</script> $x_1^ & </title> {{ 7 * 7 }}"
+    case = ep.load_case("talbot-2012-pair").updated(
+        {"title": title, "losses.mesh_pocketing.include": False}
+    )
+    page = ep.report_html(ep.record(case))
+    assert "<script>alert" not in page
+    assert html.escape(title, quote=False) in page
+    assert Page(page).open == []
+
+
+def test_figures_to_explore_have_the_data_of_the_still_ones(talbot_record, pair_map, page):
+    plots = dict(
+        re.findall(r'<figure id="figure-([^"]+)">.*?class="plot">(.*?)</script>', page, re.S)
+    )
+    losses = json.loads(plots["losses-1"])["data"][0]
+    result = talbot_record.result
+    included = [name for name in result.losses if name not in result.not_included]
+    assert losses["x"] == pytest.approx([result.losses[name] for name in included], rel=1e-6)
+    (drawing,) = draw(pair_map, "loss-map")[:1]
+    field = drawing.plot["data"][0]
+    point = map_at(pair_map, temperature=40.0)
+    assert field["x"] == point["speed"].to_numpy().tolist()
+    assert field["y"] == point["torque"].to_numpy().tolist()
+    assert np.array(field["z"]) == pytest.approx(
+        point["total"].transpose("torque", "speed").to_numpy(), rel=1e-6
+    )
+    assert draw(talbot_record, "gear-set")[0].plot is None  # a drawing
+
+
+@pytest.mark.usefixtures("map_page")
+def test_progress_is_told(told):
+    assert told == [(number, 6) for number in range(6)]
+
+
+def test_a_report_prints_as_pdf(map_page):
+    pytest.importorskip("weasyprint", reason="optional")
+    from epicyclic.report.pdf import report_pdf
+
+    pdf = report_pdf(map_page)
+    assert pdf.startswith(b"%PDF")
+    assert pdf.rstrip().endswith(b"%%EOF")

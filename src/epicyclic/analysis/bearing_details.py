@@ -46,9 +46,7 @@ def bearing_details(table: PlanetBearing, numerics: Numerics, loads: RollerLoads
     )
     dims = ("row", "roller", "slice")
     variables = {
-        "azimuth": variable(
-            ("roller",), loads.azimuth, "azimuth of the roller from the load", DEGREE
-        ),
+        "azimuth": variable("roller", loads.azimuth, "azimuth of the roller from the load", DEGREE),
         "axial_position": variable(
             ("row", "slice"),
             bearing.slice_positions(),

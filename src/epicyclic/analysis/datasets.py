@@ -9,15 +9,20 @@ from numpy.typing import NDArray
 
 from epicyclic.units import Quantity
 
-__all__ = ["Variable", "variable"]
+__all__ = ["Array", "Variable", "variable"]
 
-Variable = tuple[tuple[str, ...], NDArray[np.float64], dict[str, Any]]
+Array = NDArray[np.float64] | NDArray[np.bool_]
+Variable = tuple[tuple[str, ...], Array, dict[str, Any]]
 
 
 def variable(
-    dims: tuple[str, ...], values: NDArray[np.float64] | float, label: str, unit: Quantity
+    dims: str | tuple[str, ...], values: Array | float, label: str, unit: Quantity
 ) -> Variable:
     """`values`, in SI, as a variable over `dims`, for the constructor of `xarray.Dataset`."""
     scale, offset = unit.scale_and_offset()
     attributes = {"long_name": label, "units": unit.display or "1"}
-    return (dims, np.asarray(values) * scale + offset, attributes)
+    return (
+        (dims,) if isinstance(dims, str) else dims,
+        np.asarray(values) * scale + offset,
+        attributes,
+    )

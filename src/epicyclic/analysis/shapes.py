@@ -132,9 +132,9 @@ def _shape(gear: Gear, tool: Tool, table: GearTable, places: list[Place]) -> xr.
 
     x, y, direction = np.array(places).T
     variables = {
-        "center_x": variable(("place",), x, "x of the centre", MILLIMETRE),
-        "center_y": variable(("place",), y, "y of the centre", MILLIMETRE),
-        "direction": variable(("place",), direction, "direction of the first tooth", DEGREE),
+        "center_x": variable("place", x, "x of the centre", MILLIMETRE),
+        "center_y": variable("place", y, "y of the centre", MILLIMETRE),
+        "direction": variable("place", direction, "direction of the first tooth", DEGREE),
         **{
             f"{name}_diameter": variable((), 2 * radius, f"{name} diameter", MILLIMETRE)
             for name, radius in {
@@ -151,8 +151,8 @@ def _shape(gear: Gear, tool: Tool, table: GearTable, places: list[Place]) -> xr.
     except ValueError:  # drawn as circles
         pass
     else:
-        variables["x"] = variable(("point",), points[:, 0], "x of the outline", MILLIMETRE)
-        variables["y"] = variable(("point",), points[:, 1], "y of the outline", MILLIMETRE)
+        variables["x"] = variable("point", points[:, 0], "x of the outline", MILLIMETRE)
+        variables["y"] = variable("point", points[:, 1], "y of the outline", MILLIMETRE)
     attributes = {"name": gear.name, "teeth": gear.teeth, "internal": int(gear.internal)}
     return xr.Dataset(variables, attrs=attributes)
 
@@ -175,14 +175,14 @@ def _view(mesh: Mesh) -> xr.Dataset:
     path = np.outer(ends, along)
     return xr.Dataset(
         {
-            "center_x": variable(("gear",), np.zeros(2), "x of the centre", MILLIMETRE),
-            "center_y": variable(("gear",), np.array(heights), "y of the centre", MILLIMETRE),
-            "direction": variable(("gear",), np.array(directions), "direction of a tooth", DEGREE),
+            "center_x": variable("gear", np.zeros(2), "x of the centre", MILLIMETRE),
+            "center_y": variable("gear", np.array(heights), "y of the centre", MILLIMETRE),
+            "direction": variable("gear", np.array(directions), "direction of a tooth", DEGREE),
             "operating_radius": variable(
                 ("gear",), np.array(radii), "operating radius", MILLIMETRE
             ),
-            "path_x": variable(("end",), path[:, 0], "x of the path of contact", MILLIMETRE),
-            "path_y": variable(("end",), path[:, 1], "y of the path of contact", MILLIMETRE),
+            "path_x": variable("end", path[:, 0], "x of the path of contact", MILLIMETRE),
+            "path_y": variable("end", path[:, 1], "y of the path of contact", MILLIMETRE),
             "pressure_angle": variable((), alpha, "operating pressure angle", DEGREE),
         },
         {"gear": [gear.name for gear in gears]},

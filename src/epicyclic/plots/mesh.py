@@ -53,7 +53,7 @@ def plot_plane_of_action(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
         for key in ("path_position", "face_position", name)
     )
     known = np.isfinite(values)
-    if known.any():
+    if known.any() and all(np.ptp(place[known]) > 0 for place in (path, face)):
         _draw_map(ax, path[known], face[known], values[known], label_of(mesh[name]))
     else:
         _say(ax, "no motion")

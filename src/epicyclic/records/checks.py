@@ -18,6 +18,8 @@ RUN_AGAIN = (
     "Write it again: epicyclic run CASE --save FILE.nc, or epicyclic map CASE ... -o FILE.nc."
 )
 MOST_TEETH = 5000
+LARGEST_VALUE = 1e12
+"""No number of a gear set is larger, in the units that users see."""
 
 _MESH = ("mesh_position", "contact_line", "segment")
 _POCKET = ("tooth", "roll")
@@ -60,6 +62,12 @@ _ATTRIBUTES: dict[str, tuple[tuple[str, type], ...]] = {
     "meshes": (("title", str), ("pitch_angle_deg", float)),
     "gears": (("name", str),),
 }
+_MAY_LACK = {"meshes", "pockets"}
+"""Groups with NaN where nothing touches, or no pocket is; but places are known everywhere."""
+_PLACES = {
+    "roll_angle", "weight", "path_position", "face_position", "slice_position",
+    "station_position", "period_angle",
+}  # fmt: skip
 _OPERATING = ("speed", "torque", "temperature")
 _MAP_NUMBERS = ("torque_loss", "total", "efficiency")
 _MAP_TEXTS = ("status", "message", "warnings")
@@ -73,6 +81,8 @@ def field_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
     for dims, names in _NEEDED[group].items():
         for variable in names.split():
             yield from _number_problems(f"{path}/{variable}", data, variable, dims)
+            if group not in _MAY_LACK or variable in _PLACES:
+                yield from _value_problems(f"{path}/{variable}", data, variable)
     yield from _label_problems(path, data)
     for attribute, kind in _ATTRIBUTES.get(group, ()):
         if not isinstance(data.attrs.get(attribute), kind):
@@ -107,6 +117,19 @@ def _number_problems(
     if array.dtype.kind != "f" or set(array.dims) != set(dims) or not array.size:
         over = f"over {', '.join(dims)}" if dims else "alone"
         yield Problem(place, "", f"must be numbers {over}.", RUN_AGAIN)
+    elif (np.abs(array.to_numpy()) > LARGEST_VALUE).any():
+        yield Problem(place, "", f"must not exceed {LARGEST_VALUE:g}.", RUN_AGAIN)
+
+
+def _value_problems(place: str, data: xr.Dataset, name: str) -> Iterator[Problem]:
+    """Where numbers are known everywhere; diameters and radii are lengths."""
+    if name not in data.variables or data[name].dtype.kind != "f":
+        return
+    values = data[name].to_numpy()
+    if np.isnan(values).any():
+        yield Problem(place, "", "must not lack values.", RUN_AGAIN)
+    if name.endswith(("diameter", "radius")) and (values <= 0).any():
+        yield Problem(place, "", "must be positive.", RUN_AGAIN)
 
 
 def _label_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
@@ -127,3 +150,4 @@ def _gear_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
     for name in ("x", "y"):
         if name in data:
             yield from _number_problems(f"{path}/{name}", data, name, ("point",))
+            yield from _value_problems(f"{path}/{name}", data, name)

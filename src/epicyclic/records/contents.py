@@ -106,6 +106,7 @@ class ResultContents(_Part):
     total: float
     input_power: float
     efficiency: float | None
+    units: dict[str, str]
     warnings: tuple[str, ...]
     not_included: dict[str, str]
     factors: dict[str, float]

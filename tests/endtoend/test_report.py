@@ -1,0 +1,72 @@
+"""Reports, plots and stored results as a user meets them."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+HOW_TO = Path(__file__).parents[2] / "docs" / "how-to" / "report.md"
+MESH = ("--set", "operation.torque=100 N*m", "--set", "losses.mesh_pocketing.include=false")
+
+
+@pytest.mark.slow
+def test_the_how_to_runs(epicyclic, tmp_path):
+    blocks = re.findall(r"```console\n(.*?)```", HOW_TO.read_text(encoding="utf-8"), re.DOTALL)
+    for line in "".join(blocks).splitlines():
+        done = epicyclic(*shlex.split(line)[2:])
+        assert done.returncode == 0, (line, done.stderr)
+    (python,) = re.findall(r"```python\n(.*?)```", HOW_TO.read_text(encoding="utf-8"), re.DOTALL)
+    folder = tmp_path / "elsewhere"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        exec(python, {})
+    assert {"report.html", "rollers.pdf", "friction.svg", "map.html", "efficiency.png"} <= {
+        path.name for path in folder.iterdir()
+    }
+
+
+def test_a_result_is_stored_shown_and_drawn(epicyclic, tmp_path):
+    file, folder = "result.nc", tmp_path / "elsewhere"
+    run = epicyclic("run", "talbot-2012-pair", *MESH, "--save", file, "--json", "-")
+    assert run.returncode == 0, run.stderr
+    done = epicyclic("report", file, "-o", "report.html")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "Wrote report.html.\n", "")
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    total = json.loads(run.stdout)["total"]
+    assert f'<data value="{total}" data-key="total">' in page
+    listed = epicyclic("plot", file)
+    assert [line.split()[0] for line in listed.stdout.splitlines()][:4] == [
+        "gear-set", "teeth", "losses", "loss-sum",
+    ]  # fmt: skip
+    drawn = epicyclic("plot", file, "losses", "-o", "losses.svg")
+    assert (drawn.returncode, drawn.stdout) == (0, "Wrote losses.svg.\n")
+    assert "power loss, W" in (folder / "losses.svg").read_text(encoding="utf-8")
+    names = {path.name for path in folder.iterdir()}
+    assert names == {file, "report.html", "losses.svg"}  # nothing half-written is left
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (("report", "missing.nc", "-o", "r.html"), "does not exist"),
+        (("report", "talbot-2012", "-o", "r.txt"), "must end in .html, .pdf"),
+        (
+            ("report", "missing.nc", "--set", "sun.teeth=20", "-o", "r.html"),
+            "stored result is none",
+        ),
+        (("plot", "talbot-2013", "losses"), "neither a file nor a built-in case"),
+        (("plot", "talbot-2012", "losses", "-o", "x.docx"), "must end in .png, .svg, .pdf"),
+        (("run", "talbot-2012", "--save", "result.json"), "must end in .nc"),
+        (("run", "talbot-2012", "--save", "nowhere/result.nc"), "is no place for a file"),
+    ],
+)
+def test_bad_requests_end_in_one_clear_error(epicyclic, tmp_path, arguments, reason):
+    done = epicyclic(*arguments)
+    assert done.returncode == 2
+    assert done.stderr.startswith("1 problem")
+    assert reason in done.stderr
+    assert not (tmp_path / "elsewhere").exists()
