@@ -85,6 +85,8 @@ BROKEN = {
     "JSON in Latin-1": ('{"model": "ä"}'.encode("latin-1"), "not UTF-8"),
     "JSON of wrong types": (b'{"model": {"version": "1.5", "components": 3}}', "list of objects"),
     "not an archive": (b"PK\x03\x04 no archive", "not a sound archive"),
+    "archive with a shifted directory": (zipped(a__rexs=GOOD)[8:], "sound XML|sound archive"),
+    "archive with other sizes": (zipped(a__rexs=GOOD).replace(b"a.rexs", b"b.rexs", 1), "archive"),
     "archive cut short": (zipped(a__rexs=GOOD)[:300], "not a sound archive"),
     "empty archive": (archive_of(), "no member in REXS"),
     "archive of two": (zipped(a__rexs=GOOD, b__rexs=GOOD), "2 members"),
