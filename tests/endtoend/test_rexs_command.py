@@ -91,6 +91,18 @@ def test_bad_files_and_keys_write_nothing(command, folder):
     assert set(folder.iterdir()) == before
 
 
+def test_run_tells_which_defaults_it_takes(command, folder):
+    pair().write(folder / "gears.rexs")
+    code, out, told = command("run", "gears.rexs", *COARSE, "--set", "gear.tip_diameter=77.6 mm")
+    assert code == 0
+    assert "stage B" in out
+    keys = [line.partition(":")[0] for line in told.splitlines()]
+    assert keys == [
+        "pinion.tip_diameter", "pinion.root_diameter", "pinion.material", "gear.root_diameter",
+        "gear.material",
+    ]  # fmt: skip
+
+
 def test_problems_of_the_geometry_are_told_and_the_case_is_written(command, folder):
     parts = pair()
     parts.set(SUN, tip_diameter=(60.0, "mm"))
