@@ -417,6 +417,16 @@ def test_concept_bearing_leaves_the_bearing_out(read):
     assert found.case().planet_bearing is None
 
 
+def test_ball_bearings_are_left_out(read):
+    parts = planetary()
+    for number in PLANETS:
+        parts.set(70 + number, bearing_type=no_unit("radial_grooved_ball_bearing"))
+    found = read(parts)
+    lack = next(lack for lack in found.missing if lack.key == "planet_bearing")
+    assert 'bearing 0" is none' in lack.attribute
+    assert found.case().planet_bearing is None
+
+
 def test_load_case_takes_rexs_files_and_changes(tmp_path):
     file = planetary().write(tmp_path / "gears.rexs")
     case = ep.load_case(file, {**ROUGH, "operation.torque": "50 N*m"})
