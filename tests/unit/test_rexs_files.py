@@ -210,6 +210,16 @@ def test_results_are_added_and_all_else_stays(tmp_path, solved):
     )
 
 
+def test_attributes_that_a_version_does_not_know_are_not_written(tmp_path, solved):
+    parts = pair("1.2")
+    for component in parts.components.values():
+        component["type"] = component["type"].replace("cylindrical_gear_flank", "flank_geometry")
+    out = tmp_path / "out.rexs"
+    ep.write_rexs(out, solved, parts.write(tmp_path / "gears.rexs"))
+    standard = {name for name in attributes(out, STAGE) if not name.startswith("custom_")}
+    assert standard == {"center_distance", "radial_contact_ratio", "overlap_contact_ratio"}
+
+
 def test_results_are_replaced_when_written_again(tmp_path, solved):
     file = pair().write(tmp_path / "gears.rexs")
     first, second = tmp_path / "first.rexs", tmp_path / "second.rexs"
