@@ -252,6 +252,13 @@ def test_load_case_comes_before_the_component(read, tmp_path):
         read(parts, load_case=8)
 
 
+def test_torques_of_several_loads_add_up(read):
+    parts = planetary()
+    parts.add(500, "external_load", "another", torque_around_u_axis=(20.0, "N m"))
+    parts.relate("assembly", assembly=SUN_SHAFT, part=500)
+    assert read(parts).case(ROUGH).operation.torque == 120.0
+
+
 def test_power_and_speed_give_the_torque(read):
     parts = planetary()
     parts.set(8, torque_around_u_axis=None, power=(10.0, "kW"))

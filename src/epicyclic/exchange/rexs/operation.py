@@ -87,8 +87,19 @@ def _nonzero(load: Component, attribute: str) -> bool:
 
 
 def _speed(draft: Draft, parts: Sequence[Component]) -> Amount | None:
+    """Speed of the first part that has one; all turn together."""
     turning = [part for part in parts if part.get("rotational_speed") is not None]
-    return draft.read("rotational_speed", turning, "operation.speed")
+    return draft.read("rotational_speed", turning[:1], "operation.speed")
+
+
+def _torque(draft: Draft, loads: Sequence[Component]) -> Amount | None:
+    """Sum of the torques of all loads of a member."""
+    name, key = "torque_around_u_axis", "operation.torque"
+    found = [amount for load in loads if (amount := draft.read(name, [load], key)) is not None]
+    if len({amount.unit for amount in found}) != 1:
+        return None
+    origin = " plus ".join(amount.origin for amount in found)
+    return Amount(sum(amount.number for amount in found), found[0].unit, origin)
 
 
 def _speed_and_torque(
@@ -102,7 +113,7 @@ def _speed_and_torque(
     else:
         draft.give(key, amount_text(abs(speed.number), speed.unit), speed.origin)
     loads = [part for part in parts if part.type == "external_load"]
-    torque = draft.read("torque_around_u_axis", loads, "operation.torque")
+    torque = _torque(draft, loads)
     if torque is not None:
         backward = speed is not None and torque.number * speed.number < 0
         sense = " (against the speed: power flows out here)" if backward else ""
