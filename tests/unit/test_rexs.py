@@ -252,11 +252,59 @@ def test_load_case_comes_before_the_component(read, tmp_path):
         read(parts, load_case=8)
 
 
+def test_torques_of_several_loads_add_up(read):
+    parts = planetary()
+    parts.add(500, "external_load", "another", torque_around_u_axis=(20.0, "N m"))
+    parts.relate("assembly", assembly=SUN_SHAFT, part=500)
+    assert read(parts).case(ROUGH).operation.torque == 120.0
+
+
 def test_power_and_speed_give_the_torque(read):
     parts = planetary()
     parts.set(8, torque_around_u_axis=None, power=(10.0, "kW"))
     torque = read(parts).case(ROUGH).operation.torque
     assert torque == pytest.approx(10e3 / (1500 * math.pi / 30))
+
+
+@pytest.mark.parametrize(
+    ("speed", "expected"),
+    [
+        (-600.0, {"second_input": "ring", "second_speed": "600 rpm"}),
+        (0.0, {"fixed": "ring"}),
+    ],
+)
+def test_speed_of_a_second_member(read, speed, expected):
+    parts = planetary()
+    parts.relations = [item for item in parts.relations if 9 not in item[1].values()]
+    parts.set(SUN_SHAFT, rotational_speed=(-1500.0, "1 / min"))
+    parts.set(6, rotational_speed=(speed, "1 / min"))
+    found = read(parts)
+    operation = dict(found.tables["operation"])
+    # the sun turns backward: its speed is taken as a magnitude, that of the ring relative to it
+    assert operation.pop("speed") == "1500 rpm"
+    assert {key: operation[key] for key in expected} == expected
+    assert found.case(ROUGH).operation.torque == -100.0
+
+
+def test_neither_held_nor_driven_is_told(read):
+    parts = planetary()
+    parts.relations = [item for item in parts.relations if 9 not in item[1].values()]
+    parts.set(8, torque_around_u_axis=None)
+    needed = {lack.key for lack in read(parts).missing if lack.needed}
+    assert {"operation.fixed", "operation.input", "operation.torque"} <= needed
+
+
+def test_tooth_thickness_stands_in_for_the_profile_shift(read):
+    parts = planetary()
+    for flank in (100 + SUN, 200 + SUN):
+        parts.set(flank, addendum_modification_coefficient=None)
+    reference = 24 * 2 / math.cos(math.radians(12))
+    thickness = math.pi * reference / 24 / 2
+    parts.set(SUN, reference_diameter_cylindrical_gear=mm(reference),
+              transverse_tooth_thickness_at_reference_diameter=mm(thickness))  # fmt: skip
+    case, usual = read(parts).case(ROUGH), read(planetary()).case(ROUGH)
+    one, two = (ep.solve(item).meshes["sun_mesh"].backlash for item in (case, usual))
+    assert one == pytest.approx(two, abs=1e-12)  # x = 0 in both, fifteen digits
 
 
 def test_root_and_tip_rounding_come_from_a_rack_shaped_tool(read):
@@ -373,6 +421,16 @@ def test_concept_bearing_leaves_the_bearing_out(read):
     found = read(parts)
     lack = next(lack for lack in found.missing if lack.key == "planet_bearing")
     assert not lack.needed
+    assert found.case().planet_bearing is None
+
+
+def test_ball_bearings_are_left_out(read):
+    parts = planetary()
+    for number in PLANETS:
+        parts.set(70 + number, bearing_type=no_unit("radial_grooved_ball_bearing"))
+    found = read(parts)
+    lack = next(lack for lack in found.missing if lack.key == "planet_bearing")
+    assert 'bearing 0" is none' in lack.attribute
     assert found.case().planet_bearing is None
 
 

@@ -9,7 +9,7 @@ import click
 
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["case_argument", "load_with", "parse_changes", "set_option"]
+__all__ = ["case_argument", "from_rexs", "load_with", "parse_changes", "set_option"]
 
 case_argument = click.argument("case", metavar="CASE")
 set_option = click.option(
@@ -24,8 +24,23 @@ set_option = click.option(
 
 def load_with(case: str, changes: Sequence[str]) -> Any:
     from epicyclic.exchange.load import load_case
+    from epicyclic.exchange.rexs.file import is_rexs
 
-    return load_case(case, parse_changes(changes))
+    parsed = parse_changes(changes)
+    return from_rexs(case, parsed) if is_rexs(case) else load_case(case, parsed)
+
+
+def from_rexs(file: str, changes: dict[str, Any], component: int | None = None) -> Any:
+    """The case of a REXS file; what it lacks, and what differs, is told on standard error."""
+    from epicyclic.exchange.rexs.importing import read_rexs
+
+    found = read_rexs(file, component)
+    loaded = found.case(changes)
+    for lack in found.lacking(changes):
+        click.echo(f"{lack.key}: {lack}", err=True)
+    for note in (*found.notes, *found.geometry_notes(loaded)):
+        click.echo(f"Note: {note}", err=True)
+    return loaded
 
 
 def parse_changes(options: Sequence[str]) -> dict[str, Any]:

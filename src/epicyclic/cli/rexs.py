@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from epicyclic.cli.exit_codes import EXIT_INCOMPLETE
-from epicyclic.cli.options import case_argument, load_with, parse_changes, set_option
+from epicyclic.cli.options import case_argument, from_rexs, load_with, parse_changes, set_option
 from epicyclic.cli.output import write_file
 from epicyclic.errors import InputError, Problem
 
@@ -102,14 +102,13 @@ def export(
     from epicyclic.analysis.solve import solve
     from epicyclic.exchange.rexs.exporting import rexs_bytes
     from epicyclic.exchange.rexs.file import is_rexs
-    from epicyclic.exchange.rexs.importing import read_rexs
 
     if not is_rexs(output):
         allowed = "must end in .rexs, .rexsj or .rexsz."
         raise InputError([Problem("--output", str(output), allowed, "Name such a file.")])
     if is_rexs(case):
         original = original or case
-        loaded = read_rexs(case, component).case(parse_changes(changes))
+        loaded = from_rexs(case, parse_changes(changes), component)
     else:
         loaded = load_with(case, changes)
     write_file(output, rexs_bytes(output, solve(loaded), original, component))

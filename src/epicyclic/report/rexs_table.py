@@ -31,7 +31,7 @@ def import_tables(
     """
     head = Text(f"REXS {found.version}, {found.component}: {len(found.origins)} keys", "bold")
     parts: list[RenderableType] = [head]
-    lacking = [lack for lack in found.missing if not _is_set(lack.key, given)]
+    lacking = found.lacking(given)
     for title, needed in (("The case needs", True), ("Not in the file", False)):
         table = plain_table(title)
         table.add_column("key of the case", no_wrap=True)
@@ -46,8 +46,3 @@ def import_tables(
     parts += [Text(f"Problem: {problem}") for problem in others]
     parts += [Text(f"Note: {note}") for note in (*found.notes, *notes)]
     return Group(*parts)
-
-
-def _is_set(key: str, given: Collection[str]) -> bool:
-    """True if the user set the key, or the table that it belongs to."""
-    return any(key == other or key.startswith(f"{other}.") for other in given)

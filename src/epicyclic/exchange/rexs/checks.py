@@ -96,30 +96,30 @@ def _compared(
 def closing_shift(tables: Mapping[str, Any], member1: str, member2: str) -> float | None:
     """Profile shift of `member2` that leaves no backlash at the centre distance. ISO 21771.
 
-    None if the tables do not have all that it takes.
+    None if the tables do not have all that it takes, or cannot mesh.
     """
     try:
         gears = tables["gears"]
-        first, second = tables[member1], tables[member2]
-        z1, z2 = (
-            table["teeth"] * (-1 if name == "ring" or table.get("internal") else 1)
-            for name, table in ((member1, first), (member2, second))
-        )
-        x1 = first["profile_shift_coefficient"]
+        z1, z2 = (_signed_teeth(tables, name) for name in (member1, member2))
+        x1 = tables[member1]["profile_shift_coefficient"]
         module = MILLIMETRE.parse(gears["normal_module"])
         center = MILLIMETRE.parse(gears["center_distance"])
-        normal, helix = (
-            DEGREE.parse(gears[key]) for key in ("normal_pressure_angle", "helix_angle")
-        )
-    except (KeyError, ValueError):
+        normal = DEGREE.parse(gears["normal_pressure_angle"])
+        helix = DEGREE.parse(gears["helix_angle"])
+        transverse = math.atan(math.tan(normal) / math.cos(helix))
+        reference = abs(z1 + z2) * module / (2 * math.cos(helix))
+        operating = math.acos(reference * math.cos(transverse) / center)
+        difference = involute(operating) - involute(transverse)
+        return (z1 + z2) * difference / (2 * math.tan(normal)) - float(x1)
+    except (KeyError, ValueError, ArithmeticError):  # lacking, or no gears: told elsewhere
         return None
-    transverse = math.atan(math.tan(normal) / math.cos(helix))
-    cosine = abs(z1 + z2) * module * math.cos(transverse) / (2 * center * math.cos(helix))
-    if not 0 < cosine < 1:
-        return None
-    difference = involute(math.acos(cosine)) - involute(transverse)
-    total: float = (z1 + z2) * difference / (2 * math.tan(normal))
-    return total - float(x1)
+
+
+def _signed_teeth(tables: Mapping[str, Any], name: str) -> int:
+    """Number of teeth as in ISO 21771: negative for internal gears."""
+    table = tables[name]
+    sign = -1 if name == "ring" or table.get("internal") else 1
+    return sign * int(table["teeth"])
 
 
 def shift_notes(tables: Mapping[str, Any], member1: str, member2: str) -> Iterator[str]:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import io
 import zipfile
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -104,15 +103,11 @@ def read_document(path: Path, *, with_others: bool = False) -> Document:
     """
     try:
         data = _read(path)
-        if not data.startswith(b"PK"):
-            return Document(_parse(data))
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            return _from_archive(archive, with_others)
+        return (
+            _from_archive(data, with_others) if data.startswith(b"PK") else Document(_parse(data))
+        )
     except InputError as error:
         raise InputError(error.problems, one_line(str(path), 500)) from None
-    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError) as error:
-        problem = refuse(f"is not a sound archive: {one_line(str(error))}.", "Pack it again.")
-        raise InputError(problem.problems, one_line(str(path), 500)) from None
 
 
 def _read(path: Path) -> bytes:
@@ -136,7 +131,18 @@ def _bounded(data: bytes) -> bytes:
     return data
 
 
-def _from_archive(archive: zipfile.ZipFile, with_others: bool) -> Document:
+def _from_archive(data: bytes, with_others: bool) -> Document:
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            return _unpacked(archive, with_others)
+    except InputError:
+        raise
+    except Exception as error:  # what a broken archive raises has no common base
+        message = one_line(str(error), 200)
+        raise refuse(f"is not a sound archive: {message}.", "Pack it again.") from None
+
+
+def _unpacked(archive: zipfile.ZipFile, with_others: bool) -> Document:
     infos = archive.infolist()
     members = [info for info in infos if info.filename.lower().endswith((*_XML, *_JSON))]
     if len(members) != 1:

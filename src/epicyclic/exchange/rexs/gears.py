@@ -60,7 +60,7 @@ def shared_table(
             text = amount_text(round(abs(found.number), 9), found.unit)
             magnitudes.setdefault(text, found.origin)
     if len(magnitudes) > 1:
-        shown = ", ".join(magnitudes)
+        shown = ", ".join(map(str, magnitudes))
         draft.notes.append(f"The gears have different helix angles: {shown}. The first is taken.")
     if magnitudes:
         draft.give("gears.helix_angle", *next(iter(magnitudes.items())))

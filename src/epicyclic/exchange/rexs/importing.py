@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -87,6 +87,14 @@ class RexsImport:
             problems = [self._explained(problem) for problem in error.problems]
             raise InputError(problems, error.source) from None
 
+    def lacking(self, given: Collection[str] = ()) -> tuple[Lack, ...]:
+        """What is missing but for the keys, or whole tables, that are `given`."""
+        return tuple(
+            lack
+            for lack in self.missing
+            if not any(lack.key == key or lack.key.startswith(f"{key}.") for key in given)
+        )
+
     def text(self, changes: Mapping[str, Any] | None = None) -> str:
         """The commented case file: for every value its origin, for every other key what is known.
 
@@ -96,7 +104,7 @@ class RexsImport:
             Keys to set.
         """
         tables, about = dict(self.tables), dict(self.origins)
-        for lack in self.missing:
+        for lack in self.lacking(changes or ()):
             about[lack.key] = f"{'NEEDED. ' if lack.needed else ''}{lack}"
         if changes:
             tables = changed_tables(tables, changes)

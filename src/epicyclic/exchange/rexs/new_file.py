@@ -244,6 +244,7 @@ def _bearing(builder: _Builder, bearing: PlanetBearing, pin: int, shaft: int, na
     number = builder.add(
         "rolling_bearing_with_detailed_geometry",
         f"bearing of {name}",
+        bearing_type="radial_roller_bearing",
         number_of_bearing_rows=bearing.rows,
         radial_bearing_clearance=(bearing.diametral_clearance, "m"),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from epicyclic.exchange.rexs.draft import Draft, amount_text
+from epicyclic.exchange.rexs.draft import Amount, Draft, amount_text
 from epicyclic.exchange.rexs.model import Component, Model
 from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, fixed_by, rigid_parts
 
@@ -15,32 +15,46 @@ _WATTS = {"W": 1.0, "kW": 1e3}
 
 
 def planetary_operation(draft: Draft, model: Model, planetary: PlanetarySet) -> None:
-    """Input and fixed member, torque and speed of the input."""
+    """Input and fixed member, or two members of given speed; torque and speed of the input."""
     members = {
         name: rigid_parts(model, [*planetary.shafts[name], *own])
-        for name, own in (
-            ("sun", [planetary.sun]), ("ring", [planetary.ring]), ("carrier", []),
-        )
-    }  # fmt: skip
+        for name, own in (("sun", [planetary.sun]), ("ring", [planetary.ring]), ("carrier", []))
+    }
     shafts = {name: planetary.shafts[name] for name in members}
-    fixed = None
-    for name, parts in members.items():
-        joint = fixed_by(model, parts)
-        if joint is not None:
-            fixed = name
-            draft.give("operation.fixed", name, f"{joint} to the casing")
-            break
-    else:
-        everything = [shaft for found in shafts.values() for shaft in found]
-        draft.lack("operation.fixed", "coupling to a gear_casing", everything[:1])
+    joints = {name: fixed_by(model, parts) for name, parts in members.items()}
+    fixed = next((name for name, joint in joints.items() if joint is not None), None)
+    if fixed is not None:
+        draft.give("operation.fixed", fixed, f"{joints[fixed]} to the casing")
     free = {name: parts for name, parts in members.items() if name != fixed}
     member = _driven_by_load(draft, free)
     if member is None:
         every = [shaft for name in free for shaft in shafts[name]]
         draft.lack("operation.input", "external_load with torque_around_u_axis or power", every)
         _speed_and_torque(draft, [], every)
-        return
-    _speed_and_torque(draft, members[member], shafts[member])
+    else:
+        _speed_and_torque(draft, members[member], shafts[member])
+    if fixed is None and not _second_speed(draft, members, member):
+        draft.lack("operation.fixed", "coupling to a gear_casing, or speed of a second member,", [])
+
+
+def _second_speed(
+    draft: Draft, members: Mapping[str, Sequence[Component]], member: str | None
+) -> bool:
+    """The speed of a member beside the input; one that stands still is the fixed one."""
+    own = None if member is None else _speed(draft, members[member])
+    for name, parts in members.items():
+        speed = None if name == member else _speed(draft, parts)
+        if own is None or speed is None:
+            continue
+        if speed.number == 0:
+            draft.give("operation.fixed", name, speed.origin)
+        else:
+            sense = math.copysign(1.0, own.number)  # the speed of the input is its magnitude
+            value = amount_text(sense * speed.number, speed.unit)
+            draft.give("operation.second_input", name, speed.origin)
+            draft.give("operation.second_speed", value, speed.origin)
+        return True
+    return False
 
 
 def pair_operation(draft: Draft, model: Model, pair: Pair) -> None:
@@ -72,19 +86,34 @@ def _nonzero(load: Component, attribute: str) -> bool:
     return amount is not None and amount[0] != 0.0
 
 
+def _speed(draft: Draft, parts: Sequence[Component]) -> Amount | None:
+    """Speed of the first part that has one; all turn together."""
+    turning = [part for part in parts if part.get("rotational_speed") is not None]
+    return draft.read("rotational_speed", turning[:1], "operation.speed")
+
+
+def _torque(draft: Draft, loads: Sequence[Component]) -> Amount | None:
+    """Sum of the torques of all loads of a member."""
+    name, key = "torque_around_u_axis", "operation.torque"
+    found = [amount for load in loads if (amount := draft.read(name, [load], key)) is not None]
+    if len({amount.unit for amount in found}) != 1:
+        return None
+    origin = " plus ".join(amount.origin for amount in found)
+    return Amount(sum(amount.number for amount in found), found[0].unit, origin)
+
+
 def _speed_and_torque(
     draft: Draft, parts: Sequence[Component], shafts: Sequence[Component]
 ) -> None:
     """Speed as a magnitude; torque positive if power flows in, as far as the file tells."""
     key = "operation.speed"
-    turning = [part for part in parts if part.get("rotational_speed") is not None]
-    speed = draft.read("rotational_speed", turning, key)
+    speed = _speed(draft, parts)
     if speed is None:
         draft.lack(key, "rotational_speed", shafts)
     else:
         draft.give(key, amount_text(abs(speed.number), speed.unit), speed.origin)
     loads = [part for part in parts if part.type == "external_load"]
-    torque = draft.read("torque_around_u_axis", loads, "operation.torque")
+    torque = _torque(draft, loads)
     if torque is not None:
         backward = speed is not None and torque.number * speed.number < 0
         sense = " (against the speed: power flows out here)" if backward else ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from epicyclic.exchange.rexs.draft import Draft, Lack, amount_text
 from epicyclic.exchange.rexs.model import Component, Model
@@ -11,6 +12,9 @@ from epicyclic.exchange.rexs.sets import PlanetarySet, rigid_parts
 __all__ = ["bearing_table", "carrier_table", "planet_angles", "planet_bearings"]
 
 _ROLLING = ("rolling_bearing_with_catalog_geometry", "rolling_bearing_with_detailed_geometry")
+_ROLLERS = ("radial_needle_roller_bearing", "radial_roller_bearing")
+"""Types of bearings that the planet bearing of a case can be."""
+
 _CLEARANCES = (
     "operating_radial_bearing_clearance",
     "mounted_radial_bearing_clearance",
@@ -30,36 +34,24 @@ def planet_bearings(model: Model, planetary: PlanetarySet) -> list[Component]:
             sides = {*relation.partners("inner_part"), *relation.partners("outer_part")}
             joints = [model.components[number] for number in relation.partners("assembly")]
             if sides & planets and sides & carried:
-                found |= {item.id: item for item in joints if item.type.endswith("bearing") or
-                          item.type in _ROLLING}  # fmt: skip
+                found |= {item.id: item for item in joints if "bearing" in item.type}
     return list(found.values())
 
 
 def bearing_table(draft: Draft, model: Model, planetary: PlanetarySet) -> None:
     """The planet bearing; every key of it that the file does not give is noted."""
-    bearings = planet_bearings(model, planetary)
-    rolling = [item for item in bearings if item.type in _ROLLING]
-    rows = [
-        row
-        for bearing in rolling
-        for row in model.partners(bearing.id, "ordered_assembly", "assembly", "part",
-                                  "rolling_bearing_row")
-    ]  # fmt: skip
-    elements = [
-        item
-        for row in rows
-        for item in model.partners(row.id, "ordered_assembly", "assembly", "part",
-                                   "rolling_element")
-    ]  # fmt: skip
-    if not rolling:
-        what = f"{bearings[0].type} has no rollers" if bearings else "there is no planet bearing"
-        where = "rolling_bearing_with_detailed_geometry"
-        draft.lacks["planet_bearing"] = Lack(
-            "planet_bearing", f"{where} between planet and pin ({what})", False, _LEFT_OUT
-        )
-        return
-    _rows(draft, planetary, rolling, rows)
     key = "planet_bearing"
+    bearings = planet_bearings(model, planetary)
+    rolling = [item for item in bearings if item.type in _ROLLING and _has_rollers(item)]
+    if not rolling or len(rolling) < len(bearings):
+        others = [item for item in bearings if item not in rolling]
+        what = f"; {others[0]} is none" if others else ""
+        where = f"roller bearing with its geometry between planet and pin{what}"
+        draft.lacks[key] = Lack(key, where, False, _LEFT_OUT)
+        return
+    rows = _parts(model, rolling, "rolling_bearing_row")
+    elements = _parts(model, rows, "rolling_element")
+    _rows(draft, planetary, rolling, rows)
     draft.take(f"{key}.rollers_per_row", "number_of_rolling_elements", rows)
     roller = draft.take(f"{key}.roller_diameter", "diameter_of_rolling_element", elements)
     effective = "significant_contact_length_inner_ring"
@@ -75,6 +67,21 @@ def bearing_table(draft: Draft, model: Model, planetary: PlanetarySet) -> None:
         draft.lack(f"{key}.{name}", "roughness (there is no attribute for it)", rolling)
 
 
+def _has_rollers(bearing: Component) -> bool:
+    """True if a bearing is of a type that can be computed, or of none that is stated."""
+    kind = bearing.get("bearing_type")
+    return kind is None or kind.text() in _ROLLERS
+
+
+def _parts(model: Model, owners: Sequence[Component], kind: str) -> list[Component]:
+    """Parts of a kind of all owners, in order."""
+    return [
+        part
+        for owner in owners
+        for part in model.partners(owner.id, "ordered_assembly", "assembly", "part", kind)
+    ]
+
+
 def _rows(
     draft: Draft, planetary: PlanetarySet, rolling: list[Component], rows: list[Component]
 ) -> None:
@@ -83,6 +90,9 @@ def _rows(
     if count and count.is_integer():
         several = f" of {len(rolling)} bearings" if len(rolling) > 1 else ""
         draft.give("planet_bearing.rows", int(count), f"counted: rolling_bearing_row{several}")
+        if count > 1:
+            gap = "gap between the rollers of neighbouring rows"
+            draft.lack("planet_bearing.row_gap", gap, rolling, "Default: none.")
     else:
         draft.lack("planet_bearing.rows", "rolling_bearing_row", rolling)
 
