@@ -110,7 +110,7 @@ def read_document(path: Path, *, with_others: bool = False) -> Document:
             return _from_archive(archive, with_others)
     except InputError as error:
         raise InputError(error.problems, one_line(str(path), 500)) from None
-    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError) as error:
+    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError) as error:
         problem = refuse(f"is not a sound archive: {one_line(str(error))}.", "Pack it again.")
         raise InputError(problem.problems, one_line(str(path), 500)) from None
 
