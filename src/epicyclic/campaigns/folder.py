@@ -21,6 +21,7 @@ from epicyclic.status import Status
 from epicyclic.sweeps.dataset import whole_file
 from epicyclic.sweeps.journal import Journal, Row
 from epicyclic.sweeps.work import run_work
+from epicyclic.text_file import read_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -185,11 +186,17 @@ def column_of(name: str) -> str:
     return f"{name} [{unit}]" if unit else name
 
 
+_LARGEST_PLAN = 1_000_000
+"""Of campaign.json. [bytes]"""
+
+
 def _read_json(path: Path) -> Any:
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise _folder_error(path, f"cannot be read: {error}.") from None
+        return json.loads(read_text(path, "campaign", _LARGEST_PLAN))
+    except InputError as error:
+        raise _folder_error(path, error.problems[0].allowed) from None
+    except (RecursionError, ValueError):
+        raise _folder_error(path, "is no JSON.") from None
 
 
 def _folder_error(

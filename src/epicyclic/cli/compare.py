@@ -123,7 +123,7 @@ def _check_outputs(output: Path | None, plot: Path | None, keys: list[str]) -> N
 def _calibrated_text(comparison: MeasuredComparison) -> str:
     """The calibrated case as a case file that says which values are fitted, and to what."""
     from epicyclic.case.template import case_text
-    from epicyclic.measurement.compare import CALIBRATED
+    from epicyclic.measurement.deviations import CALIBRATED
     from epicyclic.report.measured_table import fitted_comment
 
     calibrated, fit = comparison.calibrated_case, comparison.fit

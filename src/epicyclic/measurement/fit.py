@@ -7,10 +7,10 @@ are nearly linear in these inputs, and a profile of the likelihood would take te
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -27,10 +27,12 @@ FloatArray = NDArray[np.float64]
 
 STEP = 1e-3
 """Of the differences that give the derivatives, over the start value. [1]"""
-MOST_ROUNDS = 50
-"""Trial solutions after which the fit is given up."""
+MOST_ROUNDS = 200
+"""Trial solutions after which the fit is given up; a curved valley takes some fifty."""
 TOLERANCE = 1e-6
-"""Relative change of parameters, and of the sum of squares, that ends the fit. [1]"""
+"""Relative change of the parameters that ends the fit. [1]"""
+SQUARES_TOLERANCE = 1e-7
+"""Relative change of the sum of squares that ends the fit. [1]"""
 NO_INFLUENCE = 1e-9
 """Relative change of every loss, over that of a parameter, below which it has no influence. [1]"""
 SINGULAR = 1e-7
@@ -184,7 +186,7 @@ def fit_parameters(
     ends = np.array([item.ends for item in parameters])
     found = least_squares(
         residuals, start, residuals.derivatives, (ends[:, 0], ends[:, 1]),
-        xtol=TOLERANCE, ftol=TOLERANCE**2, gtol=TOLERANCE**2, max_nfev=MOST_ROUNDS,
+        xtol=TOLERANCE, ftol=SQUARES_TOLERANCE, gtol=TOLERANCE**2, max_nfev=MOST_ROUNDS,
     )  # fmt: skip
     if found.status < 1:
         raise ConvergenceError(
@@ -222,7 +224,9 @@ def _described(
 ) -> Fit:
     """The fit with intervals and warnings; parameters at a bound have no interval."""
     parameters = residuals.parameters
-    free = np.flatnonzero(~at_bound)
+    lengths = np.linalg.norm(derivatives, axis=0)
+    is_idle = ~at_bound & (lengths <= SINGULAR * lengths.max())
+    free = np.flatnonzero(~at_bound & ~is_idle)
     freedom = deviations.size - len(parameters)
     weighted = residuals.points.measured.uncertainty is not None
     chi_squared = float(deviations @ deviations)
@@ -247,7 +251,10 @@ def _described(
         chi_squared=chi_squared if weighted else math.nan,
         widening=widening if weighted else math.nan,
         evaluations=residuals.evaluations,
-        warnings=tuple(_warnings(fitted, correlation, separable, freedom, weighted, widening)),
+        warnings=(
+            *_idle_warnings([item.key for item in itertools.compress(parameters, is_idle)]),
+            *_warnings(fitted, correlation, separable, freedom, weighted, widening),
+        ),
     )
 
 
@@ -257,8 +264,6 @@ def _covariance(derivatives: FloatArray) -> tuple[FloatArray, bool]:
     if size == 0:
         return np.zeros((0, 0)), True
     lengths = np.linalg.norm(derivatives, axis=0)
-    if not (lengths > 0).all():
-        return np.full((size, size), np.nan), False
     _, singular, directions = np.linalg.svd(derivatives / lengths, full_matrices=False)
     if singular[-1] < SINGULAR * singular[0]:
         return np.full((size, size), np.nan), False
@@ -301,6 +306,14 @@ def _fitted(
     )
 
 
+def _idle_warnings(keys: Sequence[str]) -> Iterable[str]:
+    for key in keys:
+        yield (
+            f"{key} has no influence at its calibrated value, where the models hold it or what "
+            "follows from it at the limit of their range: the value means nothing."
+        )
+
+
 def _warnings(
     fitted: Sequence[FittedParameter],
     correlation: FloatArray,
@@ -313,14 +326,13 @@ def _warnings(
         if item.at_bound:
             yield (
                 f"{item.key} ended at the bound {format_number(item.value)} {item.unit}".rstrip()
-                + ": it has no interval, and something else in the model or the data is amiss."
+                + ": the measurements ask for a value beyond it, and there is no interval."
             )
         elif item.high - item.low > 2 * abs(item.value):
             yield f"{item.key} is hardly determined: its interval is wider than twice its value."
     if not separable:
-        keys = ", ".join(item.key for item in fitted if not item.at_bound)
-        yield f"{keys} cannot be told apart by these points: fix some of them."
-    for i, j in combinations(range(len(fitted)), 2):
+        yield "these points cannot tell the inputs apart: fix some of them."
+    for i, j in itertools.combinations(range(len(fitted)), 2):
         if abs(correlation[i, j]) >= ALIKE:
             yield (
                 f"{fitted[i].key} and {fitted[j].key} can hardly be told apart (correlation "

@@ -20,6 +20,7 @@ from epicyclic.oilmodel.regressions import (
 )
 from epicyclic.oilmodel.states import CONDITIONS, ContactStates
 from epicyclic.oilmodel.structured import STRUCTURED_FRICTION, STRUCTURED_ROLLING, Structured
+from epicyclic.text_file import read_text
 
 __all__ = [
     "FORMAT",
@@ -201,8 +202,6 @@ def read_oil_model(path: str | Path) -> OilModel:
     file = Path(path)
     try:
         stat = file.stat()
-        if stat.st_size > LARGEST_FILE:
-            raise _file_error(file, "is too large to be an oil model.")
         return _read(file.absolute(), stat.st_mtime_ns, stat.st_size)
     except OSError as error:
         raise _file_error(file, f"cannot be read: {error.strerror}.") from None
@@ -212,7 +211,9 @@ def read_oil_model(path: str | Path) -> OilModel:
 def _read(path: Path, _changed: int, _size: int) -> OilModel:
     """The file as it was when it was last changed."""
     try:
-        return OilModel.model_validate_json(path.read_bytes())
+        return OilModel.model_validate_json(read_text(path, "oil model", LARGEST_FILE))
+    except InputError as error:
+        raise _file_error(path, error.problems[0].allowed) from None
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         place = ".".join(map(str, first["loc"]))

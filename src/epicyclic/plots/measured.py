@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from epicyclic.measurement.compare import AS_GIVEN, CALIBRATED, MeasuredComparison
+from epicyclic.measurement.compare import MeasuredComparison
+from epicyclic.measurement.deviations import AS_GIVEN, CALIBRATED
 from epicyclic.plots.style import COLOURS, styled_figure
 from epicyclic.units import format_number, unit_text
 

@@ -8,7 +8,8 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from epicyclic.measurement.compare import CALIBRATED, ErrorFigures, MeasuredComparison
+from epicyclic.measurement.compare import MeasuredComparison
+from epicyclic.measurement.deviations import CALIBRATED, ErrorFigures
 from epicyclic.measurement.fit import Fit, FittedParameter
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import plain_table
@@ -32,7 +33,7 @@ def measured_tables(comparison: MeasuredComparison) -> RenderableType:
 def _error_table(comparison: MeasuredComparison) -> Table:
     table = plain_table("Computed less measured loss")
     table.add_column("case, points", no_wrap=True)
-    names = ["n", "mean W", "mean %", "rms W", "size %", "largest W", "largest %", "line"]
+    names = ["n", "mean W", "mean %", "rms W", "size %", "most W", "most %", "line"]
     weighted = comparison.measured.uncertainty is not None
     for name in [*names, *["χ²"] * weighted]:
         table.add_column(name, justify="right", no_wrap=True)
@@ -65,8 +66,8 @@ def _percent(value: float) -> str:
 
 def _legend(comparison: MeasuredComparison) -> str:
     text = (
-        "mean: of the errors; size: mean of their magnitude; largest: by magnitude, with its line; "
-        "%: over the measured loss."
+        "mean: of the errors; size: mean of their magnitude; most: by magnitude, in W with its "
+        "line; %: over the measured loss."
     )
     if comparison.fit is not None:
         text += f" {CALIBRATED}: with values fitted to these measurements; that is no validation."

@@ -90,9 +90,13 @@ def _number(value: Any) -> float:
         value = float(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise _KindError("is not a number")
-    if not math.isfinite(value):
+    try:
+        number = float(value)
+    except OverflowError:  # a whole number of hundreds of digits
+        number = math.inf
+    if not math.isfinite(number):
         raise ValueError("is not a finite number")
-    return float(value)
+    return number
 
 
 @dataclass(frozen=True, slots=True)

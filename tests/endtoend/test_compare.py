@@ -1,0 +1,116 @@
+"""The command compare as a user calls it."""
+
+from __future__ import annotations
+
+import json
+import re
+from types import SimpleNamespace
+
+import pytest
+
+import epicyclic as ep
+from epicyclic.cli.main import main
+
+QUICK = [
+    argument
+    for mesh in ("sun", "ring")
+    for argument in ("--set", f"losses.{mesh}_mesh_pocketing.include=false")
+]
+"""Without pockets, whose flow takes half a second for each speed and temperature."""
+
+
+@pytest.fixture
+def call(monkeypatch, capsys):
+    """The command in this process, which has the kernels already."""
+
+    def run(*arguments):
+        monkeypatch.setattr("sys.argv", ["epicyclic", "compare", *arguments])
+        code = 0
+        try:
+            main()
+        except SystemExit as ended:
+            code = ended.code
+        shown = capsys.readouterr()
+        return SimpleNamespace(returncode=code, stdout=shown.out, stderr=shown.err)
+
+    return run
+
+
+@pytest.fixture
+def measured(tmp_path):
+    """A table of measurements that the model overestimates at 90 degC only."""
+    path = tmp_path / "measured.csv"
+    path.write_text(
+        "speed [rpm],torque [N*m],temperature [degC],loss [W],uncertainty [%]\n"
+        "1000,500,90,440,2\n2000,500,90,850,2\n4000,500,90,1600,2\n4000,0,90,220,2\n"
+        "1000,500,40,350,2\n4000,0,40,350,2\n"
+    )
+    return str(path)
+
+
+def test_tables_are_printed(call, measured):
+    done = call("talbot-2012", measured, *QUICK)
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"as given: all points +6 ", done.stdout)
+    assert re.search(r"  temperature 40 +2 ", done.stdout)
+    assert "CALIBRATED" not in done.stdout
+    assert "Not included: thrust_bearing_viscous" in done.stdout
+
+
+def test_a_calibration_is_called_so_everywhere(call, measured, tmp_path):
+    case, picture, data = (tmp_path / name for name in ("fitted.toml", "fit.svg", "fit.json"))
+    key = "losses.carrier_drag.factor"
+    keys = f"surroundings.oil_air_ratio,{key}"
+    done = call(
+        "talbot-2012", measured, *QUICK, "--fit", keys, "--hold-out", "temperature=40",
+        "-o", str(case), "--plot", str(picture), "--json", str(data),
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "CALIBRATED: held-out points" in done.stdout
+    assert "CALIBRATED values" in done.stdout
+    assert "CALIBRATED: surroundings.oil_air_ratio =" in picture.read_text(encoding="utf-8")
+
+    fit = json.loads(data.read_text(encoding="utf-8"))["fit"]
+    assert fit["state"] == "CALIBRATED"
+    assert fit["points"] == 4
+    values = {item["key"]: item["value"] for item in fit["parameters"]}
+    text = case.read_text(encoding="utf-8")
+    assert text.startswith("# CALIBRATED")
+    assert len(re.findall(r"^(?:oil_air_ratio|carrier_drag) = .*# .*CALIBRATED", text, re.M)) == 2
+    fitted = ep.load_case(case)
+    assert fitted.surroundings.oil_air_ratio == values["surroundings.oil_air_ratio"]
+    assert fitted.losses.carrier_drag.factor == values[key]
+
+
+def test_json_goes_to_standard_output(call, measured):
+    done = call("talbot-2012", measured, *QUICK, "--json")
+    content = json.loads(done.stdout)
+    assert content["fit"] is None
+    assert [point["measured [W]"] for point in content["points"]][:2] == [440, 850]
+    assert content["errors"][0]["count"] == 6
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["-o", "fitted.toml"], "nothing is calibrated"),
+        (["--fit", "planet.roughness", "-o", "fitted.txt"], "must end in .toml"),
+        (["--plot", "fit.jpg"], "must end in .png"),
+        (["--fit", "planet.roughnes"], "planet.roughness"),
+        (["--hold-out", "0.5"], "there is none"),
+    ],
+)
+def test_bad_options_end_before_anything_is_written(call, measured, tmp_path, arguments, words):
+    done = call("talbot-2012", measured, *QUICK, *arguments)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["measured.csv"]
+
+
+def test_a_bad_table_is_told_without_a_traceback(call, tmp_path):
+    path = tmp_path / "measured.csv"
+    path.write_bytes(bytes(range(256)) * 1000)
+    done = call("talbot-2012", str(path))
+    assert done.returncode == 2
+    assert "measured.csv" in done.stderr
+    assert "Traceback" not in done.stderr

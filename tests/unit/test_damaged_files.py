@@ -1,0 +1,151 @@
+"""Sound files damaged at random: a reader takes them, or says in its own words what is wrong."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import epicyclic as ep
+from epicyclic.case.contact import contact_model, load_contact_case
+from epicyclic.case.template import case_text
+from epicyclic.ehl.roughness import read_profile
+from epicyclic.exchange.rexs.exporting import rexs_bytes
+from epicyclic.exchange.rexs.importing import read_rexs
+from epicyclic.maps.cycle import open_cycle
+from epicyclic.measurement.files import read_grid
+from epicyclic.measurement.table import parse_measurements
+
+COPIES = 40
+OIL = {
+    "kind": "mineral",
+    "kinematic_viscosity": [
+        {"temperature": "40 degC", "value": "46 mm^2/s"},
+        {"temperature": "100 degC", "value": "7.8 mm^2/s"},
+    ],
+    "density": [{"temperature": "15 degC", "value": "870 kg/m^3"}],
+    "pressure_viscosity": {"law": "gold", "s": 9.904, "t": 0.139},
+}
+RICH = {
+    "lubricant.oil": OIL,
+    "models.friction": "table",
+    "friction_table": {"film_ratio": [0.1, 0.5, 3.0], "friction": [0.09, 0.06, 0.03]},
+    "sun.micro_geometry": {
+        "topography": {
+            "diameter": ["132 mm", "139 mm"],
+            "face_position": ["0 mm", "30 mm"],
+            "deviation": [["0 um", "1 um"], ["2 um", "3 um"]],
+        },
+    },
+}
+"""Tables within tables and lists: an oil, coefficients of friction, deviations of a flank."""
+CONTACT = """\
+[contact]
+radius = "8 mm"
+line_load = "300 N/mm"
+rolling_speed = "8 m/s"
+
+[lubricant]
+oil = "iso-vg-100-mineral"
+temperature = "80 degC"
+pressure_law = "two-slope"
+second_slope = "8 1/GPa"
+transition_pressure = "0.4 GPa"
+
+[surface1]
+roughness = "0.4 um"
+skewness = -0.5
+kurtosis = 4
+"""
+ODD = [b"nan", b"inf", b"-", b"1e999", b"[", b"{", b'"', b"\0", b"\xff", b"\n", b"9" * 400, b"0"]
+NUMBER = re.compile(rb"\d+\.?\d*")
+
+
+def table_bytes(table, suffix):
+    file = io.BytesIO()
+    write = {".csv": table.to_csv, ".xlsx": table.to_excel, ".parquet": table.to_parquet}[suffix]
+    write(file, index=False)
+    return file.getvalue()
+
+
+def measurements():
+    columns = {
+        "speed [rpm]": [1000, 2000],
+        "torque [N*m]": [500, 10],
+        "temperature [degC]": [90, 40],
+        "loss [W]": [400.0, 800.0],
+        "planet.count": [3, 4],
+    }
+    return pd.DataFrame(columns)
+
+
+def read_measured(path):
+    return parse_measurements(read_grid(path), ep.load_case("talbot-2012"))
+
+
+def sound_file(name):
+    """The bytes of a sound file."""
+    stem, dot, suffix = name.partition(".")
+    if stem == "case":
+        return case_text(ep.load_case("talbot-2012").updated(RICH).given(), []).encode()
+    if stem == "contact":
+        return CONTACT.encode()
+    if stem == "profile":
+        return "".join(f"{0.001 * n:.3f},{np.sin(n):.4f}\n" for n in range(200)).encode()
+    if stem == "measured":
+        return table_bytes(measurements(), dot + suffix)
+    if stem == "cycle":
+        cycle = measurements()[["speed [rpm]", "torque [N*m]"]].assign(**{"time [s]": [0, 1]})
+        return table_bytes(cycle, dot + suffix)
+    return rexs_bytes(name, ep.solve(ep.load_case("talbot-2012")), None, None)
+
+
+READERS = {
+    "case.toml": ep.load_case,
+    "contact.toml": lambda path: contact_model(load_contact_case(path)),
+    "profile.csv": read_profile,
+    "measured.csv": read_measured,
+    "measured.xlsx": read_measured,
+    "measured.parquet": read_measured,
+    "cycle.csv": open_cycle,
+    "cycle.parquet": open_cycle,
+    "gears.rexs": read_rexs,
+    "gears.rexsj": read_rexs,
+    "gears.rexsz": read_rexs,
+}
+
+
+def damaged(data, rng):
+    """`data` cut short, with a byte changed, a piece lost or repeated, or something odd in it."""
+    at, length = int(rng.integers(len(data))), int(rng.integers(1, 40))
+    head, piece, tail = data[:at], data[at : at + length], data[at + length :]
+    odd = ODD[rng.integers(len(ODD))]
+    numbers = [match.span() for match in NUMBER.finditer(data)]
+    start, end = numbers[rng.integers(len(numbers))] if numbers else (at, at)
+    ways = [
+        head,
+        head + bytes([rng.integers(256)]) + data[at + 1 :],
+        head + tail,
+        head + piece + piece + tail,
+        head + odd + piece + tail,
+        data[:start] + odd + data[end:],
+    ]
+    return ways[rng.integers(len(ways))]
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")  # of the libraries, on damaged workbooks
+@pytest.mark.parametrize("name", READERS)
+def test_damaged_files_end_in_an_input_error_or_are_read(tmp_path, name):
+    path = tmp_path / name
+    data = sound_file(name)
+    path.write_bytes(data)
+    READERS[name](path)
+    rng = np.random.default_rng(2012)
+    for _ in range(COPIES):
+        path.write_bytes(damaged(data, rng))
+        with contextlib.suppress(ep.InputError):
+            READERS[name](path)
