@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,7 @@ __all__ = [
     "check_gaps",
     "check_map",
     "read_netcdf",
+    "stated",
     "statements",
     "write_csv",
     "write_netcdf",
@@ -46,6 +48,16 @@ def statements(data: xr.Dataset) -> dict[str, str]:
         name.replace("_", " "): one_line(str(data.attrs.get(name, "")), _LONGEST_STATEMENT)
         for name in _STATED
     }
+
+
+def stated(data: xr.Dataset, axes: Sequence[str] = ("speed", "torque")) -> dict[str, str]:
+    """The statements of a map, and the values of its axes beyond `axes`, which have one each."""
+    single = {
+        str(name): f"{data[name].values[0]} {data[name].attrs.get('units', '')}".strip()
+        for name in data["torque_loss"].dims
+        if name not in axes
+    }
+    return statements(data) | single
 
 
 def check_map(data: xr.Dataset, source: str = "the map") -> None:
