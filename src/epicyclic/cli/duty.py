@@ -79,7 +79,7 @@ def duty(
     celsius = parse_temperatures(checked, temperatures or None)
     data = _map(map_or_case, changes, checked, celsius, map_file, jobs)
     with progress_bar("checked points") as progress:
-        result = make_duty(data, checked, celsius, clamp=clamp, progress=progress)
+        result = make_duty(data, checked, celsius, clamp=clamp, jobs=jobs, progress=progress)
     _write(result, output, json_file)
 
 

@@ -7,7 +7,7 @@ the nodes they give the energy of every component at once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +28,7 @@ from epicyclic.maps.interpolation_error import (
     solve_sample,
 )
 from epicyclic.maps.lookup import Lookup, loss_power, make_lookup
+from epicyclic.sweeps.work import Progress
 from epicyclic.units import (
     CELSIUS,
     KILOJOULE,
@@ -44,7 +45,6 @@ if TYPE_CHECKING:
 __all__ = ["MODES", "SAMPLES", "cycle_map", "duty_cycle", "make_duty", "parse_temperatures"]
 
 Array = NDArray[np.float64]
-Progress = Callable[[int, int], None]
 
 MODES = ("driving", "coasting", "idling")
 """The reference shaft drives, is driven, or passes no power: no torque or no speed."""
@@ -86,7 +86,9 @@ def duty_cycle(
         refused.
     samples : int
         Points of the cycle that are solved directly to measure the error of the interpolation.
-    jobs, progress
+    jobs
+        As for `sweep`.
+    progress
         As for `sweep`, for the map of a case.
 
     Returns
@@ -109,7 +111,7 @@ def duty_cycle(
     data = map_or_case
     if isinstance(data, Case):
         data = cycle_map(data, checked, celsius, jobs=jobs, progress=progress)
-    return make_duty(data, checked, celsius, clamp=clamp, samples=samples)
+    return make_duty(data, checked, celsius, clamp=clamp, samples=samples, jobs=jobs)
 
 
 def parse_temperatures(cycle: Cycle, temperature: Iterable[Any] | None) -> tuple[float, ...] | None:
@@ -178,6 +180,7 @@ def make_duty(
     *,
     clamp: bool = False,
     samples: int = SAMPLES,
+    jobs: int | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """The result of `duty_cycle` from a map and a checked cycle."""
@@ -194,7 +197,7 @@ def make_duty(
         error = (
             leave_out(lookup, totals.node_work.sum(axis=0))
             if case is None
-            else solve_sample(case, sample, progress)
+            else solve_sample(case, sample, jobs, progress)
         )
         results.append(_to_dataset(lookup, totals, error))
     (result, *_) = results
