@@ -194,6 +194,7 @@ def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[P
     """Columns that a cycle must have."""
     problems = []
     shown = ", ".join(f'"{one_line(header)}"' for header in headers[:_SHOWN_HEADERS])
+    shown += ", ..." if len(headers) > _SHOWN_HEADERS else ""
     for name, quantity in _QUANTITIES.items():
         if name not in (*_WEIGHTINGS, *_OPTIONAL) and not found[name] and quantity is not None:
             remedy = f'Name a column "{name} [{quantity.display}]".'
@@ -266,8 +267,9 @@ class _Checks:
             self._note(bad, column, _Fault(name, "must be a finite number.", "Correct the row."))
             if name == TIME:
                 early = values <= np.append(self._last_time, values[:-1])
+                allowed = "must be later than in the row before."
                 remedy = "Sort the rows, and give each time once."
-                self._note(early, column, _Fault(name, "must be later than before.", remedy))
+                self._note(early, column, _Fault(name, allowed, remedy))
                 self._last_time = values[-1] if values.size else self._last_time
             if name in (DURATION, SHARE):
                 fault = _Fault(name, "must not be negative.", "Correct the row.")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from epicyclic.case.wording import one_line
+from epicyclic.case.wording import one_line, sentence
 from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.dataset import to_table
 
@@ -95,10 +95,8 @@ def read_netcdf(path: Path) -> xr.Dataset:
         with xr.open_dataset(path, engine="netcdf4") as stored:
             data = stored.load()
     except (OSError, ValueError, RuntimeError) as error:
-        reason = one_line(str(error))
-        problem = Problem(
-            "MAP", str(path), f"cannot be read as NetCDF: {reason}.", "Give a map from epicyclic."
-        )
+        reason = sentence(f"cannot be read as NetCDF: {one_line(str(error))}", capital=False)
+        problem = Problem("MAP", str(path), reason, "Give a map from epicyclic.")
         raise InputError([problem], "the command") from None
     check_map(data, str(path))
     return data
