@@ -20,6 +20,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import pandas as pd
 from rich.console import Console
 from rich.table import Table
 
@@ -89,6 +91,30 @@ def map_seconds() -> float:
     """A loss map from the command, all cores, file included."""
     with tempfile.TemporaryDirectory() as folder:
         return process_seconds("-m", "epicyclic", *MAP, "-o", str(Path(folder) / "map.nc"))
+
+
+def duty_seconds() -> tuple[float, float]:
+    """A duty cycle of a million rows from CSV, without checked points; and pandas reading it."""
+    data = ep.loss_map(
+        ep.load_case("talbot-2012-pair"),
+        ["0 rpm", "1000 rpm", "4000 rpm"],
+        ["-50 N*m", "0 N*m", "50 N*m"],
+        ["40 degC", "90 degC"],
+    ).assign_attrs(case="")
+    seconds = np.arange(1_000_000) / 10
+    cycle = pd.DataFrame(
+        {
+            "time [s]": seconds,
+            "speed [rpm]": 2000 + 1900 * np.sin(seconds / 50),
+            "torque [N*m]": 50 * np.sin(seconds / 17),
+            "temperature [degC]": 90 - 50 * np.exp(-seconds / 2e4),
+        }
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "cycle.csv"
+        cycle.round(4).to_csv(path, index=False)
+        duty = median_seconds(lambda: ep.duty_cycle(data, path), repeats=3)
+        return duty, median_seconds(lambda: pd.read_csv(path), repeats=3)
 
 
 def clear_caches() -> None:
@@ -226,6 +252,7 @@ def main() -> None:
     command = "import benchmark; benchmark.matrix(None)"
     matrix_process = process_seconds("-c", command, PYTHONPATH=here)
     whole_map = map_seconds()
+    duty, reading = duty_seconds()
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
 
     table = Table(title="Epicyclic benchmark", title_justify="left")
@@ -255,6 +282,8 @@ def main() -> None:
          f"{matrix_process / matrix_seconds:.2f}", "the matrix, warm"),
         ("loss map, 8200 points, to NetCDF", f"{whole_map:.1f} s", "60 s",
          f"{whole_map / (8200 * point):.2f}", "8200 single points"),
+        ("duty cycle, a million rows of CSV", f"{duty:.1f} s", "5 s", f"{duty / reading:.1f}",
+         "reading it with pandas"),
         ("largest memory of a process", f"{peak:.0f} MB", "500 MB", "", ""),
     ):  # fmt: skip
         table.add_row(*row)

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 import xarray as xr
 from click.testing import CliRunner
@@ -340,6 +344,52 @@ def test_bad_parquet_files_end_in_one_error(data, tmp_path):
     with pytest.raises(ep.InputError) as error:
         ep.duty_cycle(data, path)
     assert len(error.value.problems) == 2
+
+
+BIG = """
+import re, sys, time
+from pathlib import Path
+import epicyclic as ep
+before = time.process_time()
+try:
+    ep.duty_cycle(None, sys.argv[1])
+except ep.InputError as error:
+    print(len(error.problems))
+peak = re.search(r"VmHWM:\\s+(\\d+) kB", Path("/proc/self/status").read_text())
+print(time.process_time() - before, int(peak[1]) / 1024)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("body", "count"),
+    [
+        ("1,abc,nan,\n" * 1_000_000, 4),
+        ("1" * 50_000_000, 1),
+        ('"' + "1,2,3,4\n" * 3_000_000, 1),
+    ],
+)
+def test_large_bad_files_end_soon_and_in_little_memory(tmp_path, body, count):
+    path = tmp_path / "cycle.csv"
+    path.write_text(GOOD.splitlines()[0] + "\n" + body)
+    command = [sys.executable, "-c", BIG, str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    problems, seconds, megabytes = (float(word) for word in done.stdout.split())
+    assert problems == count
+    assert seconds < 5
+    assert megabytes < 500
+
+
+@pytest.mark.slow
+def test_memory_does_not_grow_with_the_rows(tmp_path):
+    """A Parquet file of zeros, a hundred times larger in memory than on the disk."""
+    path = tmp_path / "cycle.parquet"
+    names = ("time [s]", "speed [rpm]", "torque [N*m]", "temperature [degC]")
+    zeros = pa.table(dict.fromkeys(names, pa.array(np.zeros(20_000_000))))
+    pq.write_table(zeros, path, compression="zstd")
+    command = [sys.executable, "-c", BIG, str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert float(done.stdout.split()[2]) < 500  # the table itself takes 640
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import numpy as np
 import openpyxl
 import pandas as pd
 import pytest
+import rumoca
 import scipy.io
 
 import epicyclic as ep
@@ -139,8 +140,8 @@ def test_modelica_gives_the_losses_within_what_it_states(data, tmp_path):
     path = tmp_path / "my map-2.mo"
     ep.write_map(data, path)
     text = path.read_text(encoding="utf-8")
-    assert text.count("record my_map_2 ") == 1
-    assert text.endswith("end my_map_2;\n")
+    assert text.count("record My_map_2 ") == 1
+    assert text.endswith("end My_map_2;\n")
     assert "// flange_a: sun; flange_b: carrier; support: ring\n" in text
     code = "\n".join(line for line in text.splitlines() if not line.startswith("//"))
     (body,) = re.findall(r"lossTable\[:, 5\] = \[([^\]]*)\]", code)
@@ -155,6 +156,73 @@ def test_modelica_gives_the_losses_within_what_it_states(data, tmp_path):
         worst = max(worst, abs(lossy_gear(table, speed * 2 * np.pi / 60, torque) - loss))
     assert worst == pytest.approx(float(stated), rel=0.005)  # three digits are stated
     assert worst < 0.05 * float(data["torque_loss"].max())
+
+
+@pytest.mark.parametrize("name", ["my map-2", "end", "3d"])
+def test_a_modelica_compiler_takes_the_record(data, tmp_path, name):
+    """Rumoca compiles a model that uses the table, and simulates it."""
+    path = tmp_path / f"{name}.mo"
+    ep.write_map(data, path)
+    text = path.read_text(encoding="utf-8")
+    (record,) = re.findall(r"^record (\w+) ", text, re.MULTILINE)
+    table, _ = simulation.loss_table(data)
+    user = f"model User {record} gear; Real loss; Real sum(start=0); equation"
+    user += " loss = gear.lossTable[2, 4] + (1 - gear.lossTable[2, 2])*500*gear.ratio;"
+    user += " der(sum) = loss; end User;"
+    result = rumoca.Session().loads(f"{text}\n{user}", model="User").simulate(t=(0, 1), dt=0.5)
+    wanted = table[1, 3] + (1 - table[1, 1]) * 500 * (73 + 125) / 73
+    found = result.to_dataframe()["sum"].iloc[-1]
+    assert found == pytest.approx(wanted, rel=1e-6)  # of the integration; ten digits are written
+
+
+def matlab_script(path):
+    """The variables of a script of vectors and of `reshape`, as MATLAB reads it."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    lines = [line.partition("%")[0].replace("...", " ") for line in lines]
+    variables = {}
+    for name, reshaped, body, sizes in re.findall(
+        r"(\w+) = (reshape\()?\[([^\]]*)\](?:, \[([\d ]*)\]\))?;", " ".join(lines)
+    ):
+        values = np.array([float(item) for item in body.split()])
+        if reshaped:
+            values = values.reshape([int(size) for size in sizes.split()], order="F")
+        variables[name] = values
+    return variables
+
+
+def test_simscape_tables_in_si_units(temperatures, tmp_path):
+    path = tmp_path / "loss_map.m"
+    one = temperatures.isel(sun_roughness=[1])
+    ep.write_map(one, path)
+    found = matlab_script(path)
+    assert set(found) == {
+        "Trq_bpts", "omega_bpts", "Temp_bpts", "torque_loss_tbl", "power_loss_tbl", "eta_tbl",
+    }  # fmt: skip
+    np.testing.assert_allclose(found["Trq_bpts"], one["torque"])
+    np.testing.assert_allclose(found["omega_bpts"], one["speed"] * np.pi / 30, rtol=1e-9)
+    np.testing.assert_allclose(found["Temp_bpts"], one["temperature"] + 273.15)
+    order = ("torque", "speed", "temperature")
+    plain = one.isel(sun_roughness=0)
+    for table, name in (("torque_loss_tbl", "torque_loss"), ("power_loss_tbl", "total")):
+        np.testing.assert_allclose(found[table], plain[name].transpose(*order), rtol=1e-9)
+    wanted = plain["efficiency"].transpose(*order).values
+    passing = wanted > 0
+    np.testing.assert_allclose(found["eta_tbl"][passing], wanted[passing], rtol=1e-9)
+    assert ((found["eta_tbl"] > 0) & (found["eta_tbl"] <= 1)).all()  # as the blocks demand
+    assert (found["eta_tbl"][~passing] == 0.001).all()
+    text = path.read_text(encoding="utf-8")
+    assert "% reference shaft: sun\n" in text
+    assert "% sun_roughness: 0.2 um\n" in text
+    with pytest.raises(ep.InputError, match="sun_roughness: has 2 values"):
+        ep.write_map(temperatures, path)
+
+
+def test_what_is_no_map_is_refused(data, tmp_path):
+    sweep = ep.sweep(ep.load_case("talbot-2012-pair"), {"operation.speed": ["100 rpm"]})
+    for other in (sweep, data.isel(temperature=0), data.drop_attrs(), 5):
+        with pytest.raises(ep.InputError, match="is no loss map"):
+            ep.write_map(other, tmp_path / "map.csv")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_modelica_is_exact_for_linear_losses(data):
@@ -194,7 +262,7 @@ def test_formats_say_what_they_need(data, tmp_path, select, format, words):
 def test_gaps_are_refused_and_backward_rotation_too(data, tmp_path):
     gap = data.copy(deep=True)
     gap["torque_loss"][0, 0] = np.nan
-    with pytest.raises(ep.InputError, match="missing at 1 points"):
+    with pytest.raises(ep.InputError, match="missing at 1 points; all are needed"):
         ep.write_map(gap, tmp_path / "map.vtlm")
     backwards = data.assign_coords(speed=[-1.0, 0.0, 1.0])
     with pytest.raises(ep.InputError, match="speed: must not be negative"):
@@ -235,6 +303,8 @@ def test_a_file_that_cannot_be_finished_leaves_the_old_one(data, tmp_path, monke
         ("map.mo", (), b"// title"),
         ("map.xlsx", (), b"PK"),
         ("map.mat", (), b"MATLAB 5.0"),
+        ("map.m", (), b"% title"),
+        ("map.fmu", (), b"PK"),
         ("map.txt", ("--format", "vecto"), b"Input Speed [rpm]"),
     ],
 )

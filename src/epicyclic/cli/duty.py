@@ -72,14 +72,17 @@ def duty(
     """
     from epicyclic.cli.progress import progress_bar
     from epicyclic.maps.cycle import open_cycle
-    from epicyclic.maps.duty import make_duty, parse_temperatures
+    from epicyclic.maps.duty import add_up, make_duty, parse_temperatures
 
     _check_options(map_or_case, changes, map_file, output)
-    checked = open_cycle(cycle)
+    with progress_bar("rows read") as progress:
+        checked = open_cycle(cycle, progress)
     celsius = parse_temperatures(checked, temperatures or None)
     data = _map(map_or_case, changes, checked, celsius, map_file, jobs)
+    with progress_bar("rows") as progress:
+        sums = add_up(data, checked, celsius, clamp=clamp, progress=progress)
     with progress_bar("checked points") as progress:
-        result = make_duty(data, checked, celsius, clamp=clamp, progress=progress)
+        result = make_duty(data, checked, sums, jobs, progress)
     _write(result, output, json_file)
 
 

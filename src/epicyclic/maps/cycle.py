@@ -8,7 +8,7 @@ as a whole.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -59,14 +59,14 @@ class Piece:
     Attributes
     ----------
     speed, torque, temperature : array, shape (n,)
-        In rpm, N m, degC; the temperature is None if the cycle has none.
+        In rpm, N m, degC.
     duration : array, shape (n,)
         [s]
     """
 
     speed: Array
     torque: Array
-    temperature: Array | None
+    temperature: Array
     duration: Array
 
 
@@ -92,8 +92,8 @@ class Cycle:
     rows: int
     ranges: Mapping[str, tuple[float, float]]
 
-    def pieces(self) -> Iterator[Piece]:
-        """All points.
+    def pieces(self, celsius: float | None = None) -> Iterator[Piece]:
+        """All points, at their own temperatures or at one.
 
         Of a time series each stands for half of the time to each neighbour, the trapezoidal rule.
         Rows at which two pieces meet are in both, each time with a part of their time.
@@ -111,10 +111,12 @@ class Cycle:
                 duration = (np.append(steps, 0.0) + np.append(0.0, steps)) / 2
             else:
                 duration = rows[self.weighting]
-            yield Piece(rows["speed"], rows["torque"], rows.get("temperature"), duration)
+            speed = rows["speed"]
+            temperature = rows["temperature"] if celsius is None else np.full_like(speed, celsius)
+            yield Piece(speed, rows["torque"], temperature, duration)
 
 
-def open_cycle(table: Any) -> Cycle:
+def open_cycle(table: Any, progress: Callable[[int, None], None] | None = None) -> Cycle:
     """Read a whole cycle once and check it.
 
     Parameters
@@ -122,6 +124,8 @@ def open_cycle(table: Any) -> Cycle:
     table : str, Path, pandas.DataFrame or mapping
         A file that ends in .csv or .parquet, or columns by name. Names carry units,
         ``"speed [rpm]"``.
+    progress : callable, optional
+        Called with the number of rows so far, and None for that of all rows.
 
     Raises
     ------
@@ -134,6 +138,8 @@ def open_cycle(table: Any) -> Cycle:
     if columns:
         for batch in source.batches([column.header for column in columns.values()]):
             checks.add({name: batch[column.header] for name, column in columns.items()})
+            if progress is not None:
+                progress(checks.rows, None)
         problems += checks.problems()
     if problems:
         raise InputError(problems, source.name)
@@ -194,6 +200,7 @@ def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[P
     """Columns that a cycle must have."""
     problems = []
     shown = ", ".join(f'"{one_line(header)}"' for header in headers[:_SHOWN_HEADERS])
+    shown += ", ..." if len(headers) > _SHOWN_HEADERS else ""
     for name, quantity in _QUANTITIES.items():
         if name not in (*_WEIGHTINGS, *_OPTIONAL) and not found[name] and quantity is not None:
             remedy = f'Name a column "{name} [{quantity.display}]".'
@@ -266,8 +273,9 @@ class _Checks:
             self._note(bad, column, _Fault(name, "must be a finite number.", "Correct the row."))
             if name == TIME:
                 early = values <= np.append(self._last_time, values[:-1])
+                allowed = "must be later than in the row before."
                 remedy = "Sort the rows, and give each time once."
-                self._note(early, column, _Fault(name, "must be later than before.", remedy))
+                self._note(early, column, _Fault(name, allowed, remedy))
                 self._last_time = values[-1] if values.size else self._last_time
             if name in (DURATION, SHARE):
                 fault = _Fault(name, "must not be negative.", "Correct the row.")

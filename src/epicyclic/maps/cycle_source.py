@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from epicyclic.case.wording import one_line
+from epicyclic.case.wording import one_line, sentence
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def _readable(name: str) -> Iterator[None]:
     try:
         yield
     except (pa.ArrowException, OSError, UnicodeDecodeError, csv.Error) as error:
-        reason = f"cannot be read: {one_line(str(error), 200)}."
+        reason = sentence(f"cannot be read: {one_line(str(error), 200)}", capital=False)
         raise _unreadable(name, reason, "Write it anew, as UTF-8 if it is text.") from None
 
 

@@ -7,7 +7,7 @@ the nodes they give the energy of every component at once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +28,7 @@ from epicyclic.maps.interpolation_error import (
     solve_sample,
 )
 from epicyclic.maps.lookup import Lookup, loss_power, make_lookup
+from epicyclic.sweeps.work import Progress
 from epicyclic.units import (
     CELSIUS,
     KILOJOULE,
@@ -41,10 +42,9 @@ from epicyclic.units import (
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["MODES", "SAMPLES", "cycle_map", "duty_cycle", "make_duty", "parse_temperatures"]
+__all__ = ["MODES", "add_up", "cycle_map", "duty_cycle", "make_duty", "parse_temperatures"]
 
 Array = NDArray[np.float64]
-Progress = Callable[[int, int], None]
 
 MODES = ("driving", "coasting", "idling")
 """The reference shaft drives, is driven, or passes no power: no torque or no speed."""
@@ -86,7 +86,9 @@ def duty_cycle(
         refused.
     samples : int
         Points of the cycle that are solved directly to measure the error of the interpolation.
-    jobs, progress
+    jobs
+        As for `sweep`.
+    progress
         As for `sweep`, for the map of a case.
 
     Returns
@@ -109,7 +111,8 @@ def duty_cycle(
     data = map_or_case
     if isinstance(data, Case):
         data = cycle_map(data, checked, celsius, jobs=jobs, progress=progress)
-    return make_duty(data, checked, celsius, clamp=clamp, samples=samples)
+    sums = add_up(data, checked, celsius, clamp=clamp, samples=samples)
+    return make_duty(data, checked, sums, jobs)
 
 
 def parse_temperatures(cycle: Cycle, temperature: Iterable[Any] | None) -> tuple[float, ...] | None:
@@ -171,58 +174,8 @@ def _texts(values: Iterable[float], quantity: Quantity) -> list[str]:
     return [f"{float(value)!r} {quantity.display}" for value in values]
 
 
-def make_duty(
-    data: xr.Dataset,
-    cycle: Cycle,
-    celsius: tuple[float, ...] | None = None,
-    *,
-    clamp: bool = False,
-    samples: int = SAMPLES,
-    progress: Progress | None = None,
-) -> xr.Dataset:
-    """The result of `duty_cycle` from a map and a checked cycle."""
-    import xarray as xr
-
-    lookup = make_lookup(data)
-    case = map_case(data)
-    results = []
-    for value in _temperatures(lookup, cycle, celsius):
-        sample = Sample(samples)
-        totals = _sum_up(lookup, cycle, value, sample)
-        if totals.outside and not clamp:
-            raise _outside(lookup, cycle, value, totals)
-        error = (
-            leave_out(lookup, totals.node_work.sum(axis=0))
-            if case is None
-            else solve_sample(case, sample, progress)
-        )
-        results.append(_to_dataset(lookup, totals, error))
-    (result, *_) = results
-    if celsius is not None:
-        axis = xr.Variable("temperature", list(celsius), {"units": CELSIUS.display})
-        result = xr.concat(results, axis)
-    result.attrs = _attributes(data, cycle, clamp) | {"interpolation_error_method": error.method}
-    return result
-
-
-def _temperatures(
-    lookup: Lookup, cycle: Cycle, celsius: tuple[float, ...] | None
-) -> tuple[float | None, ...]:
-    """The oil temperatures at which to run a cycle; None stands for that of its column."""
-    if "temperature" in cycle.ranges:
-        return (None,)
-    if celsius is not None:
-        return celsius
-    (*_, axis) = lookup.axes
-    if axis.size > 1:
-        allowed = f"is not a column of the cycle, and the map has {axis.size} of them."
-        remedy = f'Choose some, as "{format_number(float(axis[0]))} degC".'
-        raise InputError([Problem("temperature", "", allowed, remedy)], "the command")
-    return (float(axis[0]),)
-
-
 @dataclass(slots=True)
-class _Totals:
+class Totals:
     """Sums over a cycle; arrays have one row for each of `MODES`.
 
     Attributes
@@ -244,14 +197,107 @@ class _Totals:
     outside: float = 0.0
 
 
-def _sum_up(lookup: Lookup, cycle: Cycle, celsius: float | None, sample: Sample) -> _Totals:
+@dataclass(frozen=True, slots=True)
+class Sums:
+    """A cycle added up: once for each oil temperature, or once at its own temperatures.
+
+    Attributes
+    ----------
+    lookup : Lookup
+    celsius : tuple of float or None
+        Temperatures that were asked for.
+    clamp : bool
+    totals : tuple of Totals
+    samples : tuple of Sample
+    """
+
+    lookup: Lookup
+    celsius: tuple[float, ...] | None
+    clamp: bool
+    totals: tuple[Totals, ...]
+    samples: tuple[Sample, ...]
+
+
+def add_up(
+    data: xr.Dataset,
+    cycle: Cycle,
+    celsius: tuple[float, ...] | None = None,
+    *,
+    clamp: bool = False,
+    samples: int = SAMPLES,
+    progress: Progress | None = None,
+) -> Sums:
+    """Go through a checked cycle; raises `InputError` if it leaves the map."""
+    lookup = make_lookup(data)
+    totals, drawn = [], []
+    for value in _temperatures(lookup, cycle, celsius):
+        sample = Sample(samples)
+        found = _go_through(lookup, cycle, value, sample, progress)
+        if found.outside and not clamp:
+            raise _outside(lookup, cycle, value, found)
+        totals.append(found)
+        drawn.append(sample)
+    return Sums(lookup, celsius, clamp, tuple(totals), tuple(drawn))
+
+
+def make_duty(
+    data: xr.Dataset,
+    cycle: Cycle,
+    sums: Sums,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """The result of `duty_cycle`, its error measured at the points that were drawn."""
+    import xarray as xr
+
+    case = map_case(data)
+    results = []
+    for totals, sample in zip(sums.totals, sums.samples, strict=True):
+        error = (
+            leave_out(sums.lookup, totals.node_work.sum(axis=0))
+            if case is None
+            else solve_sample(case, sample, jobs, progress)
+        )
+        results.append(_to_dataset(sums.lookup, totals, error))
+    (result, *_) = results
+    if sums.celsius is not None:
+        axis = xr.Variable("temperature", list(sums.celsius), {"units": CELSIUS.display})
+        result = xr.concat(results, axis)
+    method = {"interpolation_error_method": error.method}
+    result.attrs = _attributes(data, cycle, sums.clamp) | method
+    return result
+
+
+def _temperatures(
+    lookup: Lookup, cycle: Cycle, celsius: tuple[float, ...] | None
+) -> tuple[float | None, ...]:
+    """The oil temperatures at which to run a cycle; None stands for that of its column."""
+    if "temperature" in cycle.ranges:
+        return (None,)
+    if celsius is not None:
+        return celsius
+    (*_, axis) = lookup.axes
+    if axis.size > 1:
+        allowed = f"is not a column of the cycle, and the map has {axis.size} of them."
+        remedy = f'Choose some, as "{format_number(float(axis[0]))} degC".'
+        raise InputError([Problem("temperature", "", allowed, remedy)], "the command")
+    return (float(axis[0]),)
+
+
+def _go_through(
+    lookup: Lookup,
+    cycle: Cycle,
+    celsius: float | None,
+    sample: Sample,
+    progress: Progress | None,
+) -> Totals:
     """All points of a cycle added up, at its own temperatures or at one."""
     modes, nodes = len(MODES), lookup.size
-    totals = _Totals(np.zeros((modes, nodes)), *np.zeros((3, modes)))
+    totals = Totals(np.zeros((modes, nodes)), *np.zeros((3, modes)))
     torque_loss = lookup.total
-    for piece in cycle.pieces():
-        temperature = np.full_like(piece.speed, celsius) if celsius is not None else None
-        point = (piece.speed, piece.torque, _given(piece.temperature, temperature))
+    done = 0
+    for piece in cycle.pieces(celsius):
+        point = (piece.speed, piece.torque, piece.temperature)
         corners, weights = lookup.corners(*point)
         loss = loss_power((torque_loss[corners] * weights).sum(axis=0), piece.speed)
         at_shaft = loss_power(piece.torque, piece.speed) * np.sign(piece.speed)
@@ -268,17 +314,13 @@ def _sum_up(lookup: Lookup, cycle: Cycle, celsius: float | None, sample: Sample)
         totals.energy_out += np.bincount(mode, leaving * piece.duration, modes)
         totals.outside += float(piece.duration[lookup.outside(*point)].sum())
         sample.add(point, loss, loss * piece.duration)
+        done += piece.speed.size
+        if progress is not None:
+            progress(min(done, cycle.rows), cycle.rows)
     return totals
 
 
-def _given(first: Array | None, second: Array | None) -> Array:
-    chosen = first if first is not None else second
-    if chosen is None:
-        raise ValueError("a cycle has a column of temperatures, or one temperature")
-    return chosen
-
-
-def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: _Totals) -> InputError:
+def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: Totals) -> InputError:
     """What of a cycle is not in the map."""
     ranges = dict(cycle.ranges)
     if celsius is not None:
@@ -297,7 +339,7 @@ def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: _Total
     return InputError(problems, "the cycle")
 
 
-def _to_dataset(lookup: Lookup, totals: _Totals, error: Deviation) -> xr.Dataset:
+def _to_dataset(lookup: Lookup, totals: Totals, error: Deviation) -> xr.Dataset:
     import xarray as xr
 
     entering, leaving = totals.energy_in, totals.energy_out

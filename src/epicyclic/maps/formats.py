@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from epicyclic.errors import InputError, Problem
-from epicyclic.maps import simulation, tables, workbook
+from epicyclic.maps import fmu, simscape, simulation, tables, workbook
+from epicyclic.maps.compute import AXES
 from epicyclic.sweeps.dataset import check_place, whole_file
 
 if TYPE_CHECKING:
@@ -33,16 +34,18 @@ class Format:
         Writes a map to a file.
     problems : callable
         What of the axes of a map the format cannot hold.
-    single : bool
-        True for one table of speed and torque, without gaps.
+    axes : tuple of str or None
+        Axes that may have several values; a map then has no gaps and one member held. None: any.
     """
 
     suffix: str
     about: str
     write: Callable[[xr.Dataset, Path], None]
     problems: Callable[[Coordinates], list[Problem]] = lambda axes: []
-    single: bool = False
+    axes: tuple[str, ...] | None = None
 
+
+_PLANE = ("speed", "torque")
 
 FORMATS = {
     "netcdf": Format(".nc", "NetCDF", tables.write_netcdf),
@@ -50,13 +53,13 @@ FORMATS = {
     "parquet": Format(".parquet", "table of all points", tables.write_parquet),
     "excel": Format(".xlsx", "Excel workbook", workbook.write_workbook, workbook.workbook_problems),
     "matlab": Format(".mat", "MATLAB", workbook.write_matlab),
-    "vecto": Format(
-        ".vtlm", "VECTO", simulation.write_vecto, simulation.vecto_problems, single=True
-    ),
+    "vecto": Format(".vtlm", "VECTO", simulation.write_vecto, simulation.vecto_problems, _PLANE),
     "modelica": Format(
-        ".mo", "Modelica", simulation.write_modelica, simulation.modelica_problems, single=True
+        ".mo", "Modelica", simulation.write_modelica, simulation.modelica_problems, _PLANE
     ),
-    "gem": Format("", "EPA GEM", simulation.write_gem, simulation.gem_problems, single=True),
+    "simscape": Format(".m", "Simscape and Simulink", simscape.write_simscape, axes=tuple(AXES)),
+    "fmu": Format(".fmu", "FMI 2.0", fmu.write_fmu, fmu.fmu_problems, tuple(AXES)),
+    "gem": Format("", "EPA GEM", simulation.write_gem, simulation.gem_problems, _PLANE),
 }
 
 
@@ -80,7 +83,7 @@ def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> 
     tables.check_map(data)
     axes = {name: list(data[name].values) for name in map(str, data["torque_loss"].dims)}
     chosen = check_map_output(target, format, axes, data.attrs["held_shaft"])
-    if chosen.single:
+    if chosen.axes is not None:
         tables.check_gaps(data)
     with whole_file(target) as temporary:
         chosen.write(data, temporary)
@@ -94,8 +97,8 @@ def check_map_output(path: Path, format: str | None, axes: Coordinates, held: st
     chosen = _choose(path, format)
     check_place(path)
     problems = chosen.problems(axes)
-    if chosen.single:
-        problems = _several(axes) + problems
+    if chosen.axes is not None:
+        problems = _several(axes, chosen.axes) + problems
         if not held:
             allowed = "is driven; the format holds gears of one input and one output."
             problems.append(
@@ -124,11 +127,11 @@ def _choose(path: Path, format: str | None) -> Format:
     raise InputError([problem], "the command")
 
 
-def _several(axes: Coordinates) -> list[Problem]:
+def _several(axes: Coordinates, allowed: tuple[str, ...]) -> list[Problem]:
     """Axes of which the format can hold one value only."""
     return [
         Problem(name, "", f"has {len(values)} values; the format holds one.",
                 "Write one file for each.")
         for name, values in axes.items()
-        if name not in ("speed", "torque") and len(values) > 1
+        if name not in allowed and len(values) > 1
     ]  # fmt: skip

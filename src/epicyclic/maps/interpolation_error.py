@@ -13,18 +13,20 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case, load_case
-from epicyclic.errors import ConvergenceError, InputError
+from epicyclic.errors import InputError
 from epicyclic.maps.compute import AXES
 from epicyclic.maps.lookup import Lookup
+from epicyclic.sweeps.plan import PointList
+from epicyclic.sweeps.run import run_plan
+from epicyclic.sweeps.work import Progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,8 +34,6 @@ if TYPE_CHECKING:
 __all__ = ["Deviation", "Sample", "leave_out", "map_case", "solve_sample"]
 
 Array = NDArray[np.float64]
-Progress = Callable[[int, int], None]
-
 _SEED = 0
 """The same cycle and map give the same sample."""
 
@@ -107,39 +107,34 @@ def _written(values: xr.DataArray) -> Any:
     return number if isinstance(number, str) or unit == "1" else f"{number!r} {unit}"
 
 
-def solve_sample(case: Case, sample: Sample, progress: Progress | None = None) -> Deviation:
-    """The deviation by direct solution of the points of `sample`."""
-    rows, probabilities = sample.drawn()
-    differences, relative, failed = [], [], 0
-    for done, ((speed, torque, celsius, power, energy), chance) in enumerate(
-        zip(rows.tolist(), probabilities.tolist(), strict=True), 1
-    ):
-        changes = {
+def solve_sample(
+    case: Case, sample: Sample, jobs: int | None = None, progress: Progress | None = None
+) -> Deviation:
+    """The deviation by direct solution of the points of `sample`. Options as for `sweep`."""
+    rows, chance = sample.drawn()
+    points = tuple(
+        {
             AXES["speed"]: f"{speed!r} rpm",
             AXES["torque"]: f"{torque!r} N*m",
             AXES["temperature"]: f"{celsius!r} degC",
         }
-        try:
-            direct = solve(case.updated(changes)).total
-        except (ConvergenceError, InputError):
-            failed += 1
-            continue
-        finally:
-            if progress is not None:
-                progress(done, len(rows))
-        relative.append((power - direct) / direct)
-        differences.append((energy * (power - direct) / power, chance))
-    method = f"{len(relative)} points of the cycle solved directly"
-    if failed:
-        method += f", {failed} more without a solution"
-    if not relative:
+        for speed, torque, celsius, *_ in rows.tolist()
+    )
+    exact = case.updated({"numerics.pocket_interpolation": 0})
+    solved = run_plan(PointList(exact, points), jobs=jobs, progress=progress)
+    direct = np.array([row.numbers.get("total", math.nan) for row in solved])
+    found = np.isfinite(direct)
+    method = f"{found.sum()} points of the cycle solved directly"
+    if not found.all():
+        method += f", {(~found).sum()} more without a solution"
+    if not found.any():
         return Deviation(math.nan, math.nan, math.nan, method)
-    value, chance = np.array(differences).T
-    variance = np.sum((1 - chance) * (value / chance) ** 2)
+    power, energy, direct, chance = rows[found, 3], rows[found, 4], direct[found], chance[found]
+    difference = energy * (power - direct) / power / chance
     return Deviation(
-        float(np.sum(value / chance)),
-        float(np.sqrt(variance)),
-        float(np.abs(relative).max()),
+        float(difference.sum()),
+        float(np.sqrt(np.sum((1 - chance) * difference**2))),
+        float(np.abs(power / direct - 1).max()),
         method,
     )
 

@@ -22,7 +22,7 @@ from epicyclic.units import RPM, WATT
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Lookup", "loss_power", "make_lookup"]
+__all__ = ["Lookup", "loss_power", "make_lookup", "slack"]
 
 Array = NDArray[np.float64]
 
@@ -91,8 +91,7 @@ class Lookup:
         """Which points lie outside of the map. Parameters as for `corners`."""
         found = np.zeros(point[0].shape, dtype=bool)
         for axis, values in zip(self.axes, point, strict=True):
-            slack = _ROUNDING * max(float(np.ptp(axis)), float(np.abs(axis).max()))
-            found |= (values < axis[0] - slack) | (values > axis[-1] + slack)
+            found |= (values < axis[0] - slack(axis)) | (values > axis[-1] + slack(axis))
         return found
 
     def thinned(self) -> Lookup:
@@ -122,6 +121,11 @@ def _bracket(axis: Array, values: Array) -> tuple[NDArray[np.intp], Array]:
 def _every_second(count: int) -> NDArray[np.intp]:
     """Every second of `count` numbers from 0, and the last."""
     return np.unique(np.append(np.arange(0, count, 2), count - 1))
+
+
+def slack(axis: Array) -> float:
+    """By how much a point may leave an axis before it lies outside."""
+    return _ROUNDING * max(float(np.ptp(axis)), float(np.abs(axis).max()))
 
 
 def loss_power(torque_loss: Array, speed: Array) -> Array:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from epicyclic.errors import Problem
-from epicyclic.maps.tables import statements
+from epicyclic.maps.tables import stated
 from epicyclic.units import RPM, format_number
 
 if TYPE_CHECKING:
@@ -50,16 +50,6 @@ def _points(data: xr.Dataset, name: str) -> Iterator[tuple[float, float, float]]
             yield float(speed), float(torque), float(values[i, j])
 
 
-def _stated(data: xr.Dataset) -> dict[str, str]:
-    """The statements of a map and the values of the axes that have one."""
-    single = {
-        str(name): f"{data[name].values[0]} {data[name].attrs.get('units', '')}".strip()
-        for name in data["torque_loss"].dims
-        if name not in ("speed", "torque")
-    }
-    return statements(data) | single
-
-
 # --- VECTO ----------------------------------------------------------------------------------------
 
 
@@ -80,9 +70,9 @@ def write_vecto(data: xr.Dataset, path: Path) -> None:
     VECTO user manual, "Transmission Loss Map": output torque = (input torque - loss) * ratio in
     both directions, the loss never negative. The one header line comes first; a comment ends it.
     """
-    stated = "; ".join(f"{name}: {text}" for name, text in _stated(data).items())
+    comment = "; ".join(f"{name}: {text}" for name, text in stated(data).items())
     with path.open("w", encoding="utf-8", newline="") as file:
-        file.write(f"Input Speed [rpm],Input Torque [Nm],Torque Loss [Nm] # {stated}\n")
+        file.write(f"Input Speed [rpm],Input Torque [Nm],Torque Loss [Nm] # {comment}\n")
         for point in _points(data, "torque_loss"):
             file.write(",".join(format_number(value, _DIGITS) for value in point) + "\n")
 
@@ -101,7 +91,7 @@ def gem_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
 def write_gem(data: xr.Dataset, path: Path) -> None:
     """Power loss in kW over input speed and torque, with the digits of 40 CFR 1037.565(g)."""
     with path.open("w", encoding="utf-8", newline="") as file:
-        file.writelines(f"# {name}: {text}\n" for name, text in _stated(data).items())
+        file.writelines(f"# {name}: {text}\n" for name, text in stated(data).items())
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["Input Speed [r/min]", "Input Torque [N*m]", "Power Loss [kW]"])
         for speed, torque, watts in _points(data, "total"):
@@ -152,7 +142,7 @@ def loss_table(data: xr.Dataset) -> tuple[NDArray[np.float64], NDArray[np.float6
 def write_modelica(data: xr.Dataset, path: Path) -> None:
     """A record with the parameters `ratio` and `lossTable` of LossyGear."""
     table, deviation = loss_table(data)
-    name = re.sub(r"\W|^(?=\d)", "_", path.stem, flags=re.ASCII)
+    name = _identifier(path.stem)
     i, j = np.unravel_index(np.abs(deviation).argmax(), deviation.shape)
     worst = (
         f"The table is off by up to {abs(deviation[i, j]):.3g} N.m (at "
@@ -164,9 +154,9 @@ def write_modelica(data: xr.Dataset, path: Path) -> None:
     ratio = float(fastest[f"{shafts[0]}_speed"] / fastest[f"{shafts[1]}_speed"])
     rows = [", ".join(format_number(value, _DIGITS) for value in row) for row in table]
     body = ";\n    ".join(rows)
-    stated = "\n".join(f"// {key}: {text}" for key, text in _stated(data).items())
+    comments = "\n".join(f"// {key}: {text}" for key, text in stated(data).items())
     path.write_text(
-        f"{stated}\n"
+        f"{comments}\n"
         f"// flange_a: {shafts[0]}; flange_b: {shafts[1]}; support: "
         f"{data.attrs['held_shaft']}\n"
         f"// {worst}.\n"
@@ -177,6 +167,12 @@ def write_modelica(data: xr.Dataset, path: Path) -> None:
         f"end {name};\n",
         encoding="utf-8",
     )
+
+
+def _identifier(text: str) -> str:
+    """`text` as the name of a class in Modelica; its keywords have no capital letters."""
+    name = re.sub(r"\W|^(?=\d)", "_", text, flags=re.ASCII)
+    return name[:1].upper() + name[1:]
 
 
 def _negative_speeds(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from epicyclic.case.wording import one_line
+from epicyclic.case.wording import one_line, sentence
 from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.dataset import to_table
 
@@ -18,6 +19,7 @@ __all__ = [
     "check_gaps",
     "check_map",
     "read_netcdf",
+    "stated",
     "statements",
     "write_csv",
     "write_netcdf",
@@ -46,6 +48,16 @@ def statements(data: xr.Dataset) -> dict[str, str]:
         name.replace("_", " "): one_line(str(data.attrs.get(name, "")), _LONGEST_STATEMENT)
         for name in _STATED
     }
+
+
+def stated(data: xr.Dataset, axes: Sequence[str] = ("speed", "torque")) -> dict[str, str]:
+    """The statements of a map, and the values of its axes beyond `axes`, which have one each."""
+    single = {
+        str(name): f"{data[name].values[0]} {data[name].attrs.get('units', '')}".strip()
+        for name in data["torque_loss"].dims
+        if name not in axes
+    }
+    return statements(data) | single
 
 
 def check_map(data: xr.Dataset, source: str = "the map") -> None:
@@ -83,10 +95,8 @@ def read_netcdf(path: Path) -> xr.Dataset:
         with xr.open_dataset(path, engine="netcdf4") as stored:
             data = stored.load()
     except (OSError, ValueError, RuntimeError) as error:
-        reason = one_line(str(error))
-        problem = Problem(
-            "MAP", str(path), f"cannot be read as NetCDF: {reason}.", "Give a map from epicyclic."
-        )
+        reason = sentence(f"cannot be read as NetCDF: {one_line(str(error))}", capital=False)
+        problem = Problem("MAP", str(path), reason, "Give a map from epicyclic.")
         raise InputError([problem], "the command") from None
     check_map(data, str(path))
     return data

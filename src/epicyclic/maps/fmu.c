@@ -1,0 +1,312 @@
+/* Losses of a gear set from its loss map, as an FMU for Model Exchange and Co-Simulation (FMI 2.0).
+ *
+ * The outputs follow from the inputs at once, by linear interpolation; there are no states. The
+ * numbers are in map_data.h. Nothing of a C library is needed.
+ */
+
+#include "fmi2Functions.h"
+#include "map_data.h"
+
+enum { AXES = 3, FIRST_COMPONENT = 6, REALS = FIRST_COMPONENT + COMPONENTS };
+enum { SPEED, TORQUE, TEMPERATURE, TORQUE_LOSS, POWER_LOSS, EFFICIENCY };
+
+typedef struct {
+    double input[AXES];
+    const fmi2CallbackFunctions *callbacks;
+    fmi2String name;
+} Instance;
+
+#ifdef _WIN32
+int DllMainCRTStartup(void *module, unsigned long reason, void *reserved) {
+    (void)module;
+    (void)reason;
+    (void)reserved;
+    return 1;
+}
+#endif
+
+static int same(const char *one, const char *two) {
+    while (*one && *one == *two) {
+        one++;
+        two++;
+    }
+    return *one == *two;
+}
+
+static fmi2Status fail(const Instance *it, const char *message) {
+    if (it && it->callbacks->logger) {
+        it->callbacks->logger(it->callbacks->componentEnvironment, it->name, fmi2Error, "error",
+                              message);
+    }
+    return fmi2Error;
+}
+
+static double magnitude(double value) { return value < 0 ? -value : value; }
+
+/* --- the map ---------------------------------------------------------------------------------- */
+
+static const double *const axis_values[AXES] = {speed_axis, torque_axis, temperature_axis};
+static const int axis_sizes[AXES] = {SPEEDS, TORQUES, TEMPERATURES};
+
+/* The value below and the part of the way to the next; points outside are taken at the border. */
+static int bracket(int axis, double value, double *part) {
+    const double *values = axis_values[axis];
+    int low = 0;
+    int high = axis_sizes[axis] - 1;
+    *part = 0;
+    if (high == 0) {
+        return 0;
+    }
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (values[middle] <= value) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    *part = (value - values[low]) / (values[high] - values[low]);
+    *part = *part < 0 ? 0 : *part > 1 ? 1 : *part;
+    return low;
+}
+
+static int is_inside(const Instance *it) {
+    for (int axis = 0; axis < AXES; axis++) {
+        double low = axis_values[axis][0] - slack[axis];
+        double high = axis_values[axis][axis_sizes[axis] - 1] + slack[axis];
+        if (!(it->input[axis] >= low && it->input[axis] <= high)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Torque passed on over torque put in, at the reference shaft. */
+static double efficiency(double speed, double torque, double torque_loss) {
+    double driving = speed < 0 ? -torque : torque;
+    if (driving > torque_loss) {
+        return (driving - torque_loss) / driving;
+    }
+    return driving < 0 ? driving / (driving - torque_loss) : 0;
+}
+
+static void evaluate(const Instance *it, double *values) {
+    double part[AXES];
+    int low[AXES];
+    double speed = magnitude(it->input[SPEED]);
+    double torque_loss = 0;
+    for (int axis = 0; axis < AXES; axis++) {
+        values[axis] = it->input[axis];
+        low[axis] = bracket(axis, it->input[axis], &part[axis]);
+    }
+    for (int component = 0; component < COMPONENTS; component++) {
+        double sum = 0;
+        for (int corner = 0; corner < 8; corner++) {
+            double weight = 1;
+            int node = 0;
+            for (int axis = 0; axis < AXES; axis++) {
+                int side = (corner >> axis) & 1;
+                weight *= side ? part[axis] : 1 - part[axis];
+                node = node * axis_sizes[axis] + low[axis] + side;
+            }
+            if (weight > 0) {
+                sum += weight * torque_losses[component][node];
+            }
+        }
+        values[FIRST_COMPONENT + component] = sum * speed;
+        torque_loss += sum;
+    }
+    values[TORQUE_LOSS] = torque_loss;
+    values[POWER_LOSS] = torque_loss * speed;
+    values[EFFICIENCY] = efficiency(it->input[SPEED], it->input[TORQUE], torque_loss);
+}
+
+/* --- creation and life ------------------------------------------------------------------------ */
+
+const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
+
+const char *fmi2GetVersion(void) { return fmi2Version; }
+
+fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
+                               const fmi2String categories[]) {
+    (void)c;
+    (void)on;
+    (void)count;
+    (void)categories;
+    return fmi2OK;
+}
+
+fmi2Status fmi2Reset(fmi2Component c) {
+    for (int axis = 0; axis < AXES; axis++) {
+        ((Instance *)c)->input[axis] = start[axis];
+    }
+    return fmi2OK;
+}
+
+fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
+                              const fmi2CallbackFunctions *callbacks, fmi2Boolean visible,
+                              fmi2Boolean logging) {
+    Instance *it;
+    (void)type;
+    (void)resources;
+    (void)visible;
+    (void)logging;
+    if (!callbacks || !callbacks->allocateMemory || !callbacks->freeMemory) {
+        return NULL;
+    }
+    if (!guid || !same(guid, GUID)) {
+        if (callbacks->logger) {
+            callbacks->logger(callbacks->componentEnvironment, name, fmi2Error, "error",
+                              "The GUID is not that of this FMU.");
+        }
+        return NULL;
+    }
+    it = callbacks->allocateMemory(1, sizeof(Instance));
+    if (it) {
+        it->callbacks = callbacks;
+        it->name = name;
+        fmi2Reset(it);
+    }
+    return it;
+}
+
+void fmi2FreeInstance(fmi2Component c) {
+    if (c) {
+        ((Instance *)c)->callbacks->freeMemory(c);
+    }
+}
+
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance,
+                               fmi2Real begin, fmi2Boolean has_end, fmi2Real end) {
+    (void)c;
+    (void)has_tolerance;
+    (void)tolerance;
+    (void)begin;
+    (void)has_end;
+    (void)end;
+    return fmi2OK;
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
+
+fmi2Status fmi2Terminate(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
+
+/* --- variables -------------------------------------------------------------------------------- */
+
+fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference refs[], size_t count,
+                       fmi2Real values[]) {
+    double all[REALS];
+    evaluate(c, all);
+    for (size_t i = 0; i < count; i++) {
+        if (refs[i] >= REALS) {
+            return fail(c, "There is no real variable of this reference.");
+        }
+        values[i] = all[refs[i]];
+    }
+    return fmi2OK;
+}
+
+fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference refs[], size_t count,
+                       const fmi2Real values[]) {
+    for (size_t i = 0; i < count; i++) {
+        if (refs[i] >= AXES) {
+            return fail(c, "Only speed, torque and temperature can be set.");
+        }
+        ((Instance *)c)->input[refs[i]] = values[i];
+    }
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference refs[], size_t count,
+                          fmi2Boolean values[]) {
+    for (size_t i = 0; i < count; i++) {
+        if (refs[i] != REALS) {
+            return fail(c, "There is no Boolean variable of this reference.");
+        }
+        values[i] = is_inside(c) ? fmi2True : fmi2False;
+    }
+    return fmi2OK;
+}
+
+/* Functions for variables and abilities that this FMU does not have: nothing to do, or an error. */
+#define NONE(name, type)                                                                           \
+    fmi2Status name(fmi2Component c, const fmi2ValueReference refs[], size_t count, type) {        \
+        (void)refs;                                                                                \
+        (void)values;                                                                              \
+        return count ? fail(c, #name ": there are no such variables.") : fmi2OK;                   \
+    }
+
+NONE(fmi2GetInteger, fmi2Integer values[])
+NONE(fmi2GetString, fmi2String values[])
+NONE(fmi2SetInteger, const fmi2Integer values[])
+NONE(fmi2SetBoolean, const fmi2Boolean values[])
+NONE(fmi2SetString, const fmi2String values[])
+
+#define UNABLE(name, ...)                                                                          \
+    fmi2Status name(fmi2Component c, __VA_ARGS__) { return fail(c, #name ": cannot be done."); }
+
+#if defined(__GNUC__) || defined(__clang__)
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+
+UNABLE(fmi2GetFMUstate, fmi2FMUstate *state)
+UNABLE(fmi2SetFMUstate, fmi2FMUstate state)
+UNABLE(fmi2FreeFMUstate, fmi2FMUstate *state)
+UNABLE(fmi2SerializedFMUstateSize, fmi2FMUstate state, size_t *size)
+UNABLE(fmi2SerializeFMUstate, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
+UNABLE(fmi2DeSerializeFMUstate, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state)
+UNABLE(fmi2GetDirectionalDerivative, const fmi2ValueReference unknown[], size_t unknowns,
+       const fmi2ValueReference known[], size_t knowns, const fmi2Real dknown[],
+       fmi2Real dunknown[])
+UNABLE(fmi2SetRealInputDerivatives, const fmi2ValueReference refs[], size_t count,
+       const fmi2Integer order[], const fmi2Real value[])
+UNABLE(fmi2GetRealOutputDerivatives, const fmi2ValueReference refs[], size_t count,
+       const fmi2Integer order[], fmi2Real value[])
+UNABLE(fmi2GetStatus, const fmi2StatusKind kind, fmi2Status *value)
+UNABLE(fmi2GetRealStatus, const fmi2StatusKind kind, fmi2Real *value)
+UNABLE(fmi2GetIntegerStatus, const fmi2StatusKind kind, fmi2Integer *value)
+UNABLE(fmi2GetBooleanStatus, const fmi2StatusKind kind, fmi2Boolean *value)
+UNABLE(fmi2GetStringStatus, const fmi2StatusKind kind, fmi2String *value)
+
+/* --- simulation ------------------------------------------------------------------------------- */
+
+fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_return) {
+    return c ? fmi2OK : fmi2Error;
+}
+
+fmi2Status fmi2CancelStep(fmi2Component c) { return fail(c, "fmi2CancelStep: cannot be done."); }
+
+fmi2Status fmi2EnterEventMode(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
+
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
+
+fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
+    info->newDiscreteStatesNeeded = fmi2False;
+    info->terminateSimulation = fmi2False;
+    info->nominalsOfContinuousStatesChanged = fmi2False;
+    info->valuesOfContinuousStatesChanged = fmi2False;
+    info->nextEventTimeDefined = fmi2False;
+    return c ? fmi2OK : fmi2Error;
+}
+
+fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_return,
+                                       fmi2Boolean *enter_event_mode, fmi2Boolean *terminate) {
+    *enter_event_mode = fmi2False;
+    *terminate = fmi2False;
+    return c ? fmi2OK : fmi2Error;
+}
+
+fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) { return c ? fmi2OK : fmi2Error; }
+
+#define NO_STATES(name, type)                                                                      \
+    fmi2Status name(fmi2Component c, type, size_t count) {                                         \
+        return count ? fail(c, #name ": there are no states.") : fmi2OK;                           \
+    }
+
+NO_STATES(fmi2SetContinuousStates, const fmi2Real values[])
+NO_STATES(fmi2GetDerivatives, fmi2Real values[])
+NO_STATES(fmi2GetEventIndicators, fmi2Real values[])
+NO_STATES(fmi2GetContinuousStates, fmi2Real values[])
+NO_STATES(fmi2GetNominalsOfContinuousStates, fmi2Real values[])

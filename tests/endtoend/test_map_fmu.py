@@ -1,0 +1,161 @@
+"""Loss maps as FMUs, run in FMPy, against the interpolation in the map itself."""
+
+from __future__ import annotations
+
+import re
+import zipfile
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.validation import validate_fmu
+
+import epicyclic as ep
+from epicyclic.maps import fmu
+from epicyclic.maps.lookup import loss_power, make_lookup
+
+HOW_TO = Path(__file__).parents[2] / "docs" / "how-to" / "fmu.md"
+
+
+@pytest.fixture(scope="module")
+def data():
+    """Without pockets, whose flow takes most of the time of a test; title with signs of XML."""
+    changes = {"title": 'gears <of> "A & B"'}
+    changes |= {f"losses.{mesh}_mesh_pocketing.include": False for mesh in ("sun", "ring")}
+    return ep.loss_map(
+        ep.load_case("talbot-2012").updated(changes),
+        ["-500 rpm", "0 rpm", "500 rpm", "3000 rpm"],
+        ["-800 N*m", "-10 N*m", "0 N*m", "10 N*m", "800 N*m"],
+        ["40 degC", "60 degC", "90 degC"],
+        jobs=1,
+    )
+
+
+@pytest.fixture(scope="module")
+def path(data, tmp_path_factory):
+    place = tmp_path_factory.mktemp("fmu") / "loss map.fmu"
+    ep.write_map(data, place)
+    return place
+
+
+def signals(rows=60):
+    """Inputs in SI units, inside of the map."""
+    random = np.random.default_rng(3)
+    columns = {
+        "time": np.arange(rows, dtype=float),
+        "speed": random.uniform(-500, 3000, rows) * np.pi / 30,
+        "torque": random.choice([-1, 1], rows) * 10 ** random.uniform(-2, 2.9, rows),
+        "temperature": random.uniform(40, 90, rows) + 273.15,
+    }
+    columns["torque"][0] = columns["speed"][1] = 0.0
+    table = np.zeros(rows, [(name, float) for name in columns])
+    for name, values in columns.items():
+        table[name] = values
+    return table
+
+
+def run(path, table, kind):
+    """The outputs for each row of inputs; a step of co-simulation ends with those of its start."""
+    result = fmpy.simulate_fmu(
+        path, fmi_type=kind, input=table, start_time=0, stop_time=len(table), step_size=1,
+        output_interval=1,
+    )  # fmt: skip
+    shift = 1 if kind == "CoSimulation" else 0
+    return result[shift : shift + len(table)]
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_a_simulator_gets_what_interpolation_in_the_map_gives(data, path, kind):
+    table = signals()
+    found = run(path, table, kind)
+    lookup = make_lookup(data)
+    rpm, torque = table["speed"] * 30 / np.pi, table["torque"]
+    nodes, weights = lookup.corners(rpm, torque, table["temperature"] - 273.15)
+    torque_loss = (lookup.total[nodes] * weights).sum(axis=0)
+    tolerance = {"rtol": 1e-11, "atol": 1e-11}  # rounding, of the units too
+    np.testing.assert_allclose(found["torque_loss"], torque_loss, **tolerance)
+    np.testing.assert_allclose(found["power_loss"], loss_power(torque_loss, rpm), **tolerance)
+    for number, name in enumerate(lookup.components):
+        parts = (lookup.torques[number].ravel()[nodes] * weights).sum(axis=0)
+        np.testing.assert_allclose(found[name], loss_power(parts, rpm), **tolerance)
+    driving = torque * np.where(rpm < 0, -1, 1)
+    entering = np.maximum(driving, 0) + np.maximum(torque_loss - driving, 0)
+    efficiency = 1 - torque_loss / entering
+    np.testing.assert_allclose(found["efficiency"], efficiency, atol=1e-11)
+    assert found["inside_map"].all()
+
+
+def test_nodes_have_the_losses_of_the_map(data, path):
+    table = signals(4)
+    for row, point in enumerate([(3000, 800, 90), (500, -10, 40), (-500, 10, 60), (3000, 0, 40)]):
+        speed, torque, celsius = point
+        table[row] = (row, speed * np.pi / 30, torque, celsius + 273.15)
+        wanted = data.sel(speed=speed, torque=torque, temperature=celsius)
+        found = run(path, table, "CoSimulation")[row]
+        assert found["power_loss"] == pytest.approx(float(wanted["total"]), rel=1e-12)
+        assert found["sun_mesh_sliding"] == pytest.approx(float(wanted["sun_mesh_sliding"]))
+        efficiency = float(wanted["efficiency"].fillna(0))
+        assert found["efficiency"] == pytest.approx(efficiency, rel=1e-9)
+
+
+def test_points_outside_are_said_and_taken_at_the_border(data, path):
+    table = signals(3)
+    table["speed"], table["torque"], table["temperature"] = 4000 * np.pi / 30, 10, 333.15
+    found = run(path, table, "CoSimulation")
+    border = float(data["torque_loss"].sel(speed=3000, torque=10, temperature=60))
+    assert not found["inside_map"].any()
+    np.testing.assert_allclose(found["torque_loss"], border, rtol=1e-12)
+
+
+def test_the_description_has_units_and_nothing_to_complain_of(path):
+    assert validate_fmu(path) == []
+    description = fmpy.read_model_description(path, validate_model_structure=True)
+    assert description.fmiVersion == "2.0"
+    units = {item.name: item.unit for item in description.modelVariables}
+    assert units["speed"] == "rad/s"
+    assert units["temperature"] == "K"
+    assert units["torque_loss"] == "N.m"
+    assert units["power_loss"] == units["carrier_drag"] == "W"
+    with zipfile.ZipFile(path) as archive:
+        names = archive.namelist()
+        page = archive.read("documentation/index.html").decode()
+    for name in ("win64/loss_map.dll", "linux64/loss_map.so", "darwin64/loss_map.dylib"):
+        assert f"binaries/{name}" in names
+    assert "sources/loss_map.c" in names
+    assert "<dt>reference shaft</dt><dd>sun</dd>" in page
+    assert "gears &lt;of&gt;" in page
+
+
+def test_the_same_map_makes_the_same_identity(data, path, tmp_path):
+    ep.write_map(data, tmp_path / "again.fmu")
+    ep.write_map(data.isel(speed=slice(1, None)), tmp_path / "other.fmu")
+    one, again, other = (
+        fmpy.read_model_description(place).guid
+        for place in (path, tmp_path / "again.fmu", tmp_path / "other.fmu")
+    )
+    assert one == again != other
+
+
+def test_missing_libraries_are_named(data, tmp_path, monkeypatch):
+    monkeypatch.setattr(fmu, "find_spec", lambda name: None)
+    with pytest.raises(ep.InputError, match="needs fmpy and ziglang") as error:
+        ep.write_map(data, tmp_path / "map.fmu")
+    assert "epicyclic[fmu]" in str(error.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_compiler_that_fails_leaves_nothing(data, tmp_path, monkeypatch):
+    monkeypatch.setattr(fmu, "_OPTIONS", ("-no-such-option",))
+    with pytest.raises(ep.EpicyclicError, match="compiler failed"):
+        ep.write_map(data, tmp_path / "map.fmu")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_how_to_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (code,) = re.findall(r"```python\n(.*?)```", HOW_TO.read_text(encoding="utf-8"), re.DOTALL)
+    names = {}
+    exec(code, names)
+    assert 0.9 < names["result"]["efficiency"][-1] < 1
+    assert [path.name for path in tmp_path.iterdir()] == ["loss_map.fmu"]
