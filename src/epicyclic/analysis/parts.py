@@ -501,6 +501,9 @@ def fluid_notes(case: Case) -> tuple[str, ...]:
         for key, fluid in fluids.items()
         if fluid is not None and fluid.key != oil.friction_regression
     ]
+    if FittedFriction.name in models.values() and _oil_model(case).oil != oil:
+        fitted = _oil_model(case).oil.name
+        notes.append(f"models.oil_model was fitted for {fitted}, not for {oil.name}.")
     factor = case.lubricant.pressure_viscosity_factor
     if factor != 1:
         notes.append(f"The pressure-viscosity coefficient of the oil is multiplied by {factor:g}.")

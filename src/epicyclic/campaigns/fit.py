@@ -20,7 +20,7 @@ from epicyclic.oilmodel.states import ContactStates
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["fit_campaign"]
+__all__ = ["fit_campaign", "simulated_quantities"]
 
 FloatArray = NDArray[np.float64]
 
@@ -51,31 +51,20 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
     InputError
         If there are too few of them.
     """
-    frame = folder.read()
     campaign = folder.campaign
-    good = (
-        frame["friction"].gt(0)
-        & frame["unsolved_share"].le(LARGEST_UNSOLVED_SHARE)
-        & frame["friction_error"].le(LARGEST_ERROR * frame["friction"])
-    ) | (frame["part"].eq("bearing") & frame["unsolved_share"].le(LARGEST_UNSOLVED_SHARE))
-    case = campaign.case(0)
-    modulus = contact_model(case).contact.equivalent_modulus
     fits: dict[str, QuantityFit] = {}
     reasons = []
-    for quantity, (part, column, unit) in QUANTITIES.items():
-        rows = frame[good & frame["part"].eq(part) & frame[column].gt(0)]
-        if not frame["part"].eq(part).any():
-            continue
-        states = _states(rows, folder, modulus)
+    for quantity, (states, target, weight) in simulated_quantities(folder).items():
+        unit = QUANTITIES[quantity][2]
         try:
-            fits[quantity] = fit_quantity(
-                quantity, unit, states, rows[column].to_numpy(), _weights(rows, column)
-            )
+            fits[quantity] = fit_quantity(quantity, unit, states, target, weight)
         except ValueError as error:
-            reasons.append(Problem(quantity, f"{len(rows)} simulations", f"not fitted: {error}.",
-                                   "Simulate more contacts."))  # fmt: skip
+            given = f"{target.size} simulations"
+            remedy = "Simulate more contacts."
+            reasons.append(Problem(quantity, given, f"not fitted: {error}.", remedy))
     if reasons:
         raise InputError(reasons, str(folder.path))
+    frame = folder.read()
     return OilModel(
         format=FORMAT,
         version=metadata.version("epicyclic"),
@@ -85,19 +74,47 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
         simulations={
             "simulated": len(frame),
             "not converged": int(frame["status"].eq("failed").sum()),
-            "fitted": int(good.sum()),
+            "fitted": int(_good(frame).sum()),
         },
         notes=(
             "Rolling losses of gear contacts are those of the smooth contacts, of bearing contacts "
             "those of the rough ones.",
             "Errors are those against the simulations, not against measurements.",
         ),
-        equivalent_modulus=modulus,
+        equivalent_modulus=_modulus(folder),
         fits=fits,
     )
 
 
-def _states(rows: pd.DataFrame, folder: CampaignFolder, modulus: float) -> ContactStates:
+def simulated_quantities(
+    folder: CampaignFolder,
+) -> dict[str, tuple[ContactStates, FloatArray, FloatArray]]:
+    """Conditions, value and weight of the simulations that are good enough, by quantity."""
+    frame = folder.read()
+    good = _good(frame)
+    found = {}
+    for quantity, (part, column, _) in QUANTITIES.items():
+        if frame["part"].eq(part).any():
+            rows = frame[good & frame["part"].eq(part) & frame[column].gt(0)]
+            states = _states(rows, folder)
+            found[quantity] = (states, rows[column].to_numpy(), _weights(rows, column))
+    return found
+
+
+def _good(frame: pd.DataFrame) -> pd.Series:
+    """Which simulations are fitted."""
+    known = frame["friction"].gt(0) & frame["friction_error"].le(LARGEST_ERROR * frame["friction"])
+    return frame["unsolved_share"].le(LARGEST_UNSOLVED_SHARE) & (
+        known | frame["part"].eq("bearing")
+    )
+
+
+def _modulus(folder: CampaignFolder) -> float:
+    """E_eq of all simulations. [Pa]"""
+    return contact_model(folder.campaign.case(0)).contact.equivalent_modulus
+
+
+def _states(rows: pd.DataFrame, folder: CampaignFolder) -> ContactStates:
     """Conditions of some simulations, SI."""
     values: dict[str, FloatArray] = {}
     for name in AXES:
@@ -109,7 +126,7 @@ def _states(rows: pd.DataFrame, folder: CampaignFolder, modulus: float) -> Conta
         **values,
         dynamic_viscosity=np.array([state.dynamic_viscosity for state in states]),
         pressure_viscosity=np.array([state.pressure_viscosity for state in states]),
-        equivalent_modulus=modulus,
+        equivalent_modulus=_modulus(folder),
     )
 
 

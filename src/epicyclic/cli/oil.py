@@ -8,12 +8,21 @@ from typing import TYPE_CHECKING
 import click
 
 from epicyclic.cli.options import parse_changes, set_option
+from epicyclic.cli.output import check_picture, draw
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from epicyclic.campaigns.folder import CampaignFolder
 
 __all__ = ["oil"]
+
+
+plot_option = click.option(
+    "--plot",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Draw the models against the simulations (.png, .svg, .pdf).",
+)
 
 
 @click.group()
@@ -52,6 +61,7 @@ def oil() -> None:
 @set_option
 @click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
 @click.option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster, tcp://host:8786.")
+@plot_option
 def characterise(
     source: str,
     output: Path,
@@ -62,6 +72,7 @@ def characterise(
     changes: tuple[str, ...],
     jobs: int | None,
     dask: str | None,
+    plot: Path | None,
 ) -> None:
     """Simulate contacts of OIL, a name of 'epicyclic oils' or a TOML file, and fit models.
 
@@ -80,6 +91,8 @@ def characterise(
     if ranges and size is None:
         problem = Problem("--range", ranges[0], "is for a design of a --size.", "Give --size.")
         raise InputError([problem], "the command")
+    if plot is not None:
+        check_picture("--plot", plot)
     campaign = make_campaign(
         source, size=size, bearing_size=bearing_size, seed=seed,
         ranges=parse_ranges(ranges), changes=parse_changes(changes),
@@ -97,16 +110,19 @@ def characterise(
             err=True,
         )
         raise
-    _fit(folder)
+    _fit(folder, plot)
 
 
 @oil.command()
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
-def fit(folder: Path) -> None:
+@plot_option
+def fit(folder: Path, plot: Path | None) -> None:
     """Fit models to the simulations in DIR again."""
     from epicyclic.campaigns.folder import open_folder
 
-    _fit(open_folder(folder))
+    if plot is not None:
+        check_picture("--plot", plot)
+    _fit(open_folder(folder), plot)
 
 
 @oil.command()
@@ -120,7 +136,7 @@ def show(model: Path) -> None:
     terminal().print(oil_model_tables(read_oil_model(model)))
 
 
-def _fit(folder: CampaignFolder) -> None:
+def _fit(folder: CampaignFolder, plot: Path | None) -> None:
     """Fit, write and show the models."""
     from epicyclic.campaigns.fit import fit_campaign
     from epicyclic.campaigns.folder import write_whole
@@ -131,3 +147,12 @@ def _fit(folder: CampaignFolder) -> None:
     write_whole(folder.model, model.model_dump_json(indent=2) + "\n")
     terminal().print(oil_model_tables(model))
     click.echo(f"Wrote {folder.model}.")
+    if plot is not None:
+        from epicyclic.campaigns.fit import simulated_quantities
+        from epicyclic.plots.oil_model import oil_model_figure
+
+        simulated = {
+            quantity: (states, target)
+            for quantity, (states, target, _) in simulated_quantities(folder).items()
+        }
+        draw(oil_model_figure(model, simulated), plot)

@@ -113,7 +113,7 @@ def _blend(ratio: FloatArray, limit: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class _Groups:
-    """Groups of the source, in its letters. Theory (O1)."""
+    """Groups of the source, in its letters."""
 
     s: FloatArray
     u: FloatArray

@@ -33,6 +33,8 @@ CONDITIONS = (
 class ContactStates:
     """Contacts, one for each entry of the arrays, all of shape (n,).
 
+    Theory (O1).
+
     Attributes
     ----------
     slide_to_roll_ratio : ndarray
@@ -91,7 +93,7 @@ class ContactStates:
 
     @cached_property
     def speed_number(self) -> FloatArray:
-        """U. Theory (O1). [1]"""
+        """U. [1]"""
         number: FloatArray = (
             self.dynamic_viscosity * self.rolling_speed / (self.equivalent_modulus * self.radius)
         )
@@ -99,29 +101,29 @@ class ContactStates:
 
     @property
     def material_number(self) -> FloatArray:
-        """G. Theory (O1). [1]"""
+        """G. [1]"""
         return self.pressure_viscosity * self.equivalent_modulus
 
     @property
     def load_number(self) -> FloatArray:
-        """W. Theory (O1). [1]"""
+        """W. [1]"""
         number: FloatArray = self.line_load / (self.equivalent_modulus * self.radius)
         return number
 
     @property
     def pressure_number(self) -> FloatArray:
-        """p = p_h/E_eq. Theory (O1). [1]"""
+        """p = p_h/E_eq. [1]"""
         return self.hertz_pressure / self.equivalent_modulus
 
     @property
     def radius_number(self) -> FloatArray:
-        """R = R_eq/b_h. Theory (O1). [1]"""
+        """R = R_eq/b_h. [1]"""
         number: FloatArray = self.radius / self.half_width
         return number
 
     @property
     def composite_roughness(self) -> FloatArray:
-        """sqrt(Rq1^2 + Rq2^2). Theory (O1). [m]"""
+        """sqrt(Rq1^2 + Rq2^2). [m]"""
         return np.hypot(self.roughness1, self.roughness2)
 
     @property
@@ -131,12 +133,12 @@ class ContactStates:
 
     @property
     def reduced_roughness(self) -> FloatArray:
-        """Rq1 Rq2/(Rq1 + Rq2). Theory (O1). [m]"""
+        """Rq1 Rq2/(Rq1 + Rq2). [m]"""
         return self.roughness1 * self.roughness2 / (self.roughness1 + self.roughness2)
 
     @cached_property
     def film_ratio(self) -> FloatArray:
-        """Lambda = h_min/sqrt(Rq1^2 + Rq2^2), h_min of Pan and Hamrock. Theory (O1). [1]"""
+        """Lambda = h_min/sqrt(Rq1^2 + Rq2^2), h_min of Pan and Hamrock. [1]"""
         film = self.radius * pan_hamrock_minimum_film(
             self.speed_number, self.material_number, self.load_number
         )

@@ -1,0 +1,97 @@
+"""A fitted oil model against the simulations behind it, and over the film ratio."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import StrMethodFormatter
+from numpy.typing import NDArray
+
+from epicyclic.oilmodel.model import REGIMES, OilModel
+from epicyclic.oilmodel.states import CONDITIONS, ContactStates
+from epicyclic.plots.style import COLOURS, LINE_STYLES, styled_figure
+
+__all__ = ["oil_model_figure", "plot_against_simulations", "plot_over_film_ratio"]
+
+FloatArray = NDArray[np.float64]
+Simulated = Mapping[str, tuple[ContactStates, FloatArray]]
+
+MARKERS = ("o", "^", "s")
+LABELS = {
+    "friction": "coefficient of friction",
+    "rolling_loss": "rolling loss of teeth, W/m",
+    "bearing_rolling_loss": "rolling loss of rollers, W/m",
+}
+BAND = 0.25
+"""Half-width of the lines beside equality. [1]"""
+SLIPS = (0.05, 0.2, 0.8)
+POINTS = 80
+
+
+def oil_model_figure(model: OilModel, simulated: Simulated) -> Figure:
+    """Every quantity computed against simulated, and friction over the film ratio."""
+    with styled_figure(2, 2, model.oil.title, panel=(4.6, 3.6)) as (figure, axes):
+        for ax, quantity in zip(axes.flat, model.fits, strict=False):
+            plot_against_simulations(model, quantity, *simulated[quantity], ax)
+        if "friction" in model.fits:
+            plot_over_film_ratio(model, axes.flat[len(model.fits)])
+        for ax in axes.flat:
+            ax.set_visible(ax.has_data())
+    return figure
+
+
+def plot_against_simulations(
+    model: OilModel, quantity: str, states: ContactStates, target: FloatArray, ax: Axes
+) -> Axes:
+    """The default form over the simulations, by film ratio."""
+    value = model.value(quantity, states)
+    regimes = list(REGIMES.items())[1:]
+    for (name, (low, high)), colour, marker in zip(regimes, COLOURS, MARKERS, strict=False):
+        here = (states.film_ratio > low) & (states.film_ratio <= high)
+        if here.any():
+            ax.plot(target[here], value[here], marker, color=colour, ms=3.5, alpha=0.7, label=name)
+    ends = np.array([min(target.min(), value.min()), max(target.max(), value.max())])
+    for factor, style in ((1.0, "-"), (1 + BAND, ":"), (1 / (1 + BAND), ":")):
+        ax.plot(ends, factor * ends, style, color="0.4", lw=0.8)
+    if quantity != "friction":
+        ax.set_xscale("log")
+        ax.set_yscale("log")
+    ax.set_xlabel(f"simulated {LABELS[quantity]}")
+    ax.set_ylabel("fitted")
+    ax.legend(fontsize="small")
+    return ax
+
+
+def plot_over_film_ratio(model: OilModel, ax: Axes) -> Axes:
+    """Friction at middle conditions as the roughness changes, each form with a line of its own."""
+    fit = model.fits["friction"]
+    middle = _middle(fit.domain, model.equivalent_modulus)
+    for slip, colour in zip(SLIPS, COLOURS, strict=False):
+        states = replace(middle, slide_to_roll_ratio=np.full(POINTS, slip))
+        for fitted, style in zip(fit.forms, LINE_STYLES, strict=False):
+            values = model.value("friction", states, fitted.form)
+            label = f"slip {slip:g}, {fitted.form}"
+            ax.plot(states.film_ratio, values, linestyle=style, color=colour, label=label)
+    ax.set_xscale("log", subs=(2, 5))
+    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    ax.xaxis.set_minor_formatter(StrMethodFormatter("{x:g}"))
+    ax.set_ylim(bottom=0)
+    ax.set_xlabel("film ratio, by roughness")
+    ax.set_ylabel(LABELS["friction"])
+    ax.legend(fontsize="small")
+    return ax
+
+
+def _middle(domain: Mapping[str, tuple[float, float]], modulus: float) -> ContactStates:
+    """Contacts in the middle of a domain but for their roughness, which runs through it."""
+    middle = {
+        name: np.full(POINTS, np.sqrt(max(low, 1e-30) * max(high, 1e-30)))
+        for name, (low, high) in domain.items()
+    }
+    for name in ("roughness1", "roughness2"):
+        middle[name] = np.geomspace(*domain[name], POINTS)
+    return ContactStates(**{name: middle[name] for name in CONDITIONS}, equivalent_modulus=modulus)
