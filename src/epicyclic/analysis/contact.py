@@ -72,6 +72,9 @@ class ContactResult:
             ContactFigure("smooth: friction coefficient", smooth.friction_coefficient, "1", "1"),
             ContactFigure("smooth: rolling loss", smooth.rolling_loss, "W/m", "W/m"),
         ]
+        rise = float(smooth.temperature_rise.max())
+        if rise > 0:
+            found.append(ContactFigure("smooth: highest temperature rise", rise, "K", "K"))
         rough = self.rough
         if rough is not None:
             found += [
@@ -103,6 +106,7 @@ class ContactResult:
                 "pressure": smooth.pressure.tolist(),
                 "film": smooth.film.tolist(),
                 "shear_stress": smooth.shear_stress.tolist(),
+                "temperature_rise": smooth.temperature_rise.tolist(),
             }
         if rough is not None:
             data["rough"] = {
@@ -117,10 +121,11 @@ def solve_contact(case: ContactCase, frames: bool = False) -> ContactResult:
     """Solve a contact, with `FRAMES` moments of a rough one if `frames`."""
     model = contact_model(case)
     if model.smooth:
-        return ContactResult(case, solve_smooth(model.contact), None)
+        return ContactResult(case, solve_smooth(model.contact, heating=model.heating), None)
     contact = model.contact
     interval = 6 * contact.half_width / contact.rolling_speed / FRAMES if frames else None
     rough = solve_rough(
-        contact, *model.surfaces, model.asperities, case.numerics.nodes, frame_interval=interval
-    )
+        contact, *model.surfaces, model.asperities, case.numerics.nodes, interval, model.heating,
+        case.numerics.frozen_roughness,
+    )  # fmt: skip
     return ContactResult(case, rough.smooth, rough)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, Literal, cast
 
@@ -13,11 +14,21 @@ from epicyclic.case.plain import plain, with_value
 from epicyclic.case.reading import read_file
 from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Stress, Table
 from epicyclic.case.validation import validate
-from epicyclic.ehl.conditions import Barus, ContactOil, LineContact, Roelands, TwoSlope
+from epicyclic.ehl.conditions import ContactOil, LineContact
+from epicyclic.ehl.heating import Heating
+from epicyclic.ehl.rheology import (
+    PRESSURE_LAWS,
+    SHEAR_LAWS,
+    PressureLaw,
+    ReeEyring,
+    ShearLaw,
+    TwoSlope,
+)
 from epicyclic.ehl.rough import NODES, AsperityContact
 from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, read_profile
 from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus, line_load_at_pressure
+from epicyclic.lubricant.oil import Conductivity, HeatCapacity
 from epicyclic.lubricant.properties import oil_state
 from epicyclic.units import (
     Length,
@@ -40,6 +51,12 @@ LoadPressure = Annotated[
 
 PERIOD = 200.0
 """Length of a generated profile, over its correlation length. [1]"""
+NEEDED = {
+    "two-slope": ("second_slope", "transition_pressure"),
+    "limiting-stress": ("shear_stress",),
+    "carreau": ("shear_stress", "shear_exponent"),
+}
+"""Keys of the lubricant without which a law cannot be used."""
 
 
 class Contact(Table):
@@ -76,7 +93,21 @@ class ContactLubricant(Table):
     )
     eyring_stress: Stress = Field(
         default=cast("Any", "5 MPa"),
-        description="Stress beyond which the oil thins (estimate; mineral oils 2 to 10 MPa).",
+        description="Of the default law: stress beyond which the oil thins (estimate; mineral "
+        "oils 2 to 10 MPa).",
+    )
+    shear_law: Literal["ree-eyring", "newtonian", "limiting-stress", "carreau"] = Field(
+        default="ree-eyring", description="Viscosity under shear."
+    )
+    shear_stress: Stress | None = Field(
+        default=None, description="For limiting-stress and carreau: the stress of the law."
+    )
+    shear_stress_slope: Number = Field(
+        default=0.0, ge=0.0, le=1.0,
+        description="Of ree-eyring and limiting-stress: rise of the stress with the pressure.",
+    )  # fmt: skip
+    shear_exponent: Number | None = Field(
+        default=None, gt=0.0, le=1.0, description="For carreau: n."
     )
 
 
@@ -114,10 +145,28 @@ class Asperities(Table):
     )
 
 
+class ContactHeating(Table):
+    """Heat of sliding."""
+
+    model: Literal["isothermal", "inlet-and-film"] = Field(
+        default="isothermal",
+        description="With or without thinner inlet film, flash and film temperature.",
+    )
+    solid_conductivity: Conductivity = Field(
+        default=cast("Any", "46 W/(m*K)"), description="Of both solids."
+    )
+    solid_heat_capacity: HeatCapacity = Field(
+        default=cast("Any", "460 J/(kg*K)"), description="Of both solids."
+    )
+
+
 class ContactNumerics(Table):
     """The grid."""
 
     nodes: int = Field(default=NODES, ge=128, le=4096, description="In the rough contact.")
+    frozen_roughness: bool = Field(
+        default=False, description="Hold the roughness still: the steady rough contact."
+    )
 
 
 class ContactCase(Table):
@@ -130,6 +179,7 @@ class ContactCase(Table):
     surface1: Surface = Surface()
     surface2: Surface = Surface(seed=2)
     asperities: Asperities = Asperities()
+    heating: ContactHeating = ContactHeating()
     numerics: ContactNumerics = ContactNumerics()
 
 
@@ -140,6 +190,7 @@ class ContactModel:
     contact: LineContact
     surfaces: tuple[Profile, Profile]
     asperities: AsperityContact
+    heating: Heating | None = None
 
     @property
     def smooth(self) -> bool:
@@ -183,10 +234,11 @@ def _cross_check(sections: Mapping[str, Table]) -> list[Problem]:
     """What is wrong across keys."""
     lubricant = sections.get("lubricant")
     problems = []
-    if isinstance(lubricant, ContactLubricant) and lubricant.pressure_law == "two-slope":
+    if isinstance(lubricant, ContactLubricant):
         problems += [
-            Problem(f"lubricant.{key}", "", "is missing; two-slope needs it.", "Give it.")
-            for key in ("second_slope", "transition_pressure")
+            Problem(f"lubricant.{key}", "", f"is missing; {law} needs it.", "Give it.")
+            for law in (lubricant.pressure_law, lubricant.shear_law)
+            for key in NEEDED.get(law, ())
             if getattr(lubricant, key) is None
         ]
     for name in ("surface1", "surface2"):
@@ -217,7 +269,7 @@ def contact_model(case: ContactCase) -> ContactModel:
     )
     surfaces = (_profile("surface1", case.surface1), _profile("surface2", case.surface2))
     asperities = AsperityContact(case.asperities.film, case.asperities.friction)
-    return ContactModel(contact, surfaces, asperities)
+    return ContactModel(contact, surfaces, asperities, _heating(case))
 
 
 def _modulus(one: Material, two: Material) -> float:
@@ -228,15 +280,47 @@ def _modulus(one: Material, two: Material) -> float:
 
 def _oil(table: ContactLubricant) -> ContactOil:
     state = oil_state(table.oil, table.temperature)
-    alpha = state.pressure_viscosity
-    law: Barus | Roelands | TwoSlope = Roelands(alpha)
-    if table.pressure_law == "barus":
-        law = Barus(alpha)
-    elif table.pressure_law == "two-slope":
+    return ContactOil(
+        state.dynamic_viscosity,
+        _pressure_law(table, state.pressure_viscosity),
+        table.eyring_stress,
+        shear_law=_shear_law(table),
+    )
+
+
+def _pressure_law(table: ContactLubricant, alpha: float) -> PressureLaw:
+    law = PRESSURE_LAWS[table.pressure_law]
+    if law is TwoSlope:
         assert table.second_slope is not None
         assert table.transition_pressure is not None
-        law = TwoSlope(alpha, table.second_slope, table.transition_pressure)
-    return ContactOil(state.dynamic_viscosity, law, table.eyring_stress)
+        return TwoSlope(alpha, table.second_slope, table.transition_pressure)
+    return law(alpha)  # type: ignore[call-arg]
+
+
+def _shear_law(table: ContactLubricant) -> ShearLaw:
+    law = SHEAR_LAWS[table.shear_law]
+    if law is ReeEyring:
+        return ReeEyring(table.eyring_stress, table.shear_stress_slope)
+    constants: dict[str, Any] = {
+        "stress": table.shear_stress,
+        "slope": table.shear_stress_slope,
+        "exponent": table.shear_exponent,
+    }
+    return law(**{field.name: constants[field.name] for field in fields(law)})
+
+
+def _heating(case: ContactCase) -> Heating | None:
+    table = case.heating
+    if table.model == "isothermal":
+        return None
+    state = oil_state(case.lubricant.oil, case.lubricant.temperature)
+    carried = table.solid_conductivity * table.solid_heat_capacity
+    return Heating(
+        state.thermoviscosity,
+        state.thermal_conductivity,
+        math.sqrt(carried * case.surface1.material.density),
+        math.sqrt(carried * case.surface2.material.density),
+    )
 
 
 def _profile(name: str, table: Surface) -> Profile:

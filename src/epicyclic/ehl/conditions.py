@@ -6,8 +6,29 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
+from epicyclic.ehl.rheology import (
+    Barus,
+    Carreau,
+    LimitingStress,
+    Newtonian,
+    PressureLaw,
+    ReeEyring,
+    Roelands,
+    ShearLaw,
+    TwoSlope,
+    shear_problems,
+)
 from epicyclic.errors import InputError, Problem
-from epicyclic.kernels.ehl_fluid import BARUS, ROELANDS, TWO_SLOPE, ScaledFluid
+from epicyclic.kernels.ehl_fluid import (
+    BARUS,
+    CARREAU,
+    EYRING,
+    LIMITING,
+    NEWTONIAN,
+    ROELANDS,
+    TWO_SLOPE,
+    ScaledFluid,
+)
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
 from epicyclic.lubricant.properties import ROELANDS_OFFSET, ROELANDS_PRESSURE
 
@@ -17,47 +38,12 @@ STIFFENING, PACKING = 1.34 / 5.9e8, 1.0 / 5.9e8
 """Constants of Dowson and Higginson's density. [1/Pa]"""
 
 
-@dataclass(frozen=True, slots=True)
-class Barus:
-    """mu = mu_0 exp(alpha p). Theory (H5).
-
-    Attributes
-    ----------
-    alpha : float
-        [1/Pa]
-    """
-
-    alpha: float
-
-
-@dataclass(frozen=True, slots=True)
-class Roelands:
-    """Roelands' law with the slope `alpha` at ambient pressure. Theory (H6).
-
-    Attributes
-    ----------
-    alpha : float
-        [1/Pa]
-    """
-
-    alpha: float
-
-
-@dataclass(frozen=True, slots=True)
-class TwoSlope:
-    """Slopes of ln(mu) at low and at high pressure, joined by a cubic. Theory (H7).
-
-    Attributes
-    ----------
-    alpha, alpha_high : float
-        [1/Pa]
-    transition : float
-        Pressure at which the two straight lines meet. [Pa]
-    """
-
-    alpha: float
-    alpha_high: float
-    transition: float
+SHEAR_CODES: dict[type[ShearLaw], int] = {
+    Newtonian: NEWTONIAN,
+    ReeEyring: EYRING,
+    LimitingStress: LIMITING,
+    Carreau: CARREAU,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,12 +59,22 @@ class ContactOil:
         tau_0 of the Ree-Eyring law; infinite for a Newtonian oil. [Pa]
     compressible : bool
         Density after Dowson and Higginson, or constant.
+    shear_law : Newtonian, ReeEyring, LimitingStress or Carreau, optional
+        Instead of the Ree-Eyring law of `eyring_stress`.
     """
 
     viscosity: float
-    pressure_law: Barus | Roelands | TwoSlope
+    pressure_law: PressureLaw
     eyring_stress: float = math.inf
     compressible: bool = True
+    shear_law: ShearLaw | None = None
+
+    @property
+    def shear(self) -> ShearLaw:
+        """The law of shear that holds."""
+        if self.shear_law is not None:
+            return self.shear_law
+        return Newtonian() if math.isinf(self.eyring_stress) else ReeEyring(self.eyring_stress)
 
     @property
     def roelands_index(self) -> float:
@@ -132,6 +128,11 @@ class LineContact:
             problems.append(
                 Problem("oil.eyring_stress", value, "must be above zero.", "Use inf for none.")
             )
+        problems += [
+            Problem(f"oil.shear_law.{name}", f"{value:g}", allowed, "Change it.")
+            for name, value, allowed in shear_problems(self.oil.shear)
+            if self.oil.shear_law is not None
+        ]
         if problems:
             raise InputError(problems, "the contact")
 
@@ -201,5 +202,8 @@ class LineContact:
             packing=PACKING * p_h if oil.compressible else 0.0,
             poiseuille=self.half_width**3 * p_h / wedge,
             sliding=oil.viscosity * abs(self.sliding_speed) / (p_h * self.film_scale),
-            eyring=oil.eyring_stress / p_h,
+            shear_law=SHEAR_CODES[type(oil.shear)],
+            stress=getattr(oil.shear, "stress", math.inf) / p_h,
+            stress_slope=getattr(oil.shear, "slope", 0.0),
+            exponent=getattr(oil.shear, "exponent", 1.0),
         )

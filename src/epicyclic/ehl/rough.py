@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.ehl.conditions import LineContact
+from epicyclic.ehl.heating import Heating, flow_fluid, thinning
 from epicyclic.ehl.roughness import SMOOTH, Profile
 from epicyclic.ehl.steady import SmoothSolution, expected_film, solve_smooth
 from epicyclic.kernels.ehl_linear import GROUP
@@ -131,6 +132,7 @@ class _Simulation:
     def __init__(
         self, smooth: SmoothSolution, surfaces: tuple[Profile, Profile], nodes: int,
         asperities: AsperityContact, frame_interval: float | None = None,
+        heating: Heating | None = None, frozen: bool = False,
     ) -> None:  # fmt: skip
         contact = smooth.contact
         self.smooth = smooth
@@ -141,7 +143,7 @@ class _Simulation:
         self.x: FloatArray = np.linspace(inlet, outlet, nodes, dtype=np.float64)
         self.dx = float(self.x[1] - self.x[0])
         self.stride = _stride(contact, surfaces, self.dx * contact.half_width)
-        fluid = contact.scaled_fluid()
+        fluid = flow_fluid(contact, heating)
         self.fluid = fluid._replace(poiseuille=self.stride * fluid.poiseuille)
         reach = self.x - self.x[0]
         cell = np.array([-self.dx, 0.0, self.dx], dtype=np.float64)
@@ -153,6 +155,11 @@ class _Simulation:
         self.pressure = np.interp(self.x, x, known)
         self.pressure[-1] = 0
         self.smooth_pressure = self.pressure.copy()
+        rise = np.interp(self.x, x, smooth.temperature_rise)
+        self.thinned = np.zeros_like(rise)
+        if heating is not None:
+            pressure = self.pressure * contact.hertz_pressure
+            self.thinned = thinning(contact, heating, pressure, rise)
         # the smooth pressure before the grid, and half a cell into it
         outside = np.append(x[x < inlet], [inlet, inlet + self.dx])
         upstream = np.append(np.interp(outside[:-1], x, known), 0.0)
@@ -174,7 +181,13 @@ class _Simulation:
         spacing = self.dx * contact.half_width
         self.heights = [surface.resampled(spacing) / contact.film_scale for surface in surfaces]
         self.shifts = [
-            self.stride * speed / contact.rolling_speed * heights.size * spacing / surface.length
+            (not frozen)
+            * self.stride
+            * speed
+            / contact.rolling_speed
+            * heights.size
+            * spacing
+            / surface.length
             for speed, heights, surface in zip(
                 (contact.speed1, contact.speed2), self.heights, surfaces, strict=True
             )
@@ -206,7 +219,7 @@ class _Simulation:
             self.pressure, self.film, self.now, self.before, self.active, self.approach,
             self.smooth_pressure, self.base, self.kernel_row, self.grouped, self.included,
             self.heights[0], self.heights[1], self.shifts[0], self.shifts[1], self.stride,
-            self.steps, self.step_count(GROWTH), self.fluid, self.dx, self.load,
+            self.steps, self.step_count(GROWTH), self.fluid, self.thinned, self.dx, self.load,
             self.asperities.film / scale, self.boundary_friction, TOLERANCE, MAX_ITERATIONS,
             records,
         )  # fmt: skip
@@ -245,6 +258,8 @@ def solve_rough(
     asperities: AsperityContact | None = None,
     nodes: int = NODES,
     frame_interval: float | None = None,
+    heating: Heating | None = None,
+    frozen: bool = False,
 ) -> RoughSolution:
     """Simulate until the mean friction is known to 2 %.
 
@@ -259,12 +274,17 @@ def solve_rough(
     nodes : int
     frame_interval : float, optional
         Time between kept moments; none are kept by default. [s]
+    heating : Heating, optional
+        Isothermal without; with it the film has the temperature of the smooth contact.
+    frozen : bool
+        Hold the roughness still where it is and let the oil flow past: the steady rough contact.
     """
-    smooth = solve_smooth(contact)
+    smooth = solve_smooth(contact, heating=heating)
     if smooth.status is not Status.CONVERGED:
         return _failed(smooth, f"the smooth contact: {smooth.message}")
     surfaces = (surface1, surface2)
-    run = _Simulation(smooth, surfaces, nodes, asperities or AsperityContact(), frame_interval)
+    asperities = asperities or AsperityContact()
+    run = _Simulation(smooth, surfaces, nodes, asperities, frame_interval, heating, frozen)
     settling = run.advance(GROWTH + SETTLING)
     blocks: list[FloatArray] = []
     error = mean = 0.0

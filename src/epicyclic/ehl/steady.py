@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from epicyclic.ehl.conditions import LineContact
 from epicyclic.ehl.film import moes_central_film
 from epicyclic.ehl.grid import gap_length, graded_nodes, grid_for
+from epicyclic.ehl.heating import Heating, flow_fluid, temperature_rise, thinning
 from epicyclic.kernels.ehl_steady import deflection_matrix, shear_stresses, solve_steady
 from epicyclic.status import Status
 
@@ -60,6 +61,8 @@ class SmoothSolution:
         Mean over the film; zero where it is ruptured. [Pa]
     flow : ndarray, shape (n - 1,)
         Volume flow at ambient density through the faces between the nodes. [m^2/s]
+    temperature_rise : ndarray, shape (n,)
+        Of the film above the inlet; zero without heating. [K]
     """
 
     contact: LineContact
@@ -72,6 +75,7 @@ class SmoothSolution:
     film: FloatArray
     shear_stress: FloatArray
     flow: FloatArray
+    temperature_rise: FloatArray
 
     @property
     def minimum_film(self) -> float:
@@ -112,7 +116,10 @@ class SmoothSolution:
 
 
 def solve_smooth(
-    contact: LineContact, nodes: int = NODES, inlet: float | None = None
+    contact: LineContact,
+    nodes: int = NODES,
+    inlet: float | None = None,
+    heating: Heating | None = None,
 ) -> SmoothSolution:
     """Steady smooth solution of a contact.
 
@@ -125,9 +132,11 @@ def solve_smooth(
     inlet : float, optional
         Where the film starts, over b_h and below -1; by default so far off that it does not
         matter, a fully flooded contact.
+    heating : Heating, optional
+        Isothermal without.
     """
     film = expected_film(contact)
-    fluid = contact.scaled_fluid()
+    fluid = flow_fluid(contact, heating)
     grid = grid_for(film, inlet)
     x = graded_nodes(node_counts(nodes)[0], grid)
     pressure, approach = _first_guess(x, film), 0.0
@@ -150,18 +159,34 @@ def solve_smooth(
         if iterations <= 0:
             message = message or f"no convergence in {-iterations} Newton steps on {count} nodes"
             break
-    scale = contact.film_scale
+    return _in_si(contact, heating, x, (pressure, height, flow), (message, iterations, error))
+
+
+def _in_si(
+    contact: LineContact, heating: Heating | None, x: FloatArray,
+    scaled: tuple[FloatArray, FloatArray, FloatArray], ending: tuple[str, int, float],
+) -> SmoothSolution:  # fmt: skip
+    """The solution from scaled pressure, film and flow; message, iterations and error."""
+    pressure, height, flow = scaled
+    message, iterations, error = ending
+    rise, thinned = np.zeros_like(x), np.zeros_like(x)
+    si = x * contact.half_width, pressure * contact.hertz_pressure, height * contact.film_scale
+    if heating is not None and not message:
+        rise = temperature_rise(contact, heating, *si)
+        thinned = thinning(contact, heating, si[1], rise)
+    stress = shear_stresses(pressure, height, thinned, contact.scaled_fluid())
     return SmoothSolution(
         contact=contact,
         status=Status.FAILED if message else Status.CONVERGED,
         message=message,
         iterations=abs(iterations),
         error=error,
-        x=x * contact.half_width,
-        pressure=pressure * contact.hertz_pressure,
-        film=height * scale,
-        shear_stress=shear_stresses(pressure, height, fluid) * contact.hertz_pressure,
-        flow=flow * scale * contact.rolling_speed,
+        x=si[0],
+        pressure=si[1],
+        film=si[2],
+        shear_stress=stress * contact.hertz_pressure,
+        flow=flow * contact.film_scale * contact.rolling_speed,
+        temperature_rise=rise,
     )
 
 

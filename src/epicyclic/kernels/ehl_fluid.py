@@ -12,6 +12,10 @@ from epicyclic.kernels._jit import kernel
 
 __all__ = [
     "BARUS",
+    "CARREAU",
+    "EYRING",
+    "LIMITING",
+    "NEWTONIAN",
     "ROELANDS",
     "TWO_SLOPE",
     "ScaledFluid",
@@ -24,8 +28,12 @@ __all__ = [
 
 BARUS, ROELANDS, TWO_SLOPE = 0, 1, 2
 """Codes of the viscosity-pressure laws."""
+NEWTONIAN, EYRING, LIMITING, CARREAU = 0, 1, 2, 3
+"""Codes of the laws of shear."""
 LARGE_SHEAR = 1e9
 """Sigma beyond which cosh(tau/tau_0) is Sigma to the last digit. [1]"""
+PLUG_SHEAR = 5.0
+"""What Sigma saturates at in the easing of the flow of an oil at its limiting stress. [1]"""
 CUBIC_START, CUBIC_END = 0.7, 1.4
 """Where the cubic between the two slopes starts and ends, over the transition pressure."""
 
@@ -49,8 +57,12 @@ class ScaledFluid(NamedTuple):
         1/lambda: factor of rho H^3/mu in the flow of the pressure gradient.
     sliding : float
         mu |u_s| R/(p_h b^2): Newtonian stress over p_h, times H over the viscosity ratio.
-    eyring : float
-        tau_0/p_h of the Ree-Eyring law; infinite for a Newtonian oil.
+    shear_law : int
+        `NEWTONIAN`, `EYRING`, `LIMITING` or `CARREAU`.
+    stress, stress_slope : float
+        Stress of the law of shear over p_h at P = 0, and its derivative in P.
+    exponent : float
+        n of the Carreau law.
     """
 
     law: int
@@ -61,7 +73,10 @@ class ScaledFluid(NamedTuple):
     packing: float
     poiseuille: float
     sliding: float
-    eyring: float
+    shear_law: int
+    stress: float
+    stress_slope: float
+    exponent: float
 
 
 @kernel
@@ -135,24 +150,55 @@ def mean_fluidity(
 
 
 @kernel
-def thinning_factor(viscosity: float, film: float, fluid: ScaledFluid) -> tuple[float, float]:
-    """Factor by which sliding eases the pressure flow, and d(ln factor)/d(ln Sigma).
+def thinning_factor(
+    viscosity: float, film: float, pressure: float, fluid: ScaledFluid
+) -> tuple[float, float, float]:
+    """Factor by which sliding eases the pressure flow, the viscosity over that of a small change.
 
-    Theory (H12).
+    Theory (H12), (H27), (H28).
 
-    cosh(tau_m/tau_0) = sqrt(1 + Sigma^2) with tau_m/tau_0 = asinh(Sigma), Sigma = mu u_s/(tau_0 h).
+    Returns
+    -------
+    factor : float
+    exponent : float
+        d(ln factor)/d(ln Sigma), Sigma = mu u_s/(tau_0 h).
+    softening : float
+        d(ln Sigma)/dP by the stress of the law alone.
     """
-    sigma = viscosity * fluid.sliding / (film * fluid.eyring)
+    if fluid.shear_law == NEWTONIAN:
+        return 1.0, 0.0, 0.0
+    stress = fluid.stress + fluid.stress_slope * pressure
+    sigma = viscosity * fluid.sliding / (film * stress)
+    softening = -fluid.stress_slope / stress
+    if fluid.shear_law == LIMITING:
+        held = 1.0 / (1.0 + sigma / PLUG_SHEAR)
+        return math.exp(sigma * held), sigma * held * held, softening
+    if fluid.shear_law == CARREAU:
+        n = fluid.exponent
+        square = min(sigma, LARGE_SHEAR) ** 2
+        factor = (1.0 + square) ** (0.5 * (3.0 - n)) / (1.0 + n * square)
+        exponent = (3.0 - n) * square / (1.0 + square) - 2.0 * n * square / (1.0 + n * square)
+        return factor, exponent, softening
     if sigma > LARGE_SHEAR:  # sigma squared may overflow
-        return sigma, 1.0
-    return math.sqrt(1.0 + sigma * sigma), sigma * sigma / (1.0 + sigma * sigma)
+        return sigma, 1.0, softening
+    return math.sqrt(1.0 + sigma * sigma), sigma * sigma / (1.0 + sigma * sigma), softening
 
 
 @kernel
-def mean_shear(pressure: float, film: float, fluid: ScaledFluid) -> float:
-    """Mean shear stress tau_m/p_h over the film. Theory (H17)."""
+def mean_shear(pressure: float, film: float, thinned: float, fluid: ScaledFluid) -> float:
+    """Mean shear stress tau_m/p_h over the film. Theory (H17), (H27), (H28).
+
+    `thinned` is what heat takes off ln(mu).
+    """
     log_mu, _ = log_viscosity_ratio(pressure, fluid)
-    newtonian = math.exp(log_mu) * fluid.sliding / film
-    if math.isinf(fluid.eyring):
+    newtonian = math.exp(log_mu - thinned) * fluid.sliding / film
+    if fluid.shear_law == NEWTONIAN:
         return newtonian
-    return fluid.eyring * math.asinh(newtonian / fluid.eyring)
+    stress = fluid.stress + fluid.stress_slope * pressure
+    sigma = newtonian / stress
+    if fluid.shear_law == EYRING:
+        return stress * math.asinh(sigma)
+    if fluid.shear_law == LIMITING:
+        return -stress * math.expm1(-sigma)
+    eased: float = newtonian * (1.0 + sigma * sigma) ** (0.5 * (fluid.exponent - 1.0))
+    return eased

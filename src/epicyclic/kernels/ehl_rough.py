@@ -73,16 +73,22 @@ def face_terms(
             sum_ = left + right
             cube = 2.0 * (left * right) ** 2 / sum_
             mean_film = 0.5 * sum_
-            ease, exponent = thinning_factor(1.0 / (root_left * root_right), mean_film, fluid)
+            ease, exponent, softening = thinning_factor(
+                1.0 / (root_left * root_right), mean_film, 0.5 * (pressure[i] + pressure[i + 1]),
+                fluid,
+            )  # fmt: skip
+            soft = 0.5 * exponent * softening
             density = 0.5 * (rho[i] + rho[i + 1])
             g = fluid.poiseuille * density * cube * fluidity * ease / dx
             conductance[i] = g
             flow = g * (pressure[i + 1] - pressure[i])
             terms[i, 0] = -g + flow * (
-                0.5 * d_rho[i] / density + (by_left / fluidity + 0.5 * exponent) * slope_left
+                0.5 * d_rho[i] / density + soft + (by_left / fluidity + 0.5 * exponent) * slope_left
             )
             terms[i, 1] = g + flow * (
-                0.5 * d_rho[i + 1] / density + (by_right / fluidity + 0.5 * exponent) * slope_right
+                0.5 * d_rho[i + 1] / density
+                + soft
+                + (by_right / fluidity + 0.5 * exponent) * slope_right
             )
             terms[i, 2] = flow * (2.0 / left - (1.0 + exponent) / sum_)
             terms[i, 3] = flow * (2.0 / right - (1.0 + exponent) / sum_)
@@ -282,8 +288,8 @@ def masses(pressure: FloatArray, film: FloatArray, fluid: ScaledFluid, out: Floa
 
 @kernel
 def measure(
-    pressure: FloatArray, film: FloatArray, fluid: ScaledFluid, dx: float, contact_film: float,
-    boundary_friction: float, record: FloatArray,
+    pressure: FloatArray, film: FloatArray, thinned: FloatArray, fluid: ScaledFluid, dx: float,
+    contact_film: float, boundary_friction: float, record: FloatArray,
 ) -> None:  # fmt: skip
     """Friction and contact of one moment into `record`. Theory (H23), (H24)."""
     record[:5] = 0.0
@@ -297,7 +303,7 @@ def measure(
                 record[2] += 0.5 * dx
                 record[3] += p * dx
             else:
-                record[0] += mean_shear(p, film[i], fluid) * dx
+                record[0] += mean_shear(p, film[i], thinned[i], fluid) * dx
 
 
 @kernel
@@ -306,8 +312,8 @@ def march(
     active: BoolArray, approach: float, smooth: FloatArray, base: FloatArray,
     kernel_row: FloatArray, grouped: FloatArray, included: BoolArray, heights1: FloatArray,
     heights2: FloatArray, shift1: float, shift2: float, stride: int, first: int, growth: int,
-    fluid: ScaledFluid, dx: float, load: float, contact_film: float, boundary_friction: float,
-    tolerance: float, max_iterations: int, records: FloatArray,
+    fluid: ScaledFluid, thinned: FloatArray, dx: float, load: float, contact_film: float,
+    boundary_friction: float, tolerance: float, max_iterations: int, records: FloatArray,
 ) -> float:  # fmt: skip
     """Time steps, as many as `records` has rows; state arrays change in place.
 
@@ -338,6 +344,8 @@ def march(
         Steps done before; steps in which the roughness grows from zero.
     fluid, dx, load
         Oil, with `stride` times its conductance; spacing; load on the grid.
+    thinned : ndarray, shape (n,)
+        Of `mean_shear`.
     contact_film, boundary_friction : float
         Film below which surfaces touch; friction there over the pressure.
     tolerance, max_iterations
@@ -393,7 +401,7 @@ def march(
         approach = result[0]
         before[:] = now
         masses(pressure, film, fluid, now)
-        measure(pressure, film, fluid, dx, contact_film, boundary_friction, records[t])
+        measure(pressure, film, thinned, fluid, dx, contact_film, boundary_friction, records[t])
         records[t, 5] = result[3] / stride
         records[t, 6] = iterations
         records[t, 7] = result[2]

@@ -119,7 +119,9 @@ def _flows(
         h = 0.5 * (film[i] + film[i + 1])
         density = 0.5 * (rho[i] + rho[i + 1])
         fluidity, d_left, d_right = mean_fluidity(log_mu[i], log_mu[i + 1], root[i], root[i + 1])
-        ease, exponent = thinning_factor(1.0 / (root[i] * root[i + 1]), h, fluid)
+        ease, exponent, softening = thinning_factor(
+            1.0 / (root[i] * root[i + 1]), h, 0.5 * (pressure[i] + pressure[i + 1]), fluid
+        )
         conductance = fluid.poiseuille * density * h**3 * fluidity * ease
         gradient = (pressure[i + 1] - pressure[i]) / dx
         poiseuille = conductance * gradient
@@ -127,10 +129,12 @@ def _flows(
         by_film = 0.5 * poiseuille * (3.0 - exponent) / h
         d_film[i, 1] -= by_film
         d_film[i, 2] -= by_film
+        soft = 0.5 * exponent * softening
         by_left = 0.5 * d_rho[i] / density + (d_left / fluidity + 0.5 * exponent) * d_log_mu[i]
         by_right = (
             0.5 * d_rho[i + 1] / density + (d_right / fluidity + 0.5 * exponent) * d_log_mu[i + 1]
         )
+        by_left, by_right = by_left + soft, by_right + soft
         d_pressure[i, 1] -= poiseuille * by_left - conductance / dx
         d_pressure[i, 2] -= poiseuille * by_right + conductance / dx
     return flow, d_film, d_pressure
@@ -281,10 +285,12 @@ def solve_steady(
 
 
 @kernel
-def shear_stresses(pressure: FloatArray, film: FloatArray, fluid: ScaledFluid) -> FloatArray:
+def shear_stresses(
+    pressure: FloatArray, film: FloatArray, thinned: FloatArray, fluid: ScaledFluid
+) -> FloatArray:
     """`mean_shear` where there is pressure, else zero; arrays of shape (n,)."""
     stress = np.zeros(pressure.size)
     for i in range(pressure.size):
         if pressure[i] > 0.0:
-            stress[i] = mean_shear(pressure[i], film[i], fluid)
+            stress[i] = mean_shear(pressure[i], film[i], thinned[i], fluid)
     return stress

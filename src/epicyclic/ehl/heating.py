@@ -1,0 +1,120 @@
+"""Heat of sliding: thinner inlet film, warmer film. An estimate beside an isothermal solution."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.ehl.conditions import LineContact
+from epicyclic.ehl.rheology import Roelands
+from epicyclic.kernels.ehl_fluid import ScaledFluid
+from epicyclic.kernels.ehl_steady import shear_stresses
+from epicyclic.lubricant.properties import ROELANDS_PRESSURE
+
+__all__ = ["Heating", "flow_fluid", "inlet_factor", "temperature_rise", "thinning"]
+
+FloatArray = NDArray[np.float64]
+
+FILM_EXPONENT = 0.694
+"""Of the viscosity in the film of Pan and Hamrock (1989). [1]"""
+DAMPING = 0.5
+"""Share of a new temperature taken over in each pass."""
+SMALLEST_CHANGE, MOST_PASSES = 0.01, 200
+"""Change of temperature at which the passes end, and their largest number. [K]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Heating:
+    """What carries the heat of sliding away.
+
+    Attributes
+    ----------
+    thermoviscosity : float
+        beta = -d(ln mu)/dT of the oil at the inlet. [1/K]
+    oil_conductivity : float
+        [W/(m K)]
+    effusivity1, effusivity2 : float
+        sqrt(k rho c) of each solid. [W s^0.5/(m^2 K)]
+    """
+
+    thermoviscosity: float
+    oil_conductivity: float
+    effusivity1: float
+    effusivity2: float
+
+
+def inlet_factor(contact: LineContact, heating: Heating) -> float:
+    """Film over that without heat of shear in the inlet: Wilson and Sheu (1983). Theory (H29)."""
+    speed = contact.rolling_speed
+    load = (
+        heating.thermoviscosity * contact.oil.viscosity * speed**2 / heating.oil_conductivity
+    )  # L = beta mu_0 u_r^2/k
+    slip = abs(contact.sliding_speed) / speed
+    return 1 / (1 + 0.1 * (1 + 14.8 * math.pow(slip, 0.83)) * math.pow(load, 0.64))
+
+
+def flow_fluid(contact: LineContact, heating: Heating | None) -> ScaledFluid:
+    """The oil for film and pressure: eased in its flow so that the film falls by the inlet factor.
+
+    Theory (H29).
+    """
+    fluid = contact.scaled_fluid()
+    if heating is None:
+        return fluid
+    easing = math.pow(inlet_factor(contact, heating), -1 / FILM_EXPONENT)
+    return fluid._replace(poiseuille=easing * fluid.poiseuille)
+
+
+def thinning(
+    contact: LineContact, heating: Heating, pressure: FloatArray, rise: FloatArray
+) -> FloatArray:
+    """What a `rise` of the temperature [K] takes off ln(mu). Theory (H31)."""
+    thinned = heating.thermoviscosity * rise
+    if isinstance(contact.oil.pressure_law, Roelands):
+        stiffer = 1 + np.maximum(pressure, 0) / ROELANDS_PRESSURE
+        thinned = thinned * stiffer**contact.oil.roelands_index
+    return thinned
+
+
+def temperature_rise(
+    contact: LineContact, heating: Heating, x: FloatArray, pressure: FloatArray, film: FloatArray
+) -> FloatArray:
+    """Mean over the film of the temperature above that of the inlet, shape (n,). [K]
+
+    Theory (H30), (H31).
+
+    Parameters
+    ----------
+    contact : LineContact
+    heating : Heating
+    x, pressure, film : ndarray, shape (n,)
+        Nodes [m], pressure [Pa] and film [m] of a steady solution.
+    """
+    fluid = contact.scaled_fluid()
+    scaled = pressure / contact.hertz_pressure, film / contact.film_scale
+    conveyed = heating.effusivity1 * math.sqrt(abs(contact.speed1))
+    conveyed += heating.effusivity2 * math.sqrt(abs(contact.speed2))
+    surfaces = _moving_source(x) / (math.sqrt(math.pi) * conveyed)
+    rise = np.zeros_like(x)
+    for _ in range(MOST_PASSES):
+        thinned = thinning(contact, heating, pressure, rise)
+        stress = shear_stresses(*scaled, thinned, fluid) * contact.hertz_pressure
+        heat = stress * abs(contact.sliding_speed)
+        new = surfaces @ ((heat[1:] + heat[:-1]) / 2) + heat * film / (
+            12 * heating.oil_conductivity
+        )
+        change = DAMPING * (new - rise)
+        rise = rise + change
+        if np.abs(change).max() < SMALLEST_CHANGE:
+            break
+    return rise
+
+
+def _moving_source(x: FloatArray) -> FloatArray:
+    """Integral over each cell upstream of (x - s)^-1/2 ds, shape (n, n - 1). [m^0.5]"""
+    root = np.sqrt(np.maximum(np.subtract.outer(x, x), 0))
+    integral: FloatArray = 2 * (root[:, :-1] - root[:, 1:])
+    return integral

@@ -1,0 +1,148 @@
+"""How an oil thickens under pressure and thins under shear: the laws to choose from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+__all__ = [
+    "PRESSURE_LAWS",
+    "SHEAR_LAWS",
+    "Barus",
+    "Carreau",
+    "LimitingStress",
+    "Newtonian",
+    "PressureLaw",
+    "ReeEyring",
+    "Roelands",
+    "ShearLaw",
+    "TwoSlope",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Barus:
+    """mu = mu_0 exp(alpha p). Theory (H5).
+
+    Attributes
+    ----------
+    alpha : float
+        [1/Pa]
+    """
+
+    alpha: float
+
+
+@dataclass(frozen=True, slots=True)
+class Roelands:
+    """Roelands' law with the slope `alpha` at ambient pressure. Theory (H6).
+
+    Attributes
+    ----------
+    alpha : float
+        [1/Pa]
+    """
+
+    alpha: float
+
+
+@dataclass(frozen=True, slots=True)
+class TwoSlope:
+    """Slopes of ln(mu) at low and at high pressure, joined by a cubic. Theory (H7).
+
+    Attributes
+    ----------
+    alpha, alpha_high : float
+        [1/Pa]
+    transition : float
+        Pressure at which the two straight lines meet. [Pa]
+    """
+
+    alpha: float
+    alpha_high: float
+    transition: float
+
+
+PressureLaw = Barus | Roelands | TwoSlope
+PRESSURE_LAWS: Mapping[str, type[PressureLaw]] = {
+    "roelands": Roelands,
+    "barus": Barus,
+    "two-slope": TwoSlope,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Newtonian:
+    """Stress in proportion to the shear rate."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReeEyring:
+    """tau = tau_0 arsinh(mu gamma/tau_0), tau_0 = stress + slope p. Theory (H17).
+
+    Attributes
+    ----------
+    stress : float
+        [Pa]
+    slope : float
+        [1]
+    """
+
+    stress: float
+    slope: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class LimitingStress:
+    """tau = tau_L [1 - exp(-mu gamma/tau_L)], tau_L = stress + slope p. Theory (H27).
+
+    Attributes
+    ----------
+    stress : float
+        [Pa]
+    slope : float
+        Limiting stress-pressure coefficient. [1]
+    """
+
+    stress: float
+    slope: float
+
+
+@dataclass(frozen=True, slots=True)
+class Carreau:
+    """tau = mu gamma [1 + (mu gamma/G)^2]^((n - 1)/2), G = stress. Theory (H28).
+
+    Attributes
+    ----------
+    stress : float
+        [Pa]
+    exponent : float
+        n, 1 for a Newtonian oil. [1]
+    """
+
+    stress: float
+    exponent: float
+
+
+ShearLaw = Newtonian | ReeEyring | LimitingStress | Carreau
+SHEAR_LAWS: Mapping[str, type[ShearLaw]] = {
+    "ree-eyring": ReeEyring,
+    "newtonian": Newtonian,
+    "limiting-stress": LimitingStress,
+    "carreau": Carreau,
+}
+
+
+def shear_problems(law: ShearLaw) -> list[tuple[str, float, str]]:
+    """Name, value and what is allowed of every constant of `law` that is out of its range."""
+    found = []
+    for name, low, high in (("stress", 0.0, math.inf), ("exponent", 0.0, 1.0)):
+        value = getattr(law, name, 1.0)
+        if not low < value <= high:
+            allowed = "must be above zero." if high == math.inf else "must be in (0, 1]."
+            found.append((name, value, allowed))
+    slope = getattr(law, "slope", 0.0)
+    if not 0.0 <= slope < math.inf:
+        found.append(("slope", slope, "must be zero or more."))
+    return found
