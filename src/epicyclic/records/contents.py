@@ -12,9 +12,9 @@ __all__ = ["MapContents", "Measure", "Member", "RecordContents", "ResultContents
 
 
 class _Part(BaseModel):
-    """Unknown keys are those of a later version and are left alone."""
+    """Unknown keys, of a later version, are kept."""
 
-    model_config = ConfigDict(frozen=True, extra="ignore", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False)
 
 
 class Measure(_Part):
