@@ -71,7 +71,7 @@ from epicyclic.losses.viscous import (
 from epicyclic.lubricant.properties import MixtureState, OilState
 from epicyclic.pocketing.table import FlowTables
 
-__all__ = ["most_loaded_duties", "planetary_duties", "solve_planetary"]
+__all__ = ["bearing_method", "most_loaded_duties", "planetary_duties", "solve_planetary"]
 
 CAGED_PALMGREN = 0.0003
 """f1 of a caged roller bearing, middle of 0.0002-0.0004. Talbot (2012), p. 56. [1]"""
@@ -313,17 +313,15 @@ def _solve_bearing(
     name = resolve_models(case)["bearing"]
     if name == "mixed-ehl":
         loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil)
-        method, source = BEARING_METHOD, BEARING_SOURCE
     elif name == FittedRolling.name:
         model = fitted_rolling(case, "bearing_rolling_loss")
         loss = fitted_rolling_loss(bearing, loads, speed, oil, model)
-        method, source = model.title, model.source
     else:
         watts = palmgren_loss(
             palmgren_coefficient(table), load.force, bearing.pitch_diameter, speed
         )
         loss = BearingLoss(watts, palmgren_flags(bearing, loads, speed))
-        method, source = PALMGREN_METHOD, PALMGREN_SOURCE
+    method, source = bearing_method(case)
     viscous_loss = bearing_viscous_loss(
         viscous_factor(table), oil.kinematic_viscosity, speed, bearing.pitch_diameter
     )
@@ -335,6 +333,17 @@ def _solve_bearing(
         _bearing_figures(bearing, loads, load, speed),
         loss.flags + viscous_flags("planet bearing", speed, bearing.pitch_diameter),
     )
+
+
+def bearing_method(case: PlanetaryCase) -> tuple[str, str]:
+    """How the load-dependent loss of the planet bearings is found, and where that is printed."""
+    name = resolve_models(case)["bearing"]
+    if name == "mixed-ehl":
+        return BEARING_METHOD, BEARING_SOURCE
+    if name == FittedRolling.name:
+        model = fitted_rolling(case, "bearing_rolling_loss")
+        return model.title, model.source
+    return PALMGREN_METHOD, PALMGREN_SOURCE
 
 
 def viscous_factor(table: PlanetBearing) -> float:

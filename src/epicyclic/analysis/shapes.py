@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from epicyclic.analysis.datasets import variable
-from epicyclic.analysis.solve import loaded_duties
+from epicyclic.analysis.pocket_details import mesh_duties
 from epicyclic.case import build
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.schema import GearTable
@@ -72,13 +72,13 @@ def mesh_views(case: Case) -> dict[str, xr.Dataset]:
         over ``gear``; ``path_x``, ``path_y`` over ``end``, where contact begins and ends;
         ``pressure_angle`` of the line of action.
     """
-    return {duty.key: _view(duty.mesh) for duty in loaded_duties(case)}
+    return {duty.key: _view(duty.mesh) for duty in mesh_duties(case)}
 
 
 def _duties_gears(case: Case) -> list[tuple[tuple[Gear, Tool], tuple[Gear, Tool]]]:
     return [
         ((duty.mesh.gear1, duty.tools[0]), (duty.mesh.gear2, duty.tools[1]))
-        for duty in loaded_duties(case)
+        for duty in mesh_duties(case)
     ]
 
 

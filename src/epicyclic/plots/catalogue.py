@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -11,6 +11,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from epicyclic.analysis.shapes import gear_shapes
 from epicyclic.errors import InputError, Problem
 from epicyclic.plots.bearing import plot_roller_loads, plot_roller_profile
 from epicyclic.plots.drawing import plot_gear_set, plot_teeth
@@ -25,6 +26,7 @@ from epicyclic.plots.mesh import (
 )
 from epicyclic.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.plots.style import PANEL, styled_figure
+from epicyclic.records.maps import map_case
 from epicyclic.records.record import ResultRecord
 
 __all__ = ["PLOTS", "Panel", "Plot", "available", "figure_of", "panels_of"]
@@ -91,10 +93,17 @@ def _of_group(
     return panels
 
 
+def _gears_of(stored: Stored) -> Mapping[str, xr.Dataset]:
+    """Shapes of the gears; those of a map follow from its case."""
+    if isinstance(stored, ResultRecord):
+        return stored.group("gears")
+    case = map_case(stored)
+    return {} if case is None else gear_shapes(case)
+
+
 def _gear_set(stored: Stored) -> list[Panel]:
-    if not isinstance(stored, ResultRecord):
-        return []
-    return [Panel("", partial(plot_gear_set, stored.group("gears")))]
+    gears = _gears_of(stored)
+    return [Panel("", partial(plot_gear_set, gears))] if gears else []
 
 
 def _teeth(stored: Stored) -> list[Panel]:

@@ -15,9 +15,10 @@ import xarray as xr
 from markupsafe import Markup
 
 from epicyclic.plots.catalogue import Stored, available
+from epicyclic.records.maps import map_inputs
 from epicyclic.records.record import ResultRecord
 from epicyclic.report.drawings import draw
-from epicyclic.report.map_page import map_inputs, map_key_figures, map_line, map_sections
+from epicyclic.report.map_page import map_key_figures, map_line, map_sections
 from epicyclic.report.page import Drawings
 from epicyclic.report.result_page import key_figures, operation_line, result_sections
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from epicyclic.analysis.methods import methods_of
 from epicyclic.maps.tables import statements
 from epicyclic.plots.loss_map import map_at
+from epicyclic.records.maps import map_case, map_inputs
 from epicyclic.report.inputs import input_tables
 from epicyclic.report.page import (
     Cell,
@@ -26,18 +28,13 @@ from epicyclic.report.shown import MISSING
 from epicyclic.status import Status
 from epicyclic.units import unit_text
 
-__all__ = ["map_inputs", "map_key_figures", "map_line", "map_sections"]
+__all__ = ["map_key_figures", "map_line", "map_sections"]
 
+_FOUND = re.compile(r"(Out of range: .*?) -?\d[^;]*;")
 GRIDS = {"efficiency": "Efficiency, %", "total": "Total loss, W"}
 """Variables of which there are tables of values."""
 MOST_COLUMNS = 8
 """Of a table of values; larger maps are shown at evenly spaced points."""
-
-
-def map_inputs(data: xr.Dataset) -> dict[str, Any]:
-    """The case of a map."""
-    inputs: dict[str, Any] = json.loads(data.attrs["case"])
-    return inputs
 
 
 def map_line(data: xr.Dataset) -> str:
@@ -77,6 +74,8 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
         ),
         Section("tables", "Values", tuple(_tables(data)), _further(data)),
         Section("validity", "Validity", _validity(data)),
+        Section("gears", "Gears", gallery(drawings, "gear-set")),
+        Section("methods", "Methods", _methods(data)),
         Section("conventions", "Conventions", _conventions(data)),
         Section("inputs", "Inputs", tuple(input_tables(map_inputs(data), map_inputs(data)))),
         Section("versions", "Versions", _versions(data)),
@@ -147,7 +146,10 @@ def _validity(data: xr.Dataset) -> tuple[Listing, ...]:
     lines: list[Listing] = []
     for name, title in (("message", "Failed points"), ("warnings", "Warnings")):
         counts = Counter(
-            line for text in data[name].values.ravel() for line in str(text).splitlines() if line
+            line
+            for text in data[name].values.ravel()
+            for line in dict.fromkeys(_without_values(one) for one in str(text).split(" | "))
+            if line
         )
         if counts:
             items = tuple(
@@ -155,6 +157,22 @@ def _validity(data: xr.Dataset) -> tuple[Listing, ...]:
             )
             lines.append(Listing(items, title))
     return tuple(lines) or (Listing(("There are no warnings.",)),)
+
+
+def _without_values(warning: str) -> str:
+    """A warning without what was found at its point, so that like ones are counted together."""
+    return _FOUND.sub(r"\1;", warning).partition(" Share of the loss")[0]
+
+
+def _methods(data: xr.Dataset) -> tuple[Table | Listing, ...]:
+    case = map_case(data)
+    if case is None:
+        return (Listing(("The case of this map is none of this version of the program.",)),)
+    rows = tuple(
+        (Cell(what), Cell(method), Cell(source))
+        for what, (method, source) in methods_of(case).items()
+    )
+    return (Table(("what", "method", "source"), rows),)
 
 
 def _conventions(data: xr.Dataset) -> tuple[Table, ...]:

@@ -1,0 +1,33 @@
+"""The methods that a case asks for and where they are printed, without solving it."""
+
+from __future__ import annotations
+
+from epicyclic.analysis.load_sharing import SHARING_METHODS
+from epicyclic.analysis.parts import OHLENDORF_SOURCE, friction_of, resolve_models, rolling_of
+from epicyclic.analysis.planetary import bearing_method
+from epicyclic.analysis.pockets import POCKETING_SOURCE, pocketing_method
+from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
+from epicyclic.losses.viscous import DRAG_METHOD, DRAG_SOURCE, VISCOUS_METHOD, VISCOUS_SOURCE
+
+__all__ = ["methods_of"]
+
+
+def methods_of(case: Case) -> dict[str, tuple[str, str]]:
+    """Title and source of the method for each role, ``"friction"``."""
+    friction, rolling = friction_of(case), rolling_of(case)
+    methods = {"friction": (friction.title, friction.source)}
+    if resolve_models(case)["mesh"] == "loss-factor":
+        methods["mesh loss"] = ("friction times the loss factor", OHLENDORF_SOURCE)
+    else:
+        methods["rolling"] = (rolling.title, rolling.source)
+    distribution = LOAD_DISTRIBUTIONS[case.models.load_distribution]
+    methods["load distribution"] = (distribution.title, distribution.source)
+    methods["pocketing"] = (pocketing_method(case, None), POCKETING_SOURCE)
+    methods["drag"] = (DRAG_METHOD, DRAG_SOURCE)
+    if isinstance(case, PlanetaryCase):
+        methods["load sharing"] = SHARING_METHODS[case.load_sharing.method]
+        if case.planet_bearing is not None:
+            methods["planet bearing"] = bearing_method(case)
+            methods["bearings, viscous"] = (VISCOUS_METHOD, VISCOUS_SOURCE)
+    return methods
