@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections import Counter
 
@@ -30,10 +31,11 @@ from epicyclic.units import unit_text
 
 __all__ = ["map_key_figures", "map_line", "map_sections"]
 
+_WHITE = "White: no power is passed on, or the point failed."
 _FOUND = re.compile(r"(Out of range: .*?) -?\d[^;]*;")
 GRIDS = {"efficiency": "Efficiency, %", "total": "Total loss, W"}
 """Variables of which there are tables of values."""
-MOST_COLUMNS = 8
+MOST_COLUMNS = 9
 """Of a table of values; larger maps are shown at evenly spaced points."""
 
 
@@ -65,7 +67,7 @@ def map_key_figures(data: xr.Dataset) -> list[KeyFigure]:
 def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
     """All chapters of a map."""
     sections = [
-        Section("efficiency", "Efficiency", gallery(drawings, "efficiency-map")),
+        Section("efficiency", "Efficiency", gallery(drawings, "efficiency-map"), _WHITE),
         Section("losses", "Losses", gallery(drawings, "loss-map", "torque-loss-map")),
         Section(
             "lines",
@@ -128,9 +130,9 @@ def _grid(data: xr.Dataset, name: str, temperature: int) -> Table:
 
 
 def _some(count: int) -> list[int]:
-    """Numbers of at most `MOST_COLUMNS` of `count` points, evenly spaced."""
-    chosen = np.linspace(0, count - 1, min(count, MOST_COLUMNS)).round().astype(int)
-    return [int(one) for one in np.unique(chosen)]
+    """Numbers of some `MOST_COLUMNS` of `count` points, evenly spaced but for the last."""
+    step = max(1, math.ceil((count - 1) / (MOST_COLUMNS - 1)))
+    return sorted({*range(0, count, step), count - 1})
 
 
 def _value(name: str, value: float, key: str) -> Cell:
