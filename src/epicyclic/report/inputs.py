@@ -8,7 +8,6 @@ from typing import Any
 from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.fields import locate, quantity_of
 from epicyclic.report.page import Cell, Table
-from epicyclic.report.shown import MISSING
 from epicyclic.units import unit_text
 
 __all__ = ["input_tables"]
@@ -65,7 +64,7 @@ def _side_by_side(
         cells = [
             _cell(schema, (member, *path), leaves[member][path], given)
             if path in leaves[member]
-            else Cell(MISSING)
+            else Cell("")
             for member in members
         ]
         abouts = [_about(schema, (member, *path)) for member in members if path in leaves[member]]

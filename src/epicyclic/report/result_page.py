@@ -112,7 +112,8 @@ _POCKET_LEAD = (
 )
 _ASSUMPTIONS = (
     "Speed and torque are steady; dynamic loads are not modelled.",
-    "Shafts, carrier and housing do not bend; misalignment is that of the case.",
+    "Shafts, carrier and housing do not bend; misalignment is that of the case, and of the tilt of "
+    "the planets if models.planet_tilt is coupled.",
     "The oil has its inlet temperature at all contacts.",
     "Inputs in italics, in the tables below, were not given and have their default values.",
 )
