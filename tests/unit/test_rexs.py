@@ -322,6 +322,18 @@ def test_root_and_tip_rounding_come_from_a_rack_shaped_tool(read):
     assert sun.tool_tip_radius == pytest.approx(0.5e-3)
 
 
+def test_tip_diameter_comes_from_the_basic_profile(read):
+    parts = planetary()
+    for gear, factor in ((SUN, 1.1), (RING, 0.9)):
+        parts.set(gear, tip_diameter=None)
+        for flank in (100, 200):
+            parts.set(flank + gear, addendum_coefficient_basic_profile=no_unit(factor))
+    case = read(parts).case(ROUGH)
+    module = 2e-3 / math.cos(math.radians(12))
+    assert case.sun.tip_diameter == pytest.approx(24 * module + 2 * 1.1 * 2e-3)
+    assert case.ring.tip_diameter == pytest.approx(60 * module - 2 * 0.9 * 2e-3)
+
+
 def test_pressure_viscosity_by_the_parameters_of_agma_925(read):
     parts = planetary()
     name = "parameter_{}_for_calculation_of_pressure_viscosity_coefficient_agma_925_2003"
