@@ -124,7 +124,10 @@ class RexsImport:
     def _explained(self, problem: Problem) -> Problem:
         """A problem of a key that the file lacks, with what the file should have."""
         lacks = [lack for lack in self.missing if lack.needed and lack.explains(problem)]
-        return replace(problem, remedy=" ".join(map(str, lacks))) if lacks else problem
+        remedies = [
+            f"The file has no {lack.attribute}. Set {lack.key}. {lack.instead}" for lack in lacks
+        ]
+        return replace(problem, remedy=" ".join(remedies).rstrip()) if lacks else problem
 
 
 def read_rexs(
@@ -248,7 +251,9 @@ def _shifts(draft: Draft, member1: str, member2: str, changed: str) -> None:
         if key in draft.lacks:
             text = f"With the {other}, {format_number(shown)} leaves no backlash."
             draft.lacks[key] = replace(draft.lacks[key], instead=text)
-        elif own == changed and 0 < draft.tables[own].get(_SHIFT, shown) - shown <= ROUNDING:
-            was = draft.tables[own][_SHIFT]
-            origin = f"{draft.origins[key]}: {was}, less what the printed digits are too much"
+            continue
+        shift = draft.tables[own].get(_SHIFT)
+        is_too_much = isinstance(shift, float) and 0 < shift - shown <= ROUNDING
+        if own == changed and is_too_much:
+            origin = f"{draft.origins[key]}: {shift}, less what the printed digits are too much"
             draft.give(key, shown, origin)
