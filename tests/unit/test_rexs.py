@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import math
+import re
 import struct
 import tomllib
 
@@ -106,6 +107,13 @@ def test_text_reads_back_as_the_same_case(read, tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(found.text(ROUGH), encoding="utf-8")
     assert ep.load_case(file) == found.case(ROUGH)
+
+
+def test_text_says_what_the_user_changed(read):
+    text = read(planetary()).text({"planet_bearing": None, "sun.roughness": "0.3 um"})
+    assert re.search(r"^# \[planet_bearing\] +# Taken out by the user\.$", text, re.MULTILINE)
+    assert re.search(r'^roughness = "0.3 um" +# Set by the user\.$', text, re.MULTILINE)
+    assert "rolling_element" not in text
 
 
 def test_lacking_values_are_told_by_their_rexs_id(read):
