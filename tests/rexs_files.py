@@ -106,7 +106,7 @@ class Parts:
 
 def _kind(value: Any) -> str:
     if isinstance(value, list):
-        return f"{_kind(value[0])}_array"
+        return f"{_kind(value[0]) if value else 'string'}_array"
     kinds = {bool: "boolean", int: "integer", float: "floating_point"}
     return kinds.get(type(value), "string")
 

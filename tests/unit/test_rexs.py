@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import base64
 import math
+import re
 import struct
 import tomllib
 
 import pytest
 
 import epicyclic as ep
+from epicyclic.case.build import planetary_meshes
 from epicyclic.exchange.rexs.vocabulary import id_in, term, versions
 from epicyclic.losses.friction.base import RA_OVER_RQ
 from rexs_files import (
@@ -40,6 +42,10 @@ def read(tmp_path):
         return ep.read_rexs(parts.write(tmp_path / f"gears{suffix}"), **options)
 
     return reading
+
+
+def meshes(case):
+    return planetary_meshes(case.gears, case.sun, case.planet, case.ring)
 
 
 def problems(excinfo):
@@ -103,6 +109,13 @@ def test_text_reads_back_as_the_same_case(read, tmp_path):
     assert ep.load_case(file) == found.case(ROUGH)
 
 
+def test_text_says_what_the_user_changed(read):
+    text = read(planetary()).text({"planet_bearing": None, "sun.roughness": "0.3 um"})
+    assert re.search(r"^# \[planet_bearing\] +# Taken out by the user\.$", text, re.MULTILINE)
+    assert re.search(r'^roughness = "0.3 um" +# Set by the user\.$', text, re.MULTILINE)
+    assert "rolling_element" not in text
+
+
 def test_lacking_values_are_told_by_their_rexs_id(read):
     parts = planetary()
     parts.set(SUN, arithmetic_mean_roughness_flank_iso_4287_1997=None, tip_diameter=None)
@@ -129,7 +142,7 @@ def test_lacking_profile_shift_says_which_one_closes_the_mesh(read):
     closing = float(lack.instead.split()[3])
     assert lack.needed
     case = found.case({**ROUGH, "ring.profile_shift_coefficient": closing})
-    backlash = ep.solve(case).meshes["ring_mesh"].backlash
+    backlash = meshes(case)[1].backlash
     assert 0 <= backlash < 2e-9  # the shift has six decimals: 2 m_n tan(alpha) 1e-6
 
 
@@ -303,7 +316,7 @@ def test_tooth_thickness_stands_in_for_the_profile_shift(read):
     parts.set(SUN, reference_diameter_cylindrical_gear=mm(reference),
               transverse_tooth_thickness_at_reference_diameter=mm(thickness))  # fmt: skip
     case, usual = read(parts).case(ROUGH), read(planetary()).case(ROUGH)
-    one, two = (ep.solve(item).meshes["sun_mesh"].backlash for item in (case, usual))
+    one, two = (meshes(item)[0].backlash for item in (case, usual))
     assert one == pytest.approx(two, abs=1e-12)  # x = 0 in both, fifteen digits
 
 
@@ -320,6 +333,18 @@ def test_root_and_tip_rounding_come_from_a_rack_shaped_tool(read):
     reference = 24 * 2e-3 / math.cos(math.radians(12))
     assert sun.root_diameter == pytest.approx(reference - 2 * 1.4 * 2e-3)
     assert sun.tool_tip_radius == pytest.approx(0.5e-3)
+
+
+def test_tip_diameter_comes_from_the_basic_profile(read):
+    parts = planetary()
+    for gear, factor in ((SUN, 1.1), (RING, 0.9)):
+        parts.set(gear, tip_diameter=None)
+        for flank in (100, 200):
+            parts.set(flank + gear, addendum_coefficient_basic_profile=no_unit(factor))
+    case = read(parts).case(ROUGH)
+    module = 2e-3 / math.cos(math.radians(12))
+    assert case.sun.tip_diameter == pytest.approx(24 * module + 2 * 1.1 * 2e-3)
+    assert case.ring.tip_diameter == pytest.approx(60 * module - 2 * 0.9 * 2e-3)
 
 
 def test_pressure_viscosity_by_the_parameters_of_agma_925(read):

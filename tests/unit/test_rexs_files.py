@@ -14,8 +14,12 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.exchange.rexs import file as rexs_file
+from epicyclic.exchange.rexs.content import build_model
+from epicyclic.exchange.rexs.file import read_document
 from rexs_files import STAGE, SUN, pair, planetary
 from rexs_files import none as no_unit
+
+COARSE = {"numerics.mesh_positions": 4, "numerics.contact_segments": 4}
 
 HEAD = '<?xml version="1.0"?>\n<model version="1.5" applicationId="a" date="d">'
 ENTITIES = "".join(
@@ -178,12 +182,11 @@ def test_hostile_files_end_in_time_and_memory(tmp_path):
 def solved(tmp_path_factory):
     folder = tmp_path_factory.mktemp("rexs")
     file = pair().write(folder / "gears.rexs")
-    coarse = {"numerics.mesh_positions": 4, "numerics.contact_segments": 4}
-    return ep.solve(ep.load_case(file, coarse))
+    return ep.solve(ep.load_case(file, COARSE))
 
 
 def attributes(path, component):
-    model = ep.read_rexs(path)._model
+    model = build_model(read_document(path).content)
     return {name: item.value for name, item in model.components[component].attributes.items()}
 
 
@@ -287,17 +290,9 @@ def test_new_file_describes_the_same_pair(tmp_path, solved):
 
 
 def test_new_file_describes_the_same_planetary_set(tmp_path, talbot):
-    from epicyclic.exchange.rexs.content import build_model
-    from epicyclic.exchange.rexs.importing import _draft
-    from epicyclic.exchange.rexs.new_file import case_parts
-    from epicyclic.exchange.rexs.sets import choose
-    from epicyclic.exchange.rexs.xml_form import XmlContent
-
-    content = XmlContent.empty({"version": "2.0.0"})
-    for part in case_parts(talbot):
-        content.add(part)
-    model = build_model(XmlContent.parse(content.to_bytes()))
-    tables = _draft(model, choose(model, None)).tables
+    file = tmp_path / "new.rexs"
+    ep.write_rexs(file, ep.solve(talbot.updated(COARSE)))
+    tables = ep.read_rexs(file).tables
     assert tables["planet"]["count"] == 3
     assert tables["operation"] == {
         "fixed": "ring", "input": "sun", "speed": "4000 rpm", "torque": "1000 N*m",
@@ -311,9 +306,8 @@ def test_new_file_describes_the_same_planetary_set(tmp_path, talbot):
 
 def test_planetary_results_go_to_meshes_and_bearings(tmp_path):
     file = planetary().write(tmp_path / "gears.rexs")
-    coarse = {"numerics.mesh_positions": 4, "numerics.contact_segments": 4}
     rough = {"planet_bearing.roller_roughness": "0.1 um", "planet_bearing.race_roughness": "0.1 um"}
-    result = ep.solve(ep.load_case(file, {**coarse, **rough}))
+    result = ep.solve(ep.load_case(file, {**COARSE, **rough}))
     out = tmp_path / "out.rexs"
     ep.write_rexs(out, result, file)
     bearing = float(attributes(out, 70)["total_frictional_power_loss"])

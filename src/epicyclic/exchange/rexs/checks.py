@@ -128,7 +128,7 @@ def shift_notes(tables: Mapping[str, Any], member1: str, member2: str) -> Iterat
     shift = table.get("profile_shift_coefficient")
     is_ring = member2 == "ring" or table.get("internal", False)
     closing = closing_shift(tables, member1, member2) if is_ring else None
-    if closing is None or shift is None or abs(shift) < SHIFT_AGREES:
+    if closing is None or not isinstance(shift, float) or abs(shift) < SHIFT_AGREES:
         return
     if abs(shift - closing) > SHIFT_AGREES >= abs(-shift - closing):
         yield (

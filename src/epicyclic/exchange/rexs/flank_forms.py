@@ -25,6 +25,7 @@ class _Form:
     amounts: tuple[str, ...]
     extents: tuple[tuple[str, str], ...] = ()
     has_shape: bool = False
+    over: str = ""
 
 
 _TAKEN = (
@@ -33,9 +34,11 @@ _TAKEN = (
     _Form("root_relief", "root_relief", ("root_relief_depth",),
           (("root_relief_diameter", "root_relief_datum_diameter"),), has_shape=True),
     _Form("profile_crowning", "profile_crown",
-          ("profile_crowning_at_tip", "profile_crowning_at_root")),
+          ("profile_crowning_at_tip", "profile_crowning_at_root"),
+          over=", over the active profile"),
     _Form("helix_crowning", "lead_crown",
-          ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face")),
+          ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face"),
+          over=", over the face width"),
 )  # fmt: skip
 _NOT_TAKEN = {
     "profile_slope": "profile_slope",
@@ -90,7 +93,7 @@ def _take(draft: Draft, key: str, form: _Form, items: Sequence[Component], flank
     start = f"{key}.micro_geometry."
     found = draft.read(form.amounts[0], items)
     assert found is not None
-    draft.give(f"{start}{form.key}", found.text, found.origin)
+    draft.give(f"{start}{form.key}", found.text, f"{found.origin}{form.over}")
     if form.has_shape:
         draft.give(f"{start}{form.key}_shape", shape, f"shape_of_relief of {items[0]}")
     for name, attribute in form.extents:

@@ -73,9 +73,8 @@ def gear_table(draft: Draft, model: Model, key: str, gears: Sequence[Component])
     """Table `key` of one gear, or of several that are alike."""
     draft.take(f"{key}.teeth", "number_of_teeth", gears, change=abs)
     draft.take(f"{key}.face_width", "face_width", gears)
-    default = "Default: from gears.addendum_coefficient."
-    draft.take(f"{key}.tip_diameter", "tip_diameter", gears, default, abs)
     shift = _thickness(draft, model, key, gears)
+    _tip(draft, model, key, gears, shift)
     _root(draft, model, key, gears, shift)
     _roughness(draft, key, gears)
     _material(draft, model, key, gears)
@@ -114,6 +113,24 @@ def _thickness(draft: Draft, model: Model, key: str, gears: Sequence[Component])
     return None
 
 
+def _tip(
+    draft: Draft, model: Model, key: str, gears: Sequence[Component], shift: float | None
+) -> None:
+    """Tip diameter, of the file or of the basic profile of its flanks."""
+    target = f"{key}.tip_diameter"
+    if draft.take(target, "tip_diameter", gears, None, abs) is not None:
+        return
+    addendum = draft.read("addendum_coefficient_basic_profile", flanks_of(model, gears))
+    module = draft.read("normal_module", gears)
+    height = addendum.number * module.number if addendum and module else None
+    diameter = _diameter(draft, gears, shift, height)
+    if diameter is None or addendum is None:
+        draft.lack(target, "tip_diameter", gears, "Default: from gears.addendum_coefficient.")
+    else:
+        origin = f"computed without alteration of the tip: {addendum.origin}"
+        draft.give(target, amount_text(diameter, "mm"), origin)
+
+
 def _root(
     draft: Draft, model: Model, key: str, gears: Sequence[Component], shift: float | None
 ) -> None:
@@ -127,20 +144,34 @@ def _root(
     if draft.take(target, "root_diameter", gears, None, abs) is not None:
         return
     addendum = _tool_length(draft, tools, "addendum_", "coefficient_", module)
-    teeth = draft.read("number_of_teeth", gears)
-    helix = draft.read("helix_angle_reference_diameter", gears[:1])
     is_rack = all(tool.type == "rack_shaped_tool" for tool in tools) and not is_internal(gears[0])
-    usual = (module and module.unit, addendum and addendum.unit, helix and helix.unit)
-    if is_rack and shift is not None and usual == ("mm", "mm", "deg") and teeth:
-        assert module is not None
-        assert addendum is not None
-        assert helix is not None
-        reference = teeth.number * module.number / math.cos(math.radians(helix.number))
-        diameter = reference + 2 * (shift * module.number - addendum.number)
-        origin = f"computed from the addendum of the tool: {addendum.origin}"
-        draft.give(target, amount_text(round(diameter, 9), "mm"), origin)
-    else:
+    usable = addendum is not None and addendum.unit == "mm" and is_rack
+    diameter = _diameter(draft, gears, shift, -addendum.number if addendum and usable else None)
+    if diameter is None or addendum is None:
         draft.lack(target, "root_diameter", gears, "Default: from gears.dedendum_coefficient.")
+    else:
+        origin = f"computed from the addendum of the tool: {addendum.origin}"
+        draft.give(target, amount_text(diameter, "mm"), origin)
+
+
+def _diameter(
+    draft: Draft, gears: Sequence[Component], shift: float | None, height: float | None
+) -> float | None:
+    """Diameter at `height` above the reference circle of a gear with profile shift. ISO 21771.
+
+    In mm; None if anything is not known in the usual units.
+    """
+    teeth = draft.read("number_of_teeth", gears)
+    module = draft.read("normal_module", gears)
+    helix = draft.read("helix_angle_reference_diameter", gears[:1])
+    if not (teeth and module and helix) or shift is None or height is None:
+        return None
+    cosine = math.cos(math.radians(helix.number))
+    if (module.unit, helix.unit) != ("mm", "deg") or cosine <= 0:
+        return None
+    outward = -1 if is_internal(gears[0]) else 1
+    reference = abs(teeth.number) * module.number / cosine
+    return round(reference + outward * 2 * (shift * module.number + height), 9)
 
 
 def _tool_length(

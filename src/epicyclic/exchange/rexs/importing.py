@@ -90,9 +90,7 @@ class RexsImport:
     def lacking(self, given: Collection[str] = ()) -> tuple[Lack, ...]:
         """What is missing but for the keys, or whole tables, that are `given`."""
         return tuple(
-            lack
-            for lack in self.missing
-            if not any(lack.key == key or lack.key.startswith(f"{key}.") for key in given)
+            lack for lack in self.missing if not any(_is_below(lack.key, key) for key in given)
         )
 
     def text(self, changes: Mapping[str, Any] | None = None) -> str:
@@ -108,7 +106,9 @@ class RexsImport:
             about[lack.key] = f"{'NEEDED. ' if lack.needed else ''}{lack}"
         if changes:
             tables = changed_tables(tables, changes)
-            about |= dict.fromkeys(changes, "set with --set")
+            for key, value in changes.items():
+                about = {name: told for name, told in about.items() if not _is_below(name, key)}
+                about[key] = "Taken out by the user." if value is None else "Set by the user."
         head = [
             f"Case of epicyclic, imported from {one_line(self.source, 200)}: {self.component}.",
             f"REXS {self.version}. Beside each value stands the attribute that it comes from.",
@@ -124,7 +124,15 @@ class RexsImport:
     def _explained(self, problem: Problem) -> Problem:
         """A problem of a key that the file lacks, with what the file should have."""
         lacks = [lack for lack in self.missing if lack.needed and lack.explains(problem)]
-        return replace(problem, remedy=" ".join(map(str, lacks))) if lacks else problem
+        remedies = [
+            f"The file has no {lack.attribute}. Set {lack.key}. {lack.instead}" for lack in lacks
+        ]
+        return replace(problem, remedy=" ".join(remedies).rstrip()) if lacks else problem
+
+
+def _is_below(key: str, owner: str) -> bool:
+    """True if `key` is `owner` or one of its keys."""
+    return key == owner or key.startswith(f"{owner}.")
 
 
 def read_rexs(
@@ -248,7 +256,9 @@ def _shifts(draft: Draft, member1: str, member2: str, changed: str) -> None:
         if key in draft.lacks:
             text = f"With the {other}, {format_number(shown)} leaves no backlash."
             draft.lacks[key] = replace(draft.lacks[key], instead=text)
-        elif own == changed and 0 < draft.tables[own].get(_SHIFT, shown) - shown <= ROUNDING:
-            was = draft.tables[own][_SHIFT]
-            origin = f"{draft.origins[key]}: {was}, less what the printed digits are too much"
+            continue
+        shift = draft.tables[own].get(_SHIFT)
+        is_too_much = isinstance(shift, float) and 0 < shift - shown <= ROUNDING
+        if own == changed and is_too_much:
+            origin = f"{draft.origins[key]}: {shift}, less what the printed digits are too much"
             draft.give(key, shown, origin)
