@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-import re
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -22,7 +20,6 @@ from epicyclic.maps import cycle_source
 from epicyclic.maps.interpolation_error import Sample
 from epicyclic.maps.lookup import loss_power, make_lookup
 
-HOW_TO = Path(__file__).parents[2] / "docs" / "how-to" / "duty-cycle.md"
 SPEEDS = (0.0, 500.0, 2000.0, 4000.0)
 TORQUES = (-800.0, -100.0, 0.0, 100.0, 800.0)
 TEMPERATURES = (40.0, 60.0, 90.0)
@@ -432,13 +429,6 @@ def test_maps_that_cannot_be_used_are_refused(data):
         ep.duty_cycle(data.assign_attrs(held_shaft=""), cycle, ["90 degC"])
     with pytest.raises(ep.InputError, match="is zero only"):
         ep.duty_cycle(data.isel(speed=[0]), cycle, ["90 degC"])
-
-
-def test_the_how_to_runs():
-    (code,) = re.findall(r"```python\n(.*?)```", HOW_TO.read_text(encoding="utf-8"), re.DOTALL)
-    names = {}
-    exec(code, names)
-    assert float(names["result"]["energy_lost"].sum()) > 0
 
 
 # --- the command ----------------------------------------------------------------------------------

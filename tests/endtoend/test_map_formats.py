@@ -336,13 +336,6 @@ def test_excel_refuses_more_points_than_it_has_rows():
     assert workbook_problems(axes | {"speed": range(1000)}) == []
 
 
-def test_the_how_to_runs(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (code,) = re.findall(r"```python\n(.*?)```", HOW_TO.read_text(encoding="utf-8"), re.DOTALL)
-    exec(code, {})
-    assert [path.name for path in tmp_path.iterdir()] == ["map.vtlm"]
-
-
 def test_the_how_to_lists_every_format():
     rows = re.findall(r"^\| `(\w+)` \| (?:`(\.\w+)`|by name) \|", HOW_TO.read_text("utf-8"), re.M)
     assert rows == [(name, item.suffix) for name, item in FORMATS.items()]

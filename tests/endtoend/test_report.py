@@ -3,30 +3,10 @@
 from __future__ import annotations
 
 import json
-import re
-import shlex
-from pathlib import Path
 
 import pytest
 
-HOW_TO = Path(__file__).parents[2] / "docs" / "how-to" / "report.md"
 MESH = ("--set", "operation.torque=100 N*m", "--set", "losses.mesh_pocketing.include=false")
-
-
-@pytest.mark.slow
-def test_the_how_to_runs(epicyclic, tmp_path):
-    blocks = re.findall(r"```console\n(.*?)```", HOW_TO.read_text(encoding="utf-8"), re.DOTALL)
-    for line in "".join(blocks).splitlines():
-        done = epicyclic(*shlex.split(line)[2:])
-        assert done.returncode == 0, (line, done.stderr)
-    (python,) = re.findall(r"```python\n(.*?)```", HOW_TO.read_text(encoding="utf-8"), re.DOTALL)
-    folder = tmp_path / "elsewhere"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        exec(python, {})
-    assert {"report.html", "rollers.pdf", "friction.svg", "map.html", "efficiency.png"} <= {
-        path.name for path in folder.iterdir()
-    }
 
 
 def test_a_result_is_stored_shown_and_drawn(epicyclic, tmp_path):

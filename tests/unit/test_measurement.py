@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -145,6 +146,32 @@ def test_intervals_and_correlations_are_those_of_curve_fit():
     )
 
 
+def test_a_strongly_curved_model_is_told():
+    points = Decay(1, weighted=True)
+    points.measured = replace(points.measured, uncertainty=30 * points.measured.uncertainty)
+    parameters = [Parameter(key, "", 1.3 * value, -1e3, 1e3) for key, value in DECAY.items()]
+    fit = fit_parameters(points, parameters, np.ones(15, dtype=bool), 0.95)
+    assert any("far from linear within the interval of b" in note for note in fit.warnings)
+    alike = fit_parameters(Decay(1, weighted=True), parameters, np.ones(15, dtype=bool), 0.95)
+    assert not any("far from linear" in note for note in alike.warnings)
+
+
+def test_an_input_held_at_the_range_of_a_model_means_nothing():
+    class Held(Decay):
+        def losses(self, a, b, c):
+            return super().losses(max(a, 80.0), b, c)
+
+    points = Held(1, weighted=True)
+    points.measured = Decay(1, weighted=True).measured
+    parameters = [
+        Parameter(key, "", value, 0.0, 1e3) for key, value in (("a", 90.0), ("b", 2.0), ("c", 5.0))
+    ]
+    fit = fit_parameters(points, parameters, np.ones(15, dtype=bool), 0.95)
+    assert any(note.startswith("a has no influence at its") for note in fit.warnings)
+    assert math.isnan(fit.parameters[0].low)
+    assert math.isfinite(fit.parameters[1].low)
+
+
 @pytest.mark.slow
 def test_intervals_of_the_model_cover_the_inputs(case, tests):
     hits = 0
@@ -258,11 +285,23 @@ def test_a_fit_that_does_not_converge_says_so(case, tests, monkeypatch):
         ep.compare_measured(case, tests, fit=KEYS)
 
 
-def test_points_that_fail_are_named_and_left_out(case, tests):
-    table = tests.assign(**{"pinion.roughness [um]": 0.4, "mesh.misalignment [um]": 0.0})
-    comparison = ep.compare_measured(case, table)
-    assert comparison.errors[0].count == len(tests)
-    assert not any("could not be computed" in note for note in comparison.notes)
+def test_points_that_fail_are_named_and_left_out(case, tests, monkeypatch):
+    from epicyclic.sweeps import run
+
+    solve = run.solve
+
+    def fails_at_high_speed(case, **options):
+        if case.operation.speed > 600:  # rad/s
+            raise ep.ConvergenceError("the test says no")
+        return solve(case, **options)
+
+    monkeypatch.setattr(run, "solve", fails_at_high_speed)
+    comparison = ep.compare_measured(case, tests, fit=KEYS, jobs=1)
+    assert comparison.errors[0].count == 8
+    assert comparison.fit.points == 8
+    assert np.isnan(comparison.computed).sum() == 4
+    assert "4 of 12 points could not be computed; line 9: the test says no" in comparison.notes
+    assert '"computed [W]": null' in comparison.to_json()
 
 
 def test_terms_and_sums_of_them_can_be_measured(case, tests):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.measurement.intervals import Linearised
 from epicyclic.measurement.model import MeasuredPoints
 from epicyclic.measurement.parameters import Parameter
 from epicyclic.units import format_number
@@ -35,8 +36,8 @@ SQUARES_TOLERANCE = 1e-7
 """Relative change of the sum of squares that ends the fit. [1]"""
 NO_INFLUENCE = 1e-9
 """Relative change of every loss, over that of a parameter, below which it has no influence. [1]"""
-SINGULAR = 1e-7
-"""Ratio of singular values of the derivatives below which parameters cannot be told apart. [1]"""
+CURVED = 2.0
+"""Growth of the sum of squares over that of a linear model beyond which a warning says so. [1]"""
 ALIKE = 0.95
 """Magnitude of a correlation from which a warning names it. [1]"""
 NEAR_BOUND = 1e-4
@@ -125,7 +126,7 @@ class _Residuals:
         }
 
     def __call__(self, scaled: FloatArray) -> FloatArray:
-        return self._weighted([scaled])[0]
+        return self.at([scaled])[0]
 
     def derivatives(self, scaled: FloatArray) -> FloatArray:
         """d(residual)/d(scaled parameter), all from one batch of points, shape (n, p)."""
@@ -136,7 +137,7 @@ class _Residuals:
         moved = [
             scaled + step * unit for step, unit in zip(steps, np.eye(scaled.size), strict=True)
         ]
-        base, *others = self._weighted([scaled, *moved])
+        base, *others = self.at([scaled, *moved])
         table = np.array([(other - base) / step for other, step in zip(others, steps, strict=True)])
         if not np.isfinite(table).all():
             raise ConvergenceError(
@@ -145,7 +146,7 @@ class _Residuals:
             )
         return table.T
 
-    def _weighted(self, scaled: Sequence[FloatArray]) -> list[FloatArray]:
+    def at(self, scaled: Sequence[FloatArray]) -> list[FloatArray]:
         """Deviations for each of several parameter sets; those that are not known in one batch."""
         sets = [tuple(map(float, one)) for one in scaled]
         new = [one for one in dict.fromkeys(sets) if one not in self._known]
@@ -197,7 +198,9 @@ def fit_parameters(
     at_bound = (found.active_mask != 0) | (distance < NEAR_BOUND).any(axis=1)
     nearest = ends[np.arange(size), distance.argmin(axis=1)]
     solution = np.where(at_bound, nearest, found.x)  # the method itself stays off the bounds
-    return _described(residuals, solution, found.fun, found.jac, at_bound, confidence)
+    weighted = points.measured.uncertainty is not None
+    found = Linearised(solution, found.fun, found.jac, at_bound, weighted, confidence)
+    return _described(residuals, found)
 
 
 def _check_influence(residuals: _Residuals, start: FloatArray) -> None:
@@ -214,134 +217,103 @@ def _check_influence(residuals: _Residuals, start: FloatArray) -> None:
         raise InputError(problems, "the fit")
 
 
-def _described(
-    residuals: _Residuals,
-    solution: FloatArray,
-    deviations: FloatArray,
-    derivatives: FloatArray,
-    at_bound: NDArray[np.bool_],
-    confidence: float,
-) -> Fit:
-    """The fit with intervals and warnings; parameters at a bound have no interval."""
-    parameters = residuals.parameters
-    lengths = np.linalg.norm(derivatives, axis=0)
-    is_idle = ~at_bound & (lengths <= SINGULAR * lengths.max())
-    free = np.flatnonzero(~at_bound & ~is_idle)
-    freedom = deviations.size - len(parameters)
-    weighted = residuals.points.measured.uncertainty is not None
-    chi_squared = float(deviations @ deviations)
-    covariance, separable = _covariance(derivatives[:, free])
-    widening, quantile = _spread(chi_squared, freedom, weighted, confidence)
-    errors = np.full(len(parameters), np.nan)
-    errors[free] = np.sqrt(np.diag(covariance)) * widening
-    correlation = np.full((len(parameters), len(parameters)), np.nan)
-    deviation = np.sqrt(np.diag(covariance))
-    correlation[np.ix_(free, free)] = covariance / np.outer(deviation, deviation)
+def _described(residuals: _Residuals, found: Linearised) -> Fit:
+    """The fit with intervals and warnings."""
     fitted = tuple(
-        _fitted(item, float(z), float(error), quantile, bool(bound))
-        for item, z, error, bound in zip(parameters, solution, errors, at_bound, strict=True)
-    )
+        _fitted(item, float(z), found.quantile * float(error), float(error), bool(bound))
+        for item, z, error, bound in zip(
+            residuals.parameters, found.solution, found.standard_errors(), found.at_bound,
+            strict=True,
+        )
+    )  # fmt: skip
     return Fit(
         parameters=fitted,
-        settings=residuals.settings(solution),
-        confidence=confidence,
-        correlation=correlation,
-        points=deviations.size,
-        degrees_of_freedom=freedom,
-        chi_squared=chi_squared if weighted else math.nan,
-        widening=widening if weighted else math.nan,
+        settings=residuals.settings(found.solution),
+        confidence=found.confidence,
+        correlation=found.correlation(),
+        points=found.deviations.size,
+        degrees_of_freedom=found.freedom,
+        chi_squared=found.sum_of_squares if found.weighted else math.nan,
+        widening=found.spread if found.weighted else math.nan,
+        warnings=(*_warnings(fitted, found), *_curved(residuals, found)),
         evaluations=residuals.evaluations,
-        warnings=(
-            *_idle_warnings([item.key for item in itertools.compress(parameters, is_idle)]),
-            *_warnings(fitted, correlation, separable, freedom, weighted, widening),
-        ),
     )
-
-
-def _covariance(derivatives: FloatArray) -> tuple[FloatArray, bool]:
-    """Inverse of J'J, and whether it exists; NaN if not."""
-    size = derivatives.shape[1]
-    if size == 0:
-        return np.zeros((0, 0)), True
-    lengths = np.linalg.norm(derivatives, axis=0)
-    _, singular, directions = np.linalg.svd(derivatives / lengths, full_matrices=False)
-    if singular[-1] < SINGULAR * singular[0]:
-        return np.full((size, size), np.nan), False
-    scaled = directions.T / singular / lengths[:, None]
-    return scaled @ scaled.T, True
-
-
-def _spread(
-    chi_squared: float, freedom: int, weighted: bool, confidence: float
-) -> tuple[float, float]:
-    """Standard deviation of the weighted deviations, and the quantile that goes with it.
-
-    With uncertainties it is 1, or what the scatter shows if that is more (R. T. Birge, Phys. Rev.
-    40 (1932) 207); without them the scatter, with Student's distribution.
-    """
-    from scipy import stats
-
-    tail = (1 + confidence) / 2
-    scatter = math.sqrt(chi_squared / freedom) if freedom > 0 else math.nan
-    if weighted:
-        return max(1.0, scatter) if freedom > 0 else 1.0, float(stats.norm.ppf(tail))
-    return scatter, float(stats.t.ppf(tail, freedom)) if freedom > 0 else math.nan
 
 
 def _fitted(
-    item: Parameter, scaled: float, error: float, quantile: float, at_bound: bool
+    item: Parameter, scaled: float, reach: float, error: float, at_bound: bool
 ) -> FittedParameter:
+    """A parameter in its unit; `scaled`, `reach` and `error` are over its start value."""
     value = min(max(scaled * item.start, item.low), item.high)
-    spread = error * abs(item.start)
-    reach = quantile * spread
+    half = reach * abs(item.start)
     return FittedParameter(
         key=item.key,
         unit=item.unit,
         start=item.start,
         value=value,
-        standard_error=spread,
-        low=max(value - reach, item.low) if math.isfinite(reach) else math.nan,
-        high=min(value + reach, item.high) if math.isfinite(reach) else math.nan,
+        standard_error=error * abs(item.start),
+        low=max(value - half, item.low) if math.isfinite(half) else math.nan,
+        high=min(value + half, item.high) if math.isfinite(half) else math.nan,
         at_bound=at_bound,
     )
 
 
-def _idle_warnings(keys: Sequence[str]) -> Iterable[str]:
-    for key in keys:
-        yield (
-            f"{key} has no influence at its calibrated value, where the models hold it or what "
-            "follows from it at the limit of their range: the value means nothing."
-        )
-
-
-def _warnings(
-    fitted: Sequence[FittedParameter],
-    correlation: FloatArray,
-    separable: bool,
-    freedom: int,
-    weighted: bool,
-    widening: float,
-) -> Iterable[str]:
-    for item in fitted:
+def _warnings(fitted: Sequence[FittedParameter], found: Linearised) -> Iterator[str]:
+    for item, is_idle in zip(fitted, found.is_idle, strict=True):
         if item.at_bound:
             yield (
                 f"{item.key} ended at the bound {format_number(item.value)} {item.unit}".rstrip()
                 + ": the measurements ask for a value beyond it, and there is no interval."
             )
+        elif is_idle:
+            yield (
+                f"{item.key} has no influence at its calibrated value, where the models hold it or "
+                "what follows from it at the limit of their range: the value means nothing."
+            )
         elif item.high - item.low > 2 * abs(item.value):
             yield f"{item.key} is hardly determined: its interval is wider than twice its value."
-    if not separable:
+    if not found.is_separable:
         yield "these points cannot tell the inputs apart: fix some of them."
+    correlation = found.correlation()
     for i, j in itertools.combinations(range(len(fitted)), 2):
         if abs(correlation[i, j]) >= ALIKE:
             yield (
                 f"{fitted[i].key} and {fitted[j].key} can hardly be told apart (correlation "
                 f"{correlation[i, j]:.3f}): fix one of them."
             )
-    if freedom == 0:
+    if found.freedom == 0:
         yield "there are as many inputs as points: the fit cannot fail, and proves nothing."
-    if weighted and widening > 1:
+    if found.weighted and found.spread > 1:
         yield (
-            f"the points scatter {widening:.2f} times as much about the fit as their uncertainties "
-            "allow; the intervals are widened by that factor."
+            f"the points scatter {found.spread:.2f} times as much about the fit as their "
+            "uncertainties allow; the intervals are widened by that factor."
         )
+
+
+def _curved(residuals: _Residuals, found: Linearised) -> Iterator[str]:
+    """What the sum of squares at the ends of the intervals says about the linearised model."""
+    expected = (found.quantile * found.spread) ** 2
+    if not (found.is_separable and expected > 0):
+        return
+    pairs = {int(parameter): found.ends(int(parameter)) for parameter in found.free}
+    inside = {
+        parameter: pair
+        for parameter, pair in pairs.items()
+        if all(_is_inside(residuals.parameters, end) for end in pair)
+    }
+    deviations = residuals.at([end for pair in inside.values() for end in pair])
+    growth = [(float(one @ one) - found.sum_of_squares) / expected for one in deviations]
+    for parameter, grown in zip(inside, zip(growth[::2], growth[1::2], strict=True), strict=True):
+        if not all(1 / CURVED <= one <= CURVED for one in grown):
+            yield (
+                "the losses are far from linear within the interval of "
+                f"{residuals.parameters[parameter].key}: at its ends the sum of squares grows "
+                f"{grown[0]:.2g} and {grown[1]:.2g} times as much as it should. Take it as rough."
+            )
+
+
+def _is_inside(parameters: Sequence[Parameter], scaled: FloatArray) -> bool:
+    """True if all of `scaled` are within the bounds."""
+    return all(
+        item.ends[0] <= z <= item.ends[1] for item, z in zip(parameters, scaled, strict=True)
+    )

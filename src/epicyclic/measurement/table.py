@@ -20,7 +20,7 @@ from epicyclic.case.values import parse_value
 from epicyclic.case.wording import one_line, sentence
 from epicyclic.errors import InputError, Problem
 from epicyclic.measurement.files import Grid
-from epicyclic.units import WATT, Quantity
+from epicyclic.units import WATT, Quantity, format_number
 
 __all__ = ["CONDITIONS", "Measurements", "loss_names", "parse_measurements"]
 
@@ -61,7 +61,7 @@ class Measurements:
     uncertainty : ndarray, shape (n,), or None
         Standard uncertainty of the loss (coverage factor 1). [W]
     labels : mapping of str to tuple of str
-        The columns by name, as text; units taken off the names.
+        The columns by name, as text; units taken off the names, and the conditions as above.
     """
 
     source: str
@@ -162,7 +162,8 @@ def parse_measurements(grid: Grid, case: Case, component: str = "total") -> Meas
         component=components,
         loss=loss,
         uncertainty=uncertainty,
-        labels={name: column.cells for name, column in columns.items()},
+        labels={name: column.cells for name, column in columns.items()}
+        | {name: tuple(map(format_number, values)) for name, values in conditions.items()},
     )
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from itertools import groupby
 from typing import Any, Protocol
 
@@ -104,6 +105,8 @@ def _run_in_workers(
     share = len(indices) // (BATCHES_PER_WORKER * effective_n_jobs(jobs))
     size = min(batch, max(1, share))
     workers = Parallel(n_jobs=jobs, return_as="generator_unordered", inner_max_num_threads=1)
+    if journal is not None:  # workers may have been started in another folder
+        journal = replace(journal, path=journal.path.absolute())
     yield from workers(
         delayed(_solve_batch)(work, points, journal) for points in _batches(work, indices, size)
     )
