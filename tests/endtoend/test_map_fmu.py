@@ -20,8 +20,8 @@ HOW_TO = Path(__file__).parents[2] / "docs" / "how-to" / "fmu.md"
 
 @pytest.fixture(scope="module")
 def data():
-    """Without pockets, whose flow takes most of the time of a test; title with signs of XML."""
-    changes = {"title": 'gears <of> "A & B"'}
+    """Without pockets, whose flow takes most of the time of a test; title that XML cannot hold."""
+    changes = {"title": 'gears <of>\n"A & B"\x07'}
     changes |= {f"losses.{mesh}_mesh_pocketing.include": False for mesh in ("sun", "ring")}
     return ep.loss_map(
         ep.load_case("talbot-2012").updated(changes),

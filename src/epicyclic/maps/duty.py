@@ -382,7 +382,7 @@ def _attributes(data: xr.Dataset, cycle: Cycle, clamp: bool) -> dict[str, str]:
     basis = {"time": "time series, trapezoidal rule over time", "duration": "histogram"}
     outside = "taken at its border" if clamp else "any would be refused"
     return {
-        "title": data.attrs.get("title", ""),
+        "title": data.attrs["title"],
         "source": data.attrs.get("source", ""),
         "cycle": f"{cycle.source.name}, {cycle.rows} rows",
         "reference_shaft": shaft,

@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from epicyclic.case.wording import one_line
 from epicyclic.errors import EpicyclicError, Problem
 from epicyclic.maps.lookup import Lookup, make_lookup, slack
 from epicyclic.maps.tables import stated
@@ -160,7 +161,8 @@ def _compile(folder: Path) -> None:
             done = subprocess.run(
                 [*command, *map(str, files_used)],
                 cwd=name,
-                env={**os.environ, "ZIG_LOCAL_CACHE_DIR": name},
+                # nothing is kept in the folder of the user
+                env={**os.environ, "ZIG_LOCAL_CACHE_DIR": name, "ZIG_GLOBAL_CACHE_DIR": name},
                 capture_output=True,
                 text=True,
                 check=False,
@@ -193,7 +195,7 @@ def _write_description(path: Path, data: xr.Dataset, lookup: Lookup, guid: str) 
         fmiVersion="2.0",
         modelName=_MODEL,
         instantiationToken=guid,
-        description=f"Losses of {data.attrs.get('title', 'a gear set')}, from a loss map",
+        description=f"Losses of a gear set, from a loss map: {one_line(data.attrs['title'])}",
         version=metadata.version("epicyclic"),
         generationTool=data.attrs.get("source", "epicyclic"),
         modelExchange=ModelExchange(modelIdentifier=_MODEL, completedIntegratorStepNotNeeded=True),

@@ -38,7 +38,7 @@ _STATED = (
     "conventions",
 )
 _LONGEST_STATEMENT = 1000
-_NEEDED = ("reference_shaft", "output_shaft", "held_shaft", "case")
+_NEEDED = ("title", "reference_shaft", "output_shaft", "held_shaft", "case")
 """Attributes without which a dataset is no map."""
 
 
