@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from epicyclic.analysis.pocket_details import pocket_details
     from epicyclic.analysis.result import Result
     from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
+    from epicyclic.campaigns.fit import characterise_oil
     from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema
     from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
     from epicyclic.exchange.load import load_case
@@ -46,6 +47,7 @@ _HOME = {
     "RexsImport": "epicyclic.exchange.rexs.importing",
     "ResultRecord": "epicyclic.records.record",
     "case_schema": "epicyclic.case.case",
+    "characterise_oil": "epicyclic.campaigns.fit",
     "load_case": "epicyclic.exchange.load",
     "compare_measured": "epicyclic.measurement.compare",
     "duty_cycle": "epicyclic.maps.duty",
@@ -78,6 +80,7 @@ __all__ = [
     "ResultRecord",
     "RexsImport",
     "case_schema",
+    "characterise_oil",
     "compare_measured",
     "duty_cycle",
     "load_case",

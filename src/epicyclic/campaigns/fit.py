@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib import metadata
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.campaigns.campaign import make_campaign
 from epicyclic.campaigns.design import AXES, quantity_of_axis
-from epicyclic.campaigns.folder import CampaignFolder, column_of
+from epicyclic.campaigns.folder import (
+    CampaignFolder,
+    CampaignProgress,
+    column_of,
+    write_whole,
+)
 from epicyclic.case.contact import contact_model
 from epicyclic.errors import InputError, Problem
 from epicyclic.lubricant.properties import oil_state
@@ -20,7 +28,7 @@ from epicyclic.oilmodel.states import ContactStates
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["fit_campaign", "simulated_quantities"]
+__all__ = ["characterise_oil", "fit_and_write", "fit_campaign", "simulated_quantities"]
 
 FloatArray = NDArray[np.float64]
 
@@ -36,6 +44,70 @@ QUANTITIES = {
     "bearing_rolling_loss": ("bearing", "rolling_loss", "W/m"),
 }
 """What is fitted: to which contacts, to which column, in which unit."""
+
+
+def characterise_oil(
+    oil: str | Path | Mapping[str, Any],
+    folder: str | Path,
+    *,
+    size: int | None = None,
+    bearing_size: int | None = None,
+    seed: int = 0,
+    ranges: Mapping[str, tuple[float, float]] | None = None,
+    changes: Mapping[str, Any] | None = None,
+    jobs: int | None = None,
+    cluster: str | None = None,
+    progress: CampaignProgress | None = None,
+) -> OilModel:
+    """Simulate contacts of an oil, and fit friction and rolling loss to them.
+
+    Parameters
+    ----------
+    oil : str, Path or mapping
+        A name of the oil library, a TOML file with its properties, or these.
+    folder : str or Path
+        Keeps every finished simulation; what is there from an interrupted call is not done again.
+        It gets the table ``simulations.csv`` and the models, ``model.json``.
+    size, bearing_size : int, optional
+        Numbers of gear and bearing contacts of a space-filling design; by default the full tables
+        of Talbot (2012), or with `size` no bearing contacts.
+    seed : int
+        Of designs and profiles.
+    ranges : mapping of str to (float, float), optional
+        Other limits of gear contacts, ``{"hertz_pressure": (0.3, 1.6)}``, in display units.
+    changes : mapping of str to object, optional
+        Keys of a line contact that hold for all, ``{"lubricant.eyring_stress": "8 MPa"}``.
+    jobs : int, optional
+        Worker processes.
+    cluster : str, optional
+        Address of a Dask scheduler instead.
+    progress : callable, optional
+        Called with the numbers of finished, of all, and of failed simulations.
+
+    Returns
+    -------
+    OilModel
+
+    Raises
+    ------
+    InputError
+        If something given cannot be used, a file cannot be written, or the folder has another
+        campaign.
+    """
+    campaign = make_campaign(
+        oil, size=size, bearing_size=bearing_size, seed=seed, ranges=ranges, changes=changes
+    )
+    place = CampaignFolder(Path(folder), campaign)
+    place.prepare()
+    place.run(jobs=jobs, cluster=cluster, progress=progress)
+    return fit_and_write(place)
+
+
+def fit_and_write(folder: CampaignFolder) -> OilModel:
+    """Fit, and write the models to the folder."""
+    model = fit_campaign(folder)
+    write_whole(folder.model, model.model_dump_json(indent=2) + "\n")
+    return model
 
 
 def fit_campaign(folder: CampaignFolder) -> OilModel:

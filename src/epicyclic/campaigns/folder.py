@@ -26,7 +26,7 @@ from epicyclic.text_file import read_text
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["CampaignFolder", "column_of", "open_folder", "write_whole"]
+__all__ = ["CampaignFolder", "CampaignProgress", "column_of", "open_folder", "write_whole"]
 
 CampaignProgress = Callable[[int, int, int], None]
 """Called with the numbers of finished, of all, and of failed simulations."""

@@ -138,13 +138,11 @@ def show(model: Path) -> None:
 
 def _fit(folder: CampaignFolder, plot: Path | None) -> None:
     """Fit, write and show the models."""
-    from epicyclic.campaigns.fit import fit_campaign
-    from epicyclic.campaigns.folder import write_whole
+    from epicyclic.campaigns.fit import fit_and_write
     from epicyclic.report.oil_model_table import oil_model_tables
     from epicyclic.report.tables import terminal
 
-    model = fit_campaign(folder)
-    write_whole(folder.model, model.model_dump_json(indent=2) + "\n")
+    model = fit_and_write(folder)
     terminal().print(oil_model_tables(model))
     click.echo(f"Wrote {folder.model}.")
     if plot is not None:
