@@ -1,10 +1,11 @@
 """Sliding friction of the line-contact solver beside the regression of Talbot (2012), Eq. 5.8.
 
-Run: python scripts/compare_line_contacts.py [POINTS] [SEED]
+Run: python scripts/compare_line_contacts.py [POINTS] [SEED] [roelands|two-slope|barus]
 
 Points are drawn from the levels of his Table 5.1 for the test fluid. The source states neither the
-profiles nor the shear law nor the boundary friction of its simulations: those of the defaults
-of `epicyclic contact` are used, uncalibrated.
+profiles nor the laws of viscosity nor the boundary friction of its simulations: those of the
+defaults of `epicyclic contact` are used, uncalibrated. The two slopes are in the ratio, and meet at
+the pressure, that S. Li and A. Kahraman used for another oil (general knowledge).
 """
 
 from __future__ import annotations
@@ -32,9 +33,29 @@ LEVELS = {
     "slip": (0.025, 0.05, 0.10, 0.25, 0.50, 0.75, 1.00),
 }
 """Table 5.1: degC, mm, um, um, GPa, m/s, 1."""
+SECOND_OVER_FIRST_SLOPE, TRANSITION = 0.41, "0.38 GPa"
 
 
-def compare(point: dict[str, float]) -> dict[str, float | str]:
+def lubricant_of(temperature: float, law: str) -> dict[str, str]:
+    """Table of the test fluid."""
+    table = {
+        "oil": "atf-talbot-2012",
+        "temperature": f"{temperature} degC",
+        "pressure_law": law,
+    }
+    if law == "two-slope":
+        oil = load_contact_case({"contact": DUMMY, "lubricant": {**table, "pressure_law": "barus"}})
+        state = oil_state(oil.lubricant.oil, oil.lubricant.temperature)
+        slope = SECOND_OVER_FIRST_SLOPE * state.pressure_viscosity * 1e9
+        table |= {"second_slope": f"{slope} 1/GPa", "transition_pressure": TRANSITION}
+    return table
+
+
+DUMMY = {"radius": "10 mm", "hertz_pressure": "1 GPa", "rolling_speed": "1 m/s"}
+"""Any contact, to read an oil with."""
+
+
+def compare(point: dict[str, float], law: str) -> dict[str, float | str]:
     """Friction of both, and how the solution ended."""
     case = load_contact_case(
         {
@@ -44,10 +65,7 @@ def compare(point: dict[str, float]) -> dict[str, float | str]:
                 "rolling_speed": f"{point['speed']} m/s",
                 "slide_to_roll_ratio": point["slip"],
             },
-            "lubricant": {
-                "oil": "atf-talbot-2012",
-                "temperature": f"{point['temperature']} degC",
-            },
+            "lubricant": lubricant_of(point["temperature"], law),
             "surface1": {"roughness": f"{point['rough1']} um"},
             "surface2": {"roughness": f"{point['rough2']} um"},
         }
@@ -83,21 +101,22 @@ def compare(point: dict[str, float]) -> dict[str, float | str]:
     }
 
 
-def main(count: int = 60, seed: int = 1) -> None:
+def main(count: int = 60, seed: int = 1, law: str = "roelands") -> None:
     rng = np.random.default_rng(seed)
-    rows = []
+    rows: list[dict[str, float | str]] = []
     for _ in range(count):
         point = {name: float(rng.choice(levels)) for name, levels in LEVELS.items()}
-        rows.append(compare(point))
+        rows.append(compare(point, law))
         print(rows[-1], file=sys.stderr, flush=True)
     table = pd.DataFrame(rows)
-    table.to_csv(Path("line_contacts.csv"), index=False)
+    table.to_csv(Path(f"line_contacts_{law}.csv"), index=False)
     solved = table[table["status"] == "converged"]
     for name, part in (
         ("all", solved),
         ("film ratio <= 0.7", solved[solved["film_ratio"] <= 0.7]),
         ("0.7 to 3", solved[(solved["film_ratio"] > 0.7) & (solved["film_ratio"] <= 3)]),
         ("> 3", solved[solved["film_ratio"] > 3]),
+        *((f"{t:.0f} degC", solved[solved["temperature"] == t]) for t in LEVELS["temperature"]),
     ):
         if len(part):
             low, median, high = part["ratio"].quantile([0.1, 0.5, 0.9])
@@ -111,4 +130,4 @@ def main(count: int = 60, seed: int = 1) -> None:
 
 
 if __name__ == "__main__":
-    main(*(int(argument) for argument in sys.argv[1:3]))
+    main(*(int(argument) for argument in sys.argv[1:3]), *sys.argv[3:4])

@@ -214,3 +214,30 @@ def test_two_level_solver_solves_the_full_equations():
     assert (found[:n][~active] == 0).all()
     residual = full @ found - right
     assert np.linalg.norm(residual) <= 1.01 * ehl_linear.LINEAR_TOLERANCE * np.linalg.norm(right)
+
+
+@pytest.mark.parametrize(
+    ("temperature", "radius", "rq1", "rq2", "p_h", "speed", "slip"),
+    [
+        (50, 0.020, 0.7e-6, 0.5e-6, 2.5e9, 1.0, 0.75),
+        (50, 0.040, 0.3e-6, 0.7e-6, 1.5e9, 1.0, 1.0),
+        (75, 0.020, 0.7e-6, 0.7e-6, 2.0e9, 5.0, 0.25),
+        (50, 0.020, 0.7e-6, 0.7e-6, 0.5e9, 5.0, 1.0),
+        (100, 0.005, 0.7e-6, 0.7e-6, 2.5e9, 15.0, 1.0),
+    ],
+)
+def test_the_roughest_contacts_of_the_published_table_are_solved(
+    atf, temperature, radius, rq1, rq2, p_h, speed, slip
+):
+    # levels of Talbot (2012), Table 5.1, at film ratios of 0.1 to 0.5
+    state = atf(temperature)
+    oil = ContactOil(state.dynamic_viscosity, Roelands(state.pressure_viscosity), 5e6)
+    load = 2 * math.pi * radius * p_h**2 / MODULUS
+    contact = LineContact(
+        load, radius, MODULUS, speed * (1 + slip / 2), speed * (1 - slip / 2), oil
+    )  # fmt: skip
+    pair = generate_profile(rq1, 20e-6, 4e-3, 1), generate_profile(rq2, 20e-6, 4e-3, 2)
+    run = rough._Simulation(solve_smooth(contact), pair, rough.NODES, AsperityContact())
+    records = run.march(250)
+    assert (records[:, 7] < rough.TOLERANCE).mean() >= 1 - rough.LARGEST_UNSOLVED_SHARE
+    assert np.isfinite(records).all()

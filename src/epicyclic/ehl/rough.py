@@ -25,13 +25,13 @@ FloatArray = NDArray[np.float64]
 NODES = 512
 """Nodes by default: some 125 in a half-width."""
 TOLERANCE = 1e-2
-"""Largest change of a pressure in the last Newton step of a time step, over p_h; what is left is
-its square. [1]"""
+"""Largest change of a pressure in the last Newton step of a time step, over the largest pressure or
+p_h; what is left is its square. [1]"""
 MAX_ITERATIONS = 40
 """Newton steps of a time step, doubled in a second attempt."""
 GROWTH, SETTLING = 1.0, 2.0
 """Times b/u_r in which the roughness grows, and until averages begin. [1]"""
-BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 4, 512
+BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 4, 2048
 """Time b/u_r of a block, and numbers of blocks that an average takes."""
 FINEST_FEATURE = 0.2
 """Largest way of a surface in a time step, over the correlation length of its roughness. [1]"""
@@ -212,7 +212,7 @@ class _Simulation:
         return np.concatenate(parts)
 
     def march(self, steps: int) -> FloatArray:
-        """Records of `steps` more time steps, shape (steps, 8); not numbers from a breakdown on."""
+        """Records of `steps` more time steps, shape (steps, 8)."""
         records = np.zeros((steps, COLUMNS))
         scale = self.contact.film_scale
         self.approach = march(

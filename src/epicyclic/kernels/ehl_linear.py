@@ -50,11 +50,25 @@ def deflect(kernel_row: FloatArray, pressure: FloatArray, out: FloatArray) -> No
     """
     n = pressure.size
     out[:] = 0.0
-    for j in range(1, n - 1):
-        p = pressure[j]
-        row = kernel_row[n - 1 - j : 2 * n - 1 - j]  # indices from 0 only: the loop vectorises
-        for i in range(n):
-            out[i] += row[i] * p
+    last = n - 1
+    j = 1
+    while j < last:
+        # four columns at once save three of four passes over `out`; indices from 0 only, so that
+        # the loop is vectorised
+        count = min(4, last - j)
+        a, row_a = pressure[j], kernel_row[last - j : 2 * n - 1 - j]
+        if count == 4:
+            b, row_b = pressure[j + 1], kernel_row[last - j - 1 : 2 * n - 2 - j]
+            c, row_c = pressure[j + 2], kernel_row[last - j - 2 : 2 * n - 3 - j]
+            d, row_d = pressure[j + 3], kernel_row[last - j - 3 : 2 * n - 4 - j]
+            if a != 0.0 or b != 0.0 or c != 0.0 or d != 0.0:
+                for i in range(n):
+                    out[i] += row_a[i] * a + row_b[i] * b + row_c[i] * c + row_d[i] * d
+            j += 4
+        else:
+            for i in range(n):
+                out[i] += row_a[i] * a
+            j += 1
 
 
 @kernel

@@ -39,8 +39,8 @@ BoolArray = NDArray[np.bool_]
 
 REFRESH = 3
 """GMRES steps beyond which the preconditioner is made anew in the next Newton step."""
-LARGEST_STEP = 1.0
-"""Largest change of a pressure in one Newton step, over p_h. [1]"""
+LARGEST_STEP = 0.7
+"""Largest change of a pressure in one Newton step, over the largest pressure or p_h. [1]"""
 HELD = (1.0, 2.0)
 """Compliance of a node that holds it back in each attempt, over that to its own pressure. [1]"""
 FILM_FALL = 0.5
@@ -178,7 +178,8 @@ def solve_step(
     held : float
         Of `hold_back`, over the compliance of a node to its own pressure.
     tolerance : float
-        Largest change of a pressure in the last step, and largest relative lack of load.
+        Largest change of a pressure in the last step, over the largest or p_h, and largest
+        relative lack of load.
     max_iterations : int
 
     Returns
@@ -218,14 +219,16 @@ def solve_step(
         )
         if not np.isfinite(change).all():
             return approach, iteration, np.nan, 0.0
-        length = min(1.0, LARGEST_STEP / np.abs(change[:n]).max())
+        # asperities may carry many times p_h
+        peak = max(1.0, pressure.max())
+        length = min(1.0, LARGEST_STEP * peak / np.abs(change[:n]).max())
         error = 0.0
         for i in range(1, n - 1):
             new = pressure[i] + length * change[i]
             if new < 0.0:
                 new = 0.0
                 active[i] = False
-            error = max(error, abs(new - pressure[i]))
+            error = max(error, abs(new - pressure[i]) / peak)
             pressure[i] = new
         error = max(error, abs(load - dx * (pressure.sum() - 0.5 * pressure[0])) / load)
         approach += length * change[n]
@@ -352,8 +355,7 @@ def march(
         Of `solve_step`.
     records : ndarray, shape (steps, 8)
         Integrals over X of fluid and of asperity shear, contact length over 2 b, integral of the
-        pressure in contact, least film, dissipation, Newton steps, error; not numbers from the
-        step on that broke down.
+        pressure in contact, least film, dissipation, Newton steps, error.
 
     Returns
     -------
@@ -395,10 +397,12 @@ def march(
             pressure[:] = tried  # again with short steps and first order
             for i in range(1, n - 1):
                 active[i] = pressure[i] > 0.0
-        if not np.isfinite(result[2]):
-            records[t:] = np.nan
-            return approach
-        approach = result[0]
+        if np.isfinite(result[2]):
+            approach = result[0]
+        else:  # counted as unsolved; what the roughness adds has moved with the oil
+            pressure[:] = tried
+            deflect(kernel_row, pressure, bent)
+            film[:] = gap + approach + bent
         before[:] = now
         masses(pressure, film, fluid, now)
         measure(pressure, film, thinned, fluid, dx, contact_film, boundary_friction, records[t])
