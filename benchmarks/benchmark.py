@@ -122,11 +122,11 @@ def clear_caches() -> None:
     from epicyclic.elasticity import loaded_mesh, mesh_compliance, tooth_plate
     from epicyclic.geometry import contact_lines
     from epicyclic.losses import load_distribution, planet_bearing
-    from epicyclic.pocketing import fluid, geometry
+    from epicyclic.pocketing import cells, fluid, geometry
 
     for function in (
         fluid.pocket_flow,
-        fluid._cells,
+        cells.pocket_cells,
         geometry.pocket_geometry,
         build.basic_rack,
         build.gear,

@@ -15,7 +15,7 @@ from epicyclic.case import build
 from epicyclic.geometry.gear import BasicRack, Gear, half_angle_from_profile_shift
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import form_radius, tooth_outline
-from epicyclic.kernels.pocket_flow import choking_table, enthalpy
+from epicyclic.kernels.pocket_fluid import choking_table, enthalpy
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.fluid import POCKETING_MODELS, pocket_flow
 from epicyclic.pocketing.geometry import pocket_geometry
@@ -180,12 +180,13 @@ def test_power_is_the_mean_of_the_instants(pair):
 
 @pytest.mark.parametrize("model", POCKETING_MODELS)
 def test_slow_flow_is_incompressible(pair, model):
-    """At 100 rpm the Mach number is below 0.01; what is left are the time steps."""
+    """At 100 rpm the Mach number is below 0.02, and its square below 4e-4."""
     geometry = pair(20.0)
-    incompressible = solve(geometry, 100.0, model="incompressible", steps=64)
-    assert solve(geometry, 100.0, model=model, steps=64).power == pytest.approx(
-        incompressible.power, rel=0.15
-    )
+    incompressible = solve(geometry, 100.0, model="incompressible")
+    flow = solve(geometry, 100.0, model=model)
+    # central differences leave out the limiter: the error of the slices differs
+    bound = 1e-2 if model == "central-differences" else 2e-3
+    assert flow.power == pytest.approx(incompressible.power, rel=bound)
 
 
 def test_slow_oil_is_incompressible_and_fast_oil_cavitates(pair):
@@ -224,25 +225,35 @@ def test_spur_flow_is_symmetric_about_the_middle_of_the_face(pair):
     assert flow.axial_speed == pytest.approx(-flow.axial_speed[:, :, ::-1], abs=1e-3)
 
 
-def test_slices_and_steps_converge(pair):
-    """The error of the default resolution is within the 3 % that the manual states."""
-    geometry = pair()
-    model = {"model": "isentropic"}
-    slices = [solve(geometry, slices=count, **model).power for count in (8, 16, 32)]
-    steps = [solve(geometry, steps=count, **model).power for count in (16, 32, 64)]
-    for coarse, middle, fine in (slices, steps):
-        assert abs(middle - fine) < 0.5 * abs(coarse - middle)
-        assert abs(middle / fine - 1) < 0.015
+@pytest.mark.parametrize(
+    "model", ["mean-density", pytest.param("isentropic", marks=pytest.mark.slow)]
+)
+@pytest.mark.parametrize(("beta", "rpm"), [(0.0, 10000.0), (25.0, 10000.0), (25.0, 1000.0)])
+def test_the_default_resolution_is_near_the_limit(pair, model, beta, rpm):
+    """Within the 2.6 % that the manual states, and nearer with twice as many of both."""
+    geometry = pair(beta)
+    default, finer, finest = (
+        solve(geometry, rpm, model=model, slices=slices, steps=steps).power
+        for slices, steps in ((24, 32), (48, 64), (64, 128))
+    )
+    assert abs(default / finest - 1) < 0.026
+    assert abs(finer / finest - 1) < 0.01
 
 
-def test_mean_densities_converge_slowly_in_slices(pair):
-    """Within the 3 % for each doubling, less at each, that the manual states; at once in steps."""
+@pytest.mark.parametrize("beta", [0.0, 25.0])
+def test_low_speed_needs_no_small_steps(pair, beta):
+    """The rate of the volume enters, not its differences: of second order at any speed."""
+    geometry = pair(beta)
+    coarse, fine = (solve(geometry, 30.0, steps=steps).power for steps in (32, 128))
+    assert coarse == pytest.approx(fine, rel=0.015)
+
+
+def test_widths_of_the_end_slices_matter_little(pair):
+    """Half and one and a half modules: what the manual states."""
     geometry = pair()
-    slices = [solve(geometry, slices=count).power for count in (8, 16, 32, 64)]
-    changes = np.diff(slices) / slices[1:]
-    assert (np.abs(changes) < 0.035).all()
-    assert (np.diff(np.abs(changes)) < 0).all()
-    assert solve(geometry, steps=64).power == pytest.approx(slices[1], rel=0.005)
+    one, half, more = (solve(geometry, end_length=length).power for length in (1.0, 0.5, 1.5))
+    assert half / one == pytest.approx(1.0, abs=0.1)
+    assert more / one == pytest.approx(1.0, abs=0.1)
 
 
 def test_pockets_do_not_remember_where_they_started(pair):

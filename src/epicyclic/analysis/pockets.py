@@ -61,6 +61,7 @@ def flow_family(case: Case, duty: MeshDuty) -> FlowFamily:
         model=case.models.pocketing,
         slices=case.numerics.pocket_slices,
         steps=case.numerics.pocket_steps,
+        end_length=case.models.pocket_end_length,
     )
 
 

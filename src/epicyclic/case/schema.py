@@ -634,6 +634,7 @@ class GearPairModels(Table):
         "load_distribution": None,
         "mesh": None,
         "pocketing": None,
+        "pocket_end_length": None,
         "drag": None,
         "bearing_viscous": None,
         "planet_tilt": None,
@@ -680,10 +681,19 @@ class GearPairModels(Table):
         default="local",
         description="local: along the contact lines; loss-factor: mean friction times Ohlendorf's.",
     )
-    pocketing: Literal["isentropic", "mean-density", "incompressible"] = Field(
-        default="mean-density",
-        description="Fluid in the pockets: isentropic and mean-density: compressible mixture; "
-        "incompressible: mixture of constant density.",
+    pocketing: Literal["isentropic", "mean-density", "incompressible", "central-differences"] = (
+        Field(
+            default="mean-density",
+            description="Fluid in the pockets: isentropic and mean-density: compressible mixture; "
+            "incompressible: mixture of constant density; central-differences: mean-density with "
+            "the convective term of the source, for low speed.",
+        )
+    )
+    pocket_end_length: Number = Field(
+        default=1.0,
+        ge=0.1,
+        le=10,
+        description="Of the control volumes at the ends of the face, in normal modules.",
     )
     drag: Literal["seetharaman-kahraman"] = "seetharaman-kahraman"
 
@@ -708,7 +718,7 @@ class Numerics(Table):
     contact_segments: int = Field(default=20, ge=2, le=1000)
     bearing_slices: int = Field(default=20, ge=3, le=500, description="On each roller.")
     pocket_slices: int = Field(
-        default=16, ge=2, le=200, description="Of the pockets, across the face; at least."
+        default=24, ge=3, le=200, description="Of the pockets, across the face; at least."
     )
     pocket_steps: int = Field(
         default=32, ge=8, le=1000, description="Time steps of the pocket flow in one pitch."

@@ -72,6 +72,7 @@ class FlowFamily:
     model: PocketModel
     slices: int
     steps: int
+    end_length: float
 
     @property
     def geometry(self) -> PocketGeometry:
@@ -81,7 +82,14 @@ class FlowFamily:
     def flow(self, speed: float, mixture: MixtureState, pressure: float) -> PocketFlow:
         """The flow itself. Parameters as for `pocket_flow`."""
         return pocket_flow(
-            self.geometry, speed, mixture, pressure, self.model, self.slices, self.steps
+            self.geometry,
+            speed,
+            mixture,
+            pressure,
+            self.model,
+            self.slices,
+            self.steps,
+            self.end_length,
         )
 
     @staticmethod
@@ -101,6 +109,7 @@ class FlowFamily:
                 self.model,
                 self.slices,
                 self.steps,
+                self.end_length,
             )
         except ConvergenceError:
             return np.full(5, math.nan)

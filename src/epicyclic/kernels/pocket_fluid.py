@@ -1,0 +1,157 @@
+"""The mixture in pockets: its state, and its flow through openings.
+
+Pressures are kept as q = p/p_a - 1, which stays exact at low speed. Symbols follow the theory
+manual, page on pocketing.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.kernels._jit import kernel
+
+__all__ = ["GAMMA", "choking_table", "density", "donor", "enthalpy", "nozzle", "swelling"]
+
+Floats = NDArray[np.float64]
+
+GAMMA = 1.4
+"""Ratio of the specific heats of air. [1]"""
+CHOKE_STEP = 0.05
+CHOKE_END = 16.0
+"""Step and end of the table of throat pressures, in the logarithm of the pressure."""
+
+
+@kernel
+def swelling(q: float, xi: float) -> float:
+    """rho_m/rho - 1. Theory (Q8)."""
+    return (1 - xi) * math.expm1(-math.log1p(q) / GAMMA)
+
+
+@kernel
+def enthalpy(q: float, xi: float) -> float:
+    """Integral of dp/rho from ambient pressure, over p_a/rho_m. Theory (Q9). [1]"""
+    air = 0.0
+    if xi < 1.0:
+        power = (GAMMA - 1) / GAMMA
+        air = (1 - xi) / power * math.expm1(power * math.log1p(q))
+    return xi * q + air
+
+
+@kernel
+def density(q: float, xi: float) -> tuple[float, float]:
+    """rho/rho_m and its derivative by q. Theory (Q8)."""
+    if xi >= 1.0:
+        return 1.0, 0.0
+    log_p = math.log1p(q)
+    swelling = 1 + (1 - xi) * math.expm1(-log_p / GAMMA)
+    slope = (1 - xi) / GAMMA * math.exp(-log_p * (1 / GAMMA + 1))
+    return 1 / swelling, slope / swelling**2
+
+
+@kernel
+def choking_table(xi: float) -> Floats:
+    """Throat pressure over stagnation pressure where the throat runs at the speed of sound.
+
+    Theory (Q13).
+
+    On a grid of the logarithm of the stagnation pressure, ``CHOKE_STEP`` apart from ``-CHOKE_END``
+    to ``CHOKE_END``; all zero for pure oil, which does not choke.
+    """
+    count = round(2 * CHOKE_END / CHOKE_STEP) + 1
+    ratio = np.zeros(count)
+    if xi >= 1.0:
+        return ratio
+    guess = 0.53
+    for n in range(count):
+        p = math.exp(-CHOKE_END + n * CHOKE_STEP)
+        total = enthalpy(p - 1, xi)
+        low, high = 0.0, 1.0
+        for _ in range(60):
+            guess = (low + high) / 2
+            throat = guess * p
+            _, slope = density(throat - 1, xi)
+            if enthalpy(throat - 1, xi) + 0.5 / slope > total:
+                high = guess
+            else:
+                low = guess
+        ratio[n] = guess
+    return ratio
+
+
+@kernel
+def _throat(q: float, choke: Floats) -> tuple[float, float]:
+    """Throat pressure of a choked nozzle less ambient, and its derivative by q. Theory (Q13)."""
+    place = (math.log1p(q) + CHOKE_END) / CHOKE_STEP
+    if place <= 0.0:
+        return choke[0] * (1 + q) - 1, choke[0]
+    if place >= choke.size - 1:
+        return choke[-1] * (1 + q) - 1, choke[-1]
+    n = int(place)
+    slope = choke[n + 1] - choke[n]
+    ratio = choke[n] + (place - n) * slope
+    return ratio * (1 + q) - 1, ratio + slope / CHOKE_STEP
+
+
+@kernel
+def nozzle(
+    qa: float, qb: float, xi: float, choke: Floats
+) -> tuple[float, float, float, float, float, float]:
+    """Drop of enthalpy from a to b down to the throat, density there, and their derivatives.
+
+    Theory (Q12), (Q13).
+
+    Returns
+    -------
+    drop, drop_a, drop_b, rho, rho_a, rho_b : float
+        Over p_a/rho_m, and over rho_m.
+    """
+    if choke.size == 0:
+        return _mean_density(qa, qb, xi)
+    if qa < qb:
+        drop, drop_b, drop_a, rho, rho_b, rho_a = _nozzle_down(qb, qa, xi, choke)
+        return -drop, -drop_a, -drop_b, rho, rho_a, rho_b
+    return _nozzle_down(qa, qb, xi, choke)
+
+
+@kernel
+def _mean_density(
+    qa: float, qb: float, xi: float
+) -> tuple[float, float, float, float, float, float]:
+    """`nozzle` with the mean density of both sides and no choking. Theory (Q19)."""
+    rho_one, slope_one = density(qa, xi)
+    rho_two, slope_two = density(qb, xi)
+    rho = (rho_one + rho_two) / 2
+    drop = (qa - qb) / rho
+    drop_a = (1 - drop * slope_one / 2) / rho
+    drop_b = (-1 - drop * slope_two / 2) / rho
+    return drop, drop_a, drop_b, rho, slope_one / 2, slope_two / 2
+
+
+@kernel
+def _nozzle_down(
+    qa: float, qb: float, xi: float, choke: Floats
+) -> tuple[float, float, float, float, float, float]:
+    """`nozzle` for a pressure that is not lower at a."""
+    rho_up, _ = density(qa, xi)
+    drop = enthalpy(qa, xi)
+    if xi < 1.0:
+        throat, slope = _throat(qa, choke)
+        if throat > qb:
+            rho, rho_p = density(throat, xi)
+            drop -= enthalpy(throat, xi)
+            return drop, 1 / rho_up - slope / rho, 0.0, rho, rho_p * slope, 0.0
+    rho, rho_p = density(qb, xi)
+    return drop - enthalpy(qb, xi), 1 / rho_up, -1 / rho, rho, 0.0, rho_p
+
+
+@kernel
+def donor(u: float, qa: float, qb: float, xi: float) -> tuple[float, float, float]:
+    """Density on the side that the flow comes from, and its derivatives by both pressures."""
+    if u > 0.0:
+        rho, slope = density(qa, xi)
+        return rho, slope, 0.0
+    rho, slope = density(qb, xi)
+    return rho, 0.0, slope

@@ -1,0 +1,450 @@
+"""One implicit step of the flow through the pockets of a mesh.
+
+Cells (i, j): pocket i along the mesh, slice j across the face. Axial face j of pocket i lies before
+cell (i, j), gap i of slice j before cell (i, j) as well.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.kernels._jit import kernel
+from epicyclic.kernels.pocket_fluid import GAMMA, density, donor, enthalpy, nozzle, swelling
+
+__all__ = [
+    "Fields",
+    "Flags",
+    "Floats",
+    "Fluid",
+    "Fresh",
+    "Indices",
+    "Numbers",
+    "Shape",
+    "kinetic_shares",
+    "number",
+    "solve_stage",
+]
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+Shape = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
+Fluid = tuple[float, float, Floats, bool]
+Fresh = tuple[Floats, Floats, float]
+Numbers = tuple[Indices, Indices, int, int]
+Fields = tuple[Floats, Floats, Floats]
+
+SHOCK_MACH = 0.5
+"""Mach number from which flow that slows down is taken from upstream. [1]"""
+NEWTON_MOST = 40
+"""Newton iterations of one stage before it is given up."""
+NEWTON_TOLERANCE = 1e-9
+"""Last Newton step over the largest value in the field. [1]"""
+
+
+@kernel
+def _solve_banded(matrix: Floats, right: Floats, width: int) -> None:
+    """Gauss elimination of a banded matrix without pivoting; the solution replaces `right`.
+
+    `matrix[r, width + c - r]` is the element in row r and column c.
+    """
+    n = right.size
+    for k in range(n):
+        pivot = matrix[k, width]
+        for r in range(k + 1, min(n, k + width + 1)):
+            factor = matrix[r, width + k - r]
+            if factor != 0.0:
+                factor /= pivot
+                shift = k - r
+                for c in range(width + 1, 2 * width + 1):
+                    matrix[r, c + shift] -= factor * matrix[k, c]
+                right[r] -= factor * right[k]
+    for k in range(n - 1, -1, -1):
+        total = right[k]
+        for c in range(1, min(width, n - 1 - k) + 1):
+            total -= matrix[k, width + c] * right[k + c]
+        right[k] = total / matrix[k, width]
+
+
+@kernel
+def number(live: Flags, cell_at: Indices, face_at: Indices) -> tuple[int, int]:
+    """Numbers of the unknowns, slice by slice; how many, and the half-width of their matrix.
+
+    Cells and axial faces without a number get -1. A face takes part if a cell beside it is live.
+    """
+    pockets, slices = live.shape
+    count = 0
+    for j in range(slices + 1):
+        for i in range(pockets):
+            face_at[i, j] = -1
+            if (j > 0 and live[i, j - 1]) or (j < slices and live[i, j]):
+                face_at[i, j] = count
+                count += 1
+            if j < slices:
+                cell_at[i, j] = -1
+                if live[i, j]:
+                    cell_at[i, j] = count
+                    count += 1
+    width = 1
+    for i in range(pockets):
+        for j in range(slices + 1):
+            own = face_at[i, j]
+            if own < 0:
+                continue
+            if j < slices:
+                if face_at[i, j + 1] >= 0:
+                    width = max(width, face_at[i, j + 1] - own)
+                if cell_at[i, j] >= 0:
+                    width = max(width, cell_at[i, j] - own)
+            if j > 0 and cell_at[i, j - 1] >= 0:
+                width = max(width, own - cell_at[i, j - 1])
+            if j < slices and i > 0 and cell_at[i, j] >= 0 and cell_at[i - 1, j] >= 0:
+                width = max(width, cell_at[i, j] - cell_at[i - 1, j])
+    return count, width
+
+
+@kernel
+def _downstream_share(axial: Floats, spread: Floats, alive: Flags, j: int) -> float:
+    """Share of faces downstream in the kinetic energy of cell j of one pocket. Theory (Q24)."""
+    here = (axial[j + 1] - axial[j]) * spread[j]
+    share = 0.5
+    for face, other in ((j, j - 1), (j + 1, j + 1)):
+        enters = axial[face] > 0.0 if other < j else axial[face] < 0.0
+        if enters and 0 <= other < alive.size and alive[other]:
+            before = (axial[other + 1] - axial[other]) * spread[other]
+            if here * before <= 0.0:
+                return 0.0
+            share = min(share, before / (here + before))
+    return share
+
+
+@kernel
+def kinetic_shares(
+    axial: Floats, shape: Shape, cell_at: Indices, fluid: Fluid, fresh: Fresh
+) -> Floats:
+    """Shares of the left and right face in the kinetic energy of each cell. Theory (Q24)."""
+    volume, area, new = shape[0], shape[2], fresh[1]
+    pockets, slices = cell_at.shape
+    slowness2 = (1 - fluid[0]) / (GAMMA * fluid[1])
+    shares = np.full((2, pockets, slices), 0.5)
+    if fluid[3]:
+        return shares
+    for i in range(pockets):
+        alive = cell_at[i] >= 0
+        spread = (area[i, 1:] + area[i, :-1]) / volume[i]
+        for j in range(slices):
+            if not alive[j]:
+                continue
+            left, right = axial[i, j], axial[i, j + 1]
+            share = 0.0
+            if new[i, j] <= 0.0 and new[i, j + 1] <= 0.0:
+                share = _downstream_share(axial[i], spread, alive, j)
+                if max(left, -right) > max(-left, right):
+                    mach2 = slowness2 * max(left**2, right**2)
+                    share *= max(0.0, 1 - mach2 / SHOCK_MACH**2)
+            shares[0, i, j] = 1 - share if left > 0.0 else share
+            shares[1, i, j] = 1 - share if right < 0.0 else share
+    return shares
+
+
+@kernel
+def _add_masses(
+    shape: Shape,
+    excess0: Floats,
+    q: Floats,
+    cell_at: Indices,
+    xi: float,
+    system: tuple[Floats, Floats, int],
+) -> float:
+    """Balance of the mass of every cell, but for its openings; the boundary work. Theory (Q14)."""
+    volume, growth = shape[0], shape[1]
+    matrix, right, width = system
+    work = 0.0
+    for i in range(q.shape[0]):
+        for j in range(q.shape[1]):
+            k = cell_at[i, j]
+            if k < 0:
+                continue
+            _, slope = density(q[i, j], xi)
+            swollen = swelling(q[i, j], xi) if xi < 1.0 else 0.0
+            excess = -volume[i, j] * swollen / (1 + swollen)
+            right[k] = -(growth[i, j] + excess - excess0[i, j])
+            matrix[k, width] += volume[i, j] * slope
+            work -= q[i, j] * growth[i, j]
+    return work
+
+
+@kernel
+def _exchange(
+    ka: int,
+    kb: int,
+    flow: float,
+    flow_a: float,
+    flow_b: float,
+    system: tuple[Floats, Floats, int],
+) -> float:
+    """Put a flow from cell a to cell b, and its derivatives by their pressures, into both balances.
+
+    Returns what it takes out of the surroundings, negative if it goes there.
+    """
+    matrix, right, width = system
+    outside = 0.0
+    if ka >= 0:
+        right[ka] -= flow
+        matrix[ka, width] += flow_a
+        if kb >= 0:
+            matrix[ka, width + kb - ka] += flow_b
+    else:
+        outside += flow
+    if kb >= 0:
+        right[kb] += flow
+        matrix[kb, width] -= flow_b
+        if ka >= 0:
+            matrix[kb, width + ka - kb] -= flow_a
+    else:
+        outside -= flow
+    return outside
+
+
+@kernel
+def _add_gaps(
+    shape: Shape,
+    cross0: Floats,
+    fields: Fields,
+    cell_at: Indices,
+    fluid: Fluid,
+    fresh: Fresh,
+    tau: float,
+    system: tuple[Floats, Floats, int],
+    rates: Floats,
+) -> None:
+    """Flow through the gaps, whose velocity follows from the pressures at once. Theory (Q16)."""
+    gap, gap_reach = shape[3], shape[5]
+    q, _, cross = fields
+    xi, c2, choke, _ = fluid
+    pockets, slices = q.shape
+    for i in range(pockets + 1):
+        for j in range(slices):
+            ka = cell_at[i - 1, j] if i > 0 else -1
+            kb = cell_at[i, j] if i < pockets else -1
+            if (ka < 0 and kb < 0) or gap[i, j] <= 0.0:
+                cross[i, j] = 0.0
+                continue
+            qa = q[i - 1, j] if ka >= 0 else 0.0
+            qb = q[i, j] if kb >= 0 else 0.0
+            inertia = (gap_reach[0, i, j] if ka >= 0 else 0.0) + (
+                gap_reach[1, i, j] if kb >= 0 else 0.0
+            )
+            drop, drop_a, drop_b, rho, rho_a, rho_b = nozzle(qa, qb, xi, choke)
+            a = inertia / tau
+            if fresh[0][i, j] > 0.0:
+                a *= fresh[2]
+            drive = a * cross0[i, j] + c2 * drop
+            root = math.sqrt(a * a + 2 * abs(drive))
+            u = 2 * drive / (a + root)
+            cross[i, j] = u
+            if u * drop < 0.0:
+                rho, rho_a, rho_b = donor(u, qa, qb, xi)
+            lost = u * abs(u) / 2 + a * (u - cross0[i, j])
+            lost += c2 * (enthalpy(qa, xi) - enthalpy(qb, xi) - drop)
+            rates[1] += gap[i, j] * rho * u * lost
+            section = tau * gap[i, j]
+            outside = _exchange(
+                ka,
+                kb,
+                section * rho * u,
+                section * (rho * c2 * drop_a / root + u * rho_a),
+                section * (rho * c2 * drop_b / root + u * rho_b),
+                system,
+            )
+            rates[2] -= outside / tau
+
+
+@kernel
+def _axial_drop(
+    ka: int, kb: int, qa: float, qb: float, u: float, fluid: Fluid
+) -> tuple[float, float, float, float, float, float, float]:
+    """Drop of enthalpy along the face, density, their derivatives, and the whole drop.
+
+    Inside a pocket the specific volume is the mean of both sides; at its ends as `nozzle`.
+    """
+    xi, _, choke, _ = fluid
+    whole = enthalpy(qa, xi) - enthalpy(qb, xi)
+    if ka >= 0 and kb >= 0:
+        rho_one, slope_one = density(qa, xi)
+        rho_two, slope_two = density(qb, xi)
+        rho = 2 * rho_one * rho_two / (rho_one + rho_two)
+        rho_a = slope_one * (rho / rho_one) ** 2 / 2
+        rho_b = slope_two * (rho / rho_two) ** 2 / 2
+        return whole, 1 / rho_one, -1 / rho_two, rho, rho_a, rho_b, whole
+    drop, drop_a, drop_b, rho, rho_a, rho_b = nozzle(qa, qb, xi, choke)
+    if u * drop < 0.0:
+        rho, rho_a, rho_b = donor(u, qa, qb, xi)
+    return drop, drop_a, drop_b, rho, rho_a, rho_b, whole
+
+
+@kernel
+def _add_faces(
+    shape: Shape,
+    axial0: Floats,
+    fields: Fields,
+    numbers: Numbers,
+    fluid: Fluid,
+    fresh: Fresh,
+    shares: Floats,
+    tau: float,
+    system: tuple[Floats, Floats, int],
+    rates: Floats,
+) -> None:
+    """Momentum and flow of every axial face. Theory (Q15)."""
+    area, reach = shape[2], shape[4]
+    q, axial, _ = fields
+    cell_at, face_at = numbers[0], numbers[1]
+    c2 = fluid[1]
+    matrix, right, width = system
+    pockets, slices = q.shape
+    for i in range(pockets):
+        for j in range(slices + 1):
+            k = face_at[i, j]
+            if k < 0:
+                continue
+            ka = cell_at[i, j - 1] if j > 0 else -1
+            kb = cell_at[i, j] if j < slices else -1
+            qa = q[i, j - 1] if ka >= 0 else 0.0
+            qb = q[i, j] if kb >= 0 else 0.0
+            u = axial[i, j]
+            drop, drop_a, drop_b, rho, rho_a, rho_b, whole = _axial_drop(ka, kb, qa, qb, u, fluid)
+            a = ((reach[0, i, j] if ka >= 0 else 0.0) + (reach[1, i, j] if kb >= 0 else 0.0)) / tau
+            if fresh[1][i, j] > 0.0:
+                a *= fresh[2]
+            head = 0.0
+            matrix[k, width] += a
+            if ka >= 0:
+                own, beside = shares[1, i, j - 1] * u, shares[0, i, j - 1] * axial[i, j - 1]
+                head -= (beside * axial[i, j - 1] + own * u) / 2
+                matrix[k, width] -= own
+                matrix[k, width + face_at[i, j - 1] - k] -= beside
+                matrix[k, width + ka - k] -= c2 * drop_a
+            elif u < 0.0:
+                head -= u**2 / 2
+                matrix[k, width] -= u
+            if kb >= 0:
+                own, beside = shares[0, i, j] * u, shares[1, i, j] * axial[i, j + 1]
+                head += (own * u + beside * axial[i, j + 1]) / 2
+                matrix[k, width] += own
+                matrix[k, width + face_at[i, j + 1] - k] += beside
+                matrix[k, width + kb - k] -= c2 * drop_b
+            elif u > 0.0:
+                head += u**2 / 2
+                matrix[k, width] += u
+            push = a * (u - axial0[i, j])
+            right[k] = c2 * drop - head - push
+            rates[1] += area[i, j] * rho * u * (head + push + c2 * (whole - drop))
+            section = tau * area[i, j]
+            if ka >= 0:
+                matrix[ka, width + k - ka] += section * rho
+            if kb >= 0:
+                matrix[kb, width + k - kb] -= section * rho
+            flow = section * rho * u
+            outside = _exchange(ka, kb, flow, section * u * rho_a, section * u * rho_b, system)
+            rates[2] -= outside / tau
+
+
+@kernel
+def _move(step: Floats, fields: Fields, numbers: Numbers, xi: float) -> bool:
+    """Add a Newton step to the fields; whether it was small enough to be the last."""
+    q, axial, _ = fields
+    cell_at, face_at = numbers[0], numbers[1]
+    largest_q, step_q, largest_u, step_u = 0.0, 0.0, 0.0, 0.0
+    pockets, slices = q.shape
+    for i in range(pockets):
+        for j in range(slices + 1):
+            k = face_at[i, j]
+            if k >= 0:
+                axial[i, j] += step[k]
+                step_u = max(step_u, abs(step[k]))
+                largest_u = max(largest_u, abs(axial[i, j]))
+            if j == slices:
+                continue
+            k = cell_at[i, j]
+            if k >= 0:
+                moved = q[i, j] + step[k]
+                if xi < 1.0:
+                    moved = max(moved, 0.2 * (1 + q[i, j]) - 1)
+                step_q = max(step_q, abs(moved - q[i, j]))
+                q[i, j] = moved
+                largest_q = max(largest_q, abs(moved))
+    return (
+        step_q <= NEWTON_TOLERANCE * largest_q + 1e-15
+        and step_u <= NEWTON_TOLERANCE * largest_u + 1e-12
+    )
+
+
+@kernel
+def solve_stage(
+    shape: Shape,
+    before: Fields,
+    fields: Fields,
+    numbers: Numbers,
+    fluid: Fluid,
+    fresh: Fresh,
+    shares: Floats,
+    tau: float,
+    rates: Floats,
+) -> int:
+    """One implicit Euler step by Newton's method. Theory (Q14), (Q15), (Q16).
+
+    Parameters
+    ----------
+    shape : tuple of ndarray
+        Volumes and their growth in the step (pockets, slices) [m^3], axial areas (pockets,
+        slices + 1) and areas of the gaps (pockets + 1, slices) [m^2], distances of axial faces from
+        the cells before and behind (2, pockets, slices + 1) and of gaps from the pockets before and
+        behind (2, pockets + 1, slices) [m].
+    before : tuple of ndarray
+        What the step starts from: excess mass V (rho/rho_m - 1) [m^3], velocities through
+        axial faces and gaps [m/s].
+    fields : tuple of ndarray
+        q, velocities through axial faces and through gaps: first guess, and the solution.
+    numbers : tuple
+        From `number`: cells, axial faces, count, half-width.
+    fluid : tuple
+        Oil fraction, p_a/rho_m [m^2/s^2], choking table, whether differences are central; an empty
+        table for the mean density of both sides at all openings, without choking.
+    fresh : tuple
+        Positive for the gaps and axial faces that have just opened, and the factor of their
+        inertia.
+    shares : ndarray, shape (2, pockets, slices)
+        From `kinetic_shares`.
+    tau : float
+        Time step. [s]
+    rates : ndarray, shape (3,)
+        Receives boundary work over p_a [m^3/s], power lost or stored in the flow over rho_m
+        [m^5/s^3], volume that leaves to ambient at ambient density [m^3/s].
+
+    Returns
+    -------
+    int
+        Newton iterations, negative without convergence.
+    """
+    excess0, axial0, cross0 = before
+    cell_at, _, count, width = numbers
+    matrix = np.zeros((count, 2 * width + 1))
+    right = np.zeros(count)
+    system = (matrix, right, width)
+    for iteration in range(1, NEWTON_MOST + 1):
+        matrix[:] = 0.0
+        right[:] = 0.0
+        rates[:] = 0.0
+        rates[0] = _add_masses(shape, excess0, fields[0], cell_at, fluid[0], system) / tau
+        _add_gaps(shape, cross0, fields, cell_at, fluid, fresh, tau, system, rates)
+        _add_faces(shape, axial0, fields, numbers, fluid, fresh, shares, tau, system, rates)
+        _solve_banded(matrix, right, width)
+        if not np.isfinite(right).all():
+            return -iteration
+        if _move(right, fields, numbers, fluid[0]):
+            return iteration
+    return -NEWTON_MOST
