@@ -9,7 +9,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.analysis.compare import compare_friction
-from epicyclic.analysis.parts import resolve_models
+from epicyclic.analysis.models import resolve_models
 from epicyclic.analysis.planet_load import planet_load
 from epicyclic.analysis.planetary import planetary_duties
 

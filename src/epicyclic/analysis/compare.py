@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from epicyclic.analysis.parts import friction_of, friction_settings, resolve_models
+from epicyclic.analysis.models import friction_of, friction_settings, resolve_models
 from epicyclic.analysis.result import LOAD_DEPENDENT, Result
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case

@@ -10,14 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.analysis.datasets import Variable, variable
-from epicyclic.analysis.parts import (
-    MeshDuty,
-    contact_under,
-    distribute_load,
-    fluids_of,
-    friction_of,
-    load_notes,
-)
+from epicyclic.analysis.models import friction_of
+from epicyclic.analysis.notes import load_notes
+from epicyclic.analysis.parts import MeshDuty, contact_under, distribute_load, fluids_of
 from epicyclic.analysis.solve import loaded_duties
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem

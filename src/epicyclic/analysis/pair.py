@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
+from epicyclic.analysis.models import resolve_models
+from epicyclic.analysis.notes import contact_notes, fluid_notes, general_notes, load_notes
 from epicyclic.analysis.parts import (
     Body,
     MeshDuty,
-    contact_notes,
     drag_part,
-    fluid_notes,
     fluids_of,
-    general_notes,
-    load_notes,
     loss_terms,
-    resolve_models,
     solve_mesh,
     used_sources,
 )

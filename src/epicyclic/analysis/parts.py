@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
+from epicyclic.analysis.models import friction_of, resolve_models, rolling_of
 from epicyclic.analysis.pockets import (
     POCKETING_SOURCE,
     MeshFlow,
@@ -23,23 +24,17 @@ from epicyclic.analysis.result import (
     LossTerm,
     MeshFigures,
 )
-from epicyclic.case import build, flanks
-from epicyclic.case.case import Case, PlanetaryCase
-from epicyclic.case.schema import GearPairModels, GearTable, LossOption, MeshTable, Numerics
+from epicyclic.case import flanks
+from epicyclic.case.case import Case
+from epicyclic.case.schema import GearPairModels, GearTable, LossOption, Numerics
 from epicyclic.elasticity.loaded_mesh import LoadedMesh, load_mesh_elastically
-from epicyclic.geometry.assembly import are_evenly_spaced
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.contact import Flanks, MeshContact, mesh_contact
-from epicyclic.losses.direct import DirectSettings, EhlDirect
-from epicyclic.losses.fitted import FittedFriction, FittedRolling
-from epicyclic.losses.friction import FrictionModel, FrictionSettings, friction_model
-from epicyclic.losses.friction.user import FrictionMap
+from epicyclic.losses.direct import EhlDirect
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS, LineLoads, MeshLoad
 from epicyclic.losses.mesh import MeshLoss, local_loss, loss_factor_loss, ohlendorf_loss_factor
-from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
-from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
 from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.viscous import DRAG_METHOD, DRAG_SOURCE, disc_drag, disc_drag_flags
 from epicyclic.lubricant.oil import Oil
@@ -50,46 +45,31 @@ from epicyclic.lubricant.properties import (
     mixture_state,
     oil_state,
 )
-from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.similarity import FlowFigures
 from epicyclic.units import CELSIUS, SQUARE_MM_PER_SECOND
 
 __all__ = [
-    "NOT_INCLUDED",
     "Body",
     "Fluids",
     "MeshDuty",
     "MeshOutcome",
     "Part",
-    "contact_notes",
     "contact_under",
     "distribute_load",
     "drag_part",
     "elastic_loads",
-    "fitted_rolling",
-    "fluid_notes",
     "fluids_of",
-    "friction_of",
-    "friction_settings",
-    "general_notes",
     "load_mesh",
-    "load_notes",
     "loss_terms",
     "oil_at",
-    "resolve_models",
-    "rolling_of",
     "solve_mesh",
     "used_sources",
 ]
 
-NOT_INCLUDED = "Not included"
-"""Begins the note that names loss terms which are missing."""
 FloatArray = NDArray[np.float64]
 
 PEAK_SHARE = 0.01
 """Part of the contact that the largest line load and pressure of a mesh leave out. [1]"""
-LEAST_CONTACT = 0.75
-"""Share of the contact lines that carries below which a result says so. [1]"""
 OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
 
 _VISCOSITY = Range(
@@ -185,24 +165,6 @@ class MeshOutcome:
     notes: tuple[str, ...]
 
 
-def resolve_models(case: Case) -> dict[str, str]:
-    """The models of a case by key, ``auto`` replaced by what it stands for."""
-    own = case.lubricant.oil.friction_regression == TALBOT_FLUID.key
-    models = case.models
-    automatic = {
-        "friction": "mixed-ehl" if own else "schlenk",
-        "rolling": "mixed-ehl" if own else "goksem-hargreaves",
-    }
-    keys = ["friction", "rolling", "load_distribution", "mesh", "pocketing", "drag"]
-    if isinstance(case, PlanetaryCase):
-        bearing = case.planet_bearing
-        caged = bearing is None or bearing.cage == "caged"
-        automatic["bearing"] = "mixed-ehl" if own and caged else "palmgren"
-        keys += ["bearing", "bearing_viscous"]
-    chosen = {key: str(getattr(models, key)) for key in keys}
-    return {key: automatic[key] if choice == "auto" else choice for key, choice in chosen.items()}
-
-
 def oil_at(case: Case, temperature: float) -> OilState:
     """Properties of the oil of a case at `temperature` in kelvin, with the factor of the case."""
     state = oil_state(case.lubricant.oil, temperature)
@@ -227,58 +189,6 @@ def fluids_of(case: Case) -> Fluids:
 def _temperature_range(oil: Oil) -> Range:
     low, high = (CELSIUS.to_display(limit) for limit in oil.temperature_range)
     return Range("temperature", "temperature", low, high, CELSIUS, "data of this oil")
-
-
-def friction_settings(case: Case) -> FrictionSettings:
-    """The numbers that friction models take from the case."""
-    table = case.friction_table
-    return FrictionSettings(
-        constant=case.models.constant_friction,
-        boundary=case.models.boundary_friction,
-        fluid=case.models.fluid_friction,
-        table=None if table is None else FrictionMap(tuple(table.axes().items()), table.friction),
-    )
-
-
-def friction_of(case: Case) -> FrictionModel:
-    """The friction model of a case."""
-    name = resolve_models(case)["friction"]
-    if name == FittedFriction.name:
-        return FittedFriction(_oil_model(case), case.models.fitted_form)
-    if name == EhlDirect.name:
-        return EhlDirect(_direct_settings(case))
-    return friction_model(name, friction_settings(case))
-
-
-def _direct_settings(case: Case) -> DirectSettings:
-    solver = case.contact_solver
-    return DirectSettings(
-        eyring_stress=solver.eyring_stress,
-        boundary_friction=case.models.boundary_friction,
-        correlation_length=solver.correlation_length,
-        seed=solver.seed,
-        error=solver.error,
-        most_contacts=solver.most_contacts,
-    )
-
-
-def rolling_of(case: Case) -> RollingModel:
-    """The rolling-loss model of a case."""
-    name = resolve_models(case)["rolling"]
-    if name == FittedRolling.name:
-        return fitted_rolling(case, "rolling_loss")
-    return ROLLING_MODELS[name]
-
-
-def fitted_rolling(case: Case, quantity: str) -> FittedRolling:
-    """The fitted rolling loss of the teeth or of the bearings of a case."""
-    return FittedRolling(_oil_model(case), case.models.fitted_form, quantity)
-
-
-def _oil_model(case: Case) -> OilModel:
-    """The file of fitted models that the case names, and was checked to have."""
-    assert case.models.oil_model is not None
-    return read_oil_model(case.folder / case.models.oil_model)
 
 
 def distribute_load(duty: MeshDuty, models: GearPairModels, numerics: Numerics) -> LineLoads:
@@ -487,108 +397,7 @@ def drag_part(
     return Part(LOAD_INDEPENDENT, watts, DRAG_METHOD, DRAG_SOURCE), flags
 
 
-def fluid_notes(case: Case) -> tuple[str, ...]:
-    """What was made for another oil than that of the case, and what the case changes in it."""
-    oil, models = case.lubricant.oil, resolve_models(case)
-    fluids = {
-        "friction": friction_of(case).made_for,
-        "rolling": rolling_of(case).made_for,
-        "bearing": TALBOT_FLUID if models.get("bearing") == "mixed-ehl" else None,
-    }
-    notes = [
-        f"models.{key}: the regression {models[key]} was made for {fluid.title}, not for "
-        f"{oil.name}."
-        for key, fluid in fluids.items()
-        if fluid is not None and fluid.key != oil.friction_regression
-    ]
-    if FittedFriction.name in models.values() and _oil_model(case).oil != oil:
-        fitted = _oil_model(case).oil.name
-        notes.append(f"models.oil_model was fitted for {fitted}, not for {oil.name}.")
-    factor = case.lubricant.pressure_viscosity_factor
-    if factor != 1:
-        notes.append(f"The pressure-viscosity coefficient of the oil is multiplied by {factor:g}.")
-    return tuple(notes)
-
-
-def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:
-    """A note on every mesh of which much does not carry."""
-    return tuple(
-        f"Only {mesh.contact_share:.0%} of the contact lines of the {name.replace('_', ' ')} carry "
-        "load: the deviations of the flanks exceed what the teeth bend. Contact that begins or "
-        "ends beyond the path of contact is not modelled."
-        for name, mesh in meshes.items()
-        if mesh.contact_share < LEAST_CONTACT
-    )
-
-
-def load_notes(case: Case) -> tuple[str, ...]:
-    """Notes on deviations that the load distribution ignores, and on the rim of a ring gear."""
-    notes = []
-    model = case.models.load_distribution
-    if _states_deviations(case) and not LOAD_DISTRIBUTIONS[model].takes_deviations:
-        notes.append(
-            f"models.load_distribution = {model} ignores micro-geometry and misalignment; "
-            "compliance takes them into account."
-        )
-    return (*notes, *_rim_notes(case))
-
-
-def _rim_notes(case: Case) -> Iterator[str]:
-    """Where a rim leaves the assumptions of its formula."""
-    name = "ring" if isinstance(case, PlanetaryCase) else "gear"
-    table = case.ring if isinstance(case, PlanetaryCase) else case.gear
-    thickness = build.rim_thickness(table)
-    if thickness is None:
-        return
-    ring = build.gear(name, table, case.gears)
-    height = ring.root_radius - ring.tip_radius
-    if thickness < height:
-        yield (
-            f"{name}.rim_thickness is less than the height of the teeth, {1e3 * height:.4g} mm: "
-            "the deflection of so thin a rim is outside what the compliance is made for."
-        )
-    if not isinstance(case, PlanetaryCase):
-        return
-    even = are_evenly_spaced(build.planet_angles(case.sun, case.planet, case.ring))
-    if not even or case.load_sharing.method != "equal":
-        yield (
-            "ring.rim_thickness: the rim bends as under evenly spaced and equally loaded planets, "
-            f"but these are {'not equally loaded' if even else 'not evenly spaced'}."
-        )
-
-
-def _states_deviations(case: Case) -> bool:
-    gears: tuple[GearTable, ...]
-    if isinstance(case, PlanetaryCase):
-        gears = (case.sun, case.planet, case.ring)
-        meshes: tuple[MeshTable, ...] = (case.sun_mesh, case.ring_mesh)
-    else:
-        gears, meshes = (case.pinion, case.gear), (case.mesh,)
-    return any(mesh.misalignment for mesh in meshes) or any(map(flanks.micro_geometries, gears))
-
-
 def used_sources(terms: Iterable[LossTerm], *more: str) -> tuple[str, ...]:
     """Sources of the terms that are included, each once, in order, and `more`."""
     sources = [term.source for term in terms if not term.left_out]
     return tuple(dict.fromkeys(source for source in (*sources, *more) if source))
-
-
-def general_notes(
-    terms: Iterable[LossTerm], input_power: float, efficiency: float | None
-) -> tuple[str, ...]:
-    """Notes on what is missing, what is scaled, and on efficiency near zero load."""
-    notes = []
-    missing: dict[str, list[str]] = {}
-    for term in terms:
-        if term.left_out:
-            missing.setdefault(term.left_out, []).append(term.name)
-        elif term.factor != 1.0:
-            notes.append(f"{term.name} is multiplied by {term.factor:g}.")
-    notes += [
-        f"{NOT_INCLUDED}: {', '.join(names)} ({reason})." for reason, names in missing.items()
-    ]
-    if efficiency == 0.0 and input_power > 0:
-        notes.append(
-            "The losses exceed the power passed on: no power leaves, and the output must be driven."
-        )
-    return tuple(notes)

@@ -9,20 +9,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from epicyclic.analysis.load_sharing import SHARING_METHODS, planet_shares
+from epicyclic.analysis.models import fitted_rolling, resolve_models
+from epicyclic.analysis.notes import contact_notes, fluid_notes, general_notes, load_notes
 from epicyclic.analysis.parts import (
     Body,
     Fluids,
     MeshDuty,
     Part,
-    contact_notes,
     drag_part,
-    fitted_rolling,
-    fluid_notes,
     fluids_of,
-    general_notes,
-    load_notes,
     loss_terms,
-    resolve_models,
     solve_mesh,
     used_sources,
 )

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.analysis.parts import NOT_INCLUDED
+from epicyclic.analysis.notes import NOT_INCLUDED
 from epicyclic.analysis.result import versions
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem

@@ -1,0 +1,91 @@
+"""The models that a case chooses, ready to use."""
+
+from __future__ import annotations
+
+from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.losses.direct import DirectSettings, EhlDirect
+from epicyclic.losses.fitted import FittedFriction, FittedRolling
+from epicyclic.losses.friction import FrictionModel, FrictionSettings, friction_model
+from epicyclic.losses.friction.user import FrictionMap
+from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
+from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
+from epicyclic.oilmodel.model import OilModel, read_oil_model
+
+__all__ = [
+    "fitted_oil_model",
+    "fitted_rolling",
+    "friction_of",
+    "friction_settings",
+    "resolve_models",
+    "rolling_of",
+]
+
+
+def resolve_models(case: Case) -> dict[str, str]:
+    """The models of a case by key, ``auto`` replaced by what it stands for."""
+    own = case.lubricant.oil.friction_regression == TALBOT_FLUID.key
+    models = case.models
+    automatic = {
+        "friction": "mixed-ehl" if own else "schlenk",
+        "rolling": "mixed-ehl" if own else "goksem-hargreaves",
+    }
+    keys = ["friction", "rolling", "load_distribution", "mesh", "pocketing", "drag"]
+    if isinstance(case, PlanetaryCase):
+        bearing = case.planet_bearing
+        caged = bearing is None or bearing.cage == "caged"
+        automatic["bearing"] = "mixed-ehl" if own and caged else "palmgren"
+        keys += ["bearing", "bearing_viscous"]
+    chosen = {key: str(getattr(models, key)) for key in keys}
+    return {key: automatic[key] if choice == "auto" else choice for key, choice in chosen.items()}
+
+
+def friction_settings(case: Case) -> FrictionSettings:
+    """The numbers that friction models take from the case."""
+    table = case.friction_table
+    return FrictionSettings(
+        constant=case.models.constant_friction,
+        boundary=case.models.boundary_friction,
+        fluid=case.models.fluid_friction,
+        table=None if table is None else FrictionMap(tuple(table.axes().items()), table.friction),
+    )
+
+
+def friction_of(case: Case) -> FrictionModel:
+    """The friction model of a case."""
+    name = resolve_models(case)["friction"]
+    if name == FittedFriction.name:
+        return FittedFriction(fitted_oil_model(case), case.models.fitted_form)
+    if name == EhlDirect.name:
+        return EhlDirect(_direct_settings(case))
+    return friction_model(name, friction_settings(case))
+
+
+def _direct_settings(case: Case) -> DirectSettings:
+    solver = case.contact_solver
+    return DirectSettings(
+        eyring_stress=solver.eyring_stress,
+        boundary_friction=case.models.boundary_friction,
+        correlation_length=solver.correlation_length,
+        seed=solver.seed,
+        error=solver.error,
+        most_contacts=solver.most_contacts,
+    )
+
+
+def rolling_of(case: Case) -> RollingModel:
+    """The rolling-loss model of a case."""
+    name = resolve_models(case)["rolling"]
+    if name == FittedRolling.name:
+        return fitted_rolling(case, "rolling_loss")
+    return ROLLING_MODELS[name]
+
+
+def fitted_rolling(case: Case, quantity: str) -> FittedRolling:
+    """The fitted rolling loss of the teeth or of the bearings of a case."""
+    return FittedRolling(fitted_oil_model(case), case.models.fitted_form, quantity)
+
+
+def fitted_oil_model(case: Case) -> OilModel:
+    """The file of fitted models that the case names, and was checked to have."""
+    assert case.models.oil_model is not None
+    return read_oil_model(case.folder / case.models.oil_model)
