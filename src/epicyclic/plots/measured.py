@@ -22,6 +22,8 @@ BoolArray = NDArray[np.bool_]
 
 BAND = 0.10
 """Lines beside those of equal losses. [1]"""
+SERIES_GAP = 0.012
+"""Distance between series of residuals, over the range of the axis. [1]"""
 MARKERS = "osD^vP"
 """One for each group, beside its colour; for print without colours."""
 AXES = {"speed": "speed, rpm", "torque": "torque, N·m", "temperature": "oil temperature, °C"}
@@ -64,12 +66,18 @@ def plot_parity(comparison: MeasuredComparison, ax: Axes) -> Axes:
 
 
 def plot_residuals(comparison: MeasuredComparison, over: str, ax: Axes) -> Axes:
-    """Computed less measured loss over ``"speed"``, ``"torque"`` or ``"temperature"``."""
+    """Computed less measured loss over ``"speed"``, ``"torque"`` or ``"temperature"``.
+
+    Series stand a little beside each other, so that none hides another.
+    """
     measured = comparison.measured
     where = measured.conditions[over]
-    for members, style in _series(comparison):
+    series = list(_series(comparison))
+    gap = SERIES_GAP * (float(np.ptp(where)) or 1.0)
+    for number, (members, style) in enumerate(series):
         error = (style.pop("computed") - measured.loss)[members]
-        ax.errorbar(where[members], error, yerr=_bars(comparison, members, style), **style)
+        x = where[members] + gap * (number - (len(series) - 1) / 2)
+        ax.errorbar(x, error, yerr=_bars(comparison, members, style), **style)
     ax.axhline(0.0, color="black", lw=0.9)
     ax.set(title=f"Residuals over {over}", xlabel=AXES[over], ylabel="computed − measured, W")
     ax.margins(x=0.08)
