@@ -141,8 +141,8 @@ def test_pure_rolling_has_no_sliding_friction():
 def test_status_tells_of_friction_that_is_not_stationary(monkeypatch, mixed):
     contact, rms, _ = mixed
     monkeypatch.setattr(rough, "STATIONARY", 1e-9)
-    monkeypatch.setattr(rough, "MOST_BLOCKS", rough.FEWEST_BLOCKS)
-    result = solve_rough(contact, *rough_pair(rms), nodes=NODES)
+    few = rough.FEWEST_BLOCKS
+    result = solve_rough(contact, *rough_pair(rms), nodes=NODES, most_blocks=few)
     assert result.status is Status.FAILED
     assert "friction is known to" in result.message
 

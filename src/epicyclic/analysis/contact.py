@@ -126,6 +126,6 @@ def solve_contact(case: ContactCase, frames: bool = False) -> ContactResult:
     interval = 6 * contact.half_width / contact.rolling_speed / FRAMES if frames else None
     rough = solve_rough(
         contact, *model.surfaces, model.asperities, case.numerics.nodes, interval, model.heating,
-        case.numerics.frozen_roughness,
+        case.numerics.frozen_roughness, case.numerics.most_blocks,
     )  # fmt: skip
     return ContactResult(case, rough.smooth, rough)

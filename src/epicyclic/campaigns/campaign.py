@@ -20,6 +20,7 @@ from epicyclic.case.contact import ContactCase, load_contact_case
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.plain import plain, without
 from epicyclic.case.reading import read_file
+from epicyclic.ehl.rough import BRIEF
 from epicyclic.elasticity.threads import one_thread
 from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.journal import Row
@@ -146,7 +147,8 @@ def make_campaign(
         designs.append(BEARING_TABLE.filling(bearing_size, seed))
     for design in designs:
         design.check()
-    given = _varied(designs[0].point(0)) | {"lubricant.oil": oil_tables(oil)} | dict(changes or {})
+    given = _varied(designs[0].point(0))
+    given |= {"lubricant.oil": oil_tables(oil), "numerics.most_blocks": BRIEF} | dict(changes or {})
     tables = plain(load_contact_case({}, given))
     for key in (*AXES.values(), "surface1.seed", "surface2.seed"):
         tables = without(tables, key.split("."))

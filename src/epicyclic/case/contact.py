@@ -24,7 +24,7 @@ from epicyclic.ehl.rheology import (
     ShearLaw,
     TwoSlope,
 )
-from epicyclic.ehl.rough import NODES, AsperityContact
+from epicyclic.ehl.rough import MOST_BLOCKS, NODES, AsperityContact
 from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, read_profile
 from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus, line_load_at_pressure
@@ -164,6 +164,10 @@ class ContactNumerics(Table):
     """The grid."""
 
     nodes: int = Field(default=NODES, ge=128, le=4096, description="In the rough contact.")
+    most_blocks: int = Field(
+        default=MOST_BLOCKS, ge=4, le=100_000,
+        description="Times half-width over rolling speed after which a rough contact is given up.",
+    )  # fmt: skip
     frozen_roughness: bool = Field(
         default=False, description="Hold the roughness still: the steady rough contact."
     )

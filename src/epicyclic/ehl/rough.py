@@ -31,8 +31,10 @@ MAX_ITERATIONS = 40
 """Newton steps of a time step, doubled in a second attempt."""
 GROWTH, SETTLING = 1.0, 2.0
 """Times b/u_r in which the roughness grows, and until averages begin. [1]"""
-BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 4, 2048
+BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 4, 1024
 """Time b/u_r of a block, and numbers of blocks that an average takes."""
+BRIEF = 96
+"""Number of blocks where many contacts are solved and an error above `STATIONARY` is weighed."""
 FINEST_FEATURE = 0.2
 """Largest way of a surface in a time step, over the correlation length of its roughness. [1]"""
 MOST_NODES_A_STEP = 4
@@ -260,6 +262,7 @@ def solve_rough(
     frame_interval: float | None = None,
     heating: Heating | None = None,
     frozen: bool = False,
+    most_blocks: int = MOST_BLOCKS,
 ) -> RoughSolution:
     """Simulate until the mean friction is known to 2 %.
 
@@ -278,6 +281,8 @@ def solve_rough(
         Isothermal without; with it the film has the temperature of the smooth contact.
     frozen : bool
         Hold the roughness still where it is and let the oil flow past: the steady rough contact.
+    most_blocks : int
+        Times b/u_r after which it is given up if the friction is still not known.
     """
     smooth = solve_smooth(contact, heating=heating)
     if smooth.status is not Status.CONVERGED:
@@ -288,7 +293,7 @@ def solve_rough(
     settling = run.advance(GROWTH + SETTLING)
     blocks: list[FloatArray] = []
     error = mean = 0.0
-    while not (math.isnan(mean) or _is_stationary(blocks, mean, error)):
+    while not (math.isnan(mean) or _is_stationary(blocks, mean, error, most_blocks)):
         blocks.append(run.advance(BLOCK))
         means = [float(_shear(block).mean()) for block in blocks]
         mean = float(np.mean(means))
@@ -296,10 +301,12 @@ def solve_rough(
     return _averages(run, settling, np.concatenate(blocks), mean, error)
 
 
-def _is_stationary(blocks: Sequence[FloatArray], mean: float, error: float) -> bool:
+def _is_stationary(
+    blocks: Sequence[FloatArray], mean: float, error: float, most_blocks: int
+) -> bool:
     """Enough blocks for the error wanted, or as many as are allowed."""
     enough = len(blocks) >= FEWEST_BLOCKS and error <= STATIONARY * mean
-    return enough or len(blocks) >= MOST_BLOCKS
+    return enough or len(blocks) >= most_blocks
 
 
 def _shear(records: FloatArray) -> FloatArray:

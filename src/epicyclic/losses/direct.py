@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from epicyclic.ehl.box import SOLVER_BOX
 from epicyclic.ehl.conditions import ContactOil, LineContact, Roelands
-from epicyclic.ehl.rough import LARGEST_UNSOLVED_SHARE, AsperityContact, solve_rough
+from epicyclic.ehl.rough import BRIEF, LARGEST_UNSOLVED_SHARE, AsperityContact, solve_rough
 from epicyclic.ehl.roughness import generate_profile
 from epicyclic.ehl.steady import solve_smooth
 from epicyclic.elasticity.threads import one_thread
@@ -250,7 +250,7 @@ def _friction(
             for rms, seed in zip(roughness, seeds, strict=True)
         )
         asperities = AsperityContact(friction=settings.boundary_friction)
-        rough = solve_rough(line, one, two, asperities)
+        rough = solve_rough(line, one, two, asperities, most_blocks=BRIEF)
     known = rough.friction_error <= LARGEST_ERROR * abs(rough.friction_coefficient)
     unsolved = rough.unsolved_steps > LARGEST_UNSOLVED_SHARE * max(rough.steps, 1)
     return rough.friction_coefficient if known and not unsolved else np.nan
