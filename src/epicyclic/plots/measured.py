@@ -73,14 +73,18 @@ def plot_residuals(comparison: MeasuredComparison, over: str, ax: Axes) -> Axes:
     measured = comparison.measured
     where = measured.conditions[over]
     series = list(_series(comparison))
-    gap = SERIES_GAP * (float(np.ptp(where)) or 1.0)
+    values = np.unique(where)
+    gap = SERIES_GAP * float(np.ptp(where) or 1.0)
     for number, (members, style) in enumerate(series):
         error = (style.pop("computed") - measured.loss)[members]
         x = where[members] + gap * (number - (len(series) - 1) / 2)
         ax.errorbar(x, error, yerr=_bars(comparison, members, style), **style)
     ax.axhline(0.0, color="black", lw=0.9)
     ax.set(title=f"Residuals over {over}", xlabel=AXES[over], ylabel="computed − measured, W")
-    ax.margins(x=0.08)
+    if values.size == 1:
+        ax.set(xticks=values, xlim=(values[0] - 0.5, values[0] + 0.5))
+    else:
+        ax.margins(x=0.08)
     return ax
 
 
