@@ -90,7 +90,7 @@ def test_what_the_volume_loses_flows_out(pair):
     mesh = ep.pocket_details(pair.updated(changes))["mesh"]
     period = 60 / float(mesh["speed"]) / mesh.attrs["teeth"][0]
     step = period / mesh.sizes["mesh_position"]
-    thickness = float(mesh["slice_position"].diff("slice")[0])
+    thickness = mesh["station_position"].diff("station").to_numpy()
     rate = np.gradient(mesh["slice_volume"].to_numpy(), step, axis=1)
     ends = mesh["end_area"] * mesh["axial_speed"] * 1e3
     out = (ends.diff("station")).to_numpy()

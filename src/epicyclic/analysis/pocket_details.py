@@ -197,7 +197,7 @@ def _dataset(case: Case, duty: MeshDuty, flow: PocketFlow) -> xr.Dataset:
     geometry = pocket_geometry(mesh, duty.tools, duty.drives1)
     life = _Life(geometry, flow, duty.drives1)
     width = mesh.face_width
-    stations = np.linspace(0.0, width, flow.station.size)
+    stations = flow.face
     coordinates = {
         "tooth": [mesh.gear1.name, mesh.gear2.name],
         "roll_angle": variable(_LIFE, life.roll, "roll angle of the pocket", DEGREE),
@@ -237,8 +237,9 @@ def _shapes(life: _Life, width: float) -> dict[str, Variable]:
     """What the geometry tells."""
     area = life.read(life.geometry.area)
     alive = life.of_pockets(life.flow.live).astype(bool)
-    thickness = width / (life.flow.station.size - 1)
-    slices = np.where(alive, thickness * (area[..., 1:] + area[..., :-1]) / 2, math.nan)
+    slices = np.where(
+        alive, np.diff(life.flow.face) * (area[..., 1:] + area[..., :-1]) / 2, math.nan
+    )
     volume = np.where(alive.any(axis=-1), width * life.mean_area(), math.nan)
     contact, backlash = life.gaps
     centroid = [life.read(life.geometry.centroid[..., k]) for k in (0, 1)]

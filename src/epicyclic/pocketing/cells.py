@@ -42,11 +42,8 @@ class Cells:
         Distances of openings from the cells before and behind. [m]
     live : ndarray of bool, shape (steps, pockets, slices)
         Which cells are pockets.
-    place : ndarray, shape (pockets,)
-        Angle of the tooth or space of each pocket at the start of the period, less that of the
-        tooth numbered zero. [rad]
-    station : ndarray, shape (slices + 1,)
-        How far the section at each face between slices is turned ahead. [rad]
+    place, station, face
+        As for `PocketFlow`.
     """
 
     volume: Floats
@@ -58,6 +55,7 @@ class Cells:
     live: NDArray[np.bool_]
     place: Floats
     station: Floats
+    face: Floats
 
     @property
     def shape(self) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
@@ -127,8 +125,9 @@ def pocket_cells(geometry: PocketGeometry, slices: int, steps: int, end: float) 
         live=_live(geometry, spaces),
         place=np.add.outer(-teeth[:-1], [0.0, -0.5]).ravel() * pitch,
         station=stations,
+        face=face,
     )
-    for array in (*cells.shape, cells.live, cells.place, cells.station):
+    for array in (*cells.shape, cells.live, cells.place, cells.station, cells.face):
         array.flags.writeable = False
     return cells
 

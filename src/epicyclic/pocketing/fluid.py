@@ -66,6 +66,8 @@ class PocketFlow:
         of gear 1 from the line of centres. [rad]
     station : ndarray, shape (slices + 1,)
         Angle that the helix turns from the first end of the face to both ends of each slice. [rad]
+    face : ndarray, shape (slices + 1,)
+        Distance from the first end of the face to both ends of each slice. [m]
     live : ndarray of bool, shape (steps, pockets, slices)
         Which cells are pockets. Pockets follow each other along the mesh: a tooth of gear 1 in a
         space of gear 2 at even places, a tooth of gear 2 in a space of gear 1 at odd ones.
@@ -88,6 +90,7 @@ class PocketFlow:
     angle: Floats
     place: Floats
     station: Floats
+    face: Floats
     live: NDArray[np.bool_]
     pressure: Floats
     axial_speed: Floats
@@ -193,6 +196,7 @@ def pocket_flow(
         angle=geometry.pitch * np.arange(1, steps + 1) / steps,
         place=cells.place,
         station=cells.station,
+        face=cells.face,
         live=cells.live,
         pressure=pressure * history[0],
         axial_speed=history[1],
