@@ -74,15 +74,16 @@ def plot_over_film_ratio(model: OilModel, ax: Axes) -> Axes:
         states = replace(middle, slide_to_roll_ratio=np.full(POINTS, slip))
         for fitted, style in zip(fit.forms, LINE_STYLES, strict=False):
             values = model.value("friction", states, fitted.form)
-            label = f"slip {slip:g}, {fitted.form}"
+            label = f"{slip:g} {fitted.form}"
             ax.plot(states.film_ratio, values, linestyle=style, color=colour, label=label)
     ax.set_xscale("log", subs=(2, 5))
     ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     ax.xaxis.set_minor_formatter(StrMethodFormatter("{x:g}"))
     ax.set_ylim(bottom=0)
     ax.set_xlabel("film ratio, by roughness")
+    ax.set_title("by slip and form")
     ax.set_ylabel(LABELS["friction"])
-    ax.legend(fontsize="small")
+    ax.legend(fontsize="small", ncols=len(SLIPS), loc="lower left")
     return ax
 
 
