@@ -7,7 +7,7 @@ import math
 import pytest
 
 from epicyclic.reference.mesh_stiffness import mesh_stiffness, theoretical_single_stiffness
-from epicyclic.validation.compare import _published, compare_published
+from epicyclic.validation.compare import compare_published, published_figures
 from epicyclic.validation.compute import FIGURES
 
 KNOWN_DIFFERENCES = {
@@ -44,7 +44,7 @@ def test_every_compared_figure_states_its_tolerance_and_cause(rows):
 def test_stiffness_of_the_standard_is_that_of_its_formulas(make_mesh):
     """As stored, with four digits."""
     found = 0
-    for figure in _published():
+    for figure in published_figures():
         if figure["compute"] not in ("single_stiffness", "mean_mesh_stiffness"):
             continue
         teeth1, teeth2, internal = figure["with"].values()
