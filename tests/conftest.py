@@ -17,12 +17,26 @@ settings.register_profile("epicyclic", derandomize=True, deadline=None, max_exam
 settings.load_profile("epicyclic")
 
 CELSIUS = 273.15
+COARSE = {"numerics.pocket_slices": 6, "numerics.pocket_steps": 10}
+"""For tests to which the figures of the pockets do not matter."""
 
 
 @pytest.fixture(scope="session")
 def talbot():
     """The test article of Talbot (2012): 3 planets, 1000 N m, 4000 rpm, 90 degC."""
     return ep.load_case("talbot-2012")
+
+
+@pytest.fixture(scope="session")
+def coarse_talbot(talbot):
+    """The same with few slices and steps in the pockets."""
+    return talbot.updated(COARSE)
+
+
+@pytest.fixture(scope="session")
+def coarse_options():
+    """What makes the same of it on a command line."""
+    return [option for key, value in COARSE.items() for option in ("--set", f"{key}={value}")]
 
 
 @pytest.fixture(scope="session")

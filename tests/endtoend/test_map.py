@@ -18,8 +18,8 @@ TEMPERATURE = ["40 degC", "90 degC"]
 
 
 @pytest.fixture(scope="module")
-def case():
-    return ep.load_case("talbot-2012")
+def case(coarse_talbot):
+    return coarse_talbot
 
 
 @pytest.fixture(scope="module")
@@ -141,9 +141,9 @@ COMMAND = (
 
 
 @pytest.mark.parametrize("suffix", ["nc", "csv", "parquet"])
-def test_files_hold_the_map(data, tmp_path, epicyclic, suffix):
+def test_files_hold_the_map(data, tmp_path, epicyclic, coarse_options, suffix):
     output = tmp_path / f"map.{suffix}"
-    done = epicyclic(*COMMAND, "-o", str(output))
+    done = epicyclic(*COMMAND, *coarse_options, "-o", str(output))
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout == f"Wrote 30 points to {output}.\n"
     assert names_in(tmp_path) == [output.name]

@@ -308,10 +308,12 @@ def test_a_file_that_cannot_be_finished_leaves_the_old_one(data, tmp_path, monke
         ("map.txt", ("--format", "vecto"), b"Input Speed [rpm]"),
     ],
 )
-def test_the_command_writes_by_suffix_or_name(tmp_path, epicyclic, name, options, start):
+def test_the_command_writes_by_suffix_or_name(
+    tmp_path, epicyclic, coarse_options, name, options, start
+):
     done = epicyclic(
         "map", "talbot-2012", "--speed", "0,1000 rpm", "--torque", "-100,0,100 N*m",
-        "-o", str(tmp_path / name), *options,
+        "-o", str(tmp_path / name), *options, *coarse_options,
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")
     assert (tmp_path / name).read_bytes().startswith(start)

@@ -39,8 +39,8 @@ VARY = {
 
 
 @pytest.fixture(scope="module")
-def case():
-    return ep.load_case("talbot-2012")
+def case(coarse_talbot):
+    return coarse_talbot
 
 
 @pytest.fixture(scope="module")
@@ -196,10 +196,10 @@ def partly_failed(case):
 
 
 @pytest.mark.parametrize("suffix", ["nc", "csv", "parquet"])
-def test_files_hold_what_was_computed(partly_failed, tmp_path, epicyclic, suffix):
+def test_files_hold_what_was_computed(partly_failed, tmp_path, epicyclic, coarse_options, suffix):
     output = tmp_path / f"sweep.{suffix}"
     done = epicyclic(
-        "sweep", "talbot-2012", "--vary", "operation.speed=1000,4000 rpm",
+        "sweep", "talbot-2012", *coarse_options, "--vary", "operation.speed=1000,4000 rpm",
         "--vary", "planet.count=3,12", "--vary", "operation.torque=0,-500,1000 N*m",
         "-o", str(output),
     )  # fmt: skip
@@ -297,18 +297,18 @@ def lines_in(folder):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
-def test_interrupted_command_resumes(tmp_path):
+def test_interrupted_command_resumes(tmp_path, coarse_options):
     def command(*vary):
         options = [option for value in vary for option in ("--vary", value)]
         return [
             sys.executable, "-m", "epicyclic", "sweep", "talbot-2012", *options,
-            "--jobs", "1", "-o", str(tmp_path / "s.csv"),
+            *coarse_options, "--jobs", "1", "-o", str(tmp_path / "s.csv"),
         ]  # fmt: skip
 
     def call(*vary):
         return subprocess.run(command(*vary), capture_output=True, text=True, check=False)
 
-    vary = ("operation.speed=1000:4000:60 rpm", "operation.torque=1:1000:60 N*m")
+    vary = ("operation.speed=1000:4000:10 rpm", "operation.torque=1:1000:90 N*m")
     running = subprocess.Popen(
         command(*vary), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
@@ -322,12 +322,12 @@ def test_interrupted_command_resumes(tmp_path):
     assert running.returncode == 130
     assert output == ""
     said = re.fullmatch(
-        r"(\d+) of 3600 points kept in (.*); give the same command again to go on.\n"
+        r"(\d+) of 900 points kept in (.*); give the same command again to go on.\n"
         r"\n*Interrupted.\n",
         errors,
     )
     assert said is not None, errors
-    assert 50 <= int(said[1]) < 3600
+    assert 50 <= int(said[1]) < 900
     (left,) = names_in(tmp_path)
     assert said[2] == str(tmp_path / left)
 
@@ -339,6 +339,6 @@ def test_interrupted_command_resumes(tmp_path):
 
     again = call(*vary)
     assert again.returncode == 0, again.stderr
-    assert again.stderr == f"Going on from {said[1]} of 3600 points in {said[2]}.\n"
+    assert again.stderr == f"Going on from {said[1]} of 900 points in {said[2]}.\n"
     assert names_in(tmp_path) == ["s.csv"]
-    assert len(pd.read_csv(tmp_path / "s.csv")) == 3600
+    assert len(pd.read_csv(tmp_path / "s.csv")) == 900

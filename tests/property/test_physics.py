@@ -112,6 +112,8 @@ def sized(name, size):
             number, _, unit = str(value).partition(" ")
             if unit == "mm":
                 table[key] = f"{size * float(number)!r} mm"
+    # what is asserted here holds for flows of any resolution
+    tables["numerics"] = {"pocket_slices": 6, "pocket_steps": 10}
     return ep.load_case(tables)
 
 
