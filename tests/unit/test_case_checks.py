@@ -135,6 +135,15 @@ ONE_PROBLEM = {
         TALBOT, {"planet.tooth_thickness": "0.9 mm"},
         "planet.tip_diameter", "pointed",
     ),
+    "a chamfer without tip land": (
+        TALBOT, {"planet.tip_chamfer": "2 mm"},
+        "planet.tip_chamfer", "leaves no tip land",
+    ),
+    "chamfers that end the contact": (
+        PAIR, {"gears.helix_angle": "0 deg", "gear.tip_diameter": "52.6 mm",
+               "pinion.tip_diameter": "52.6 mm", "pinion.tip_chamfer": "0.5 mm"},
+        "pinion.tip_diameter, gear.tip_diameter", "below 1",
+    ),
     "no space": (
         TALBOT, {"planet.tooth_thickness": "6 mm"},
         "planet.root_diameter", "no space left",

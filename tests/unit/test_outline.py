@@ -287,7 +287,7 @@ def test_sections_are_continuous_and_smooth(gear: Gear, tool: Tool | None) -> No
     assert np.min(steps) > 0.0
     # A gap would be one step as long as many; steps of equal roll angle are uneven up to threefold.
     assert np.max(steps) < 3 * abs(gear.tip_radius - gear.root_radius) / 399
-    fillet_start, fillet_end, involute_end = outline.joints
+    fillet_start, fillet_end, involute_end, _ = outline.joints
     # Second-order differences over a 400th of a fillet, whose curvature changes along it, err by
     # up to 1e-5 rad.
     smooth = 5e-5
@@ -493,3 +493,24 @@ def test_senseless_arguments_are_refused() -> None:
     for teeth in (0, 74):
         with pytest.raises(ValueError, match="an outline of"):
             outline.points(teeth)
+
+
+@pytest.mark.parametrize("gear", [standard_gear(30), standard_gear(60, internal=True)])
+def test_chamfer_ends_the_involute_and_leaves_the_rest(gear: Gear) -> None:
+    height = 0.1 * MODULE
+    sharp, broken = tooth_outline(gear), tooth_outline(replace(gear, tip_chamfer=height))
+    assert sharp.joints[2] == sharp.joints[3]
+    start, corner_at = broken.joints[2], broken.joints[3]
+    assert corner_at == start + 1
+    assert abs(broken.radius[start] - gear.tip_radius) == pytest.approx(height)
+    assert broken.half_angle[start] == gear.half_angle_at(broken.radius[start])
+    assert broken.radius[corner_at] == gear.tip_radius
+    land = broken.half_angle[start] - height / gear.tip_radius
+    assert broken.half_angle[corner_at] == pytest.approx(land, rel=ROUNDING_ERROR)
+    # 45 degrees to the radius but for the turn of the radius along the chamfer
+    points = broken.radius * np.exp(1j * (broken.half_angle - broken.half_angle[start]))
+    chamfer = points[corner_at] - points[start]
+    assert abs(chamfer.imag / chamfer.real) == pytest.approx(1.0, abs=height / gear.tip_radius)
+    root_part = slice(0, broken.joints[1] + 1)
+    assert np.array_equal(broken.radius[root_part], sharp.radius[root_part])
+    assert np.array_equal(broken.half_angle[root_part], sharp.half_angle[root_part])

@@ -170,6 +170,7 @@ def _varied_mesh(mesh: Mesh, variant: PocketVariant) -> Mesh:
             tip_radius=radius + scale * (gear.tip_radius - radius_before),
             root_radius=radius + scale * (gear.root_radius - radius_before),
             face_width=variant.face_width,
+            tip_chamfer=scale * gear.tip_chamfer,
         )
 
     return replace(

@@ -102,6 +102,7 @@ def gear(name: str, table: GearTable, gears: Gears) -> Gear:
         tip_radius=tip if table.tip_diameter is None else table.tip_diameter / 2,
         root_radius=root if table.root_diameter is None else table.root_diameter / 2,
         face_width=table.face_width,
+        tip_chamfer=table.tip_chamfer,
     )
 
 

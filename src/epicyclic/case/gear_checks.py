@@ -153,6 +153,15 @@ def _check_tooth(gear: Gear, table: GearTable) -> Problem | None:
             "the teeth are pointed before they reach the tip circle.",
             f"Shorten the teeth, or make them thicker with {thickness}.",
         )
+    if gear.tip_form_radius <= gear.base_radius or gear.tip_half_angle <= 0:
+        return Problem(
+            f"{gear.name}.tip_chamfer",
+            millimetres(gear.tip_chamfer),
+            "leaves no tip land or no involute: the tooth is "
+            f"{millimetres(gear.thickness_at(gear.tip_radius))} thick at the tip circle, and each "
+            "of its two chamfers takes about its height of that.",
+            "Reduce it.",
+        )
     if gear.half_angle_at(max(gear.root_radius, gear.base_radius)) >= math.pi / gear.teeth:
         return Problem(
             root,
@@ -271,6 +280,7 @@ def _tip_limit(gear: Gear, limit: float) -> str:
 def _check_contact_ratio(mesh: Mesh, tables: Tables) -> list[Problem]:
     one, two = mesh.gear1, mesh.gear2
     transverse, overlap = mesh.transverse_contact_ratio, mesh.overlap_ratio
+    chamfered = one.tip_chamfer > 0 or two.tip_chamfer > 0
     if transverse <= 0:
         fault = f"the teeth of the {mesh.name} do not reach each other"
     elif transverse + overlap < 1:
@@ -285,7 +295,7 @@ def _check_contact_ratio(mesh: Mesh, tables: Tables) -> list[Problem]:
             f"{one.name}.tip_diameter, {two.name}.tip_diameter",
             _tip_diameters(mesh, tables),
             f"{fault}: motion is not passed on.",
-            f"Lengthen the teeth or correct gears.center_distance. {_reference_distance(mesh)}",
+            f"Lengthen the teeth{', reduce tip_chamfer' if chamfered else ''} or correct gears.center_distance. {_reference_distance(mesh)}",
         )
     ]
 
@@ -342,7 +352,10 @@ def _tip_radius_for(mesh: Mesh, mate: Gear, radius: float) -> float:
     length = mesh.line_of_action - mesh.side * curvature
     if mate is mesh.gear1:
         length = mesh.side * (mesh.line_of_action - curvature)
-    return math.hypot(mate.base_radius, length) if length > 0 else 0.0
+    if length <= 0:
+        return 0.0
+    form = math.hypot(mate.base_radius, length)
+    return form + (-mate.tip_chamfer if mate.internal else mate.tip_chamfer)
 
 
 def _no_tool(gear: Gear, table: GearTable, reason: str) -> Problem:

@@ -310,6 +310,10 @@ class GearTable(Table):
     root_diameter: Length | None = Field(
         default=None, description="Default: from dedendum_coefficient."
     )
+    tip_chamfer: _ShortLength = Field(
+        default=_as_text("0 mm"),
+        description="Radial height of the 45 degree chamfers of the tip corners.",
+    )
     tooth_thickness: Length | None = Field(
         default=None, description="Transverse arc thickness at thickness_diameter."
     )

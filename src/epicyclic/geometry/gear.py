@@ -79,6 +79,8 @@ class Gear:
         [m]
     face_width : float
         [m]
+    tip_chamfer : float
+        h_K, radial height of the chamfers of the tip corners; zero for sharp corners. [m]
     """
 
     name: str
@@ -89,6 +91,7 @@ class Gear:
     tip_radius: float
     root_radius: float
     face_width: float
+    tip_chamfer: float = 0.0
 
     @property
     def reference_radius(self) -> float:
@@ -142,6 +145,27 @@ class Gear:
     def tip_involute_length(self) -> float:
         """Radius of curvature of the involute at the tip circle, transverse. Theory (G12). [m]"""
         return math.sqrt(max(0.0, self.tip_radius**2 - self.base_radius**2))
+
+    @property
+    def tip_form_radius(self) -> float:
+        """r_Fa, where the involute ends and the tip chamfer begins. ISO 21771. [m]
+
+        Theory (G41).
+        """
+        return self.tip_radius + (self.tip_chamfer if self.internal else -self.tip_chamfer)
+
+    @property
+    def tip_form_involute_length(self) -> float:
+        """Radius of curvature of the involute at the tip form circle, transverse. [m]
+
+        Theory (G42).
+        """
+        return math.sqrt(max(0.0, self.tip_form_radius**2 - self.base_radius**2))
+
+    @property
+    def tip_half_angle(self) -> float:
+        """Half the angle of the tip land that the chamfers leave. Theory (G43)."""
+        return self.half_angle_at(self.tip_form_radius) - self.tip_chamfer / self.tip_radius
 
 
 def half_angle_from_thickness(

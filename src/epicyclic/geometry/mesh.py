@@ -108,16 +108,16 @@ class Mesh:
 
     @property
     def path_start(self) -> float:
-        """Radius of curvature of member 1 where the tip of member 2 is in contact. [m]
+        """Radius of curvature of member 1 where the tip form circle of member 2 is in contact. [m]
 
         Theory (G17).
         """
-        return self.side * (self.line_of_action - self.gear2.tip_involute_length)
+        return self.side * (self.line_of_action - self.gear2.tip_form_involute_length)
 
     @property
     def path_end(self) -> float:
-        """Radius of curvature of member 1 at its own tip. Theory (G17). [m]"""
-        return self.gear1.tip_involute_length
+        """Radius of curvature of member 1 at its own tip form circle. Theory (G17). [m]"""
+        return self.gear1.tip_form_involute_length
 
     @property
     def pitch_point(self) -> float:
@@ -207,7 +207,7 @@ class Mesh:
         """Clearance of the tips of an internal mesh where the tip circles cross, as an angle of
         member 2; infinite if they do not cross. Negative: tip interference. [rad]
 
-        Theory (G24).
+        Theory (G24). Of tips without chamfers, which pass each other closer than chamfered ones.
 
         Polder (1991); Colbourne, The Geometry of Involute Gears (1987), section 8.
         """

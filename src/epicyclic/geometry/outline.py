@@ -129,8 +129,8 @@ class ToothOutline:
     half_angle : ndarray, shape (n,)
         Angle of each point from the centre line of the tooth, from pi/z to zero. Read-only. [rad]
     joints : tuple of int
-        Indices of the three points that end the root arc, the fillet and the involute. A section
-        without length has no points of its own, so two joints may be equal.
+        Indices of the four points that end the root arc, the fillet, the involute and the tip
+        chamfer. A section without length has no points of its own, so two joints may be equal.
     form_radius : float
         r_Ff, where involute and fillet meet. [m]
     undercut : bool
@@ -145,15 +145,15 @@ class ToothOutline:
     internal: bool
     radius: Floats
     half_angle: Floats
-    joints: tuple[int, int, int]
+    joints: tuple[int, int, int, int]
     form_radius: float
     undercut: bool
     fillet_tool_radius: float
 
-    def section(self, name: Literal["root", "fillet", "involute", "tip"]) -> slice:
+    def section(self, name: Literal["root", "fillet", "involute", "chamfer", "tip"]) -> slice:
         """Where in `radius` and `half_angle` a section lies, its two end points included."""
         ends = (0, *self.joints, self.radius.size - 1)
-        first = ("root", "fillet", "involute", "tip").index(name)
+        first = ("root", "fillet", "involute", "chamfer", "tip").index(name)
         return slice(ends[first], ends[first + 1] + 1)
 
     def points(self, teeth: int | None = None) -> Floats:
@@ -264,8 +264,8 @@ def tooth_outline(
     tool : RackTool or ShaperTool, optional
         `default_tool` if not given.
     points : int
-        Points on each of the four sections, both ends counted: evenly spaced on the arcs and along
-        the fillet, by roll angle on the involute.
+        Points on each section, both ends counted: evenly spaced on the arcs and along the fillet,
+        by roll angle on the involute. The chamfer, which is straight, has its two ends only.
 
     Returns
     -------
@@ -287,9 +287,10 @@ def tooth_outline(
     if np.any(fillet_angle <= 0.0):
         raise ValueError(f"undercut severs the teeth of the {gear.name} from their root")
     involute_radius, involute_angle = _involute(gear, start_radius, points)
-    tip_angle = _steps(gear.half_angle_at(gear.tip_radius), 0.0, points)
+    chamfer_angle = np.full(1 if gear.tip_chamfer > 0.0 else 0, gear.tip_half_angle)
+    tip_angle = _steps(gear.tip_half_angle, 0.0, points)
 
-    angles = (root_angle, fillet_angle, involute_angle, tip_angle)
+    angles = (root_angle, fillet_angle, involute_angle, chamfer_angle, tip_angle)
     # Every section leaves out its first point, the last one of the section before.
     half_angle = np.concatenate([[math.pi / gear.teeth], *angles])
     radius = np.concatenate(
@@ -297,18 +298,18 @@ def tooth_outline(
             np.full(1 + root_angle.size, gear.root_radius),
             fillet_radius,
             involute_radius,
-            np.full(tip_angle.size, gear.tip_radius),
+            np.full(chamfer_angle.size + tip_angle.size, gear.tip_radius),
         ]
     )
     radius.flags.writeable = False
     half_angle.flags.writeable = False
-    first, second, third = np.cumsum([section.size for section in angles[:3]]).tolist()
+    first, second, third, fourth = np.cumsum([section.size for section in angles[:4]]).tolist()
     return ToothOutline(
         teeth=gear.teeth,
         internal=gear.internal,
         radius=radius,
         half_angle=half_angle,
-        joints=(first, second, third),
+        joints=(first, second, third, fourth),
         form_radius=start_radius,
         undercut=cut.last_curvature < 0.0,
         fillet_tool_radius=cut.tool_radius,
@@ -446,7 +447,7 @@ def _check_gear(gear: Gear) -> None:
     height = gear.tip_radius - gear.root_radius
     if gear.root_radius <= 0.0 or (height >= 0.0 if gear.internal else height <= 0.0):
         raise ValueError(f"root and tip circle of the {gear.name} leave no height for a tooth")
-    if gear.half_angle_at(gear.tip_radius) < 0.0:
+    if gear.tip_half_angle < 0.0:
         raise ValueError(f"the teeth of the {gear.name} are pointed before they reach the tip")
 
 
@@ -619,8 +620,10 @@ def _involute_start(gear: Gear, cut: _RackCut | _ShaperCut) -> tuple[float, floa
         radius, normal = math.hypot(gear.base_radius, cut.last_curvature), cut.last_normal
     else:
         radius, normal = _undercut_start(gear, cut)
-    if not (gear.tip_radius < radius if gear.internal else radius < gear.tip_radius):
-        raise ValueError(f"the fillet of the {gear.name} leaves no involute up to the tip circle")
+    tip = gear.tip_form_radius
+    if not (tip < radius if gear.internal else radius < tip):
+        end = "tip chamfer" if gear.tip_chamfer > 0.0 else "tip circle"
+        raise ValueError(f"the fillet of the {gear.name} leaves no involute up to the {end}")
     return radius, normal
 
 
@@ -693,9 +696,9 @@ def _involute(gear: Gear, start_radius: float, points: int) -> tuple[Floats, Flo
     """Radii and half angles of the involute by even steps of roll angle, the first left out."""
     base = gear.base_radius
     start = math.sqrt(max(0.0, start_radius**2 - base**2))
-    curvature = _steps(start, gear.tip_involute_length, points)
+    curvature = _steps(start, gear.tip_form_involute_length, points)
     half_angle = gear.half_angles_at(curvature)
     radius = np.hypot(base, curvature)
-    radius[-1] = gear.tip_radius
-    half_angle[-1] = gear.half_angle_at(gear.tip_radius)
+    radius[-1] = gear.tip_form_radius
+    half_angle[-1] = gear.half_angle_at(gear.tip_form_radius)
     return radius, half_angle

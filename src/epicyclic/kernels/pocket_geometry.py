@@ -64,11 +64,12 @@ def _closest(
         In the frame of the stored flank. [m]
     flank : ndarray of complex, shape (n,)
         From the middle of the space to the tip corner. [m]
-    joints : ndarray, shape (2,)
-        Indices where the fillet begins and where it ends.
+    joints : ndarray, shape (3,)
+        Indices where the fillet begins, where it ends, and where the involute ends: at the tip
+        corner, or at the chamfer that leads to it.
     gear : ndarray, shape (5,)
         Base radius [m], half angle of the tooth at the base circle [rad], radii of curvature of
-        the involute at the form circle and at the tip [m], +1 for an external gear, -1 for a ring.
+        the involute at its root and tip ends [m], +1 for an external gear, -1 for a ring.
 
     Returns
     -------
@@ -98,17 +99,18 @@ def _closest(
                 best = distance
                 foot = _involute_point(rho_foot, base, base_half_angle, outward)
                 after = _next_to_tip(flank, int(joints[1]), rho_foot, base, outward)
-    for k in range(int(joints[0]), int(joints[1])):
-        chord = flank[k + 1] - flank[k]
-        to_point = point - flank[k]
-        squared = chord.real**2 + chord.imag**2
-        share = (to_point.real * chord.real + to_point.imag * chord.imag) / squared
-        share = min(1.0, max(0.0, share))
-        distance = abs(to_point - share * chord)
-        if distance < best:
-            best = distance
-            foot = flank[k] + share * chord
-            after = k + 1
+    for first, last in ((int(joints[0]), int(joints[1])), (int(joints[2]), flank.size - 1)):
+        for k in range(first, last):
+            chord = flank[k + 1] - flank[k]
+            to_point = point - flank[k]
+            squared = chord.real**2 + chord.imag**2
+            share = (to_point.real * chord.real + to_point.imag * chord.imag) / squared
+            share = min(1.0, max(0.0, share))
+            distance = abs(to_point - share * chord)
+            if distance < best:
+                best = distance
+                foot = flank[k] + share * chord
+                after = k + 1
     return best, foot, after
 
 
@@ -188,15 +190,26 @@ def _gap(
             _unplace(place1, turn2, mirror2, centre2), flank2, joints2, gear2
         )
         return width, place1, _place(foot2, turn2, mirror2, centre2), after1, after2
-    corner1 = _place(flank1[flank1.size - 1], phi, leading, 0.0)
-    corner2 = _place(flank2[flank2.size - 1], turn2, mirror2, centre2)
-    on2, foot2, after2 = _closest(
-        _unplace(corner1, turn2, mirror2, centre2), flank2, joints2, gear2
-    )
-    on1, foot1, after1 = _closest(_unplace(corner2, phi, leading, 0.0), flank1, joints1, gear1)
+    # Beyond the path of contact a corner is closest: of the tip, or where its chamfer begins.
+    on2, corner1, foot2, vertex1, after2 = math.inf, 0j, 0j, 0, 0
+    for k in range(int(joints1[2]), flank1.size):
+        corner = _place(flank1[k], phi, leading, 0.0)
+        distance, foot, after = _closest(
+            _unplace(corner, turn2, mirror2, centre2), flank2, joints2, gear2
+        )
+        if distance < on2:
+            on2, corner1, foot2, vertex1, after2 = distance, corner, foot, k, after
+    on1, foot1, corner2, after1, vertex2 = math.inf, 0j, 0j, 0, 0
+    for k in range(int(joints2[2]), flank2.size):
+        corner = _place(flank2[k], turn2, mirror2, centre2)
+        distance, foot, after = _closest(
+            _unplace(corner, phi, leading, 0.0), flank1, joints1, gear1
+        )
+        if distance < on1:
+            on1, foot1, corner2, after1, vertex2 = distance, foot, corner, after, k
     if on2 <= on1:
-        return on2, corner1, _place(foot2, turn2, mirror2, centre2), flank1.size - 1, after2
-    return on1, _place(foot1, phi, leading, 0.0), corner2, after1, flank2.size - 1
+        return on2, corner1, _place(foot2, turn2, mirror2, centre2), vertex1, after2
+    return on1, _place(foot1, phi, leading, 0.0), corner2, after1, vertex2
 
 
 @kernel

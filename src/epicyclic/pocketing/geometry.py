@@ -210,13 +210,13 @@ def _flank(gear: Gear, tool: Tool | None) -> tuple[NDArray[np.complex128], Float
     """Flank, joints and figures of a gear as the kernels take them."""
     outline = tooth_outline(gear, tool, OUTLINE_POINTS)
     outward = -1.0 if gear.internal else 1.0
-    root, fillet, corner = outline.joints
+    root, fillet, involute_end, corner = outline.joints
     points = outline.radius[: corner + 1] * np.exp(1j * outline.half_angle[: corner + 1])
     base = gear.base_radius
     form = math.sqrt(max(0.0, outline.form_radius**2 - base**2))
     at_base = gear.thickness_half_angle + outward * involute(gear.rack.transverse_pressure_angle)
-    figures = np.array([base, at_base, form, gear.tip_involute_length, outward])
-    return points, np.array([root, fillet], dtype=np.float64), figures
+    figures = np.array([base, at_base, form, gear.tip_form_involute_length, outward])
+    return points, np.array([root, fillet, involute_end], dtype=np.float64), figures
 
 
 def _lives(mesh: Mesh, clearances: tuple[float, float]) -> Floats:
@@ -224,13 +224,13 @@ def _lives(mesh: Mesh, clearances: tuple[float, float]) -> Floats:
     one leaves it. Theory (Q6)."""
     gear1, gear2 = mesh.gear1, mesh.gear2
     crossing1 = _crossing(gear1.tip_radius, gear2.tip_radius, mesh.center_distance, mesh.internal)
-    half1 = crossing1 + gear1.half_angle_at(gear1.tip_radius)
+    half1 = crossing1 + gear1.tip_half_angle
     # Seen from a ring, its own tip circle is the far one and that of the planet the near one.
     cosine = (gear2.tip_radius**2 + mesh.center_distance**2 - gear1.tip_radius**2) / (
         2 * gear2.tip_radius * mesh.center_distance
     )
     crossing2 = math.acos(min(1.0, max(-1.0, cosine)))
-    half2 = (crossing2 + gear2.half_angle_at(gear2.tip_radius)) * mesh.ratio
+    half2 = (crossing2 + gear2.tip_half_angle) * mesh.ratio
     shift = (clearances[0] - clearances[1]) / 2 / gear1.base_radius
     return np.array([[-half1, half1], [-half2 - shift, half2 - shift]])
 
