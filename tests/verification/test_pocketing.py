@@ -59,7 +59,7 @@ def solve(geometry, rpm=10000.0, xi=0.05, **kwargs):
 
 
 def outline_distance(mesh, tools, phi, leading, shift):
-    """Smallest distance of two flanks by brute force over finely drawn outlines."""
+    """Smallest distance of two flanks up to their chamfers, by brute force over fine outlines."""
     gear1, gear2 = mesh.gear1, mesh.gear2
     flanks = []
     for gear, tool in zip((gear1, gear2), tools, strict=True):
@@ -78,8 +78,11 @@ def outline_distance(mesh, tools, phi, leading, shift):
 
 @pytest.mark.parametrize("internal", [False, True])
 @pytest.mark.parametrize("leading", [1, -1])
-def test_gaps_are_the_smallest_distances(make_mesh, internal, leading):
+@pytest.mark.parametrize("chamfer", [0.0, 0.2e-3])
+def test_gaps_are_the_smallest_distances(make_mesh, internal, leading, chamfer):
     mesh = make_mesh(24, 71 if internal else 33, internal=internal, x1=-0.02, x2=-0.03)
+    gears = (replace(gear, tip_chamfer=chamfer) for gear in (mesh.gear1, mesh.gear2))
+    mesh = replace(mesh, **dict(zip(("gear1", "gear2"), gears, strict=True)))
     tools = (None, None)
     geometry = pocket_geometry(mesh, tools, True)
     clearance = mesh.backlash * math.cos(mesh.operating_pressure_angle)

@@ -90,6 +90,14 @@ def test_pocketing_loss_falls_gradually_with_the_chamfer(make_mesh):
     assert powers[-1] > 0.7 * powers[0]
 
 
+def test_areas_of_chamfered_pockets_are_continuous(make_mesh):
+    mesh = chamfered(make_mesh(30, 30), 1.5 * HEIGHT, 1.5 * HEIGHT)
+    coarse, fine = (pocket_geometry(mesh, SHARP, True, angles).area for angles in (385, 1537))
+    largest = [np.abs(np.diff(area, axis=1)).max() for area in (coarse, fine)]
+    # a jump would stay, a steep slope takes a quarter of the step
+    assert largest[1] == pytest.approx(largest[0] / 4, rel=0.05)
+
+
 def test_chamfered_pockets_mirror_with_the_driver(make_mesh):
     mesh = chamfered(make_mesh(24, 36), HEIGHT, HEIGHT / 2)
     one, other = (pocket_geometry(mesh, SHARP, drives1) for drives1 in (True, False))

@@ -66,7 +66,7 @@ def _closest(
         From the middle of the space to the tip corner. [m]
     joints : ndarray, shape (3,)
         Indices where the fillet begins, where it ends, and where the involute ends: at the tip
-        corner, or at the chamfer that leads to it.
+        corner, or at the chamfer, on which no foot lies.
     gear : ndarray, shape (5,)
         Base radius [m], half angle of the tooth at the base circle [rad], radii of curvature of
         the involute at its root and tip ends [m], +1 for an external gear, -1 for a ring.
@@ -81,10 +81,9 @@ def _closest(
         Index of the first point of `flank` beyond the foot towards the tip.
     """
     base, base_half_angle, rho_form, rho_tip, outward = gear
-    corner = flank[flank.size - 1]
-    best = abs(point - corner)
-    foot = corner
-    after = flank.size - 1
+    after = int(joints[2])
+    foot = flank[after]
+    best = abs(point - foot)
     radius = abs(point)
     if radius > base:
         # The normal of the involute through the point is a tangent of the base circle, and its
@@ -99,18 +98,17 @@ def _closest(
                 best = distance
                 foot = _involute_point(rho_foot, base, base_half_angle, outward)
                 after = _next_to_tip(flank, int(joints[1]), rho_foot, base, outward)
-    for first, last in ((int(joints[0]), int(joints[1])), (int(joints[2]), flank.size - 1)):
-        for k in range(first, last):
-            chord = flank[k + 1] - flank[k]
-            to_point = point - flank[k]
-            squared = chord.real**2 + chord.imag**2
-            share = (to_point.real * chord.real + to_point.imag * chord.imag) / squared
-            share = min(1.0, max(0.0, share))
-            distance = abs(to_point - share * chord)
-            if distance < best:
-                best = distance
-                foot = flank[k] + share * chord
-                after = k + 1
+    for k in range(int(joints[0]), int(joints[1])):
+        chord = flank[k + 1] - flank[k]
+        to_point = point - flank[k]
+        squared = chord.real**2 + chord.imag**2
+        share = (to_point.real * chord.real + to_point.imag * chord.imag) / squared
+        share = min(1.0, max(0.0, share))
+        distance = abs(to_point - share * chord)
+        if distance < best:
+            best = distance
+            foot = flank[k] + share * chord
+            after = k + 1
     return best, foot, after
 
 
@@ -190,26 +188,16 @@ def _gap(
             _unplace(place1, turn2, mirror2, centre2), flank2, joints2, gear2
         )
         return width, place1, _place(foot2, turn2, mirror2, centre2), after1, after2
-    # Beyond the path of contact a corner is closest: of the tip, or where its chamfer begins.
-    on2, corner1, foot2, vertex1, after2 = math.inf, 0j, 0j, 0, 0
-    for k in range(int(joints1[2]), flank1.size):
-        corner = _place(flank1[k], phi, leading, 0.0)
-        distance, foot, after = _closest(
-            _unplace(corner, turn2, mirror2, centre2), flank2, joints2, gear2
-        )
-        if distance < on2:
-            on2, corner1, foot2, vertex1, after2 = distance, corner, foot, k, after
-    on1, foot1, corner2, after1, vertex2 = math.inf, 0j, 0j, 0, 0
-    for k in range(int(joints2[2]), flank2.size):
-        corner = _place(flank2[k], turn2, mirror2, centre2)
-        distance, foot, after = _closest(
-            _unplace(corner, phi, leading, 0.0), flank1, joints1, gear1
-        )
-        if distance < on1:
-            on1, foot1, corner2, after1, vertex2 = distance, foot, corner, after, k
+    end1, end2 = int(joints1[2]), int(joints2[2])
+    corner1 = _place(flank1[end1], phi, leading, 0.0)
+    corner2 = _place(flank2[end2], turn2, mirror2, centre2)
+    on2, foot2, after2 = _closest(
+        _unplace(corner1, turn2, mirror2, centre2), flank2, joints2, gear2
+    )
+    on1, foot1, after1 = _closest(_unplace(corner2, phi, leading, 0.0), flank1, joints1, gear1)
     if on2 <= on1:
-        return on2, corner1, _place(foot2, turn2, mirror2, centre2), vertex1, after2
-    return on1, _place(foot1, phi, leading, 0.0), corner2, after1, vertex2
+        return on2, corner1, _place(foot2, turn2, mirror2, centre2), end1, after2
+    return on1, _place(foot1, phi, leading, 0.0), corner2, after1, end2
 
 
 @kernel
