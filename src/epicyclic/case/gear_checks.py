@@ -154,14 +154,7 @@ def _check_tooth(gear: Gear, table: GearTable) -> Problem | None:
             f"Shorten the teeth, or make them thicker with {thickness}.",
         )
     if gear.tip_form_radius <= gear.base_radius or gear.tip_half_angle <= 0:
-        return Problem(
-            f"{gear.name}.tip_chamfer",
-            millimetres(gear.tip_chamfer),
-            "leaves no tip land or no involute: the tooth is "
-            f"{millimetres(gear.thickness_at(gear.tip_radius))} thick at the tip circle, and each "
-            "of its two chamfers takes about its height of that.",
-            "Reduce it.",
-        )
+        return _too_large_chamfer(gear)
     if gear.half_angle_at(max(gear.root_radius, gear.base_radius)) >= math.pi / gear.teeth:
         return Problem(
             root,
@@ -170,6 +163,17 @@ def _check_tooth(gear: Gear, table: GearTable) -> Problem | None:
             f"Make the teeth less deep, or thinner with {thickness}.",
         )
     return None
+
+
+def _too_large_chamfer(gear: Gear) -> Problem:
+    return Problem(
+        f"{gear.name}.tip_chamfer",
+        millimetres(gear.tip_chamfer),
+        "leaves no tip land or no involute: the tooth is "
+        f"{millimetres(gear.thickness_at(gear.tip_radius))} thick at the tip circle, and each of "
+        "its two chamfers takes about its height of that.",
+        "Reduce it.",
+    )
 
 
 def _diameter(radius: float, given: float | None) -> str:
@@ -280,7 +284,6 @@ def _tip_limit(gear: Gear, limit: float) -> str:
 def _check_contact_ratio(mesh: Mesh, tables: Tables) -> list[Problem]:
     one, two = mesh.gear1, mesh.gear2
     transverse, overlap = mesh.transverse_contact_ratio, mesh.overlap_ratio
-    chamfered = one.tip_chamfer > 0 or two.tip_chamfer > 0
     if transverse <= 0:
         fault = f"the teeth of the {mesh.name} do not reach each other"
     elif transverse + overlap < 1:
@@ -290,12 +293,13 @@ def _check_contact_ratio(mesh: Mesh, tables: Tables) -> list[Problem]:
         )
     else:
         return []
+    chamfers = ", reduce tip_chamfer" if one.tip_chamfer > 0 or two.tip_chamfer > 0 else ""
     return [
         Problem(
             f"{one.name}.tip_diameter, {two.name}.tip_diameter",
             _tip_diameters(mesh, tables),
             f"{fault}: motion is not passed on.",
-            f"Lengthen the teeth{', reduce tip_chamfer' if chamfered else ''} or correct gears.center_distance. {_reference_distance(mesh)}",
+            f"Lengthen the teeth{chamfers} or correct gears.center_distance. {_reference_distance(mesh)}",
         )
     ]
 
