@@ -299,7 +299,8 @@ def _check_contact_ratio(mesh: Mesh, tables: Tables) -> list[Problem]:
             f"{one.name}.tip_diameter, {two.name}.tip_diameter",
             _tip_diameters(mesh, tables),
             f"{fault}: motion is not passed on.",
-            f"Lengthen the teeth{chamfers} or correct gears.center_distance. {_reference_distance(mesh)}",
+            f"Lengthen the teeth{chamfers} or correct gears.center_distance. "
+            f"{_reference_distance(mesh)}",
         )
     ]
 
