@@ -72,9 +72,9 @@ def pocketing_table(
         ``speed_max`` [m/s] and the ``difference`` of the power from the energy balance [1]. At rest
         all are zero; NaN where the flow does not repeat or is not found.
         ``interpolation_error`` [1] is the largest error of the power that was measured at flows
-        left out of a table. The attribute ``flows`` holds the tables over the number of
-        Theory (Q21), with all that they depend on; a case whose ``models.pocketing_table`` names
-        the file reads them.
+        left out of a table. The attribute ``flows`` holds the tables over the one number
+        that they depend on, and all that they were made for; a case whose
+        ``models.pocketing_table`` names the file reads them.
 
     Raises
     ------
@@ -93,14 +93,14 @@ def pocketing_table(
     ]
     tables = _make(case, points, progress)
     speed, temperature = plan.axes
-    keys = {duty.mesh.name: duty.key for duty in mesh_duties(case)}
+    meshes = [duty.key for duty in mesh_duties(case)]
     coordinates = {
-        "mesh": list(keys.values()),
+        "mesh": meshes,
         "driver": ("driver", list(_DRIVERS), {"long_name": "member that drives"}),
         "speed": _coordinate("speed", speed.coordinate, speed.unit),
         "temperature": _coordinate("temperature", temperature.coordinate, temperature.unit),
     }
-    shape = (len(keys), len(_DRIVERS), *plan.shape)
+    shape = (len(meshes), len(_DRIVERS), *plan.shape)
     return _dataset(case, points, tables, coordinates, shape)
 
 
