@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from epicyclic.records.record import ResultRecord, record
     from epicyclic.report.html import report_html
     from epicyclic.sweeps.pocketing_study import pocketing_study
+    from epicyclic.sweeps.pocketing_table import pocketing_table
     from epicyclic.sweeps.run import sweep
 
 _HOME = {
@@ -57,6 +58,7 @@ _HOME = {
     "mesh_details": "epicyclic.analysis.mesh_details",
     "pocket_details": "epicyclic.analysis.pocket_details",
     "pocketing_study": "epicyclic.sweeps.pocketing_study",
+    "pocketing_table": "epicyclic.sweeps.pocketing_table",
     "read_rexs": "epicyclic.exchange.rexs.importing",
     "open_result": "epicyclic.records.files",
     "record": "epicyclic.records.record",
@@ -91,6 +93,7 @@ __all__ = [
     "open_result",
     "pocket_details",
     "pocketing_study",
+    "pocketing_table",
     "read_rexs",
     "record",
     "report_html",

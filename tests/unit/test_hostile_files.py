@@ -21,6 +21,7 @@ from epicyclic.maps.cycle import open_cycle
 from epicyclic.measurement.files import read_grid
 from epicyclic.measurement.table import parse_measurements
 from epicyclic.oilmodel.model import read_oil_model
+from epicyclic.pocketing.stored import read_stored
 from epicyclic.sweeps.journal import Journal
 
 MOST_SECONDS = 5.0
@@ -57,6 +58,7 @@ READERS = {
     "gears.rexsz": read_rexs,
     "result.nc": ep.open_result,
     "model.json": read_oil_model,
+    "pockets.nc": read_stored,
     "campaign.json": read_campaign,
     "sweep.nc.0123456789ab.partial": read_journal,
 }

@@ -16,6 +16,7 @@ from epicyclic.analysis.pockets import (
     MeshFlow,
     pocket_notes,
     pocketing_method,
+    stored_note,
 )
 from epicyclic.analysis.result import (
     LOAD_DEPENDENT,
@@ -281,6 +282,7 @@ def solve_mesh(
     }
     figures = _mesh_figures(duty, contact, loss.mean_friction, elastic, flow.figures)
     notes = pocket_notes(case, duty.mesh, flow.figures)
+    notes += stored_note(case, duty.mesh, flow.figures)
     if contact is not None and isinstance(friction, EhlDirect):
         notes += friction.remarks(contact)
     return MeshOutcome(parts, figures, loss.flags, notes)

@@ -14,6 +14,7 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow
 from epicyclic.pocketing.similarity import FlowFamily, FlowFigures, flow_figures
+from epicyclic.pocketing.stored import stored_table
 from epicyclic.pocketing.table import FlowTables
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ __all__ = [
     "pocket_notes",
     "pocketing_method",
     "solve_pockets",
+    "stored_note",
 ]
 
 POCKETING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), chapter 4"
@@ -83,36 +85,62 @@ def solve_pockets(case: Case, duty: MeshDuty, mixture: MixtureState) -> PocketFl
 def flow_numbers(
     case: Case, duties: Sequence[MeshDuty], mixture: MixtureState
 ) -> Iterator[tuple[FlowFamily, float]]:
-    """Family and number of the flow of each mesh whose loss the case includes."""
-    pressure = case.surroundings.pressure
+    """Family and number of the flow of each mesh whose loss the case includes.
+
+    Those that ``models.pocketing_table`` holds are left out.
+
+    Raises
+    ------
+    InputError
+        If that table was made for other pockets.
+    """
     for duty in duties:
         if _included(case, duty) and duty.speed1 != 0:
-            yield flow_family(case, duty), FlowFamily.number(abs(duty.speed1), mixture, pressure)
+            request = _request(case, duty, mixture)
+            if _stored_figures(case, request) is None:
+                yield request[0], FlowFamily.number(*request[1:])
 
 
 def mesh_flows(
     case: Case, duties: Sequence[MeshDuty], mixture: MixtureState, tables: FlowTables
 ) -> dict[str, MeshFlow]:
-    """Flow through the pockets of each mesh, by its key, read from `tables` where they have it.
+    """Flow through the pockets of each mesh, by its key.
+
+    Read from ``models.pocketing_table``, else from `tables`, where they have it.
 
     Raises
     ------
     ConvergenceError
         If a flow is not found.
+    InputError
+        If the table of the case was made for other pockets.
     """
     flows: dict[str, MeshFlow] = {duty.key: MeshFlow() for duty in duties}
     direct: dict[str, _Request] = {}
     for duty in duties:
         if not _included(case, duty) or duty.speed1 == 0:
             continue
-        request = (flow_family(case, duty), abs(duty.speed1), mixture, case.surroundings.pressure)
-        table = tables.get(request[0])
-        figures = None if table is None else table.figures(*request[1:])
+        request = _request(case, duty, mixture)
+        figures = _stored_figures(case, request)
+        if figures is None and request[0] in tables:
+            figures = tables[request[0]].figures(*request[1:])
         if figures is None:
             direct[duty.key] = request
         else:
             flows[duty.key] = MeshFlow(figures)
     return flows | dict(zip(direct, _solve_all(tuple(direct.values())), strict=True))
+
+
+def _request(case: Case, duty: MeshDuty, mixture: MixtureState) -> _Request:
+    return flow_family(case, duty), abs(duty.speed1), mixture, case.surroundings.pressure
+
+
+def _stored_figures(case: Case, request: _Request) -> FlowFigures | None:
+    """From the table that the case names; None if it names none, or the table does not hold it."""
+    file = case.models.pocketing_table
+    if file is None:
+        return None
+    return stored_table(case.folder / file, request[0]).figures(*request[1:])
 
 
 @lru_cache(maxsize=256)
@@ -142,6 +170,8 @@ def pocketing_method(case: Case, figures: FlowFigures | None) -> str:
     method = POCKETING_MODELS[case.models.pocketing]
     if figures is None or not figures.nodes:
         return method
+    if figures.file:
+        return f"{method}, table {figures.file}, interpolated within {figures.error:.2%}"
     return f"{method}, interpolated between {figures.nodes} flows within {figures.error:.2%}"
 
 
@@ -161,3 +191,13 @@ def pocket_notes(case: Case, mesh: Mesh, figures: FlowFigures | None) -> tuple[s
             "fluid would cavitate: models.pocketing = incompressible is meant for lower speeds."
         )
     return tuple(notes)
+
+
+def stored_note(case: Case, mesh: Mesh, figures: FlowFigures | None) -> tuple[str, ...]:
+    """That the flow is not in the table that the case names."""
+    if case.models.pocketing_table is None or figures is None or figures.file:
+        return ()
+    return (
+        f"models.pocketing_table does not hold the flow through the pockets of the {mesh.name} "
+        "at this speed, oil density and pressure: it was found without the table.",
+    )

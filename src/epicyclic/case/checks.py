@@ -32,6 +32,7 @@ from epicyclic.case.wording import millimetres
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.assembly import are_evenly_spaced
 from epicyclic.oilmodel.model import read_oil_model
+from epicyclic.pocketing.stored import read_stored
 
 __all__ = ["cross_check"]
 
@@ -58,6 +59,7 @@ def cross_check(
     if isinstance(models, GearPairModels):
         problems += _check_friction_model(models, {*given, *sections})
         problems += _check_oil_model(models, folder)
+        problems += _check_pocketing_table(models, folder)
     if isinstance(models, PlanetaryModels):
         problems += _check_planet_tilt(models, {*given, *sections})
     for check, needed in _CHECKS:
@@ -277,6 +279,16 @@ def _check_oil_model(models: GearPairModels, folder: Path) -> list[Problem]:
             remedy = f"Choose another models.{key} or models.fitted_form."
             problems.append(Problem("models.oil_model", models.oil_model, allowed, remedy))
     return problems
+
+
+def _check_pocketing_table(models: GearPairModels, folder: Path) -> list[Problem]:
+    """That the file is one; whether it is for these pockets shows when they are known."""
+    if models.pocketing_table is not None:
+        try:
+            read_stored(folder / models.pocketing_table)
+        except InputError as error:
+            return list(error.problems)
+    return []
 
 
 def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Problem]:

@@ -638,6 +638,7 @@ class GearPairModels(Table):
         "load_distribution": None,
         "mesh": None,
         "pocketing": None,
+        "pocketing_table": None,
         "pocket_end_length": None,
         "drag": None,
         "bearing_viscous": None,
@@ -692,6 +693,11 @@ class GearPairModels(Table):
             "incompressible: mixture of constant density; central-differences: mean-density with "
             "the convective term of the source, for low speed.",
         )
+    )
+    pocketing_table: str | None = Field(
+        default=None,
+        description="Read the flow through the pockets from this file of 'epicyclic "
+        "pockets-table', from the folder of the case.",
     )
     pocket_end_length: Number = Field(
         default=1.0,

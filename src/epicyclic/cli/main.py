@@ -27,6 +27,7 @@ from epicyclic.cli.listing import cases, init, oils, schema
 from epicyclic.cli.many import loss_map, sweep
 from epicyclic.cli.oil import oil
 from epicyclic.cli.pockets import pockets, study
+from epicyclic.cli.pockets_table import pockets_table
 from epicyclic.cli.rexs import rexs
 from epicyclic.cli.show import plot, report
 from epicyclic.cli.single import check, friction, mesh, run
@@ -58,6 +59,7 @@ COMMANDS = (
     duty,
     mesh,
     pockets,
+    pockets_table,
     study,
     contact,
     oil,

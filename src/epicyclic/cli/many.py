@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from epicyclic.sweeps.journal import Journal, Row
     from epicyclic.sweeps.plan import Plan
 
-__all__ = ["kept_in", "loss_map", "open_journal", "print_failures", "sweep"]
+__all__ = ["check_values", "kept_in", "loss_map", "open_journal", "print_failures", "sweep"]
 
 SHOWN_FAILURES = 10
 
@@ -106,7 +106,7 @@ def loss_map(
     from epicyclic.sweeps.plan import parse_vary
 
     loaded = load_with(case, changes)
-    _check_values(values)
+    check_values(values)
     axes = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]
     given, further = parse_vary(loaded, axes), parse_vary(loaded, vary)
     speed, torque = given[AXES["speed"]], given[AXES["torque"]]
@@ -121,7 +121,7 @@ def loss_map(
     )
 
 
-def _check_values(values: Mapping[str, str | None]) -> None:
+def check_values(values: Mapping[str, str | None]) -> None:
     """Raise `InputError` for options that name no values."""
     problems = [
         Problem(

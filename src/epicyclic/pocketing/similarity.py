@@ -48,6 +48,8 @@ class FlowFigures:
     error : float
         Largest error of the power in that table, relative, measured at flows left out of it; NaN
         for the flow itself. [1]
+    file : str
+        Name of the file that holds this table; empty if there is none.
     """
 
     power: float
@@ -59,6 +61,7 @@ class FlowFigures:
     periodic: bool = True
     nodes: int = 0
     error: float = math.nan
+    file: str = ""
 
 
 @dataclass(frozen=True, slots=True)

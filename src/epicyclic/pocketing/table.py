@@ -11,7 +11,7 @@ import math
 import os
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -49,12 +49,15 @@ class FlowTable:
     error : float
         Largest error of the power in what is readable, each measured at a number before that was
         added to the table. [1]
+    file : str
+        Name of the file that it was read from; empty if from none.
     """
 
     number: Floats
     scaled: Floats
     readable: NDArray[np.bool_]
     error: float
+    file: str = ""
 
     def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures | None:
         """Figures of a flow; None where the table has none. Parameters as for `pocket_flow`."""
@@ -62,7 +65,8 @@ class FlowTable:
         scaled = self._at(number)
         if scaled is None or not np.isfinite(scaled).all():
             return None
-        return from_scaled(scaled, speed, mixture.density, self.number.size, self.error)
+        figures = from_scaled(scaled, speed, mixture.density, self.number.size, self.error)
+        return replace(figures, file=self.file)
 
     def _at(self, number: float) -> Floats | None:
         nearest = int(np.abs(self.number - number).argmin())

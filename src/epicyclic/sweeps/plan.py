@@ -124,16 +124,17 @@ class Plan:
             "case": self.case.inputs(),
             "axes": [[axis.key, axis.coordinate] for axis in self.axes],
             "version": metadata.version("epicyclic"),
-            "oil_model": self._oil_model(),
+            "files": self._files(),
         }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 
-    def _oil_model(self) -> str | None:
-        """Content of the file of fitted models, which may change while its name does not."""
-        file = self.case.models.oil_model
-        if file is None:
-            return None
-        return hashlib.sha256((self.case.folder / file).read_bytes()).hexdigest()
+    def _files(self) -> list[str]:
+        """Content of the files that the case names, which may change while their names do not."""
+        models = self.case.models
+        named = [file for file in (models.oil_model, models.pocketing_table) if file is not None]
+        return [
+            hashlib.sha256((self.case.folder / file).read_bytes()).hexdigest() for file in named
+        ]
 
 
 @dataclass(frozen=True, slots=True)
