@@ -245,7 +245,7 @@ def test_the_default_resolution_is_near_the_limit(pair, model, beta, rpm):
 
 @pytest.mark.parametrize("beta", [0.0, 25.0])
 def test_low_speed_needs_no_small_steps(pair, beta):
-    """The rate of the volume enters, not its differences: of second order at any speed."""
+    """The rate of the volume enters, not its differences."""
     geometry = pair(beta)
     coarse, fine = (solve(geometry, 30.0, steps=steps).power for steps in (32, 128))
     assert coarse == pytest.approx(fine, rel=0.015)
