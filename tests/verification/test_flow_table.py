@@ -12,7 +12,7 @@ import epicyclic as ep
 from epicyclic.analysis.pair import pair_duty
 from epicyclic.analysis.pockets import flow_family
 from epicyclic.lubricant.properties import MixtureState
-from epicyclic.pocketing.similarity import flow_figures, scaled_figures
+from epicyclic.pocketing.similarity import LEAST_NUMBER, flow_figures, scaled_figures
 from epicyclic.pocketing.table import make_tables
 
 COARSE = {"numerics.pocket_slices": 4, "numerics.pocket_steps": 12}
@@ -66,6 +66,14 @@ def test_figures_depend_on_one_number_only(family):
     )
     for other in others:
         assert other == pytest.approx(one, rel=1e-6, abs=1e-9)
+
+
+def test_creeping_flow_is_scaled_from_the_least_number(family):
+    """Above it the flow itself is solved: what compressibility changes there is below 1e-6."""
+    speeds = [1e-9, 0.5 * LEAST_NUMBER, 1.01 * LEAST_NUMBER, 3.0 * LEAST_NUMBER]
+    powers = [family.figures(speed, UNIT, 1.0).power / speed**3 for speed in speeds]
+    assert powers[:2] == pytest.approx([powers[0]] * 2, rel=1e-12)
+    assert powers == pytest.approx([powers[0]] * 4, rel=1e-6)
 
 
 def test_a_smooth_curve_takes_few_nodes_and_is_met():

@@ -13,7 +13,7 @@ from epicyclic.case.schema import LossOption
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow
-from epicyclic.pocketing.similarity import FlowFamily, FlowFigures, flow_figures
+from epicyclic.pocketing.similarity import FlowFamily, FlowFigures
 from epicyclic.pocketing.stored import stored_table
 from epicyclic.pocketing.table import FlowTables
 
@@ -155,7 +155,7 @@ def _solve_all(requests: tuple[_Request, ...]) -> tuple[MeshFlow, ...]:
 def _solve(request: _Request) -> MeshFlow:
     family, speed, mixture, pressure = request
     try:
-        return MeshFlow(flow_figures(family.flow(speed, mixture, pressure)))
+        return MeshFlow(family.figures(speed, mixture, pressure))
     except ValueError as error:
         return MeshFlow(left_out=f"no tooth outline: {error}")
 

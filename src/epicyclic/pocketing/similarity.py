@@ -24,6 +24,10 @@ __all__ = ["FlowFamily", "FlowFigures", "flow_figures", "from_scaled", "scaled_f
 
 Floats = NDArray[np.float64]
 
+LEAST_NUMBER = 1e-3
+"""Number below which the scaled figures are those at it: there the fluid is incompressible to 1e-6,
+and at next to no speed pressures drown in rounding. [1/m]"""
+
 
 @dataclass(frozen=True, slots=True)
 class FlowFigures:
@@ -97,8 +101,16 @@ class FlowFamily:
 
     @staticmethod
     def number(speed: float, mixture: MixtureState, pressure: float) -> float:
-        """Speed over the root of pressure over density. Theory (Q21). [1/m]"""
-        return speed * math.sqrt(mixture.density / pressure)
+        """Speed over the root of pressure over density, held at the least. Theory (Q21). [1/m]"""
+        return max(speed * math.sqrt(mixture.density / pressure), LEAST_NUMBER)
+
+    def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures:
+        """Figures of the flow itself. Parameters as for `pocket_flow`."""
+        if self.number(speed, mixture, pressure) == LEAST_NUMBER:
+            scaled = self.scaled(LEAST_NUMBER)
+            if np.isfinite(scaled).all():
+                return from_scaled(scaled, speed, mixture.density)
+        return flow_figures(self.flow(speed, mixture, pressure))
 
     def scaled(self, number: float) -> Floats:
         """Scaled figures of the flow at a number; NaN if it does not repeat or is not found."""
@@ -149,7 +161,7 @@ def scaled_figures(figures: FlowFigures, speed: float, density: float) -> Floats
 
 
 def from_scaled(
-    scaled: Floats, speed: float, density: float, nodes: int, error: float
+    scaled: Floats, speed: float, density: float, nodes: int = 0, error: float = math.nan
 ) -> FlowFigures:
     """The reverse of `scaled_figures`."""
     power, difference, highest, lowest, fastest = map(float, scaled)

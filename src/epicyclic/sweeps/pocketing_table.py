@@ -113,6 +113,11 @@ class _Point:
     request: tuple[float, MixtureState, float]
 
     @property
+    def turns(self) -> bool:
+        """Whether the gears turn against each other."""
+        return self.request[0] != 0
+
+    @property
     def number(self) -> float:
         """Of the family. [1/m]"""
         return self.family.number(*self.request)
@@ -140,7 +145,7 @@ def _make(
 ) -> dict[FlowFamily, FlowTable]:
     asked: dict[FlowFamily, set[float]] = {point.family: set() for point in points}
     for point in points:
-        if point.number > 0:
+        if point.turns:
             asked[point.family].add(point.number)
     tables: dict[FlowFamily, FlowTable] = {}
     for family, numbers in asked.items():
@@ -211,6 +216,6 @@ def _dataset(
 
 
 def _figures(point: _Point, table: FlowTable) -> FlowFigures | None:
-    if point.number == 0:
+    if not point.turns:
         return FlowFigures(0.0, 0.0, 0.0, 0.0, 0.0)
     return table.figures(*point.request)
