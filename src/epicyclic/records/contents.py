@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from datetime import datetime
 from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, model_validator
+from pydantic_core import from_json
 
 __all__ = ["MapContents", "Measure", "Member", "RecordContents", "ResultContents", "Validity"]
 
@@ -32,11 +32,8 @@ class Measures(_Part):
 
 
 def _from_text(text: object) -> object:
-    """What JSON text holds."""
-    try:
-        return json.loads(str(text))
-    except RecursionError:
-        raise ValueError("nested too deep") from None
+    """What JSON text holds; `ValueError` if it is none, or nested too deep."""
+    return from_json(str(text))
 
 
 def _with_operation(inputs: dict[str, Any]) -> dict[str, Any]:
