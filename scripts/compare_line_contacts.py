@@ -51,6 +51,8 @@ def lubricant_of(temperature: float, law: str) -> dict[str, str]:
     return table
 
 
+NUMERICS = {"most_blocks": 256, "friction_tolerance": 0.04}
+"""Friction known to a sixth of the band that is asked for."""
 DUMMY = {"radius": "10 mm", "hertz_pressure": "1 GPa", "rolling_speed": "1 m/s"}
 """Any contact, to read an oil with."""
 
@@ -68,6 +70,7 @@ def compare(point: dict[str, float], law: str) -> dict[str, float | str]:
             "lubricant": lubricant_of(point["temperature"], law),
             "surface1": {"roughness": f"{point['rough1']} um"},
             "surface2": {"roughness": f"{point['rough2']} um"},
+            "numerics": NUMERICS,
         }
     )
     start = time.perf_counter()

@@ -84,6 +84,9 @@ class ContactResult:
                 ContactFigure("load on asperities", rough.asperity_load_share, "1", "%"),
                 ContactFigure("length in contact", rough.contact_share, "1", "%"),
                 ContactFigure("least film, mean in time", rough.mean_least_film, "m", "um"),
+                ContactFigure(
+                    "highest pressure, mean in time", rough.mean_highest_pressure, "Pa", "GPa"
+                ),
                 ContactFigure("rolling loss", rough.rolling_loss, "W/m", "W/m"),
             ]
         return [figure for figure in found if math.isfinite(figure.value)]
@@ -127,5 +130,6 @@ def solve_contact(case: ContactCase, frames: bool = False) -> ContactResult:
     rough = solve_rough(
         contact, *model.surfaces, model.asperities, case.numerics.nodes, interval, model.heating,
         case.numerics.frozen_roughness, case.numerics.most_blocks,
+        case.numerics.friction_tolerance,
     )  # fmt: skip
     return ContactResult(case, rough.smooth, rough)

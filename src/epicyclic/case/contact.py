@@ -24,7 +24,7 @@ from epicyclic.ehl.rheology import (
     ShearLaw,
     TwoSlope,
 )
-from epicyclic.ehl.rough import MOST_BLOCKS, NODES, AsperityContact
+from epicyclic.ehl.rough import MOST_BLOCKS, NODES, STATIONARY, AsperityContact
 from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, read_profile
 from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus, line_load_at_pressure
@@ -138,7 +138,7 @@ class Asperities(Table):
     """Where the film vanishes."""
 
     film: SmallLength = Field(
-        default=cast("Any", "1 nm"), description="Film below which surfaces touch (estimate)."
+        default=cast("Any", "20 nm"), description="Film below which surfaces touch (estimate)."
     )
     friction: Number = Field(
         default=0.1, ge=0.0, le=1.0, description="Friction where they touch (estimate)."
@@ -167,6 +167,10 @@ class ContactNumerics(Table):
     most_blocks: int = Field(
         default=MOST_BLOCKS, ge=4, le=100_000,
         description="Times half-width over rolling speed after which a rough contact is given up.",
+    )  # fmt: skip
+    friction_tolerance: Number = Field(
+        default=STATIONARY, ge=1e-3, le=0.5,
+        description="Standard error over the mean friction at which a rough contact is solved.",
     )  # fmt: skip
     frozen_roughness: bool = Field(
         default=False, description="Hold the roughness still: the steady rough contact."

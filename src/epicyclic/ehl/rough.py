@@ -33,17 +33,17 @@ GROWTH, SETTLING = 1.0, 2.0
 """Times b/u_r in which the roughness grows, and until averages begin. [1]"""
 BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 4, 1024
 """Time b/u_r of a block, and numbers of blocks that an average takes."""
-BRIEF = 96
-"""Number of blocks where many contacts are solved and an error above `STATIONARY` is weighed."""
+BRIEF = 64
+"""Number of blocks where many contacts are solved and the error of each is weighed."""
 FINEST_FEATURE = 0.2
 """Largest way of a surface in a time step, over the correlation length of its roughness. [1]"""
 MOST_NODES_A_STEP = 4
 """Nodes by which the oil moves in a time step at most: 1/32 of a half-width by default."""
 STATIONARY = 0.02
-"""Standard error of the mean friction over it at which a simulation ends. [1]"""
+"""Standard error of the mean friction over it at which a simulation ends by default. [1]"""
 LARGEST_UNSOLVED_SHARE = 0.01
 """Share of time steps without convergence above which a result is failed. [1]"""
-COLUMNS = 8
+COLUMNS = 9
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,12 +53,13 @@ class AsperityContact:
     Attributes
     ----------
     film : float
-        Film below which they touch: the size of a few molecules. [m]
+        Film below which boundary layers and roughness finer than a stylus resolves carry the
+        load: thinner films than the default do not converge on a grid. [m]
     friction : float
         Shear stress over pressure where they touch. [1]
     """
 
-    film: float = 1e-9
+    film: float = 20e-9
     friction: float = 0.1
 
 
@@ -98,6 +99,9 @@ class RoughSolution:
         Load on touching surfaces over W'. [1]
     minimum_film, mean_least_film : float
         Least film of all moments, and the mean over them of the least. [m]
+    mean_highest_pressure : float
+        Mean over all moments of the highest pressure; above the hardness of a surface it would
+        yield, and this solution be wrong there. [Pa]
     rolling_loss : float
         Power per length of the pressure flow. [W/m]
     steps, unsolved_steps : int
@@ -121,6 +125,7 @@ class RoughSolution:
     asperity_load_share: float
     minimum_film: float
     mean_least_film: float
+    mean_highest_pressure: float
     rolling_loss: float
     steps: int
     unsolved_steps: int
@@ -202,7 +207,7 @@ class _Simulation:
             self.steps_to_frame = self.step_count(time)
 
     def advance(self, time: float) -> FloatArray:
-        """Records of a `time` in b/u_r, shape (steps, 8); keeps frames if they are asked for."""
+        """Records of a `time` in b/u_r, shape (steps, 9); keeps frames if they are asked for."""
         left = self.step_count(time)
         parts = []
         while left > 0:
@@ -214,7 +219,7 @@ class _Simulation:
         return np.concatenate(parts)
 
     def march(self, steps: int) -> FloatArray:
-        """Records of `steps` more time steps, shape (steps, 8)."""
+        """Records of `steps` more time steps, shape (steps, 9)."""
         records = np.zeros((steps, COLUMNS))
         scale = self.contact.film_scale
         self.approach = march(
@@ -263,8 +268,9 @@ def solve_rough(
     heating: Heating | None = None,
     frozen: bool = False,
     most_blocks: int = MOST_BLOCKS,
+    tolerance: float = STATIONARY,
 ) -> RoughSolution:
-    """Simulate until the mean friction is known to 2 %.
+    """Simulate until the mean friction is known well enough.
 
     Theory (H21), (H25).
 
@@ -283,6 +289,8 @@ def solve_rough(
         Hold the roughness still where it is and let the oil flow past: the steady rough contact.
     most_blocks : int
         Times b/u_r after which it is given up if the friction is still not known.
+    tolerance : float
+        Standard error of the mean friction over it at which it is known. [1]
     """
     smooth = solve_smooth(contact, heating=heating)
     if smooth.status is not Status.CONVERGED:
@@ -293,20 +301,29 @@ def solve_rough(
     settling = run.advance(GROWTH + SETTLING)
     blocks: list[FloatArray] = []
     error = mean = 0.0
-    while not (math.isnan(mean) or _is_stationary(blocks, mean, error, most_blocks)):
+    while not (
+        math.isnan(mean) or len(blocks) >= most_blocks or _is_known(blocks, mean, error, tolerance)
+    ):
         blocks.append(run.advance(BLOCK))
-        means = [float(_shear(block).mean()) for block in blocks]
-        mean = float(np.mean(means))
-        error = float(np.std(means, ddof=1)) / math.sqrt(len(means)) if len(means) > 1 else 0.0
-    return _averages(run, settling, np.concatenate(blocks), mean, error)
+        mean, error = _mean_shear(blocks)
+    return _averages(run, settling, np.concatenate(blocks), mean, error, tolerance)
 
 
-def _is_stationary(
-    blocks: Sequence[FloatArray], mean: float, error: float, most_blocks: int
-) -> bool:
-    """Enough blocks for the error wanted, or as many as are allowed."""
-    enough = len(blocks) >= FEWEST_BLOCKS and error <= STATIONARY * mean
-    return enough or len(blocks) >= most_blocks
+def _is_known(blocks: Sequence[FloatArray], mean: float, error: float, tolerance: float) -> bool:
+    """Enough blocks for the error wanted."""
+    return len(blocks) >= FEWEST_BLOCKS and error <= tolerance * mean
+
+
+def _mean_shear(blocks: Sequence[FloatArray]) -> tuple[float, float]:
+    """Integral of the shear stress, mean and standard error.
+
+    A ridge crosses the contact in two blocks, so that blocks are taken to depend on the next.
+    """
+    means = np.array([_shear(block).mean() for block in blocks])
+    rest = means - means.mean()
+    following = max(0.0, float(rest[1:] @ rest[:-1]))
+    variance = (float(rest @ rest) + 2 * following) / max(1, means.size - 1)
+    return float(means.mean()), math.sqrt(variance / means.size)
 
 
 def _shear(records: FloatArray) -> FloatArray:
@@ -316,15 +333,16 @@ def _shear(records: FloatArray) -> FloatArray:
 
 
 def _averages(
-    run: _Simulation, settling: FloatArray, records: FloatArray, mean: float, error: float
-) -> RoughSolution:
+    run: _Simulation, settling: FloatArray, records: FloatArray, mean: float, error: float,
+    tolerance: float,
+) -> RoughSolution:  # fmt: skip
     """The result of a simulation; `mean` and `error` of the integral of the shear stress."""
     contact, smooth = run.contact, run.smooth
     unsolved = _unsolved(settling) + _unsolved(records)
     message = ""
     if math.isnan(mean):
         message = "a time step broke down"
-    elif error > STATIONARY * mean:
+    elif error > tolerance * mean:
         message = f"friction is known to {error / mean:.1%} only after {run.steps} time steps"
     elif unsolved > LARGEST_UNSOLVED_SHARE * run.steps:
         message = f"{unsolved} of {run.steps} time steps did not converge"
@@ -345,6 +363,7 @@ def _averages(
         asperity_load_share=float(column[3]) / load,
         minimum_film=float(records[:, 4].min()) * contact.film_scale,
         mean_least_film=float(column[4]) * contact.film_scale,
+        mean_highest_pressure=float(column[8]) * contact.hertz_pressure,
         # the first step still has next to no roughness
         rolling_loss=smooth.rolling_loss + power * float(column[5] - settling[0, 5]),
         steps=run.steps,
@@ -359,7 +378,7 @@ def _failed(smooth: SmoothSolution, message: str) -> RoughSolution:
     nothing = math.nan
     return RoughSolution(
         smooth.contact, smooth, Status.FAILED, message, np.empty(0), np.empty(0), nothing, nothing,
-        nothing, nothing, nothing, nothing, nothing, nothing, 0, 0, nothing,
+        nothing, nothing, nothing, nothing, nothing, nothing, nothing, 0, 0, nothing,
     )  # fmt: skip
 
 

@@ -31,11 +31,11 @@ BoolArray = NDArray[np.bool_]
 
 GROUP = 8
 """Nodes summed into one unknown of the coarse level."""
-BAND = 6
+BAND = 4
 """Nodes to either side whose deflection the banded matrix holds."""
 KRYLOV = 12
 """Largest number of GMRES steps of one linear solution."""
-LINEAR_TOLERANCE = 0.05
+LINEAR_TOLERANCE = 0.1
 """Residual at which a linear solution stops, over that at its start. [1]"""
 LEAST_DIAGONAL = 0.1
 """Least diagonal by which a residual is divided, over the compliance of a node. [1]"""

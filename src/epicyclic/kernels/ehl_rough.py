@@ -353,9 +353,9 @@ def march(
         Film below which surfaces touch; friction there over the pressure.
     tolerance, max_iterations
         Of `solve_step`.
-    records : ndarray, shape (steps, 8)
+    records : ndarray, shape (steps, 9)
         Integrals over X of fluid and of asperity shear, contact length over 2 b, integral of the
-        pressure in contact, least film, dissipation, Newton steps, error.
+        pressure in contact, least film, dissipation, Newton steps, error, highest pressure.
 
     Returns
     -------
@@ -409,4 +409,5 @@ def march(
         records[t, 5] = result[3] / stride
         records[t, 6] = iterations
         records[t, 7] = result[2]
+        records[t, 8] = pressure.max()
     return approach
