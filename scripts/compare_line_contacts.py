@@ -1,7 +1,8 @@
 """Sliding friction of the line-contact solver beside the regression of Talbot (2012), Eq. 5.8.
 
-Run: python scripts/compare_line_contacts.py [POINTS] [SEED] [roelands|two-slope|barus]
+Run: python scripts/compare_line_contacts.py POINTS SEED LAW [KEY=VALUE ...]
 
+LAW is roelands, two-slope or barus; KEY any key of a line contact, as in asperities.film=30nm.
 Points are drawn from the levels of his Table 5.1 for the test fluid. The source states neither the
 profiles nor the laws of viscosity nor the boundary friction of its simulations: those of the
 defaults of `epicyclic contact` are used, uncalibrated. The two slopes are in the ratio, and meet at
@@ -12,6 +13,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -57,7 +59,9 @@ DUMMY = {"radius": "10 mm", "hertz_pressure": "1 GPa", "rolling_speed": "1 m/s"}
 """Any contact, to read an oil with."""
 
 
-def compare(point: dict[str, float], law: str) -> dict[str, float | str]:
+def compare(
+    point: dict[str, float], law: str, changes: Mapping[str, str]
+) -> dict[str, float | str]:
     """Friction of both, and how the solution ended."""
     case = load_contact_case(
         {
@@ -71,7 +75,8 @@ def compare(point: dict[str, float], law: str) -> dict[str, float | str]:
             "surface1": {"roughness": f"{point['rough1']} um"},
             "surface2": {"roughness": f"{point['rough2']} um"},
             "numerics": NUMERICS,
-        }
+        },
+        changes,
     )
     start = time.perf_counter()
     result = solve_contact(case)
@@ -104,23 +109,30 @@ def compare(point: dict[str, float], law: str) -> dict[str, float | str]:
     }
 
 
-def main(count: int = 60, seed: int = 1, law: str = "roelands") -> None:
+def main(count: int, seed: int, law: str, changes: Mapping[str, str]) -> None:
     rng = np.random.default_rng(seed)
     rows: list[dict[str, float | str]] = []
     for _ in range(count):
         point = {name: float(rng.choice(levels)) for name, levels in LEVELS.items()}
-        rows.append(compare(point, law))
+        rows.append(compare(point, law, changes))
         print(rows[-1], file=sys.stderr, flush=True)
     table = pd.DataFrame(rows)
-    table.to_csv(Path(f"line_contacts_{law}.csv"), index=False)
+    name = "_".join([law, *(f"{key}-{value}" for key, value in changes.items())])
+    table.to_csv(Path(f"line_contacts_{name}.csv"), index=False)
+    report(table)
+
+
+def report(table: pd.DataFrame) -> None:
+    """Ratios of the friction, in all and by what they depend on."""
     solved = table[table["status"] == "converged"]
-    for name, part in (
-        ("all", solved),
-        ("film ratio <= 0.7", solved[solved["film_ratio"] <= 0.7]),
-        ("0.7 to 3", solved[(solved["film_ratio"] > 0.7) & (solved["film_ratio"] <= 3)]),
-        ("> 3", solved[solved["film_ratio"] > 3]),
-        *((f"{t:.0f} degC", solved[solved["temperature"] == t]) for t in LEVELS["temperature"]),
-    ):
+    ratio = solved["film_ratio"]
+    parts = {
+        "all": solved,
+        "film ratio <= 0.7": solved[ratio <= 0.7],
+        "0.7 to 3": solved[(ratio > 0.7) & (ratio <= 3)],
+        "> 3": solved[ratio > 3],
+    } | {f"{t:.0f} degC": solved[solved["temperature"] == t] for t in LEVELS["temperature"]}
+    for name, part in parts.items():
         if len(part):
             low, median, high = part["ratio"].quantile([0.1, 0.5, 0.9])
             near = ((part["ratio"] - 1).abs() <= 0.25).mean()
@@ -133,4 +145,5 @@ def main(count: int = 60, seed: int = 1, law: str = "roelands") -> None:
 
 
 if __name__ == "__main__":
-    main(*(int(argument) for argument in sys.argv[1:3]), *sys.argv[3:4])
+    count, seed, law, *others = sys.argv[1:]
+    main(int(count), int(seed), law, dict(other.split("=", 1) for other in others))
