@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
 
 from epicyclic.case.contact import contact_model, load_contact_case
@@ -112,6 +113,17 @@ def test_problems_of_both_surfaces_are_told_with_their_keys(epicyclic):
     assert done.returncode == 2
     assert "surface1.profile = none.csv: the file cannot be read" in done.stderr
     assert "surface2.kurtosis = 1.01: cannot be less" in done.stderr
+
+
+def test_two_generated_surfaces_are_not_the_same():
+    tables = {
+        "contact": {"radius": "10 mm", "line_load": "300 N/mm", "rolling_speed": "8 m/s"},
+        "lubricant": {"oil": "iso-vg-100-mineral", "temperature": "80 degC"},
+    }
+    rough = {f"surface{number}": {"roughness": "0.1 um"} for number in (1, 2)}
+    one, two = contact_model(load_contact_case(tables | rough)).surfaces
+    correlation = np.mean(one.heights * two.heights) / (one.rms * two.rms)
+    assert abs(correlation) < 0.3  # 200 correlation lengths, scatter some 0.06
 
 
 def test_a_bare_command_tells_every_missing_key(epicyclic):

@@ -140,6 +140,12 @@ class Surface(Table):
     )
 
 
+class SecondSurface(Surface):
+    """The other surface: a profile of its own."""
+
+    seed: int = Field(default=2, ge=0, description="Of the generated profile.")
+
+
 class Asperities(Table):
     """Where the film vanishes."""
 
@@ -191,7 +197,7 @@ class ContactCase(Table):
     contact: Contact
     lubricant: ContactLubricant
     surface1: Surface = Surface()
-    surface2: Surface = Surface(seed=2)
+    surface2: SecondSurface = SecondSurface()
     asperities: Asperities = Asperities()
     heating: ContactHeating = ContactHeating()
     numerics: ContactNumerics = ContactNumerics()
