@@ -215,7 +215,12 @@ class ContactModel:
     @property
     def smooth(self) -> bool:
         """Neither surface has a roughness."""
-        return all(surface.rms == 0 for surface in self.surfaces)
+        return self.composite_roughness == 0
+
+    @property
+    def composite_roughness(self) -> float:
+        """Rq of both surfaces together. [m]"""
+        return math.hypot(*(surface.rms for surface in self.surfaces))
 
 
 def load_contact_case(
