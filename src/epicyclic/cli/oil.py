@@ -30,7 +30,7 @@ def oil() -> None:
     """Characterise an oil by simulated contacts, and fit friction and rolling loss to them."""
 
 
-@oil.command()
+@oil.command(short_help="Simulate contacts of an OIL and fit models.")
 @click.argument("source", metavar="OIL")
 @click.option(
     "-o",
