@@ -6,12 +6,14 @@ other encodings end in the same messages.
 
 from __future__ import annotations
 
+import io
+import zipfile
 from pathlib import Path
 from typing import NoReturn
 
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["decode", "read_bytes", "read_text", "refuse"]
+__all__ = ["check_archive", "decode", "read_bytes", "read_text", "refuse"]
 
 _MEGABYTE = 1_000_000
 
@@ -67,6 +69,20 @@ def decode(content: bytes, noun: str) -> str:
         line = content[: error.start].count(b"\n") + 1
         where = f"byte 0x{content[error.start]:02x} in line {line}"
         refuse(f"is not UTF-8 text: {where}.", "Save it as UTF-8 text.")
+
+
+def check_archive(content: bytes, noun: str, largest: int, remedy: str) -> None:
+    """Raise `InputError` unless `content` is a zip archive that unpacks to `largest` bytes or less.
+
+    `noun` with its article: ``"an X3P file"``.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            unpacked = sum(item.file_size for item in archive.infolist())
+    except zipfile.BadZipFile:
+        refuse(f"is not {noun}.", remedy)
+    if unpacked > largest:
+        refuse(f"unpacks to more than {largest / _MEGABYTE:g} MB.", remedy)
 
 
 def refuse(allowed: str, remedy: str) -> NoReturn:

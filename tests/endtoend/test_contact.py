@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
+
+from epicyclic.case.contact import contact_model, load_contact_case
+from epicyclic.errors import InputError
 
 SMOOTH = (
     "contact", "--radius", "10 mm", "--pressure", "1 GPa", "--speed", "10 m/s", "--slip", "0.2",
@@ -87,6 +91,46 @@ def test_laws_and_filters_that_lack_a_key_are_named(epicyclic):
     assert done.returncode == 2
     for key in ("second_slope", "transition_pressure", "surface1.cutoff"):
         assert key in done.stderr
+
+
+def test_profiles_are_looked_for_beside_the_file(tmp_path):
+    (tmp_path / "contact.toml").write_text(FILE + 'profile = "one.csv"\n', encoding="utf-8")
+    with pytest.raises(
+        InputError, match=r"surface1\.profile = .*one\.csv: the file cannot be read"
+    ):
+        load_contact_case(tmp_path / "contact.toml")
+    heights = "".join(f"{0.001 * n:.3f}, {n % 3}\n" for n in range(50))
+    (tmp_path / "one.csv").write_text(heights, encoding="utf-8")
+    case = load_contact_case(tmp_path / "contact.toml")
+    assert contact_model(case).surfaces[0].rms == pytest.approx(0.1e-6)
+
+
+def test_problems_of_both_surfaces_are_told_with_their_keys(epicyclic):
+    done = epicyclic(
+        *SMOOTH, "--set", "surface1.profile=none.csv", "--roughness2", "0.1 um",
+        "--set", "surface2.kurtosis=1.01", "--set", "surface2.skewness=1",
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "surface1.profile = none.csv: the file cannot be read" in done.stderr
+    assert "surface2.kurtosis = 1.01: cannot be less" in done.stderr
+
+
+def test_two_generated_surfaces_are_not_the_same():
+    tables = {
+        "contact": {"radius": "10 mm", "line_load": "300 N/mm", "rolling_speed": "8 m/s"},
+        "lubricant": {"oil": "iso-vg-100-mineral", "temperature": "80 degC"},
+    }
+    rough = {f"surface{number}": {"roughness": "0.1 um"} for number in (1, 2)}
+    one, two = contact_model(load_contact_case(tables | rough)).surfaces
+    correlation = np.mean(one.heights * two.heights) / (one.rms * two.rms)
+    assert abs(correlation) < 0.3  # 200 correlation lengths, scatter some 0.06
+
+
+def test_a_bare_command_tells_every_missing_key(epicyclic):
+    done = epicyclic("contact")
+    assert done.returncode == 2
+    for key in ("contact.radius", "contact.line_load", "contact.rolling_speed", "lubricant.oil"):
+        assert f"{key}: is missing" in done.stderr
 
 
 def test_a_contact_without_solution_ends_with_3(epicyclic):

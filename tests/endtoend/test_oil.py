@@ -225,7 +225,8 @@ def test_show_and_fit_print_the_errors(finished, epicyclic):
     fitted = epicyclic("oil", "fit", str(finished))
     for done in (shown, fitted):
         assert done.returncode == 0, done.stderr
-        assert "90 % below" in done.stdout
+        for words in ("90 % below", "the default", "lubricant.eyring_stress", "Domain of"):
+            assert words in done.stdout
     assert epicyclic("oil", "show", str(finished / "simulations.csv")).returncode == 2
 
 

@@ -107,8 +107,21 @@ def test_an_oil_comes_from_a_file(tmp_path):
 def test_an_oil_that_cannot_be_used_is_refused(tmp_path, text, told):
     file = tmp_path / "own.toml"
     file.write_text(text)
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=told) as error:
         make_campaign(file, size=4)
+    assert error.value.source == str(file)
+
+
+def test_keys_that_differ_from_contact_to_contact_are_refused():
+    changes = {
+        "contact.radius": "4 mm",
+        "surface2.seed": 3,
+        "surface1.profile": "measured.csv",
+        "lubricant.eyring_stress": "8 MPa",
+    }
+    with pytest.raises(InputError) as error:
+        make_campaign(ATF, size=4, changes=changes)
+    assert {problem.key for problem in error.value.problems} == set(list(changes)[:3])
 
 
 @pytest.mark.parametrize(

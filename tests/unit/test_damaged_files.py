@@ -9,11 +9,12 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
+import x3pio
 
 import epicyclic as ep
 from epicyclic.case.contact import contact_model, load_contact_case
 from epicyclic.case.template import case_text
-from epicyclic.ehl.roughness import read_profile
+from epicyclic.ehl.profile_file import read_profile
 from epicyclic.exchange.rexs.exporting import rexs_bytes
 from epicyclic.exchange.rexs.importing import read_rexs
 from epicyclic.maps.cycle import open_cycle
@@ -94,6 +95,10 @@ def sound_file(name):
         return case_text(ep.load_case("talbot-2012").updated(RICH).given(), []).encode()
     if stem == "contact":
         return CONTACT.encode()
+    if name == "profile.x3p":
+        file = io.BytesIO()
+        x3pio.write(file, 1e-6 * np.sin(np.arange(200)), x_scale=1e-6)
+        return file.getvalue()
     if stem == "profile":
         return "".join(f"{0.001 * n:.3f},{np.sin(n):.4f}\n" for n in range(200)).encode()
     if stem == "measured":
@@ -108,6 +113,7 @@ READERS = {
     "case.toml": ep.load_case,
     "contact.toml": lambda path: contact_model(load_contact_case(path)),
     "profile.csv": read_profile,
+    "profile.x3p": read_profile,
     "measured.csv": read_measured,
     "measured.xlsx": read_measured,
     "measured.parquet": read_measured,

@@ -15,7 +15,7 @@ import pytest
 import epicyclic as ep
 from epicyclic.campaigns.folder import open_folder
 from epicyclic.case.contact import contact_model, load_contact_case
-from epicyclic.ehl.roughness import read_profile
+from epicyclic.ehl.profile_file import read_profile
 from epicyclic.exchange.rexs.importing import read_rexs
 from epicyclic.maps.cycle import open_cycle
 from epicyclic.measurement.files import read_grid
@@ -49,6 +49,7 @@ READERS = {
     "case.toml": ep.load_case,
     "contact.toml": read_contact,
     "profile.csv": read_profile,
+    "profile.x3p": read_profile,
     "measured.csv": read_measurements,
     "measured.xlsx": read_measurements,
     "measured.parquet": read_measurements,

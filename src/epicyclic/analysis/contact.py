@@ -7,12 +7,22 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from epicyclic.case.contact import ContactCase, contact_model
-from epicyclic.ehl.rough import RoughSolution, solve_rough
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.analysis.contact_limits import contact_flags, contact_notes, film_ratio
+from epicyclic.case.contact import ContactCase, ContactModel, contact_model
+from epicyclic.ehl.heating import thinning
+from epicyclic.ehl.rough import Frame, RoughSolution, solve_rough
+from epicyclic.ehl.roughness import Profile
 from epicyclic.ehl.steady import SmoothSolution, solve_smooth
+from epicyclic.kernels.ehl_steady import shear_stresses
+from epicyclic.losses.validity import ValidityFlag, range_left
 from epicyclic.status import Status
 
 __all__ = ["ContactFigure", "ContactResult", "solve_contact"]
+
+FloatArray = NDArray[np.float64]
 
 FRAMES = 60
 """Moments kept for an animation."""
@@ -35,12 +45,15 @@ class ContactResult:
     Attributes
     ----------
     case : ContactCase
+    model : ContactModel
+        What the solver was given.
     smooth : SmoothSolution
     rough : RoughSolution or None
         None without roughness.
     """
 
     case: ContactCase
+    model: ContactModel
     smooth: SmoothSolution
     rough: RoughSolution | None
 
@@ -53,6 +66,21 @@ class ContactResult:
     def message(self) -> str:
         """Why it failed; empty if it did not."""
         return self.smooth.message if self.rough is None else self.rough.message
+
+    @property
+    def flags(self) -> tuple[ValidityFlag, ...]:
+        """Quantities outside what solver and oil data are good for."""
+        if self.smooth.status is not Status.CONVERGED:
+            return ()
+        return contact_flags(self.case, self.model, self.smooth)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What to know before the figures are used."""
+        if self.smooth.status is not Status.CONVERGED:
+            return ()
+        left = (range_left([flag]) for flag in self.flags)
+        return (*left, *contact_notes(self.model, self.smooth, self.rough))
 
     @property
     def figures(self) -> list[ContactFigure]:
@@ -69,6 +97,10 @@ class ContactResult:
             ContactFigure("Moes material number", contact.moes_material, "1", "1"),
             ContactFigure("smooth: central film", smooth.central_film, "m", "um"),
             ContactFigure("smooth: minimum film", smooth.minimum_film, "m", "um"),
+            ContactFigure("smooth: highest pressure", float(smooth.pressure.max()), "Pa", "GPa"),
+            ContactFigure(
+                "smooth: highest shear stress", float(smooth.shear_stress.max()), "Pa", "MPa"
+            ),
             ContactFigure("smooth: friction coefficient", smooth.friction_coefficient, "1", "1"),
             ContactFigure("smooth: rolling loss", smooth.rolling_loss, "W/m", "W/m"),
         ]
@@ -78,6 +110,7 @@ class ContactResult:
         rough = self.rough
         if rough is not None:
             found += [
+                ContactFigure("film ratio", film_ratio(self.model, smooth), "1", "1"),
                 ContactFigure("friction coefficient", rough.friction_coefficient, "1", "1"),
                 ContactFigure("its standard error", rough.friction_error, "1", "1"),
                 ContactFigure("friction of asperities", rough.asperity_friction_share, "1", "%"),
@@ -91,17 +124,45 @@ class ContactResult:
             ]
         return [figure for figure in found if math.isfinite(figure.value)]
 
+    def shear_stress(self, frame: Frame) -> FloatArray:
+        """At a moment of the rough contact, of film and touching asperities, shape (n,). [Pa]
+
+        Theory (H23).
+        """
+        assert self.rough is not None
+        model, smooth, x = self.model, self.smooth, self.rough.x
+        contact = model.contact
+        thinned = np.zeros_like(x)
+        if model.heating is not None:
+            rise = np.interp(x, smooth.x, smooth.temperature_rise)
+            pressure = np.interp(x, smooth.x, smooth.pressure)
+            thinned = thinning(contact, model.heating, pressure, rise)
+        scaled = frame.pressure / contact.hertz_pressure, frame.film / contact.film_scale
+        fluid = shear_stresses(*scaled, thinned, contact.scaled_fluid()) * contact.hertz_pressure
+        friction = model.asperities.friction if contact.sliding_speed else 0.0
+        return np.where(self.touching(frame), friction * frame.pressure, fluid)
+
+    def touching(self, frame: Frame) -> NDArray[np.bool_]:
+        """Where surfaces touch at a moment of the rough contact, shape (n,). Theory (H23)."""
+        touching: NDArray[np.bool_] = (frame.film < self.model.asperities.film) & (
+            frame.pressure > 0
+        )
+        return touching
+
     def to_json(self) -> str:
-        """Figures in SI units, status, and the pressure and film of the smooth contact."""
-        smooth, rough = self.smooth, self.rough
+        """Everything in SI units: status, warnings, figures, and all that varies over x."""
         data: dict[str, Any] = {
             "title": self.case.title,
             "status": str(self.status),
             "message": self.message,
+            "warnings": self.warnings,
+            "out_of_range": [flag.quantity for flag in self.flags],
             "figures": {
                 figure.name: {"value": figure.value, "unit": figure.unit} for figure in self.figures
             },
+            "surfaces": [_statistics(surface) for surface in self.model.surfaces],
         }
+        smooth = self.smooth
         if smooth.status is Status.CONVERGED:
             data["smooth"] = {
                 "iterations": smooth.iterations,
@@ -111,25 +172,50 @@ class ContactResult:
                 "shear_stress": smooth.shear_stress.tolist(),
                 "temperature_rise": smooth.temperature_rise.tolist(),
             }
-        if rough is not None:
-            data["rough"] = {
-                "time_steps": rough.steps,
-                "unsolved_time_steps": rough.unsolved_steps,
-                "friction": rough.friction.tolist(),
-            }
+        if self.rough is not None:
+            data["rough"] = self._rough_data(self.rough)
         return json.dumps(data, indent=2, allow_nan=False)
+
+    def _rough_data(self, rough: RoughSolution) -> dict[str, Any]:
+        data: dict[str, Any] = {
+            "time_steps": rough.steps,
+            "unsolved_time_steps": rough.unsolved_steps,
+            "friction": rough.friction.tolist(),
+        }
+        if rough.frames and np.isfinite(rough.frames[-1].pressure).all():
+            frame = rough.frames[-1]
+            data["last_moment"] = {
+                "time": frame.time,
+                "x": rough.x.tolist(),
+                "pressure": frame.pressure.tolist(),
+                "film": frame.film.tolist(),
+                "shear_stress": self.shear_stress(frame).tolist(),
+            }
+        return data
+
+
+def _statistics(surface: Profile) -> dict[str, float]:
+    """Of a profile, lengths in m."""
+    if surface.rms == 0:
+        return {"rms": 0.0}
+    return {
+        "rms": surface.rms,
+        "correlation_length": surface.correlation_length,
+        "skewness": surface.skewness,
+        "kurtosis": surface.kurtosis,
+    }
 
 
 def solve_contact(case: ContactCase, frames: bool = False) -> ContactResult:
-    """Solve a contact, with `FRAMES` moments of a rough one if `frames`."""
+    """Solve a contact, with `FRAMES` moments of a rough one over 6 half-widths if `frames`."""
     model = contact_model(case)
-    if model.smooth:
-        return ContactResult(case, solve_smooth(model.contact, heating=model.heating), None)
     contact = model.contact
+    if model.smooth:
+        return ContactResult(case, model, solve_smooth(contact, heating=model.heating), None)
     interval = 6 * contact.half_width / contact.rolling_speed / FRAMES if frames else None
     rough = solve_rough(
         contact, *model.surfaces, model.asperities, case.numerics.nodes, interval, model.heating,
         case.numerics.frozen_roughness, case.numerics.most_blocks,
         case.numerics.friction_tolerance,
     )  # fmt: skip
-    return ContactResult(case, rough.smooth, rough)
+    return ContactResult(case, model, rough.smooth, rough)

@@ -63,6 +63,7 @@ __all__ = [
     "load_mesh",
     "loss_terms",
     "oil_at",
+    "oil_flags",
     "solve_mesh",
     "used_sources",
 ]
@@ -178,13 +179,17 @@ def fluids_of(case: Case) -> Fluids:
     temperature = case.operation.oil_inlet_temperature
     oil = oil_at(case, temperature)
     mixture = mixture_state(oil, case.surroundings.oil_air_ratio, case.surroundings.pressure)
-    viscosity = extrapolated_viscosity(case.lubricant.oil, temperature)
-    flags = check_ranges(
-        ModelUse("oil", case.lubricant.oil.name, "properties"),
-        (_temperature_range(case.lubricant.oil), _VISCOSITY),
+    return Fluids(oil, mixture, oil_flags(case.lubricant.oil, temperature))
+
+
+def oil_flags(oil: Oil, temperature: float) -> tuple[ValidityFlag, ...]:
+    """Where properties of an oil at a temperature leave the data behind them."""
+    viscosity = extrapolated_viscosity(oil, temperature)
+    return check_ranges(
+        ModelUse("oil", oil.name, "properties"),
+        (_temperature_range(oil), _VISCOSITY),
         {"temperature": temperature, "kinematic_viscosity": viscosity},
     )
-    return Fluids(oil, mixture, flags)
 
 
 def _temperature_range(oil: Oil) -> Range:

@@ -6,7 +6,7 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -32,6 +32,9 @@ SCHEMA = 1
 """Version of the files of a campaign."""
 BRIEFLY = {"numerics.most_blocks": BRIEF, "numerics.friction_tolerance": 0.05}
 """How long a simulation takes: its error need not be smaller than the scatter of the best fit."""
+OIL_KEY = "lubricant.oil."
+SEEDS = ("surface1.seed", "surface2.seed")
+PROFILES = ("surface1.profile", "surface2.profile")
 
 
 @dataclass(frozen=True)
@@ -149,12 +152,45 @@ def make_campaign(
         designs.append(BEARING_TABLE.filling(bearing_size, seed))
     for design in designs:
         design.check()
+    _check_changes(changes or {})
     given = _varied(designs[0].point(0))
     given |= {"lubricant.oil": oil_tables(oil)} | BRIEFLY | dict(changes or {})
-    tables = plain(load_contact_case({}, given))
-    for key in (*AXES.values(), "surface1.seed", "surface2.seed"):
+    try:
+        tables = plain(load_contact_case({}, given))
+    except InputError as error:
+        raise _as_of_file(error, oil) from None
+    for key in (*AXES.values(), *SEEDS):
         tables = without(tables, key.split("."))
     return Campaign(json.dumps(tables, sort_keys=True), tuple(designs), seed)
+
+
+def _check_changes(changes: Mapping[str, Any]) -> None:
+    """Refuse keys that are not the same for all contacts."""
+    problems = []
+    for key, value in changes.items():
+        if key in AXES.values():
+            allowed, remedy = "varies from contact to contact.", "Give its --range instead."
+        elif key in SEEDS:
+            allowed, remedy = "varies from contact to contact.", "Give --seed instead."
+        elif key in PROFILES:
+            allowed = "is for a single contact: here every contact has profiles of its own."
+            remedy = "Give correlation length, skewness and kurtosis of the measured one."
+        else:
+            continue
+        problems.append(Problem(key, str(value), allowed, remedy))
+    if problems:
+        raise InputError(problems, "the command")
+
+
+def _as_of_file(error: InputError, oil: str | Path | Mapping[str, Any]) -> InputError:
+    """Problems of nothing but an oil in a file, with the keys and the name of that file."""
+    in_file = not isinstance(oil, Mapping) and Path(oil).suffix == ".toml"
+    if not in_file or not all(problem.key.startswith(OIL_KEY) for problem in error.problems):
+        return error
+    problems = (
+        replace(problem, key=problem.key.removeprefix(OIL_KEY)) for problem in error.problems
+    )
+    return InputError(problems, str(oil))
 
 
 def oil_tables(oil: str | Path | Mapping[str, Any]) -> Any:

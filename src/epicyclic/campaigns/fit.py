@@ -132,7 +132,7 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
             fits[quantity] = fit_quantity(quantity, unit, states, target, weight)
         except ValueError as error:
             given = f"{target.size} simulations"
-            remedy = "Simulate more contacts."
+            remedy = "Simulate more, with a larger --size in another folder."
             reasons.append(Problem(quantity, given, f"not fitted: {error}.", remedy))
     if reasons:
         raise InputError(reasons, str(folder.path))

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, cast
 
 from pydantic import Field
 
-from epicyclic.case.plain import plain, with_value
+from epicyclic.case.plain import plain, value_at, with_value
 from epicyclic.case.reading import read_file
 from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Stress, Table
 from epicyclic.case.validation import validate
 from epicyclic.ehl.conditions import ContactOil, LineContact
 from epicyclic.ehl.heating import Heating
+from epicyclic.ehl.profile_file import read_profile
 from epicyclic.ehl.rheology import (
     PRESSURE_LAWS,
     SHEAR_LAWS,
@@ -25,7 +26,7 @@ from epicyclic.ehl.rheology import (
     TwoSlope,
 )
 from epicyclic.ehl.rough import MOST_BLOCKS, NODES, STATIONARY, AsperityContact
-from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, read_profile
+from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile
 from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus, line_load_at_pressure
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity
@@ -49,6 +50,7 @@ LoadPressure = Annotated[
     float, Quantity("a pressure", "Pa", "GPa", low=0.0, high=100.0, open_low=True)
 ]
 
+SURFACES = ("surface1", "surface2")
 PERIOD = 200.0
 """Length of a generated profile, over its correlation length. [1]"""
 NEEDED = {
@@ -127,11 +129,21 @@ class Surface(Table):
     kurtosis: Number = Field(default=3.0, ge=1.0, le=50.0, description="Rku.")
     seed: int = Field(default=1, ge=0, description="Of the generated profile.")
     profile: str | None = Field(
-        default=None, description="CSV of position in mm and height in um, instead."
+        default=None,
+        description="A measured one instead: X3P, or CSV of position in mm and height in um.",
     )
     cutoff: Length | None = Field(
         default=None, description="Of a measured profile: longer waves are taken off."
     )
+    short_cutoff: Length | None = Field(
+        default=None, description="Of a measured profile: shorter waves are taken off."
+    )
+
+
+class SecondSurface(Surface):
+    """The other surface: a profile of its own."""
+
+    seed: int = Field(default=2, ge=0, description="Of the generated profile.")
 
 
 class Asperities(Table):
@@ -185,7 +197,7 @@ class ContactCase(Table):
     contact: Contact
     lubricant: ContactLubricant
     surface1: Surface = Surface()
-    surface2: Surface = Surface(seed=2)
+    surface2: SecondSurface = SecondSurface()
     asperities: Asperities = Asperities()
     heating: ContactHeating = ContactHeating()
     numerics: ContactNumerics = ContactNumerics()
@@ -203,7 +215,12 @@ class ContactModel:
     @property
     def smooth(self) -> bool:
         """Neither surface has a roughness."""
-        return all(surface.rms == 0 for surface in self.surfaces)
+        return self.composite_roughness == 0
+
+    @property
+    def composite_roughness(self) -> float:
+        """Rq of both surfaces together. [m]"""
+        return math.hypot(*(surface.rms for surface in self.surfaces))
 
 
 def load_contact_case(
@@ -214,7 +231,7 @@ def load_contact_case(
     Parameters
     ----------
     source : str, Path or mapping
-        A TOML file, or its tables.
+        A TOML file, with profiles beside it, or its tables.
     changes : mapping of str to object, optional
         Dotted keys to values as a file has them.
 
@@ -229,6 +246,8 @@ def load_contact_case(
     else:
         name = str(source)
         tables, problems = read_file(Path(source))
+        tables = _beside(tables, Path(source).parent)
+    tables = {"contact": {}, "lubricant": {}} | tables  # so that what they lack is told
     for key, value in (changes or {}).items():
         tables = with_value(tables, key.split("."), plain(value))
     checked = validate(ContactCase, tables)
@@ -236,6 +255,15 @@ def load_contact_case(
     if checked.case is None or found:
         raise InputError(found, name)
     return checked.case
+
+
+def _beside(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """`tables` with profiles that are named as seen from `folder`."""
+    for name in SURFACES:
+        profile = value_at(tables, (name, "profile"))
+        if isinstance(profile, str):
+            tables = with_value(tables, (name, "profile"), str(folder / profile))
+    return tables
 
 
 def _cross_check(sections: Mapping[str, Table]) -> list[Problem]:
@@ -249,13 +277,28 @@ def _cross_check(sections: Mapping[str, Table]) -> list[Problem]:
             for key in NEEDED.get(law, ())
             if getattr(lubricant, key) is None
         ]
-    for name in ("surface1", "surface2"):
+    for name in SURFACES:
         surface = sections.get(name)
-        if isinstance(surface, Surface) and surface.cutoff is not None and surface.profile is None:
-            problems.append(
-                Problem(f"{name}.cutoff", "", "is for a measured profile.", "Give its file.")
-            )
+        if isinstance(surface, Surface):
+            problems += _check_surface(name, surface)
     return problems
+
+
+def _check_surface(name: str, surface: Surface) -> list[Problem]:
+    """A measured profile must be sound, a generated one possible."""
+    if surface.profile is None:
+        problems = [
+            Problem(f"{name}.{key}", "", "is for a measured profile.", "Give its file.")
+            for key in ("cutoff", "short_cutoff")
+            if getattr(surface, key) is not None
+        ]
+        if problems:
+            return problems
+    try:
+        _profile(surface)
+    except InputError as error:
+        return [replace(problem, key=f"{name}.{problem.key}") for problem in error.problems]
+    return []
 
 
 def contact_model(case: ContactCase) -> ContactModel:
@@ -275,7 +318,7 @@ def contact_model(case: ContactCase) -> ContactModel:
         speed2=table.rolling_speed * (1 - slip),
         oil=_oil(case.lubricant),
     )
-    surfaces = (_profile("surface1", case.surface1), _profile("surface2", case.surface2))
+    surfaces = (_profile(case.surface1), _profile(case.surface2))
     asperities = AsperityContact(case.asperities.film, case.asperities.friction)
     return ContactModel(contact, surfaces, asperities, _heating(case))
 
@@ -331,22 +374,14 @@ def _heating(case: ContactCase) -> Heating | None:
     )
 
 
-def _profile(name: str, table: Surface) -> Profile:
+def _profile(table: Surface) -> Profile:
+    """The profile of a surface; problems have its keys."""
     if table.profile is not None:
-        measured = read_profile(Path(table.profile), table.cutoff)
+        measured = read_profile(Path(table.profile), table.cutoff, table.short_cutoff)
         return measured if table.roughness is None else measured.scaled_to(table.roughness)
     if table.roughness is None:
         return SMOOTH
-    try:
-        return generate_profile(
-            table.roughness, table.correlation_length, PERIOD * table.correlation_length,
-            table.seed, table.skewness, table.kurtosis,
-        )  # fmt: skip
-    except InputError as error:
-        raise InputError(
-            [
-                Problem(f"{name}.{problem.key}", problem.value, problem.allowed, problem.remedy)
-                for problem in error.problems
-            ],
-            error.source,
-        ) from None
+    return generate_profile(
+        table.roughness, table.correlation_length, PERIOD * table.correlation_length,
+        table.seed, table.skewness, table.kurtosis,
+    )  # fmt: skip

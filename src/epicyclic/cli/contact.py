@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from epicyclic.cli.exit_codes import EXIT_NO_SOLUTION
-from epicyclic.cli.options import parse_changes, set_option
+from epicyclic.cli.options import contact_set_option, parse_changes
 from epicyclic.cli.output import PICTURES, check_picture, picture_bytes, write_file
 from epicyclic.status import Status
 
@@ -40,12 +40,12 @@ def contact_options(command: Any) -> Any:
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path), required=False)
 @contact_options
-@set_option
+@contact_set_option
 @click.option("--json", "json_file", metavar="FILE", help="Write the result as JSON; - for stdout.")
 @click.option(
     "--plot",
     type=click.Path(path_type=Path),
-    help="Draw pressure and film (.png, .svg, .pdf); a rough contact moves in a .gif.",
+    help="Draw pressure, film, shear stress (.png, .svg, .pdf); a rough contact moves in a .gif.",
 )
 def contact(
     file: Path | None,
@@ -59,6 +59,10 @@ def contact(
     \b
     epicyclic contact --radius "10 mm" --pressure "1 GPa" --speed "10 m/s" --slip 0.2 \\
         --oil atf-talbot-2012 --temperature "90 degC" --roughness1 "0.1 um"
+
+    FILE is TOML with the tables [contact], [lubricant], [surface1], [surface2], [asperities],
+    [heating] and [numerics]; options and --set change its keys. A solution that did not converge
+    ends with exit code 3.
     """
     from epicyclic.analysis.contact import solve_contact
     from epicyclic.case.contact import load_contact_case
@@ -72,16 +76,17 @@ def contact(
     if plot is not None:
         check_picture("--plot", plot, (*PICTURES, ANIMATION))
     case = load_contact_case(file or {}, given | parse_changes(changes))
-    result = solve_contact(case, frames=plot is not None)
+    result = solve_contact(case, frames=plot is not None or json_file is not None)
     if json_file == "-":
         click.echo(result.to_json())
     else:
         from epicyclic.report.contact_table import contact_tables
         from epicyclic.report.tables import terminal
 
+        terminal().print(contact_tables(result))
         if json_file is not None:
             write_file(Path(json_file), result.to_json() + "\n")
-        terminal().print(contact_tables(result))
+            click.echo(f"Wrote {json_file}.")
     if plot is not None and result.smooth.status is Status.CONVERGED:
         from epicyclic.plots.contact import contact_animation, contact_figure
 
@@ -89,5 +94,6 @@ def contact(
             write_file(plot, contact_animation(result))
         else:
             write_file(plot, picture_bytes(contact_figure(result), plot))
+        click.echo(f"Wrote {plot}.", err=json_file == "-")
     if result.status is not Status.CONVERGED:
         sys.exit(EXIT_NO_SOLUTION)

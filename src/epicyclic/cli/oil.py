@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.options import parse_changes, set_option
+from epicyclic.cli.options import contact_set_option, parse_changes
 from epicyclic.cli.output import check_picture, draw
 from epicyclic.errors import InputError, Problem
 
@@ -30,7 +30,7 @@ def oil() -> None:
     """Characterise an oil by simulated contacts, and fit friction and rolling loss to them."""
 
 
-@oil.command()
+@oil.command(short_help="Simulate contacts of an OIL and fit models.")
 @click.argument("source", metavar="OIL")
 @click.option(
     "-o",
@@ -58,7 +58,7 @@ def oil() -> None:
     multiple=True,
     help='Limits of the gear contacts, as in "hertz_pressure=0.3:1.5 GPa"; with --size.',
 )
-@set_option
+@contact_set_option
 @click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
 @click.option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster, tcp://host:8786.")
 @plot_option
@@ -76,8 +76,7 @@ def characterise(
 ) -> None:
     """Simulate contacts of OIL, a name of 'epicyclic oils' or a TOML file, and fit models.
 
-    Finished simulations are kept in DIR at once; the same command goes on where it stopped. KEY of
-    --set is one of a line contact, as in --set "lubricant.eyring_stress=8 MPa".
+    Finished simulations are kept in DIR at once; the same command goes on where it stopped.
 
     \b
     epicyclic oil characterise atf-talbot-2012 --size 512 --seed 1 -o atf

@@ -2,24 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import click
 
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["case_argument", "from_rexs", "load_with", "parse_changes", "set_option"]
+__all__ = [
+    "case_argument",
+    "contact_set_option",
+    "from_rexs",
+    "load_with",
+    "parse_changes",
+    "set_option",
+]
 
 case_argument = click.argument("case", metavar="CASE")
-set_option = click.option(
-    "--set",
-    "changes",
-    metavar="KEY=VALUE",
-    multiple=True,
-    help='Change a key of the case, as in --set "operation.torque=500 N*m". An empty value '
-    "removes the key.",
-)
+
+
+def set_option_for(what: str, example: str) -> Callable[[Any], Any]:
+    """The option --set for the keys of `what`."""
+    return click.option(
+        "--set",
+        "changes",
+        metavar="KEY=VALUE",
+        multiple=True,
+        help=f'Change a key of {what}, as in --set "{example}". An empty value removes the key.',
+    )
+
+
+set_option = set_option_for("the case", "operation.torque=500 N*m")
+contact_set_option = set_option_for("the contact", "lubricant.eyring_stress=8 MPa")
 
 
 def load_with(case: str, changes: Sequence[str]) -> Any:

@@ -1,27 +1,23 @@
-"""Surface profiles: generated with given statistics, or from measured heights."""
+"""Surface profiles: generated with given statistics; filtered."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.errors import InputError, Problem
-from epicyclic.text_file import read_text
 
-__all__ = ["SMOOTH", "Profile", "generate_profile", "read_profile", "sinusoidal_profile"]
+__all__ = ["SMOOTH", "Profile", "generate_profile", "mean_line", "sinusoidal_profile"]
 
 FloatArray = NDArray[np.float64]
 
-_LARGEST_FILE = 10_000_000
-"""Of a measured profile. [bytes]"""
-_MOST_POINTS = 200_000
-"""Of a measured profile; those in print have some ten thousand."""
 POINTS_PER_CORRELATION = 8
 """Points of a generated profile within one correlation length."""
+GAUSSIAN = math.sqrt(math.log(2) / math.pi)
+"""alpha of the Gaussian filter: half of a wave as long as the cutoff passes. [1]"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,49 +135,25 @@ def generate_profile(
     return Profile(heights * (rms / heights.std()), length / count)
 
 
-def read_profile(path: Path, cutoff: float | None = None) -> Profile:
-    """A measured profile: CSV with position in mm and height in um in its first two columns.
+def mean_line(heights: FloatArray, spacing: float, cutoff: float) -> FloatArray:
+    """What of a profile is longer than `cutoff`: the Gaussian filter. Theory (H32).
 
-    The straight line through it is taken off; with `cutoff` [m] also every wave longer than it.
-    Lines that start with # or letters are skipped.
+    Parameters
+    ----------
+    heights : ndarray, shape (n,)
+        At even distances.
+    spacing, cutoff : float
+        In the same unit.
     """
-    try:
-        lines = read_text(path, "profile", _LARGEST_FILE).splitlines()
-    except InputError as error:
-        raise InputError(error.problems, str(path)) from None
-    if len(lines) > _MOST_POINTS:
-        raise _profile_error(path, f"has more than {_MOST_POINTS} lines.", "Cut it.")
-    rows = [line.replace(";", ",").split(",", 2) for line in lines if _is_data(line)]
-    try:
-        table = np.array([[float(row[0]), float(row[1])] for row in rows])
-    except (ValueError, IndexError):
-        raise _profile_error(
-            path, "has lines that are not two numbers.", "Write position in mm, height in um."
-        ) from None
-    if len(table) < 16:
-        raise _profile_error(path, f"has {len(table)} points.", "Give 16 or more.")
-    if not np.isfinite(table).all():
-        raise _profile_error(path, "has gaps.", "Fill or cut them out.")
-    steps = np.diff(table[:, 0])
-    spacing = float(steps.mean())
-    if not (spacing > 0 and np.abs(steps - spacing).max() < 0.01 * spacing):
-        raise _profile_error(path, "has uneven positions.", "Resample it evenly, rising.")
-    x = np.arange(len(table)) * spacing
-    heights = table[:, 1] - np.polyval(np.polyfit(x, table[:, 1], 1), x)
-    if cutoff is not None:
-        waves = np.fft.rfft(heights)
-        waves[np.fft.rfftfreq(heights.size, spacing * 1e-3) < 1 / cutoff] = 0
-        heights = np.fft.irfft(waves, heights.size)
-    return Profile((heights - heights.mean()) * 1e-6, spacing * 1e-3)
+    from scipy.signal import fftconvolve
 
-
-def _is_data(line: str) -> bool:
-    text = line.strip()
-    return bool(text) and (text[0].isdigit() or text[0] in "+-.,;" or text[:3].lower() == "nan")
-
-
-def _profile_error(path: Path, what: str, remedy: str) -> InputError:
-    return InputError([Problem("profile", str(path), what, remedy)], str(path))
+    reach = math.ceil(cutoff / spacing)  # the weight there is 7e-7 of the largest
+    distance = np.arange(-reach, reach + 1) * (spacing / cutoff)
+    weight = np.exp(-math.pi * (distance / GAUSSIAN) ** 2)
+    mean: FloatArray = fftconvolve(heights, weight, "same") / fftconvolve(
+        np.ones(heights.size), weight, "same"
+    )
+    return mean
 
 
 def _check_statistics(

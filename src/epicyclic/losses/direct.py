@@ -29,7 +29,7 @@ from epicyclic.oilmodel.structured import eyring_friction
 from epicyclic.status import Status
 from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, MILLIMETRE, NUMBER, Quantity
 
-__all__ = ["DirectSettings", "EhlDirect"]
+__all__ = ["DirectSettings", "EhlDirect", "solver_range"]
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
@@ -53,7 +53,7 @@ PROFILE_LENGTHS = 200.0
 """Period of the profiles over their correlation length. [1]"""
 
 
-def _range(name: str, label: str, unit: Quantity) -> Range:
+def solver_range(name: str, label: str, unit: Quantity) -> Range:
     """Where the solver of line contacts is tested."""
     scale, _ = unit.scale_and_offset()
     low, high = SOLVER_BOX[name]
@@ -107,10 +107,10 @@ class EhlDirect:
     source: ClassVar = "solver for line contacts of this package"
     made_for: ClassVar[RegressionFluid | None] = None
     ranges: ClassVar[tuple[Range, ...]] = (
-        _range("radius", "equivalent radius", MILLIMETRE),
-        _range("hertz_pressure", "Hertz pressure", GIGAPASCAL),
-        _range("rolling_speed", "rolling speed", METRE_PER_SECOND),
-        _range("slide_to_roll_ratio", "slide-to-roll ratio", NUMBER),
+        solver_range("radius", "equivalent radius", MILLIMETRE),
+        solver_range("hertz_pressure", "Hertz pressure", GIGAPASCAL),
+        solver_range("rolling_speed", "rolling speed", METRE_PER_SECOND),
+        solver_range("slide_to_roll_ratio", "slide-to-roll ratio", NUMBER),
     )
 
     settings: DirectSettings

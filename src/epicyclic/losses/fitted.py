@@ -25,7 +25,7 @@ from epicyclic.units import (
     Quantity,
 )
 
-__all__ = ["FittedFriction", "FittedRolling", "contact_states"]
+__all__ = ["FittedFriction", "FittedRolling", "contact_states", "domain_ranges"]
 
 FloatArray = NDArray[np.float64]
 
@@ -64,7 +64,7 @@ class FittedFriction:
     @property
     def ranges(self) -> tuple[Range, ...]:
         """The domain of the fit."""
-        return tuple(_ranges(self.model, self.QUANTITY))
+        return tuple(domain_ranges(self.model, self.QUANTITY))
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
@@ -104,7 +104,7 @@ class FittedRolling:
     @property
     def ranges(self) -> tuple[Range, ...]:
         """The domain of the fit."""
-        return tuple(_ranges(self.model, self.quantity))
+        return tuple(domain_ranges(self.model, self.quantity))
 
     def loss_density(self, contact: MeshContact) -> FloatArray:
         """See the class. [W/m]"""
@@ -142,7 +142,7 @@ def _source(model: OilModel) -> str:
     )
 
 
-def _ranges(model: OilModel, quantity: str) -> Iterator[Range]:
+def domain_ranges(model: OilModel, quantity: str) -> Iterator[Range]:
     """The domain of a fit; both surfaces share one range of roughness."""
     domain = dict(model.fits[quantity].domain)
     pairs = [domain["roughness1"], domain["roughness2"]]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeVar
 
@@ -21,6 +21,7 @@ __all__ = [
     "check_ranges",
     "describe_flags",
     "held_in_range",
+    "range_left",
 ]
 
 FloatArray = NDArray[np.float64]
@@ -156,15 +157,20 @@ def describe_flags(flags: Iterable[ValidityFlag]) -> tuple[str, ...]:
 
 
 def _sentence(group: list[ValidityFlag]) -> str:
+    models = ", ".join(f"{flag.use} {_percent(flag.share)}" for flag in group)
+    return f"{range_left(group)} Share of the loss: {models}."
+
+
+def range_left(group: Sequence[ValidityFlag]) -> str:
+    """A sentence for one or more flags of one quantity and range."""
     first = group[0]
     low = format_number(min(flag.found_low for flag in group), 3)
     high = format_number(max(flag.found_high for flag in group), 3)
     found = low if low == high else f"{low} to {high}"
     unit = f" {first.unit}" if first.unit else ""
-    models = ", ".join(f"{flag.use} {_percent(flag.share)}" for flag in group)
     return (
         f"{OUT_OF_RANGE}: {first.quantity} {found}{unit}; range {_limits(first)}{unit} "
-        f"({first.source}). Share of the loss: {models}."
+        f"({first.source})."
     )
 
 

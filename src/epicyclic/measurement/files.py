@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import zipfile
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError
-from epicyclic.text_file import decode, read_bytes, refuse
+from epicyclic.text_file import check_archive, decode, read_bytes, refuse
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -125,14 +124,8 @@ def _excel_rows(content: bytes) -> Iterator[tuple[int, list[str]]]:
     """Rows of the first sheet, with the values that formulas had when the file was saved."""
     import openpyxl
 
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            unpacked = sum(item.file_size for item in archive.infolist())
-    except zipfile.BadZipFile:
-        refuse("is no Excel workbook.", "Save it as .xlsx or as CSV.")
-    if unpacked > _LARGEST_FILE:
-        size = f"{_LARGEST_FILE / 1e6:g} MB"
-        refuse(f"unpacks to more than {size}.", "Keep one small sheet, or save it as CSV.")
+    remedy = "Save one small sheet as .xlsx, or as CSV."
+    check_archive(content, "an Excel workbook", _LARGEST_FILE, remedy)
     try:
         book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
         rows = iter(book.worksheets[0].iter_rows(values_only=True))

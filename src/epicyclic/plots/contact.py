@@ -1,76 +1,157 @@
-"""Pressure and film of a line contact, still or in motion."""
+"""Pressure, film, shear stress and temperature of a line contact, still or in motion."""
 
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from epicyclic.analysis.contact import FRAMES, ContactResult
-from epicyclic.plots.style import styled_figure
+from epicyclic.ehl.rough import Frame
+from epicyclic.plots.style import COLOURS, styled_figure
 
-__all__ = ["contact_animation", "contact_figure", "plot_film", "plot_pressure"]
+__all__ = [
+    "contact_animation",
+    "contact_figure",
+    "plot_film",
+    "plot_pressure",
+    "plot_shear_stress",
+    "plot_temperature",
+]
 
-GIGAPASCAL, MICROMETRE, MILLIMETRE = 1e9, 1e-6, 1e-3
+FloatArray = NDArray[np.float64]
+
+GIGAPASCAL, MEGAPASCAL, MICROMETRE, MILLIMETRE = 1e9, 1e6, 1e-6, 1e-3
+MICROSECOND = 1e-6
 SHOWN_WIDTHS = (-2.0, 1.5)
 """Limits of the abscissa, over the half-width of Hertz. [1]"""
 SHOWN_FILMS = 5.0
 """Height of the film axis, over the central film of the smooth contact. [1]"""
+SHOWN_STRESSES = 10.0
+"""Height of the stress axis, over the highest of the smooth contact; touching ones leave it. [1]"""
+PANEL = (6.4, 2.5)
 FRAMES_PER_SECOND = 20
 ANIMATION_DPI = 80
 
 
 def contact_figure(result: ContactResult) -> Figure:
-    """Pressure above, film below."""
-    with styled_figure(2, 1, result.case.title or "Line contact") as (figure, axes):
-        plot_pressure(result, axes[0, 0])
-        plot_film(result, axes[1, 0])
+    """Pressure, film, and shear stress and temperature if there are any, below each other."""
+    panels = [plot_pressure, plot_film]
+    if result.smooth.shear_stress.any():
+        panels.append(plot_shear_stress)
+    if result.smooth.temperature_rise.any():
+        panels.append(plot_temperature)
+    title = result.case.title or "Line contact"
+    with styled_figure(len(panels), 1, title, panel=PANEL) as (figure, axes):
+        for plot, ax in zip(panels, axes[:, 0], strict=True):
+            plot(result, ax)
+            ax.label_outer()
+        if _frames(result):
+            axes[0, 0].set_title("rough: the last moment solved", loc="left")
     return figure
 
 
 def plot_pressure(result: ContactResult, ax: Axes) -> Axes:
     """Pressure of the smooth contact, and of a rough one the last moment kept."""
-    ax.plot(result.smooth.x / MILLIMETRE, result.smooth.pressure / GIGAPASCAL, label="smooth")
-    rough = result.rough
-    if rough is not None and rough.frames:
-        ax.plot(rough.x / MILLIMETRE, rough.frames[-1].pressure / GIGAPASCAL, label="rough")
-        highest = max(float(frame.pressure.max()) for frame in rough.frames[-FRAMES:])
-        ax.set_ylim(0, 1.05 * highest / GIGAPASCAL)
-        ax.legend()
+    frames = _frames(result)
+    smooth = result.smooth.pressure / GIGAPASCAL
+    rough = [frame.pressure / GIGAPASCAL for frame in frames]
+    _plot_both(result, ax, smooth, rough)
+    ax.set_ylim(0, 1.05 * max(values.max() for values in (smooth, *rough)))
+    if rough:
+        ax.legend(loc="upper right")
     return _over_x(result, ax, "pressure, GPa")
 
 
 def plot_film(result: ContactResult, ax: Axes) -> Axes:
-    """Film of the smooth contact, and of a rough one the last moment kept."""
-    ax.plot(result.smooth.x / MILLIMETRE, result.smooth.film / MICROMETRE, label="smooth")
-    rough = result.rough
-    if rough is not None and rough.frames:
-        ax.plot(rough.x / MILLIMETRE, rough.frames[-1].film / MICROMETRE, label="rough")
+    """Film of the smooth contact, and of a rough one the last moment kept; where it touches."""
+    frames = _frames(result)
+    films = [frame.film / MICROMETRE for frame in frames]
+    _plot_both(result, ax, result.smooth.film / MICROMETRE, films)
+    if any(result.touching(frame).any() for frame in frames):
+        where = _touching(result, frames[-1])
+        style: dict[str, Any] = {"color": COLOURS[6], "ms": 10, "mew": 2, "clip_on": False}
+        ax.plot(_rough_x(result), where, "|", label="touching", **style)
+        ax.legend(handles=ax.lines[-1:], loc="upper right")
     ax.set_ylim(0, SHOWN_FILMS * result.smooth.central_film / MICROMETRE)
     return _over_x(result, ax, "film, µm")
 
 
+def plot_shear_stress(result: ContactResult, ax: Axes) -> Axes:
+    """Shear stress of the smooth contact, and of a rough one the last moment kept."""
+    smooth = result.smooth.shear_stress / MEGAPASCAL
+    rough = [result.shear_stress(frame) / MEGAPASCAL for frame in _frames(result)]
+    _plot_both(result, ax, smooth, rough)
+    highest = max(values.max() for values in (smooth, *rough))
+    ax.set_ylim(0, min(1.05 * highest, SHOWN_STRESSES * smooth.max()) or 1.0)
+    return _over_x(result, ax, "shear stress, MPa")
+
+
+def plot_temperature(result: ContactResult, ax: Axes) -> Axes:
+    """Temperature of the film above the inlet, that of the smooth contact."""
+    ax.plot(result.smooth.x / MILLIMETRE, result.smooth.temperature_rise)
+    ax.set_ylim(bottom=0)
+    return _over_x(result, ax, "temperature rise, K")
+
+
 def contact_animation(result: ContactResult) -> bytes:
     """The last moments kept of a rough contact as an animated GIF."""
-    assert result.rough is not None
-    frames = result.rough.frames[-FRAMES:]
+    frames = _frames(result)
     figure = contact_figure(result)
-    upper, lower = (ax.lines[-1] for ax in figure.axes)
+    pressure, film, *others = figure.axes
+    moving = [
+        (pressure.lines[1], [frame.pressure / GIGAPASCAL for frame in frames]),
+        (film.lines[1], [frame.film / MICROMETRE for frame in frames]),
+        *((line, [_touching(result, frame) for frame in frames]) for line in film.lines[2:]),
+    ]
+    if others and len(others[0].lines) > 1:
+        stresses = [result.shear_stress(frame) / MEGAPASCAL for frame in frames]
+        moving.append((others[0].lines[1], stresses))
 
     def show(number: int) -> list[Any]:
-        upper.set_ydata(frames[number].pressure / GIGAPASCAL)
-        lower.set_ydata(frames[number].film / MICROMETRE)
-        return [upper, lower]
+        for line, values in moving:
+            line.set_ydata(values[number])
+        time = (frames[number].time - frames[0].time) / MICROSECOND
+        pressure.set_title(f"rough: after {time:.1f} µs", loc="left")
+        return [line for line, _ in moving]
 
     animation = FuncAnimation(figure, show, frames=len(frames))
     with tempfile.TemporaryDirectory() as folder:  # the writer of frames takes a path only
         path = Path(folder) / "contact.gif"
         animation.save(path, writer=PillowWriter(fps=FRAMES_PER_SECOND), dpi=ANIMATION_DPI)
         return path.read_bytes()
+
+
+def _frames(result: ContactResult) -> Sequence[Frame]:
+    """The moments that are shown."""
+    return [] if result.rough is None else result.rough.frames[-FRAMES:]
+
+
+def _rough_x(result: ContactResult) -> FloatArray:
+    assert result.rough is not None
+    x: FloatArray = result.rough.x / MILLIMETRE
+    return x
+
+
+def _touching(result: ContactResult, frame: Frame) -> FloatArray:
+    """Zero where surfaces touch, nothing elsewhere."""
+    return np.where(result.touching(frame), 0.0, np.nan)
+
+
+def _plot_both(
+    result: ContactResult, ax: Axes, smooth: FloatArray, rough: Sequence[FloatArray]
+) -> None:
+    """The smooth contact, and the last moment of the rough one."""
+    ax.plot(result.smooth.x / MILLIMETRE, smooth, label="smooth")
+    if rough:
+        ax.plot(_rough_x(result), rough[-1], label="rough")
 
 
 def _over_x(result: ContactResult, ax: Axes, label: str) -> Axes:

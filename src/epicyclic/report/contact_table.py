@@ -6,10 +6,11 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from epicyclic.analysis.contact import ContactFigure, ContactResult
+from epicyclic.ehl.roughness import Profile
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import plain_table
 from epicyclic.status import Status
-from epicyclic.units import Quantity, unit_text
+from epicyclic.units import MICROMETRE, Quantity, unit_text
 
 __all__ = ["contact_tables"]
 
@@ -17,12 +18,31 @@ __all__ = ["contact_tables"]
 def contact_tables(result: ContactResult) -> RenderableType:
     """Figures of a contact and how its solution ended."""
     table = plain_table(result.case.title or "Line contact")
+    table.show_header = False
     table.add_column("", no_wrap=True)
     table.add_column("", justify="right")
     table.add_column("")
     for figure in result.figures:
         table.add_row(figure.name, shown(_displayed(figure)), unit_text(figure.display))
-    return Group(table, Text(_ending(result)))
+    parts: list[RenderableType] = [table] if result.figures else []
+    if not result.model.smooth:
+        parts += [Text(_surface(*item)) for item in enumerate(result.model.surfaces, 1)]
+    warnings = [Text(f"Warning: {warning}") for warning in result.warnings]
+    return Group(*parts, Text(_ending(result)), *warnings)
+
+
+def _surface(number: int, surface: Profile) -> str:
+    """Statistics of a surface, which a generated profile meets on the whole only."""
+    if surface.rms == 0:
+        return f"Surface {number}: smooth."
+    rms, length = (
+        f"{shown(MICROMETRE.to_display(value))} {unit_text(MICROMETRE.display)}"
+        for value in (surface.rms, surface.correlation_length)
+    )
+    return (
+        f"Surface {number}: Rq {rms}, correlation length {length}, "
+        f"skewness {shown(surface.skewness, 2)}, kurtosis {shown(surface.kurtosis, 2)}."
+    )
 
 
 def _displayed(figure: ContactFigure) -> float:

@@ -1,0 +1,118 @@
+"""The result of one line contact: what it holds, and what it warns of."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from epicyclic.analysis.contact import solve_contact
+from epicyclic.case.contact import load_contact_case
+
+CONTACT = {"radius": "10 mm", "hertz_pressure": "1 GPa", "rolling_speed": "10 m/s",
+           "slide_to_roll_ratio": 0.2}  # fmt: skip
+TABLES = {"lubricant": {"oil": "atf-talbot-2012", "temperature": "90 degC"}}
+COARSE = {"numerics": {"nodes": 128, "most_blocks": 8}}
+
+
+def solved(frames=False, contact=None, **tables):
+    case = load_contact_case({"contact": CONTACT | (contact or {})} | TABLES | COARSE | tables)
+    return solve_contact(case, frames)
+
+
+@pytest.fixture(scope="module")
+def rough():
+    surfaces = {f"surface{number}": {"roughness": "0.6 um"} for number in (1, 2)}
+    return solved(frames=True, heating={"model": "inlet-and-film"}, **surfaces)
+
+
+def test_shear_stress_of_the_last_moment_is_its_friction(rough):
+    stress = rough.shear_stress(rough.rough.frames[-1])
+    friction = np.trapezoid(stress, rough.rough.x) / rough.model.contact.line_load
+    # scaling back and forth, and the load that Hertz's p_h stands for, to some 1e-6
+    assert friction == pytest.approx(rough.rough.friction[-1], rel=1e-5)
+
+
+def test_touching_surfaces_carry_boundary_friction(rough):
+    moments = [frame for frame in rough.rough.frames if rough.touching(frame).any()]
+    assert moments
+    where = rough.touching(moments[0])
+    stress = rough.shear_stress(moments[0])
+    assert stress[where] == pytest.approx(0.1 * moments[0].pressure[where])
+
+
+def test_frames_change_no_bit(rough):
+    again = solved(
+        heating={"model": "inlet-and-film"},
+        **{f"surface{number}": {"roughness": "0.6 um"} for number in (1, 2)},
+    )
+    assert not again.rough.frames
+    assert (again.rough.friction == rough.rough.friction).all()
+
+
+def test_json_holds_all_that_varies_over_x(rough):
+    data = json.loads(rough.to_json())
+    moment = data["rough"]["last_moment"]
+    lengths = {len(moment[key]) for key in ("x", "pressure", "film", "shear_stress")}
+    assert lengths == {128}
+    assert max(data["smooth"]["temperature_rise"]) > 0
+    assert data["surfaces"][0]["rms"] == pytest.approx(0.6e-6)
+    assert data["figures"]["film ratio"]["value"] == pytest.approx(
+        rough.smooth.minimum_film / (0.6e-6 * np.sqrt(2))
+    )
+
+
+def test_every_quantity_beyond_the_tested_range_is_flagged():
+    contact = {"radius": "0.1 mm", "hertz_pressure": "4 GPa", "rolling_speed": "100 m/s"}
+    result = solved(contact=contact, lubricant=TABLES["lubricant"] | {"temperature": "20 degC"})
+    told = {"equivalent radius", "Hertz pressure", "rolling speed", "temperature"}
+    assert set(json.loads(result.to_json())["out_of_range"]) == told
+    assert "Out of range: Hertz pressure 4 GPa; range 0.003 to 3 GPa" in " ".join(result.warnings)
+
+
+def test_nothing_is_flagged_within_it():
+    assert solved().warnings == ()
+    assert solved(surface1={"roughness": "0.1 um"}).warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("roughness", "told"), [("0.005 um", "film ratio 43"), ("1.2 um", "composite roughness 1.2 um")]
+)
+def test_roughness_beyond_the_tested_range_is_flagged(roughness, told):
+    assert told in " ".join(solved(surface1={"roughness": roughness}).warnings)
+
+
+def test_thin_films_are_said_not_to_be_validated(rough):
+    assert any("below 0.7" in warning for warning in rough.warnings)
+
+
+def test_hot_films_are_flagged():
+    result = solved(
+        contact={"hertz_pressure": "1.5 GPa", "slide_to_roll_ratio": 1.0},
+        lubricant={"oil": "iso-vg-320-mineral", "temperature": "40 degC"},
+        heating={"model": "inlet-and-film"},
+    )
+    assert result.smooth.temperature_rise.max() > 50
+    assert [flag.quantity for flag in result.flags] == ["temperature rise"]
+
+
+def test_roughness_that_the_grid_does_not_resolve_is_told():
+    result = solved(surface1={"roughness": "0.05 um", "correlation_length": "4 um"})
+    assert any("of the Rq of surface1" in warning for warning in result.warnings)
+
+
+def test_profiles_too_coarse_for_the_contact_are_told(tmp_path):
+    file = tmp_path / "micrometres.csv"
+    file.write_text("\n".join(f"{n}, {0.1 * np.sin(n):.4f}" for n in range(100)), encoding="utf-8")
+    result = solved(surface2={"profile": str(file)})
+    assert any("its positions are not in mm" in warning for warning in result.warnings)
+
+
+def test_the_figure_has_a_panel_for_whatever_there_is(rough):
+    from epicyclic.plots.contact import contact_figure
+
+    labels = [ax.get_ylabel() for ax in contact_figure(rough).axes]
+    assert labels == ["pressure, GPa", "film, µm", "shear stress, MPa", "temperature rise, K"]
+    rolling = contact_figure(solved(contact={"slide_to_roll_ratio": 0.0}))
+    assert [ax.get_ylabel() for ax in rolling.axes] == labels[:2]
