@@ -11,7 +11,7 @@ from epicyclic.analysis.result import (
 )
 from epicyclic.case import build, flanks
 from epicyclic.case.case import Case, PlanetaryCase
-from epicyclic.case.schema import GearTable, MeshTable
+from epicyclic.case.gear_tables import GearTable, MeshTable
 from epicyclic.geometry.assembly import are_evenly_spaced
 from epicyclic.losses.fitted import FittedFriction
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS

@@ -27,7 +27,8 @@ from epicyclic.analysis.result import (
 )
 from epicyclic.case import flanks
 from epicyclic.case.case import Case
-from epicyclic.case.schema import GearPairModels, GearTable, LossOption, Numerics
+from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.model_tables import GearPairModels, LossOption, Numerics
 from epicyclic.elasticity.loaded_mesh import LoadedMesh, load_mesh_elastically
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import Tool

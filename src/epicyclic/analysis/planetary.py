@@ -34,7 +34,8 @@ from epicyclic.analysis.result import (
 )
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
-from epicyclic.case.schema import LoadSharing, PlanetBearing
+from epicyclic.case.model_tables import LoadSharing
+from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_pressure

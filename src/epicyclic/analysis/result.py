@@ -16,7 +16,7 @@ from functools import cache, partial
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
-from epicyclic.case.schema import GearPairLosses, PlanetaryLosses
+from epicyclic.case.model_tables import GearPairLosses, PlanetaryLosses
 from epicyclic.kinematics import MEMBERS, PowerFlow
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.planet_bearing import RollerLoads

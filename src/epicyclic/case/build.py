@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from functools import lru_cache
 
-from epicyclic.case.schema import Gears, GearTable, PairGear, Planet, Ring
+from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring
 from epicyclic.geometry.assembly import admissible_angles
 from epicyclic.geometry.gear import (
     BasicRack,

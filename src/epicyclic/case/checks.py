@@ -13,21 +13,17 @@ from pathlib import Path
 
 from epicyclic.case import build
 from epicyclic.case.gear_checks import check_pair, check_planetary
-from epicyclic.case.schema import (
+from epicyclic.case.gear_tables import Gears, GearTable, Planet, Ring
+from epicyclic.case.model_tables import (
     FrictionTable,
     GearPairModels,
-    GearPairOperation,
-    Gears,
-    GearTable,
     LoadSharing,
     Numerics,
-    Planet,
     PlanetaryModels,
-    PlanetaryOperation,
-    PlanetBearing,
-    Ring,
-    Table,
 )
+from epicyclic.case.operation_tables import GearPairOperation, PlanetaryOperation
+from epicyclic.case.part_tables import PlanetBearing
+from epicyclic.case.schema import Table
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.assembly import are_evenly_spaced

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from epicyclic.case.flanks import roll_length_at, working_flank
-from epicyclic.case.schema import GearTable, MicroGeometryTable, TopographyTable
+from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, TopographyTable
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 from epicyclic.geometry.gear import Gear

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Literal
 
 from epicyclic.case import build
-from epicyclic.case.schema import GearTable, MicroGeometryTable, Planet, TopographyTable
+from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, Planet, TopographyTable
 from epicyclic.elasticity.mesh_compliance import GearBody
 from epicyclic.elasticity.rim import Rim
 from epicyclic.geometry.gear import Gear

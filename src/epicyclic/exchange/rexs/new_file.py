@@ -11,7 +11,9 @@ from typing import Any
 
 from epicyclic.case.build import gear
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
-from epicyclic.case.schema import GearTable, Material, PlanetBearing
+from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.part_tables import PlanetBearing
+from epicyclic.case.schema import Material
 from epicyclic.exchange.rexs.model import Attribute, Component, Relation
 from epicyclic.exchange.rexs.vocabulary import term, written
 from epicyclic.geometry.gear import Gear
