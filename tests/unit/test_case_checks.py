@@ -12,7 +12,8 @@ from epicyclic.case.case import load_case
 from epicyclic.errors import InputError
 from epicyclic.geometry.assembly import admissible_angles
 from epicyclic.geometry.gear import involute
-from epicyclic.geometry.outline import RackTool, ShaperTool, form_radius
+from epicyclic.geometry.outline import form_radius
+from epicyclic.geometry.tools import RackTool, ShaperTool
 
 TALBOT, PAIR = "talbot-2012", "talbot-2012-pair"
 

@@ -16,15 +16,10 @@ from epicyclic.geometry.gear import (
     half_angle_from_thickness,
     involute,
 )
+from epicyclic.geometry.generation import default_tool
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import (
-    RackTool,
-    ShaperTool,
-    Tool,
-    default_tool,
-    form_radius,
-    tooth_outline,
-)
+from epicyclic.geometry.outline import form_radius, tooth_outline
+from epicyclic.geometry.tools import RackTool, ShaperTool, Tool
 
 MODULE = 2e-3
 ROUNDING_ERROR = 1e-12  # a few hundred roundings of doubles, relative

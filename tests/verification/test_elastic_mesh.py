@@ -15,9 +15,9 @@ from epicyclic.elasticity.mesh_compliance import GearBody, mesh_compliance
 from epicyclic.elasticity.rim import ElasticRing, Rim
 from epicyclic.elasticity.tooth_plate import _stiffness, tooth_plate
 from epicyclic.geometry.gear import BasicRack, Gear, half_angle_from_profile_shift
+from epicyclic.geometry.generation import default_tool
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.micro_geometry import FlankDeviations, MicroGeometry, Relief, Topography
-from epicyclic.geometry.outline import default_tool
 from epicyclic.kernels.contact_load import (
     LEAST_SLOPE,
     LINEAR_SHARE,

@@ -31,7 +31,7 @@ from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.model_tables import GearPairModels, LossOption, Numerics
 from epicyclic.elasticity.loaded_mesh import LoadedMesh, load_mesh_elastically
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import Tool
+from epicyclic.geometry.tools import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.contact import Flanks, MeshContact, mesh_contact
 from epicyclic.losses.direct import EhlDirect

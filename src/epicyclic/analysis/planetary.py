@@ -37,7 +37,7 @@ from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.model_tables import LoadSharing
 from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import Tool
+from epicyclic.geometry.tools import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_pressure
 from epicyclic.kinematics import (
     MEMBERS,
