@@ -1,15 +1,26 @@
-"""Options that commands share: a case, and changes of its keys."""
+"""Options that commands share, above all a case and changes of its keys."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import click
 
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["case_argument", "from_rexs", "load_with", "parse_changes", "set_option"]
+__all__ = [
+    "case_argument",
+    "from_rexs",
+    "jobs_option",
+    "json_option",
+    "load_with",
+    "parse_changes",
+    "plot_option",
+    "set_option",
+    "temperature_option",
+]
 
 case_argument = click.argument("case", metavar="CASE")
 set_option = click.option(
@@ -20,6 +31,27 @@ set_option = click.option(
     help='Change a key of the case, as in --set "operation.torque=500 N*m". An empty value '
     "removes the key.",
 )
+json_option = click.option(
+    "--json",
+    "json_file",
+    metavar="[FILE]",
+    is_flag=False,
+    flag_value="-",
+    help="Write the result as JSON, to standard output if no FILE or - is given.",
+)
+jobs_option = click.option(
+    "--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays."
+)
+temperature_option = click.option(
+    "--temperature",
+    metavar="VALUES",
+    help='Of the oil at the inlet, as in "40,60,90 degC"; default: that of the case.',
+)
+
+
+def plot_option(text: str) -> Callable[[Any], Any]:
+    """The option --plot, with its help."""
+    return click.option("--plot", metavar="FILE", type=click.Path(path_type=Path), help=text)
 
 
 def load_with(case: str, changes: Sequence[str]) -> Any:
