@@ -61,6 +61,7 @@ __all__ = [
     "Speed",
     "Temperature",
     "Torque",
+    "as_stated",
     "describe_range",
     "format_number",
     "from_pint",
@@ -427,6 +428,11 @@ KinematicViscosity = Annotated[
 PressureViscosity = Annotated[
     float, Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa", low=1.0, high=60.0)
 ]
+
+
+def as_stated(default: str | tuple[str, ...]) -> Any:
+    """A default of a field as a user would state it, with its unit: it is read like any value."""
+    return default
 
 
 def unit_text(unit: str) -> str:

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from epicyclic.case.schema import NamedMaterial, Roughness, ShortLength, Table, as_text
+from epicyclic.case.schema import NamedMaterial, Roughness, ShortLength, Table
 from epicyclic.units import (
     Angle,
     Deviation,
@@ -16,6 +16,7 @@ from epicyclic.units import (
     Number,
     Quantity,
     SmallLength,
+    as_stated,
 )
 
 
@@ -69,7 +70,7 @@ class TopographyTable(Table):
 class MicroGeometryTable(Table):
     """Modifications and deviations of the working flanks, positive where material is missing."""
 
-    tip_relief: SmallLength = Field(default=as_text("0 um"), description="At the tip.")
+    tip_relief: SmallLength = Field(default=as_stated("0 um"), description="At the tip.")
     tip_relief_roll_length: Length | None = Field(
         default=None, description="Roll length from the tip to the start of the relief."
     )
@@ -78,7 +79,7 @@ class MicroGeometryTable(Table):
     )
     tip_relief_shape: ReliefShape = "linear"
     root_relief: SmallLength = Field(
-        default=as_text("0 um"), description="At the start of the active profile."
+        default=as_stated("0 um"), description="At the start of the active profile."
     )
     root_relief_roll_length: Length | None = Field(
         default=None, description="Roll length from the start of the active profile."
@@ -88,19 +89,19 @@ class MicroGeometryTable(Table):
     )
     root_relief_shape: ReliefShape = "linear"
     profile_crown: Deviation = Field(
-        default=as_text("0 um"), description="Parabola over the active profile."
+        default=as_stated("0 um"), description="Parabola over the active profile."
     )
     profile_slope: Deviation = Field(
-        default=as_text("0 um"), description="Positive: material is missing at the tip."
+        default=as_stated("0 um"), description="Positive: material is missing at the tip."
     )
     lead_crown: Deviation = Field(
-        default=as_text("0 um"), description="Parabola over the face width of the gear."
+        default=as_stated("0 um"), description="Parabola over the face width of the gear."
     )
     lead_slope: Deviation = Field(
-        default=as_text("0 um"),
+        default=as_stated("0 um"),
         description="Positive: material is missing at the end where contact ends.",
     )
-    end_relief: SmallLength = Field(default=as_text("0 um"), description="At both ends.")
+    end_relief: SmallLength = Field(default=as_stated("0 um"), description="At both ends.")
     end_relief_length: Length | None = Field(default=None, description="From each end.")
     end_relief_shape: ReliefShape = "linear"
     topography: TopographyTable | None = Field(
@@ -128,7 +129,7 @@ class GearTable(Table):
         default=None, description="Default: from dedendum_coefficient."
     )
     tip_chamfer: ShortLength = Field(
-        default=as_text("0 mm"),
+        default=as_stated("0 mm"),
         description="Radial height of the 45 degree chamfers of the tip corners.",
     )
     tooth_thickness: Length | None = Field(
@@ -139,7 +140,7 @@ class GearTable(Table):
         default=None, ge=-3, le=5, description="x; positive thickens the teeth, on a ring too."
     )
     roughness: Roughness = Field(description="rms roughness Rq of the flanks, or a finish.")
-    material: NamedMaterial = Field(default=as_text("steel"), description="A name or a table.")
+    material: NamedMaterial = Field(default=as_stated("steel"), description="A name or a table.")
     tool_tip_radius: ShortLength | None = Field(
         default=None,
         description="Rounding of the cutting tool's tip, which leaves the root fillet. Default: "
@@ -209,7 +210,7 @@ class MeshTable(Table):
     STAND_INS: ClassVar[dict[str, object]] = {"misalignment": None}
 
     misalignment: Deviation = Field(
-        default=as_text("0 um"),
+        default=as_stated("0 um"),
         description="F_beta_x over the common face width, in the plane of action; positive: the "
         "flanks open towards the end where contact ends.",
     )

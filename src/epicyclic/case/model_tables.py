@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from epicyclic.case.schema import Stress, Table, as_text
+from epicyclic.case.schema import Stress, Table
 from epicyclic.units import (
     Deviation,
     HertzPressure,
@@ -15,6 +15,7 @@ from epicyclic.units import (
     SmallLength,
     Speed,
     Stiffness,
+    as_stated,
 )
 
 _PinStiffness = Annotated[
@@ -45,7 +46,7 @@ class LoadSharing(Table):
         default="sun", description="The member that gives way in the transverse plane."
     )
     support_stiffness: Stiffness = Field(
-        default=as_text("0 N/um"), description="Radial, of the floating member; 0: it floats."
+        default=as_stated("0 N/um"), description="Radial, of the floating member; 0: it floats."
     )
     pin_stiffness: _PinStiffness | None = Field(
         default=None,
@@ -137,11 +138,11 @@ class ContactSolver(Table):
     """How the contacts of a mesh are solved for friction = ehl-direct."""
 
     eyring_stress: Stress = Field(
-        default=as_text("5 MPa"),
+        default=as_stated("5 MPa"),
         description="Stress beyond which the oil thins (estimate; mineral oils 2 to 10 MPa).",
     )
     correlation_length: SmallLength = Field(
-        default=as_text("20 um"), description="Of the roughness of both flanks (estimate)."
+        default=as_stated("20 um"), description="Of the roughness of both flanks (estimate)."
     )
     seed: int = Field(default=1, ge=0, description="Of the generated profiles.")
     error: Number = Field(

@@ -6,8 +6,8 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from epicyclic.case.schema import NamedOil, Table, as_text
-from epicyclic.units import Number, Pressure, RotationalSpeed, Temperature, Torque
+from epicyclic.case.schema import NamedOil, Table
+from epicyclic.units import Number, Pressure, RotationalSpeed, Temperature, Torque, as_stated
 
 Member = Literal["sun", "ring", "carrier"]
 
@@ -74,4 +74,4 @@ class Surroundings(Table):
     oil_air_ratio: Number = Field(
         default=0.05, ge=0, le=1, description="Oil share by volume at ambient pressure."
     )
-    pressure: Pressure = Field(default=as_text("1.01325 bar"), description="Ambient pressure.")
+    pressure: Pressure = Field(default=as_stated("1.01325 bar"), description="Ambient pressure.")

@@ -6,8 +6,8 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from epicyclic.case.schema import NamedMaterial, Roughness, ShortLength, Table, as_text
-from epicyclic.units import Length, Number, SmallLength
+from epicyclic.case.schema import NamedMaterial, Roughness, ShortLength, Table
+from epicyclic.units import Length, Number, SmallLength, as_stated
 
 
 class PlanetBearing(Table):
@@ -50,15 +50,15 @@ class PlanetBearing(Table):
         description="f1 of the method palmgren. Default: 0.0003 caged, 0.00055 full complement.",
     )
     crown_drop: SmallLength = Field(
-        default=as_text("3 um"), description="Drop of the profile at the roller's end (estimate)."
+        default=as_stated("3 um"), description="Drop of the profile at the roller's end (estimate)."
     )
     crown_length_fraction: Number = Field(
         default=0.2, ge=0, le=0.5, description="Crowned part of the length, at each end."
     )
     row_gap: ShortLength = Field(
-        default=as_text("0 mm"), description="Axial gap between the rollers of neighbouring rows."
+        default=as_stated("0 mm"), description="Axial gap between the rollers of neighbouring rows."
     )
-    material: NamedMaterial = Field(default=as_text("steel"), description="Of rollers and races.")
+    material: NamedMaterial = Field(default=as_stated("steel"), description="Of rollers and races.")
 
 
 class Carrier(Table):

@@ -18,7 +18,7 @@ from epicyclic import library
 from epicyclic.case.fields import Named
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.lubricant.oil import Oil
-from epicyclic.units import Density, Modulus, Number, Quantity
+from epicyclic.units import Density, Modulus, Number, Quantity, as_stated
 
 
 class Table(BaseModel):
@@ -36,11 +36,6 @@ class Table(BaseModel):
     )
     EXACTLY_ONE: ClassVar[tuple[tuple[str, ...], ...]] = ()
     STAND_INS: ClassVar[dict[str, object]] = {}
-
-
-def as_text(default: str) -> Any:
-    """A default as a case file would state it; it is read like any other value."""
-    return default
 
 
 def _no_preset(noun: str, name: str, known: Iterable[str], allowed: str) -> PydanticCustomError:
@@ -91,7 +86,7 @@ class Material(Table):
     title: str = "material of the case"
     elastic_modulus: Modulus
     poisson_ratio: Number = Field(default=0.3, ge=0.0, le=0.5)
-    density: Density = Field(default=as_text("7850 kg/m^3"))
+    density: Density = Field(default=as_stated("7850 kg/m^3"))
     source: str = ""
 
 
