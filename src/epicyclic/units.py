@@ -13,7 +13,7 @@ import math
 import re
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, Annotated, Any, cast
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
@@ -165,10 +165,9 @@ def _parse_unit(text: str) -> Unit:
     return registry().parse_units(_MISSING_CARET.sub("^", f"{start}{text}"))
 
 
-def _turns(unit: Unit) -> int:
+def _turns(unit: Unit) -> object:
     """The power of the angle in `unit`; pint itself takes angles as pure numbers."""
-    powers = cast("Any", registry().get_base_units(unit)[1])._units
-    return int(powers.get("radian", 0))
+    return dict(registry().Quantity(1, unit).to_base_units().unit_items()).get("radian", 0)
 
 
 @lru_cache(maxsize=4096)

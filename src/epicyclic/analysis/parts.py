@@ -75,9 +75,13 @@ PEAK_SHARE = 0.01
 OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
 
 _VISCOSITY = Range(
-    "kinematic_viscosity", "kinematic viscosity", 2.0, 2e7, SQUARE_MM_PER_SECOND,
+    "kinematic_viscosity",
+    "kinematic viscosity",
+    2.0,
+    2e7,
+    SQUARE_MM_PER_SECOND,
     "ASTM D341, form for 2 mm^2/s and more",
-)  # fmt: skip
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -250,12 +250,12 @@ def _shapes(life: _Life, width: float) -> dict[str, Variable]:
 
     return {
         "live": (
-            (*_LIFE, "slice"), alive, {"long_name": "whether a slice is a pocket", "units": "1"}
+            (*_LIFE, "slice"),
+            alive,
+            {"long_name": "whether a slice is a pocket", "units": "1"},
         ),
         "end_area": variable(station, known(area), "area of the section", SQUARE_MILLIMETRE),
-        "slice_volume": variable(
-            (*_LIFE, "slice"), slices, "volume of a slice", CUBIC_MILLIMETRE
-        ),
+        "slice_volume": variable((*_LIFE, "slice"), slices, "volume of a slice", CUBIC_MILLIMETRE),
         "volume": variable(_LIFE, volume, "volume of the pocket", CUBIC_MILLIMETRE),
         "contact_gap": variable(station, known(contact), "gap at the contact side", MICROMETRE),
         "backlash_gap": variable(station, known(backlash), "gap at the backlash side", MICROMETRE),
@@ -265,7 +265,7 @@ def _shapes(life: _Life, width: float) -> dict[str, Variable]:
             "centroid of the section, axis of member 1 at the origin",
             MILLIMETRE,
         ),
-    }  # fmt: skip
+    }
 
 
 def _flows(life: _Life) -> dict[str, Variable]:
@@ -371,9 +371,11 @@ def _numbers(case: Case, duty: MeshDuty, flow: PocketFlow) -> dict[str, Variable
             RPM,
         ),
         "oil_fraction": (
-            case.surroundings.oil_air_ratio, "share of oil in the mixture, by volume", NUMBER
+            case.surroundings.oil_air_ratio,
+            "share of oil in the mixture, by volume",
+            NUMBER,
         ),
-    }  # fmt: skip
+    }
     return {
         name: variable((), value, label, unit) for name, (value, label, unit) in numbers.items()
     }

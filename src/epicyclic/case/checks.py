@@ -258,11 +258,13 @@ def _check_oil_model(models: GearPairModels, folder: Path) -> list[Problem]:
     if models.oil_model is None:
         return [
             Problem(
-                f"models.{key}", '"fitted"', "needs a file of fitted models.",
+                f"models.{key}",
+                '"fitted"',
+                "needs a file of fitted models.",
                 "Give models.oil_model, a file of 'epicyclic oil characterise'.",
             )
             for key in asked
-        ]  # fmt: skip
+        ]
     try:
         fits = read_oil_model(folder / models.oil_model).fits
     except InputError as error:

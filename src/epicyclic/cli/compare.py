@@ -48,9 +48,12 @@ __all__ = ["compare"]
 )
 @click.option("--seed", type=click.IntRange(0), default=0, help="Of that share; default 0.")
 @click.option(
-    "-o", "--output", metavar="FILE", type=click.Path(path_type=Path),
+    "-o",
+    "--output",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
     help="Write the calibrated case (.toml).",
-)  # fmt: skip
+)
 @plot_option("Draw parity and residuals to .png, .svg or .pdf.")
 @json_option
 @jobs_option
@@ -83,9 +86,16 @@ def compare(
     loaded = load_with(case, changes)
     with progress_bar("points") as progress:
         comparison = compare_measured(
-            loaded, measured, component=component, group=group, fit=keys, hold_out=hold_out,
-            seed=seed, jobs=jobs, progress=progress,
-        )  # fmt: skip
+            loaded,
+            measured,
+            component=component,
+            group=group,
+            fit=keys,
+            hold_out=hold_out,
+            seed=seed,
+            jobs=jobs,
+            progress=progress,
+        )
     show(lambda: measured_tables(comparison), comparison.to_json, json_file)
     if output is not None:
         write_file(output, _calibrated_text(comparison))

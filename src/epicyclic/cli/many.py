@@ -127,12 +127,14 @@ def check_values(values: Mapping[str, str | None]) -> None:
     """Raise `InputError` for options that name no values."""
     problems = [
         Problem(
-            f"--{name}", f'"{text}"', "must be a,b,c or start:stop:count with a unit.",
+            f"--{name}",
+            f'"{text}"',
+            "must be a,b,c or start:stop:count with a unit.",
             'For example "0:4000:41 rpm" for the speed.',
         )
         for name, text in values.items()
         if text is not None and not text.strip()
-    ]  # fmt: skip
+    ]
     if problems:
         raise InputError(problems, "the command")
 

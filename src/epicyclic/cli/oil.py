@@ -89,9 +89,13 @@ def characterise(
     if plot is not None:
         check_ending("--plot", plot)
     campaign = make_campaign(
-        source, size=size, bearing_size=bearing_size, seed=seed,
-        ranges=parse_ranges(ranges), changes=parse_changes(changes),
-    )  # fmt: skip
+        source,
+        size=size,
+        bearing_size=bearing_size,
+        seed=seed,
+        ranges=parse_ranges(ranges),
+        changes=parse_changes(changes),
+    )
     folder = CampaignFolder(output, campaign)
     folder.prepare()
     try:

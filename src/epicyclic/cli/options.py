@@ -85,10 +85,12 @@ def parse_changes(options: Sequence[str]) -> dict[str, Any]:
         if not equals or not key.strip():
             problems.append(
                 Problem(
-                    "--set", f'"{option}"', "must be KEY=VALUE.",
+                    "--set",
+                    f'"{option}"',
+                    "must be KEY=VALUE.",
                     'For example --set "operation.torque=500 N*m".',
                 )
-            )  # fmt: skip
+            )
         else:
             changes[key.strip()] = parse_value(text.strip()) if text.strip() else None
     if problems:

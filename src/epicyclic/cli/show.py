@@ -91,8 +91,10 @@ def _stored(source: str, changes: Sequence[str]) -> Stored:
         return record(load_with(source, changes))
     if changes:
         problem = Problem(
-            "--set", f'"{changes[0]}"', "changes a case, and a stored result is none.",
+            "--set",
+            f'"{changes[0]}"',
+            "changes a case, and a stored result is none.",
             "Solve the case with it: epicyclic run CASE --set ... --save FILE.nc.",
-        )  # fmt: skip
+        )
         raise InputError([problem], "the command")
     return open_result(source)

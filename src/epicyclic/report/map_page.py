@@ -81,7 +81,7 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
         Section("conventions", "Conventions", _conventions(data)),
         Section("inputs", "Inputs", tuple(input_tables(map_inputs(data), map_inputs(data)))),
         Section("versions", "Versions", _versions(data)),
-    ]  # fmt: skip
+    ]
     return [section for section in sections if section.items]
 
 

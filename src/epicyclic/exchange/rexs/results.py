@@ -45,10 +45,14 @@ def check_match(chosen: PlanetarySet | Pair, result: Result) -> None:
         here = table["teeth"] if table else None
         there = None if stated is None else abs(stated.number())
         if here != there:
-            problems.append(Problem(
-                f"{name}.teeth", f"{here}", f"is {there} in {component}.",
-                "Write the results of a gear set into its own file.",
-            ))  # fmt: skip
+            problems.append(
+                Problem(
+                    f"{name}.teeth",
+                    f"{here}",
+                    f"is {there} in {component}.",
+                    "Write the results of a gear set into its own file.",
+                )
+            )
     if problems:
         raise InputError(problems)
 
