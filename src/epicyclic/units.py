@@ -69,6 +69,9 @@ __all__ = [
     "registry",
 ]
 
+PLAIN_NUMBERS = 1e7
+"""Numbers from here on are shown with a power of ten."""
+
 _LONGEST_TEXT = 100
 """A number with a unit takes a few characters; longer text is not searched for one."""
 
@@ -108,8 +111,12 @@ def registry() -> UnitRegistry[float]:
 
 
 def format_number(value: float, digits: int = 6) -> str:
-    """`value` with up to `digits` significant digits and no trailing zeros."""
-    return f"{value:.{digits}g}"
+    """`value` with up to `digits` significant digits and no trailing decimal zeros.
+
+    Without a power of ten from 1e-4 up to `PLAIN_NUMBERS`: ``"14600"``, not ``"1.46e+04"``.
+    """
+    text = f"{value:.{digits}g}"
+    return f"{float(text):.0f}" if "e+" in text and abs(value) < PLAIN_NUMBERS else text
 
 
 def describe_range(
