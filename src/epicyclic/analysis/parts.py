@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
+from epicyclic.analysis.figures import FluidFigures, MeshFigures
 from epicyclic.analysis.models import friction_of, resolve_models, rolling_of
 from epicyclic.analysis.pockets import (
     POCKETING_SOURCE,
@@ -18,13 +19,7 @@ from epicyclic.analysis.pockets import (
     pocketing_method,
     stored_note,
 )
-from epicyclic.analysis.result import (
-    LOAD_DEPENDENT,
-    LOAD_INDEPENDENT,
-    FluidFigures,
-    LossTerm,
-    MeshFigures,
-)
+from epicyclic.analysis.result import LOAD_DEPENDENT, LOAD_INDEPENDENT, LossTerm
 from epicyclic.case import flanks
 from epicyclic.case.case import Case
 from epicyclic.case.gear_tables import GearTable

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from epicyclic.analysis.figures import BearingFigures
 from epicyclic.analysis.models import fitted_rolling, resolve_models
 from epicyclic.analysis.parts import Part
 from epicyclic.analysis.planet_load import PlanetLoad
-from epicyclic.analysis.result import LOAD_DEPENDENT, LOAD_INDEPENDENT, BearingFigures
+from epicyclic.analysis.result import LOAD_DEPENDENT, LOAD_INDEPENDENT
 from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_pressure

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from epicyclic.analysis.figures import BearingFigures, MeshFigures
 from epicyclic.analysis.load_sharing import SHARING_METHODS, planet_shares
 from epicyclic.analysis.models import resolve_models
 from epicyclic.analysis.notes import contact_notes, fluid_notes, general_notes, load_notes
@@ -23,13 +24,7 @@ from epicyclic.analysis.parts import (
 from epicyclic.analysis.planet_bearing import planet_bearing, solve_bearing
 from epicyclic.analysis.planet_load import PlanetLoad, planet_load, tilt_planet
 from epicyclic.analysis.pockets import MeshFlow, mesh_flows
-from epicyclic.analysis.result import (
-    LOAD_INDEPENDENT,
-    BearingFigures,
-    LossTerm,
-    MeshFigures,
-    Result,
-)
+from epicyclic.analysis.result import LOAD_INDEPENDENT, LossTerm, Result
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.model_tables import LoadSharing

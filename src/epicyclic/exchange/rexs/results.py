@@ -11,7 +11,8 @@ import math
 from collections.abc import Iterator
 from importlib.metadata import version
 
-from epicyclic.analysis.result import MeshFigures, Result
+from epicyclic.analysis.figures import MeshFigures
+from epicyclic.analysis.result import Result
 from epicyclic.errors import InputError, Problem
 from epicyclic.exchange.rexs.content import Content
 from epicyclic.exchange.rexs.draft import DIGITS
