@@ -160,7 +160,7 @@ class PointList:
 
     def order(self) -> list[int]:
         """Indices of all points, by geometry, then operation, then torque, as in a loss map."""
-        return sorted(range(self.size), key=lambda index: self._place(index))
+        return sorted(range(self.size), key=self._place)
 
     def _place(self, index: int) -> tuple[list[str], list[str], str]:
         torque = "operation.torque"
