@@ -17,7 +17,7 @@ from sphinx.util import logging
 
 from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.fields import quantity_of, table_of
-from epicyclic.case.schema import GearTable
+from epicyclic.case.gear_tables import GearTable
 from epicyclic.units import Quantity
 
 PAGE = "how-to/case-file.md"

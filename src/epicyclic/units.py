@@ -13,7 +13,7 @@ import math
 import re
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, Annotated, Any, cast
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
@@ -61,12 +61,16 @@ __all__ = [
     "Speed",
     "Temperature",
     "Torque",
+    "as_stated",
     "describe_range",
     "format_number",
     "from_pint",
     "range_remedy",
     "registry",
 ]
+
+PLAIN_NUMBERS = 1e7
+"""Numbers from here on are shown with a power of ten."""
 
 _LONGEST_TEXT = 100
 """A number with a unit takes a few characters; longer text is not searched for one."""
@@ -107,8 +111,12 @@ def registry() -> UnitRegistry[float]:
 
 
 def format_number(value: float, digits: int = 6) -> str:
-    """`value` with up to `digits` significant digits and no trailing zeros."""
-    return f"{value:.{digits}g}"
+    """`value` with up to `digits` significant digits and no trailing decimal zeros.
+
+    Without a power of ten from 1e-4 up to `PLAIN_NUMBERS`: ``"14600"``, not ``"1.46e+04"``.
+    """
+    text = f"{value:.{digits}g}"
+    return f"{float(text):.0f}" if "e+" in text and abs(value) < PLAIN_NUMBERS else text
 
 
 def describe_range(
@@ -164,10 +172,9 @@ def _parse_unit(text: str) -> Unit:
     return registry().parse_units(_MISSING_CARET.sub("^", f"{start}{text}"))
 
 
-def _turns(unit: Unit) -> int:
+def _turns(unit: Unit) -> object:
     """The power of the angle in `unit`; pint itself takes angles as pure numbers."""
-    powers = cast("Any", registry().get_base_units(unit)[1])._units
-    return int(powers.get("radian", 0))
+    return dict(registry().Quantity(1, unit).to_base_units().unit_items()).get("radian", 0)
 
 
 @lru_cache(maxsize=4096)
@@ -427,6 +434,11 @@ KinematicViscosity = Annotated[
 PressureViscosity = Annotated[
     float, Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa", low=1.0, high=60.0)
 ]
+
+
+def as_stated(default: str | tuple[str, ...]) -> Any:
+    """A default of a field as a user would state it, with its unit: it is read like any value."""
+    return default
 
 
 def unit_text(unit: str) -> str:

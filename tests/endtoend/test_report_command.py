@@ -33,13 +33,13 @@ def test_a_result_is_stored_shown_and_drawn(epicyclic, tmp_path):
     ("arguments", "reason"),
     [
         (("report", "missing.nc", "-o", "r.html"), "does not exist"),
-        (("report", "talbot-2012", "-o", "r.txt"), "must end in .html, .pdf"),
+        (("report", "talbot-2012", "-o", "r.txt"), "must end in .html or .pdf"),
         (
             ("report", "missing.nc", "--set", "sun.teeth=20", "-o", "r.html"),
             "stored result is none",
         ),
         (("plot", "talbot-2013", "losses"), "neither a file nor a built-in case"),
-        (("plot", "talbot-2012", "losses", "-o", "x.docx"), "must end in .png, .svg, .pdf"),
+        (("plot", "talbot-2012", "losses", "-o", "x.docx"), "must end in .png or .svg or .pdf"),
         (("run", "talbot-2012", "--save", "result.json"), "must end in .nc"),
         (("run", "talbot-2012", "--save", "nowhere/result.nc"), "is no place for a file"),
     ],

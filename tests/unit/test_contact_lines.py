@@ -9,23 +9,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from contacts import MESHES, with_overlap_ratio
 from epicyclic.geometry.contact_lines import contact_lines
 
 ROUNDING = 1e-12  # relative; sums of a few hundred doubles
-
-MESHES = [
-    pytest.param({"teeth1": 20, "teeth2": 41}, id="spur"),
-    pytest.param({"teeth1": 20, "teeth2": 41, "beta": 0.5}, id="nearly spur"),
-    pytest.param({"teeth1": 30, "teeth2": 50, "beta": 15.0}, id="helical"),
-    pytest.param({"teeth1": 30, "teeth2": 50, "beta": 30.0, "width": 60e-3}, id="wide"),
-    pytest.param({"teeth1": 24, "teeth2": 90, "internal": True}, id="internal spur"),
-    pytest.param({"teeth1": 24, "teeth2": 90, "internal": True, "beta": 20.0}, id="internal"),
-    pytest.param({"teeth1": 60, "teeth2": 70, "addendum": 1.4, "dedendum": 1.6}, id="three pairs"),
-    pytest.param(
-        {"teeth1": 40, "teeth2": 50, "addendum": 0.4, "beta": 20.0, "width": 40e-3},
-        id="transverse contact ratio below 1",
-    ),
-]
 
 
 @pytest.fixture(params=MESHES)
@@ -100,16 +87,10 @@ def test_number_of_pairs_of_a_spur_mesh(make_mesh):
 @pytest.mark.parametrize("overlap", [1.0, 2.0])
 @pytest.mark.parametrize("internal", [False, True])
 def test_total_length_is_constant_for_integer_overlap_ratio(make_mesh, overlap, internal):
-    mesh = make_mesh(30, 100, beta=20.0, internal=internal)
-    width = overlap * mesh.face_width / mesh.overlap_ratio
-    mesh = replace(
-        mesh,
-        gear1=replace(mesh.gear1, face_width=width),
-        gear2=replace(mesh.gear2, face_width=width),
-    )
+    mesh = with_overlap_ratio(make_mesh(30, 100, beta=20.0, internal=internal), overlap)
     assert mesh.overlap_ratio == pytest.approx(overlap, rel=ROUNDING)
     total = contact_lines(mesh, 30, 10).total_length
-    expected = mesh.transverse_contact_ratio * width / math.cos(base_helix(mesh))
+    expected = mesh.transverse_contact_ratio * mesh.face_width / math.cos(base_helix(mesh))
     assert total == pytest.approx(np.full_like(total, expected), rel=1e-11)
 
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.losses.contact import Flanks, MeshContact, mesh_contact
+from contacts import STEEL, contact_points, loaded_contact, oil
+from epicyclic.losses.contact import Flanks
 from epicyclic.losses.friction import FRICTION_MODELS, FrictionSettings, friction_model
 from epicyclic.losses.friction.base import (
     RA_OVER_RQ,
@@ -20,10 +21,7 @@ from epicyclic.losses.friction.base import (
     specific_load,
 )
 from epicyclic.losses.friction.user import FrictionMap
-from epicyclic.losses.load_distribution import load_shape
-from epicyclic.lubricant.properties import OilState
 
-STEEL = 227.47e9
 SETTINGS = FrictionSettings(
     constant=0.04,
     boundary=0.10,
@@ -33,59 +31,6 @@ SETTINGS = FrictionSettings(
 MODELS = sorted(FRICTION_MODELS)
 LOCAL = ["benedict-kelley", "doleschel", "matsumoto", "mixed-ehl", "table", "xu-2007"]
 MEAN = ["constant", "niemann-winter", "schlenk"]
-
-
-def oil(mu=10e-3, alpha=15e-9, lubricant_factor=1.0):
-    return OilState(
-        temperature=353.15,
-        kinematic_viscosity=mu / 850.0,
-        density=850.0,
-        dynamic_viscosity=mu,
-        pressure_viscosity=alpha,
-        thermoviscosity=0.03,
-        thermal_conductivity=0.14,
-        lubricant_factor=lubricant_factor,
-    )
-
-
-def points(mesh, *, line_load, radius, rolling, sliding, oil, rough=(0.0, 0.0), **kwargs):
-    """A contact of given local conditions; the mesh counts for mean models only."""
-    size = np.broadcast(line_load, radius, rolling, sliding).size
-    arrays = {
-        name: np.broadcast_to(np.asarray(value, dtype=float), (size,)).copy()
-        for name, value in (
-            ("line_load", line_load),
-            ("radius", radius),
-            ("rolling_speed", rolling),
-            ("sliding_speed", sliding),
-        )
-    }
-    given = {"force": 5000.0, "speed1": 100.0} | kwargs
-    return MeshContact(
-        mesh=mesh,
-        oil=oil,
-        flanks=Flanks(STEEL, *rough),
-        speed2=given["speed1"] / mesh.ratio,
-        weight=np.full(size, 1e-3),
-        path=np.zeros(size),
-        **given,
-        **arrays,
-    )
-
-
-def loaded_mesh(mesh, *, torque=200.0, speed=200.0, oil, rough=(0.4e-6, 0.4e-6), segments=20):
-    """The mesh under a uniform load, as `solve` makes it."""
-    lines, shape = load_shape(mesh, "uniform", 20, segments)
-    force = torque / mesh.gear1.base_radius
-    return mesh_contact(
-        mesh,
-        lines,
-        force * shape,
-        force=force,
-        speed1=speed,
-        oil=oil,
-        flanks=Flanks(STEEL, *rough),
-    )
 
 
 def at_pitch_point(mesh, *, load, sum_speed, radius, oil, ra):
@@ -109,7 +54,9 @@ def at_pitch_point(mesh, *, load, sum_speed, radius, oil, ra):
 
 
 def points_at(mesh, oil, **kwargs):
-    return points(mesh, line_load=1e5, radius=1e-2, rolling=5.0, sliding=1.0, oil=oil, **kwargs)
+    return contact_points(
+        mesh, line_load=1e5, radius=1e-2, rolling=5.0, sliding=1.0, oil=oil, **kwargs
+    )
 
 
 def enlarged(gear, scale):
@@ -179,7 +126,7 @@ def test_niemann_winter_at_its_worked_value(make_mesh):
 def test_benedict_kelley_at_its_worked_values(make_mesh, microinches, mu):
     # worked out separately: 250 N/mm, 10 mPa s, v1 + v2 = 20 m/s, |v1 - v2| = 2 m/s
     rough = microinches * 25.4e-9
-    contact = points(
+    contact = contact_points(
         make_mesh(20, 40),
         line_load=250e3,
         radius=8e-3,
@@ -198,7 +145,7 @@ def test_benedict_kelley_at_its_worked_values(make_mesh, microinches, mu):
 )
 def test_xu_at_its_worked_values(make_mesh, slip, pressure, viscosity, rough, rolling, radius, mu):
     load = 2 * math.pi * radius * (pressure * 1e9) ** 2 / STEEL
-    contact = points(
+    contact = contact_points(
         make_mesh(20, 40),
         line_load=load,
         radius=radius,
@@ -215,7 +162,7 @@ def test_xu_at_its_worked_values(make_mesh, slip, pressure, viscosity, rough, ro
 
 def film_of(make_mesh, target, central, rough):
     """A contact whose film is `target` thick, by the viscosity of the oil."""
-    contact = points(
+    contact = contact_points(
         make_mesh(20, 40), line_load=2e5, radius=8e-3, rolling=10.0, sliding=1.0, oil=oil(),
         rough=rough,
     )  # fmt: skip
@@ -256,12 +203,12 @@ def test_film_shares_end_in_dry_and_in_separated_contact(make_mesh):
 
 
 def test_constant_is_constant(make_mesh):
-    contact = loaded_mesh(make_mesh(20, 40), oil=oil())
+    contact = loaded_contact(make_mesh(20, 40), oil=oil())
     assert np.all(mu_of("constant", contact) == 0.04)
 
 
 def test_table_of_one_axis_is_interpolated_and_held(make_mesh):
-    contact = points(
+    contact = contact_points(
         make_mesh(20, 40), line_load=1e5, radius=1e-2, rolling=10.0,
         sliding=[0.0, 2.5, 5.0, -7.5, 30.0], oil=oil(),
     )  # fmt: skip
@@ -273,7 +220,7 @@ def test_table_of_two_axes_is_bilinear(make_mesh):
         (("slide_to_roll_ratio", (0.0, 1.0)), ("rolling_speed", (5.0, 15.0))),
         ((0.02, 0.04), (0.06, 0.10)),
     )
-    contact = points(
+    contact = contact_points(
         make_mesh(20, 40), line_load=1e5, radius=1e-2, rolling=[5.0, 10.0, 15.0, 100.0],
         sliding=[0.0, 5.0, 15.0, 100.0], oil=oil(),
     )  # fmt: skip
@@ -286,7 +233,7 @@ def test_table_of_two_axes_is_bilinear(make_mesh):
 def test_mixed_ehl_in_the_range_of_its_table_is_the_kernel(make_mesh):
     from epicyclic.kernels.mixed_ehl import sliding_friction
 
-    contact = points(
+    contact = contact_points(
         make_mesh(20, 40), line_load=[2e5, 5e5], radius=10e-3, rolling=[8.0, 12.0],
         sliding=[1.0, -6.0], oil=oil(6e-3, 11e-9), rough=(0.4e-6, 0.2e-6),
     )  # fmt: skip
@@ -351,7 +298,7 @@ def test_pitch_point_is_harmless(make_mesh, name):
     sliding = np.concatenate(
         [-np.geomspace(1e-12, 1.0, 60)[::-1], [0.0], np.geomspace(1e-12, 1.0, 60)]
     )
-    contact = points(
+    contact = contact_points(
         make_mesh(20, 40), line_load=2e5, radius=1e-2, rolling=10.0, sliding=sliding, oil=oil(),
         rough=(0.4e-6, 0.4e-6),
     )  # fmt: skip
@@ -388,7 +335,7 @@ BOUNDS = {
 @pytest.mark.parametrize("name", MODELS)
 @pytest.mark.parametrize("change", EXTREMES)
 def test_extreme_conditions_stay_finite_and_positive(make_mesh, name, change):
-    contact = loaded_mesh(make_mesh(20, 40), **({"oil": oil()} | change))
+    contact = loaded_contact(make_mesh(20, 40), **({"oil": oil()} | change))
     mu = mu_of(name, contact)
     assert mu.shape == contact.line_load.shape
     assert np.all(np.isfinite(mu))
@@ -400,7 +347,7 @@ def test_extreme_conditions_stay_finite_and_positive(make_mesh, name, change):
 def test_xu_is_held_on_rough_flanks(make_mesh, rough):
     """exp(b9 exp(S)) runs away beyond a micrometre: 271 at 2 um, overflow at 10 um."""
     held, limit = (
-        mu_of("xu-2007", loaded_mesh(make_mesh(20, 40), oil=oil(), rough=(rq, rq)))
+        mu_of("xu-2007", loaded_contact(make_mesh(20, 40), oil=oil(), rough=(rq, rq)))
         for rq in (rough, 1e-6 / 2**0.5)
     )
     assert held == pytest.approx(limit, rel=1e-12)
@@ -409,13 +356,13 @@ def test_xu_is_held_on_rough_flanks(make_mesh, rough):
 
 @pytest.mark.parametrize("name", MEAN)
 def test_mean_models_have_one_value_for_the_mesh(make_mesh, name):
-    mu = mu_of(name, loaded_mesh(make_mesh(20, 40), oil=oil()))
+    mu = mu_of(name, loaded_contact(make_mesh(20, 40), oil=oil()))
     assert np.ptp(mu) == 0.0
 
 
 @pytest.mark.parametrize("name", LOCAL)
 def test_local_models_vary_along_the_path(make_mesh, name):
-    mu = mu_of(name, loaded_mesh(make_mesh(20, 40), oil=oil(), torque=100.0))
+    mu = mu_of(name, loaded_contact(make_mesh(20, 40), oil=oil(), torque=100.0))
     assert np.ptp(mu) > 1e-4
 
 
@@ -425,7 +372,7 @@ def test_sliding_loss_grows_with_the_load(make_mesh, name, viscosity):
     mesh = make_mesh(20, 40)
     losses = []
     for torque in (1.0, 5.0, 20.0, 50.0, 100.0, 200.0, 400.0):
-        contact = loaded_mesh(mesh, torque=torque, oil=oil(viscosity))
+        contact = loaded_contact(mesh, torque=torque, oil=oil(viscosity))
         power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
         losses.append(float((mu_of(name, contact) * power).sum()))
     assert all(b > a for a, b in pairwise(losses))
@@ -434,10 +381,10 @@ def test_sliding_loss_grows_with_the_load(make_mesh, name, viscosity):
 @pytest.mark.parametrize("name", ["schlenk", "niemann-winter"])
 def test_mean_models_scale_as_their_powers(make_mesh, name):
     mesh = make_mesh(20, 40)
-    base = mu_of(name, loaded_mesh(mesh, oil=oil()))[0]
+    base = mu_of(name, loaded_contact(mesh, oil=oil()))[0]
 
     def ratio(**kwargs):
-        return mu_of(name, loaded_mesh(mesh, **({"oil": oil()} | kwargs)))[0] / base
+        return mu_of(name, loaded_contact(mesh, **({"oil": oil()} | kwargs)))[0] / base
 
     assert ratio(torque=100.0) == pytest.approx(2**-0.2, rel=1e-10)
     assert ratio(speed=400.0) == pytest.approx(2**-0.2, rel=1e-10)
@@ -450,7 +397,7 @@ def test_mean_models_scale_as_their_powers(make_mesh, name):
 def test_thicker_films_lower_mixed_friction(make_mesh, name):
     mesh = make_mesh(20, 40)
     thin, thick = (
-        mu_of(name, loaded_mesh(mesh, oil=oil(mu), torque=100.0)).mean() for mu in (3e-3, 15e-3)
+        mu_of(name, loaded_contact(mesh, oil=oil(mu), torque=100.0)).mean() for mu in (3e-3, 15e-3)
     )
     assert thick < 0.95 * thin
 
@@ -461,7 +408,7 @@ def test_thicker_films_lower_mixed_friction(make_mesh, name):
 def test_rougher_flanks_have_more_friction(make_mesh, name):
     mesh = make_mesh(20, 40)
     smooth, rough = (
-        mu_of(name, loaded_mesh(mesh, oil=oil(6e-3), rough=(rq, rq), torque=100.0)).mean()
+        mu_of(name, loaded_contact(mesh, oil=oil(6e-3), rough=(rq, rq), torque=100.0)).mean()
         for rq in (0.1e-6, 0.6e-6)
     )
     assert rough > 1.05 * smooth

@@ -8,19 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from contacts import MESHES
 from epicyclic.geometry.contact_lines import contact_lines
 from epicyclic.losses.load_distribution import STIFFNESS_SHAPES, load_shape
-
-MESHES = [
-    pytest.param({"teeth1": 20, "teeth2": 41}, id="spur"),
-    pytest.param({"teeth1": 30, "teeth2": 50, "beta": 15.0}, id="helical"),
-    pytest.param({"teeth1": 24, "teeth2": 90, "internal": True, "beta": 20.0}, id="internal"),
-    pytest.param({"teeth1": 60, "teeth2": 70, "addendum": 1.4, "dedendum": 1.6}, id="three pairs"),
-    pytest.param(
-        {"teeth1": 40, "teeth2": 50, "addendum": 0.4, "beta": 20.0, "width": 40e-3},
-        id="transverse contact ratio below 1",
-    ),
-]
 
 
 @pytest.fixture(params=MESHES)

@@ -9,15 +9,13 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.losses.contact import Flanks, mesh_contact
+from contacts import loaded_contact, with_overlap_ratio
 from epicyclic.losses.friction import FRICTION_MODELS, FrictionSettings, friction_model
 from epicyclic.losses.friction.user import Constant, FrictionMap
-from epicyclic.losses.load_distribution import load_shape
 from epicyclic.losses.mesh import local_loss, loss_factor_loss, ohlendorf_loss_factor
 from epicyclic.losses.rolling import ROLLING_MODELS
 from epicyclic.reference.gear_loss import equal_sharing_loss_factor, uniform_load_loss_factor
 
-STEEL = 227.47e9
 SETTINGS = FrictionSettings(
     0.04, 0.10, 0.02, FrictionMap((("film_ratio", (0.1, 3.0)),), (0.09, 0.03))
 )
@@ -36,33 +34,9 @@ SPUR = [
 ]
 
 
-def contact_of(
-    mesh,
-    oil,
-    *,
-    torque=200.0,
-    speed=200.0,
-    model="uniform",
-    positions=20,
-    segments=20,
-    rough=0.4e-6,
-):
-    lines, shape = load_shape(mesh, model, positions, segments)
-    force = torque / mesh.gear1.base_radius
-    return mesh_contact(
-        mesh,
-        lines,
-        force * shape,
-        force=force,
-        speed1=speed,
-        oil=oil,
-        flanks=Flanks(STEEL, rough, rough),
-    )
-
-
 def loss_factor(mesh, oil, **kwargs):
     """Sliding loss of the local method over friction and power passed on."""
-    contact = contact_of(mesh, oil, **kwargs)
+    contact = loaded_contact(mesh, oil, **kwargs)
     loss = local_loss(contact, Constant(0.05), NO_ROLLING)
     return loss.sliding / (0.05 * kwargs.get("torque", 200.0) * kwargs.get("speed", 200.0))
 
@@ -162,13 +136,7 @@ def test_local_method_agrees_beyond_the_limits_of_the_closed_form(make_mesh, atf
 @pytest.mark.parametrize("overlap", [1.0, 2.0])
 @pytest.mark.parametrize("internal", [False, True])
 def test_helical_gears_of_integer_overlap_have_the_closed_form(make_mesh, atf, overlap, internal):
-    mesh = make_mesh(30, 100, beta=20.0, internal=internal)
-    width = overlap * mesh.face_width / mesh.overlap_ratio
-    mesh = replace(
-        mesh,
-        gear1=replace(mesh.gear1, face_width=width),
-        gear2=replace(mesh.gear2, face_width=width),
-    )
+    mesh = with_overlap_ratio(make_mesh(30, 100, beta=20.0, internal=internal), overlap)
     exact = reference(uniform_load_loss_factor, mesh)
     # measured 0.09 % with 20 positions and segments, 6.5e-6 with 160 of each; times 1.5
     assert loss_factor(mesh, atf(60)) == pytest.approx(exact, rel=1.4e-3)
@@ -215,7 +183,7 @@ def test_minimum_energy_load_lowers_the_loss_of_spur_gears(make_mesh, atf):
 
 
 def test_loss_is_linear_in_constant_friction(make_mesh, atf):
-    contact = contact_of(make_mesh(30, 50, beta=15.0), atf(60))
+    contact = loaded_contact(make_mesh(30, 50, beta=15.0), atf(60))
     one = local_loss(contact, Constant(0.01), NO_ROLLING)
     seven = local_loss(contact, Constant(0.07), NO_ROLLING)
     assert seven.sliding == pytest.approx(7 * one.sliding, rel=1e-12)
@@ -236,8 +204,7 @@ def test_members_of_an_external_pair_can_be_swapped(make_mesh, atf, friction, ro
         (mesh, 150.0, 300.0, (0.2e-6, 0.5e-6)),
         (swapped, 150.0 * ratio, 300.0 / ratio, (0.5e-6, 0.2e-6)),
     ):
-        contact = contact_of(item, atf(60), torque=torque, speed=speed)
-        contact = replace(contact, flanks=Flanks(STEEL, *rough))
+        contact = loaded_contact(item, atf(60), torque=torque, speed=speed, rough=rough)
         losses.append(
             local_loss(contact, friction_model(friction, SETTINGS), ROLLING_MODELS[rolling])
         )
@@ -250,7 +217,7 @@ def test_members_of_an_external_pair_can_be_swapped(make_mesh, atf, friction, ro
 
 @pytest.mark.parametrize("friction", sorted(FRICTION_MODELS))
 def test_losses_are_positive_and_small(make_mesh, atf, friction):
-    contact = contact_of(make_mesh(30, 50, beta=15.0), atf(60))
+    contact = loaded_contact(make_mesh(30, 50, beta=15.0), atf(60))
     for name in ROLLING_MODELS:
         loss = local_loss(contact, friction_model(friction, SETTINGS), ROLLING_MODELS[name])
         assert 0 < loss.sliding < 0.03 * contact.input_power
@@ -261,7 +228,7 @@ def test_losses_are_positive_and_small(make_mesh, atf, friction):
 @pytest.mark.parametrize("friction", sorted(FRICTION_MODELS))
 def test_quick_method_is_mean_friction_times_loss_factor(make_mesh, atf, friction):
     mesh = make_mesh(25, 80, internal=True, beta=10.0)
-    contact = contact_of(mesh, atf(60), torque=150.0, speed=250.0)
+    contact = loaded_contact(mesh, atf(60), torque=150.0, speed=250.0)
     model = friction_model(friction, SETTINGS)
     quick = loss_factor_loss(contact, model)
     assert quick.rolling == 0.0
@@ -273,7 +240,7 @@ def test_quick_method_is_mean_friction_times_loss_factor(make_mesh, atf, frictio
 
 
 def test_mean_friction_is_weighted_with_the_sliding_power(make_mesh, atf):
-    contact = contact_of(make_mesh(20, 41), atf(60))
+    contact = loaded_contact(make_mesh(20, 41), atf(60))
 
     class Half:
         """Friction on the recess side only."""
@@ -293,7 +260,7 @@ def test_mean_friction_is_weighted_with_the_sliding_power(make_mesh, atf):
 
 def test_sliding_changes_sign_at_the_pitch_point(make_mesh, atf):
     for internal in (False, True):
-        contact = contact_of(make_mesh(25, 80, internal=internal), atf(60))
+        contact = loaded_contact(make_mesh(25, 80, internal=internal), atf(60))
         # beyond the pitch point the addendum of member 1, the faster surface, slides ahead
         assert np.array_equal(np.sign(contact.sliding_speed), np.sign(contact.path))
         # v_g = omega_1 (1 +- 1/u) times the distance from the pitch point
@@ -303,7 +270,7 @@ def test_sliding_changes_sign_at_the_pitch_point(make_mesh, atf):
 
 def test_local_conditions_at_the_pitch_point(make_mesh, atf):
     mesh = make_mesh(25, 80, beta=20.0)
-    contact = contact_of(mesh, atf(60), positions=400, segments=50)
+    contact = loaded_contact(mesh, atf(60), positions=400, segments=50)
     at = np.abs(contact.path).argmin()
     speed = 200.0 * mesh.operating_radius1 * math.sin(mesh.operating_pressure_angle)
     slack = abs(contact.path[at]) / mesh.pitch_point * 2
@@ -314,7 +281,7 @@ def test_local_conditions_at_the_pitch_point(make_mesh, atf):
     assert contact.radius[at] == pytest.approx(rho1 * rho2 / (rho1 + rho2) / cosine, rel=slack)
     # the concave flank of a ring closes up to the pinion: 1/rho = 1/rho1 - 1/rho2
     mesh = make_mesh(25, 80, internal=True)
-    contact = contact_of(mesh, atf(60))
+    contact = loaded_contact(mesh, atf(60))
     rho1 = contact.path + mesh.pitch_point
     rho2 = rho1 + mesh.line_of_action
     assert 1 / contact.radius == pytest.approx(1 / rho1 - 1 / rho2, rel=1e-9)
@@ -323,7 +290,7 @@ def test_local_conditions_at_the_pitch_point(make_mesh, atf):
 
 def test_average_normal_force_is_the_transmitted_one(make_mesh, atf):
     mesh = make_mesh(30, 50, beta=15.0)
-    contact = contact_of(mesh, atf(60), torque=300.0)
+    contact = loaded_contact(mesh, atf(60), torque=300.0)
     normal = 300.0 / mesh.gear1.base_radius / math.cos(mesh.gear1.rack.base_helix_angle)
     assert float(contact.line_load @ contact.weight) == pytest.approx(normal, rel=1e-10)
     assert contact.input_power == pytest.approx(300.0 * 200.0, rel=1e-12)

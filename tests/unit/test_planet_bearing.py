@@ -10,12 +10,9 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.analysis.parts import MeshDuty
-from epicyclic.analysis.planetary import (
-    palmgren_coefficient,
-    planet_load,
-    planetary_duties,
-    roller_bearing,
-)
+from epicyclic.analysis.planet_bearing import palmgren_coefficient, roller_bearing
+from epicyclic.analysis.planet_load import planet_load
+from epicyclic.analysis.planetary import planetary_duties
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss
 from epicyclic.losses.planet_bearing import (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -10,54 +11,21 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import epicyclic as ep
+from contacts import STEEL, contact_points, oil
 from epicyclic.kernels.line_contact import (
     hertz_half_width,
     martin_force,
     pan_hamrock_minimum_film,
 )
 from epicyclic.kernels.mixed_ehl import rolling_loss_number
-from epicyclic.losses.contact import Flanks, MeshContact
 from epicyclic.losses.rolling import ROLLING_MODELS, rolling_scale
-from epicyclic.lubricant.properties import OilState
 
-STEEL = 227.47e9
 MODELS = sorted(ROLLING_MODELS)
+points = partial(contact_points, radius=10e-3, sliding=0.5, rough=(0.3e-6, 0.3e-6))
 
 # M, L and T_r of full EHL solutions, smooth and isothermal: worked out separately; T_r is the
 # rolling traction of one surface over p_h b^2/R.
 SMOOTH = [(10, 10, 0.041801), (20, 10, 0.015548), (10, 15, 0.040074), (20, 15, 0.015048)]
-
-
-def oil(mu=10e-3, alpha=14e-9, conductivity=0.14, beta=0.03):
-    return OilState(
-        temperature=353.15,
-        kinematic_viscosity=mu / 850.0,
-        density=850.0,
-        dynamic_viscosity=mu,
-        pressure_viscosity=alpha,
-        thermoviscosity=beta,
-        thermal_conductivity=conductivity,
-        lubricant_factor=1.0,
-    )
-
-
-def points(mesh, *, line_load, rolling, oil, radius=10e-3, sliding=0.5, rough=(0.3e-6, 0.3e-6)):
-    load = np.atleast_1d(np.asarray(line_load, dtype=float))
-    same = np.ones_like(load)
-    return MeshContact(
-        mesh=mesh,
-        oil=oil,
-        flanks=Flanks(STEEL, *rough),
-        force=5000.0,
-        speed1=100.0,
-        speed2=50.0,
-        weight=1e-3 * same,
-        line_load=load,
-        path=0.0 * same,
-        radius=radius * same,
-        rolling_speed=rolling * same,
-        sliding_speed=sliding * same,
-    )
 
 
 @pytest.fixture
@@ -72,7 +40,7 @@ def test_scale_is_viscosity_times_speed_squared(mesh):
 
 def test_regression_is_the_kernel_in_that_scale(mesh):
     load, u_r, mu = 3e5, 9.0, 8e-3
-    contact = points(mesh, line_load=load, rolling=u_r, oil=oil(mu), rough=(0.4e-6, 0.1e-6))
+    contact = points(mesh, line_load=load, rolling=u_r, oil=oil(mu, 14e-9), rough=(0.4e-6, 0.1e-6))
     speed, g, w = u_r * mu / (STEEL * 10e-3), 14e-9 * STEEL, load / (STEEL * 10e-3)
     half_width = hertz_half_width(load, 10e-3, STEEL)
     composite = math.hypot(0.4e-6, 0.1e-6) / 10e-3
@@ -91,7 +59,7 @@ def test_regression_is_the_kernel_in_that_scale(mesh):
 
 
 def test_goksem_hargreaves_counts_both_surfaces(mesh):
-    load, u_r, fluid = 3e5, 9.0, oil()
+    load, u_r, fluid = 3e5, 9.0, oil(10e-3, 14e-9)
     contact = points(mesh, line_load=load, rolling=u_r, oil=fluid)
     speed, g, w = u_r * 10e-3 / (STEEL * 10e-3), 14e-9 * STEEL, load / (STEEL * 10e-3)
     # worked out separately: F_r = 4.318 (G U)^0.658 W^0.0126 R/alpha of each surface, over
@@ -155,7 +123,7 @@ def test_goksem_hargreaves_agrees_with_smooth_contacts(mesh, speed_number):
         g, w, pressure, half_width = conditions(m, el, speed_number)
         contact = points(
             mesh, line_load=w * STEEL * 10e-3, rolling=10.0,
-            oil=oil(speed_number * STEEL * 10e-3 / 10.0, g / STEEL, beta=0.0),
+            oil=oil(speed_number * STEEL * 10e-3 / 10.0, g / STEEL, thermoviscosity=0.0),
         )  # fmt: skip
         solved = 2 * pressure * half_width**2 * traction * STEEL * 10e-3 * 10.0
         found = ROLLING_MODELS["goksem-hargreaves"].loss_density(contact)[0]

@@ -204,8 +204,12 @@ def test_ranges_in_words():
 
 def test_numbers_as_text():
     assert format_number(0.1 + 0.2) == "0.3"
-    assert format_number(1234567.0) == "1.23457e+06"
+    assert format_number(14599.0, 3) == "14600"
+    assert format_number(-99999.0, 4) == "-100000"
+    assert format_number(1234567.0) == "1234570"
     assert format_number(1234567.0, 10) == "1234567"
+    assert format_number(12345678.0) == "1.23457e+07"
+    assert format_number(float("inf")) == "inf"
 
 
 def test_the_registry_needs_no_writable_home(monkeypatch):

@@ -22,7 +22,6 @@ from epicyclic.reference.rotating_body import (
 )
 
 RPM = math.pi / 30
-BEARING_RPM = 4000 * 125 / 198 * 73 / 26  # relative to the carrier, at 4000 rpm of the sun
 
 
 def mixture(nu=1.4e-4, rho=42.13):

@@ -4,54 +4,32 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.case import build
 from epicyclic.elasticity.loaded_mesh import load_mesh_elastically
 from epicyclic.elasticity.mesh_compliance import GearBody, mesh_compliance
 from epicyclic.elasticity.rim import ElasticRing, Rim
 from epicyclic.elasticity.tooth_plate import _stiffness, tooth_plate
-from epicyclic.geometry.gear import BasicRack, Gear, half_angle_from_profile_shift
-from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.generation import default_tool
 from epicyclic.geometry.micro_geometry import FlankDeviations, MicroGeometry, Relief, Topography
-from epicyclic.geometry.outline import default_tool
-from epicyclic.kernels.contact_load import (
-    LEAST_SLOPE,
-    LINEAR_SHARE,
-    careful_solution,
-    deflections,
-    local_law,
-    solve_contact_loads,
-)
-from epicyclic.reference.mesh_stiffness import face_load_factor
 
 STEEL = GearBody(206e9, 0.3)
 
 
-def standard_gear(teeth, *, helix=0.0, width=40e-3, module=4e-3):
-    """ISO 53 profile A, no profile shift."""
-    beta = math.radians(helix)
-    rack = BasicRack(
-        module / math.cos(beta), math.atan(math.tan(math.radians(20)) / math.cos(beta)), beta
-    )
-    reference = teeth * rack.transverse_module / 2
-    half_angle = half_angle_from_profile_shift(rack, teeth, 0.0)
-    tip, root = reference + module, reference - 1.25 * module
-    return Gear(f"z{teeth}", rack, teeth, False, half_angle, tip, root, width)
-
-
-def standard_mesh(z1, z2, **options):
-    one, two = standard_gear(z1, **options), standard_gear(z2, **options)
-    return Mesh("mesh", one, two, one.reference_radius + two.reference_radius)
+@pytest.fixture(scope="module")
+def standard_gear(make_gear):
+    """30 teeth of 4 mm module, ISO 53 profile A, no profile shift."""
+    return make_gear(30, module=4e-3, width=40e-3)
 
 
 @pytest.fixture(scope="module")
-def talbot_meshes():
-    case = ep.load_case("talbot-2012")
-    return build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)
+def standard_mesh(make_mesh):
+    """Pairs of such gears."""
+    return partial(make_mesh, module=4e-3, width=40e-3)
 
 
 # --- the tooth ------------------------------------------------------------------------------------
@@ -75,16 +53,16 @@ def test_wide_plate_of_constant_thickness_is_a_beam_on_an_elastic_foundation():
     assert deflection * length == pytest.approx(bending + shear + foundation, rel=1e-9)
 
 
-def test_influence_is_symmetric_and_positive():
-    plate = tooth_plate(standard_gear(30), 206e9, 0.3, 16, default_tool(standard_gear(30)))
+def test_influence_is_symmetric_and_positive(standard_gear):
+    plate = tooth_plate(standard_gear, 206e9, 0.3, 16, default_tool(standard_gear))
     curvature = np.linspace(15e-3, 30e-3, 12)
     amplitudes = plate.amplitudes(curvature, np.linspace(0.02, 0.98, 12))
     influence = amplitudes @ amplitudes.T
     assert np.linalg.eigvalsh(influence).min() > 0
 
 
-def test_a_tooth_is_softer_at_its_end():
-    plate = tooth_plate(standard_gear(30), 206e9, 0.3, 24, default_tool(standard_gear(30)))
+def test_a_tooth_is_softer_at_its_end(standard_gear):
+    plate = tooth_plate(standard_gear, 206e9, 0.3, 24, default_tool(standard_gear))
     amplitudes = plate.amplitudes(np.full(5, 25e-3), np.array([0.5, 0.7, 0.9, 0.95, 1.0]))
     compliance = (amplitudes**2).sum(axis=1)
     assert (np.diff(compliance) > 0).all()
@@ -94,29 +72,13 @@ def test_a_tooth_is_softer_at_its_end():
     np.testing.assert_allclose((even**2).sum(axis=1), compliance, rtol=1e-6)  # conditioning
 
 
-def test_tip_is_softer_than_root():
-    plate = tooth_plate(standard_gear(30), 206e9, 0.3, 12, default_tool(standard_gear(30)))
+def test_tip_is_softer_than_root(standard_gear):
+    plate = tooth_plate(standard_gear, 206e9, 0.3, 12, default_tool(standard_gear))
     amplitudes = plate.amplitudes(np.linspace(12e-3, 31e-3, 10), np.full(10, 0.5))
     assert (np.diff((amplitudes**2).sum(axis=1)) > 0).all()
 
 
 # --- the contact ----------------------------------------------------------------------------------
-
-
-def solve(force, compliance, length, local_a, local_b, *, separation=None, coupling=None):
-    """The contact problem with the local law given by two numbers."""
-    lines = len(length)
-    return solve_contact_loads(
-        force,
-        compliance,
-        np.zeros((lines, lines)) if coupling is None else coupling,
-        np.zeros_like(length) if separation is None else separation,
-        length,
-        np.full_like(length, local_a),
-        local_b,
-        1e-9,
-        1000,
-    )
 
 
 def test_loads_sum_to_the_force_and_none_pulls(talbot_meshes):
@@ -141,158 +103,7 @@ def test_approach_is_the_same_on_all_loaded_segments(talbot_meshes):
             np.testing.assert_allclose(approach[q > 0], loaded.normal_approach[m], rtol=1e-7)
 
 
-def test_rigid_teeth_with_elastic_contact_load_all_lines_evenly():
-    length = np.array([[1e-3] * 5, [2e-3] * 5, [0.0] * 5])
-    forces, _, _, iterations = solve(9000.0, np.zeros((3, 5, 5)), length, 2e-11, 3e-12)
-    assert iterations > 0
-    np.testing.assert_allclose(forces[:2] / length[:2], 9000 / 15e-3, rtol=1e-9)
-    assert not forces[2].any()
-
-
-def test_contact_opens_where_teeth_cannot_follow():
-    """A coupling that lifts the far segment: it carries nothing and does not interpenetrate."""
-    coupling = 1e-8 * np.array([[4.0, -1.0, 8.0], [-1.0, 3.0, 0.0], [8.0, 0.0, 40.0]])
-    forces, approach, _, iterations = solve(
-        100.0, coupling[None], np.full((1, 3), 1e-3), 1e-12, 1e-15
-    )
-    assert iterations > 0
-    assert forces[0, 2] == 0.0
-    assert (coupling @ forces[0])[2] >= approach
-    assert forces.sum() == pytest.approx(100.0, rel=1e-12)
-
-
-def springs(force, wedge, segments=400):
-    """One line of independent springs, 40 mm long, under a wedge-shaped gap."""
-    length = np.full((1, segments), 40e-3 / segments)
-    gap = wedge * (np.arange(segments) + 0.5)[None] / segments
-    forces, approach, _, iterations = solve(
-        force, np.zeros((1, segments, segments)), length, 2e-11, 1e-25, separation=gap
-    )
-    assert iterations > 0
-    return forces[0] / length[0], approach
-
-
-@pytest.mark.parametrize("wedge", [1e-6, 5e-6, 20e-6, 100e-6])
-def test_misaligned_springs_have_the_load_factor_of_iso_6336(wedge):
-    """K_Hbeta of independent springs, with contact over the whole face and over part of it."""
-    stiffness, mean = 1 / 2e-11, 100e3
-    load, approach = springs(mean * 40e-3, wedge)
-    ratio = wedge * stiffness / mean
-    expected = face_load_factor(wedge, stiffness, mean)
-    # the first segment's middle is half a segment from the end; partial contact ends in a segment
-    assert load.max() / mean == pytest.approx(expected, rel=1e-2)
-    assert approach == pytest.approx(expected * mean / stiffness, rel=1e-2)
-    assert (load > 0).mean() == pytest.approx(min(1.0, math.sqrt(2 / ratio)), abs=5e-3)
-
-
-def random_problem(rng, kind):
-    """Compliances of the size of gear teeth; loads over 11 and gaps over 6 orders of magnitude."""
-    lines, n = 3, 20
-    y = np.arange(n)
-    compliance = np.empty((lines, n, n))
-    for line in range(lines):
-        shape = np.exp(-np.abs(y[:, None] - y) / rng.uniform(1, 15))
-        compliance[line] = rng.uniform(0.3, 2) * 3e-9 * shape
-    if kind % 3 == 0:  # coupling of either sign
-        lever = rng.normal(size=(n, n))
-        compliance += 3e-10 * lever @ lever.T / math.sqrt(n)
-    rim = rng.normal(size=(lines, lines))
-    length = np.full((lines, n), 1e-3)
-    if kind % 5 == 0:
-        length[2] = 0.0
-    gap = 10 ** rng.uniform(-8, -2) * rng.uniform(-1, 1, size=(lines, n))
-    if kind % 2:
-        gap = np.cumsum(gap, axis=1) / 5
-    return {
-        "force": 10 ** rng.uniform(-3, 8),
-        "compliance": compliance,
-        "length": length,
-        "local_a": rng.uniform(5e-11, 7e-11),
-        "local_b": 5.6e-12,
-        "separation": gap,
-        "coupling": rim @ rim.T * 1e-10 * (kind % 4),
-    }
-
-
-def test_any_load_and_any_gap_are_solved_and_the_solution_fulfils_the_conditions():
-    rng = np.random.default_rng(3)
-    for kind in range(200):
-        problem = random_problem(rng, kind)
-        forces, approach, stiffness, iterations = solve(**problem)
-        assert iterations > 0
-        length, force = problem["length"], problem["force"]
-        closed, _ = deflections(
-            forces,
-            problem["compliance"],
-            problem["coupling"],
-            problem["separation"],
-            length,
-            np.full_like(length, problem["local_a"]),
-            problem["local_b"],
-            LINEAR_SHARE * force / length.sum(),
-        )
-        used = length > 0
-        scale = approach - problem["separation"][used].min()
-        gap = (closed - approach)[used] / scale
-        carrying = forces[used] > 0
-        assert np.abs(gap[carrying]).max() < 1e-8  # ten times the tolerance: other rounding
-        assert gap.min() > -1e-8
-        assert forces.min() >= 0
-        assert not forces[~used].any()
-        assert forces.sum() == pytest.approx(force, rel=1e-8)
-        # of the force against the approach: positive, and below that of the local law alone
-        assert 0 < stiffness < (length[used] / (LEAST_SLOPE * problem["local_b"])).sum()
-
-
-def test_the_careful_method_finds_the_same_solution():
-    rng = np.random.default_rng(4)
-    for kind in range(40):
-        problem = random_problem(rng, kind)
-        forces, approach, _, _ = solve(**problem)
-        length, gap = problem["length"], problem["separation"]
-        nearest = gap[length > 0].min()
-        careful, same_approach, _, iterations = careful_solution(
-            problem["force"],
-            problem["compliance"],
-            problem["coupling"],
-            gap - nearest,
-            length,
-            np.full_like(length, problem["local_a"]),
-            problem["local_b"],
-            LINEAR_SHARE * problem["force"] / length.sum(),
-            1e-9,
-            1000,
-        )
-        assert iterations > 0
-        # both are solutions to 1e-9 of the approach
-        assert np.abs(careful - forces).max() < 1e-7 * problem["force"]
-        assert same_approach + nearest == pytest.approx(approach, rel=1e-8)
-
-
-def test_the_local_law_rises_for_any_load_and_has_no_kink():
-    a, b, floor = 6e-11, 5.6e-12, 1e2
-    top = math.exp(2 * a / b - 2)
-    q = np.concatenate([[-1e3, -1.0], np.geomspace(1e-3, 1e4 * top, 4000)])
-    law = np.array([local_law(value, a, b, floor) for value in q])
-    assert (np.diff(law[:, 0]) > 0).all()
-    assert law[:, 1].min() == pytest.approx(LEAST_SLOPE * b, rel=1e-12)
-    for joint in (0.0, floor, top):
-        below, above = (
-            local_law(joint * f - d, a, b, floor) for f, d in ((1 - 1e-9, 1e-9), (1 + 1e-9, -1e-9))
-        )
-        assert above == pytest.approx(below, rel=1e-6, abs=1e-17)
-    slope = np.gradient(law[100:-100, 0], q[100:-100])
-    np.testing.assert_allclose(slope, law[100:-100, 1], rtol=2e-2)  # differences, not the limit
-
-
-def test_nan_is_no_solution():
-    _, _, _, iterations = solve(
-        100.0, np.full((1, 3, 3), np.nan), np.full((1, 3), 1e-3), 1e-11, 1e-12
-    )
-    assert iterations == -1
-
-
-def test_spur_pair_carries_alone_between_its_double_contacts():
+def test_spur_pair_carries_alone_between_its_double_contacts(standard_mesh):
     mesh = standard_mesh(30, 60)
     loaded = load_mesh_elastically(mesh, STEEL, STEEL, 40, 9, 4000.0)
     pairs = (loaded.lines.length[:, :, 0] > 0).sum(axis=1)
@@ -307,7 +118,7 @@ def test_spur_pair_carries_alone_between_its_double_contacts():
     assert loaded.normal_approach[single].min() > loaded.normal_approach[~single].max()
 
 
-def test_equal_gears_share_symmetrically():
+def test_equal_gears_share_symmetrically(standard_mesh):
     mesh = standard_mesh(25, 25)
     loaded = load_mesh_elastically(mesh, STEEL, STEEL, 41, 7, 3000.0)
     # the same load on both halves of the face, and at mirrored places of the path of contact:
@@ -348,10 +159,10 @@ def test_refinement_across_the_face_is_of_second_order(talbot_meshes, which):
 
 
 @pytest.mark.parametrize(("helix", "order"), [(0.0, 1.9), (15.0, 1.4)])
-def test_refinement_of_the_mesh_positions_converges(helix, order):
+def test_refinement_of_the_mesh_positions_converges(standard_mesh, helix, order):
     """Second order on spur gears, between whose breaks the approach is smooth. On helical gears
     lines enter at a corner of the face, where they are short and soft: order 1.5."""
-    mesh = standard_mesh(30, 60, helix=helix)
+    mesh = standard_mesh(30, 60, beta=helix)
     values = [mean_approach(mesh, n, 12) for n in (8, 24, 72, 216)]  # middles stay middles
     assert observed_orders(values, 3).min() > order
     assert abs(mean_approach(mesh, 20, 12) / values[-1] - 1) < 1e-3
@@ -367,7 +178,7 @@ def relieved(mesh, amount, share):
     return FlankDeviations(flank, flank)
 
 
-def test_relief_beyond_the_deflection_takes_a_pair_out_of_contact():
+def test_relief_beyond_the_deflection_takes_a_pair_out_of_contact(standard_mesh):
     """The other one carries the whole force as if it were alone."""
     mesh = standard_mesh(30, 60)
     relief = relieved(mesh, 1e-3, 0.3)
@@ -388,7 +199,7 @@ def test_relief_beyond_the_deflection_takes_a_pair_out_of_contact():
     assert lone.max() < 0.8 * plain.tangent_stiffness[alone].min()
 
 
-def test_small_relief_takes_load_from_the_tips_and_evens_the_transmission_error():
+def test_small_relief_takes_load_from_the_tips_and_evens_the_transmission_error(standard_mesh):
     mesh = standard_mesh(30, 60)
     plain = load_mesh_elastically(mesh, STEEL, STEEL, 60, 5, 12000.0)
     eased = load_mesh_elastically(mesh, STEEL, STEEL, 60, 5, 12000.0, relieved(mesh, 10e-6, 0.3))
@@ -424,8 +235,8 @@ def test_a_constant_gap_only_adds_to_the_approach(talbot_meshes):
     )
 
 
-def test_tangent_stiffness_is_the_slope_of_the_force():
-    mesh = standard_mesh(30, 60, helix=15.0)
+def test_tangent_stiffness_is_the_slope_of_the_force(standard_mesh):
+    mesh = standard_mesh(30, 60, beta=15.0)
     dev = relieved(mesh, 8e-6, 0.3)
     low, middle, high = (
         load_mesh_elastically(mesh, STEEL, STEEL, 12, 9, force, dev)

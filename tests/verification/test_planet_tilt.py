@@ -7,8 +7,9 @@ import math
 import pytest
 
 import epicyclic as ep
+from epicyclic.analysis.planet_bearing import roller_bearing
 from epicyclic.analysis.planet_load import planet_load
-from epicyclic.analysis.planetary import most_loaded_duties, planetary_duties, roller_bearing
+from epicyclic.analysis.planetary import most_loaded_duties, planetary_duties
 from epicyclic.losses.planet_bearing import roller_loads
 
 

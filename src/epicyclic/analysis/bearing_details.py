@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from epicyclic.analysis.datasets import variable
-from epicyclic.analysis.planetary import roller_bearing
-from epicyclic.case.schema import Numerics, PlanetBearing
+from epicyclic.analysis.planet_bearing import roller_bearing
+from epicyclic.case.model_tables import Numerics
+from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.kernels.line_contact import hertz_pressure
 from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.units import DEGREE, GIGAPASCAL, MILLIMETRE, NEWTON, NEWTON_PER_MM

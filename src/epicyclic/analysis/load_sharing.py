@@ -9,7 +9,7 @@ import numpy as np
 from epicyclic.analysis.parts import MeshDuty, elastic_loads
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
-from epicyclic.case.schema import Numerics
+from epicyclic.case.model_tables import Numerics
 from epicyclic.elasticity.planet_sharing import (
     Branches,
     branch_directions,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from epicyclic.analysis.load_sharing import SHARING_METHODS
 from epicyclic.analysis.models import friction_of, resolve_models, rolling_of
 from epicyclic.analysis.parts import OHLENDORF_SOURCE
-from epicyclic.analysis.planetary import bearing_method
+from epicyclic.analysis.planet_bearing import bearing_method
 from epicyclic.analysis.pockets import POCKETING_SOURCE, pocketing_method
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS

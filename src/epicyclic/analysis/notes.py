@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from epicyclic.analysis.figures import MeshFigures
 from epicyclic.analysis.models import fitted_oil_model, friction_of, resolve_models, rolling_of
-from epicyclic.analysis.result import (
-    LossTerm,
-    MeshFigures,
-)
+from epicyclic.analysis.result import LossTerm
 from epicyclic.case import build, flanks
 from epicyclic.case.case import Case, PlanetaryCase
-from epicyclic.case.schema import GearTable, MeshTable
+from epicyclic.case.gear_tables import GearTable, MeshTable
 from epicyclic.geometry.assembly import are_evenly_spaced
 from epicyclic.losses.fitted import FittedFriction
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS

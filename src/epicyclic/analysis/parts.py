@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
+from epicyclic.analysis.figures import FluidFigures, MeshFigures
 from epicyclic.analysis.models import friction_of, resolve_models, rolling_of
 from epicyclic.analysis.pockets import (
     POCKETING_SOURCE,
@@ -18,19 +19,14 @@ from epicyclic.analysis.pockets import (
     pocketing_method,
     stored_note,
 )
-from epicyclic.analysis.result import (
-    LOAD_DEPENDENT,
-    LOAD_INDEPENDENT,
-    FluidFigures,
-    LossTerm,
-    MeshFigures,
-)
+from epicyclic.analysis.result import LOAD_DEPENDENT, LOAD_INDEPENDENT, LossTerm
 from epicyclic.case import flanks
 from epicyclic.case.case import Case
-from epicyclic.case.schema import GearPairModels, GearTable, LossOption, Numerics
+from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.model_tables import GearPairModels, LossOption, Numerics
 from epicyclic.elasticity.loaded_mesh import LoadedMesh, load_mesh_elastically
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import Tool
+from epicyclic.geometry.tools import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.contact import Flanks, MeshContact, mesh_contact
 from epicyclic.losses.direct import EhlDirect
@@ -75,9 +71,13 @@ PEAK_SHARE = 0.01
 OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
 
 _VISCOSITY = Range(
-    "kinematic_viscosity", "kinematic viscosity", 2.0, 2e7, SQUARE_MM_PER_SECOND,
+    "kinematic_viscosity",
+    "kinematic viscosity",
+    2.0,
+    2e7,
+    SQUARE_MM_PER_SECOND,
     "ASTM D341, form for 2 mm^2/s and more",
-)  # fmt: skip
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.analysis.parts import MeshDuty, elastic_loads
-from epicyclic.case.schema import Numerics
+from epicyclic.case.model_tables import Numerics
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.planet_bearing import RollerBearing, roller_loads
 

@@ -6,10 +6,9 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
+from epicyclic.analysis.figures import BearingFigures, MeshFigures
 from epicyclic.analysis.load_sharing import SHARING_METHODS, planet_shares
-from epicyclic.analysis.models import fitted_rolling, resolve_models
+from epicyclic.analysis.models import resolve_models
 from epicyclic.analysis.notes import contact_notes, fluid_notes, general_notes, load_notes
 from epicyclic.analysis.parts import (
     Body,
@@ -22,41 +21,24 @@ from epicyclic.analysis.parts import (
     solve_mesh,
     used_sources,
 )
+from epicyclic.analysis.planet_bearing import planet_bearing, solve_bearing
 from epicyclic.analysis.planet_load import PlanetLoad, planet_load, tilt_planet
 from epicyclic.analysis.pockets import MeshFlow, mesh_flows
-from epicyclic.analysis.result import (
-    LOAD_DEPENDENT,
-    LOAD_INDEPENDENT,
-    BearingFigures,
-    LossTerm,
-    MeshFigures,
-    Result,
-)
+from epicyclic.analysis.result import LOAD_INDEPENDENT, LossTerm, Result
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
-from epicyclic.case.schema import LoadSharing, PlanetBearing
+from epicyclic.case.model_tables import LoadSharing
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import Tool
-from epicyclic.kernels.line_contact import equivalent_modulus, hertz_pressure
+from epicyclic.geometry.tools import Tool
 from epicyclic.kinematics import (
     MEMBERS,
+    PowerFlow,
     lossless_torques,
     planet_speed,
     planetary_power_flow,
     planetary_speeds,
 )
-from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
-from epicyclic.losses.planet_bearing import (
-    BearingLoss,
-    RollerBearing,
-    RollerLoads,
-    fitted_rolling_loss,
-    mixed_ehl_rolling_loss,
-    palmgren_flags,
-    palmgren_loss,
-    roller_loads,
-)
 from epicyclic.losses.validity import ModelUse, ValidityFlag
 from epicyclic.losses.viscous import (
     VISCOUS_METHOD,
@@ -67,18 +49,7 @@ from epicyclic.losses.viscous import (
 from epicyclic.lubricant.properties import MixtureState, OilState
 from epicyclic.pocketing.table import FlowTables
 
-__all__ = ["bearing_method", "most_loaded_duties", "planetary_duties", "solve_planetary"]
-
-CAGED_PALMGREN = 0.0003
-"""f1 of a caged roller bearing, middle of 0.0002-0.0004. Talbot (2012), p. 56. [1]"""
-FULL_COMPLEMENT_PALMGREN = 0.00055
-"""f1 of a full-complement roller bearing. Talbot (2012), p. 56. [1]"""
-VISCOUS_FACTOR_PER_ROW = 3.0
-"""f0 of one row of caged cylindrical rollers, middle of 2.2-4.0. Talbot (2012), p. 130. [1]"""
-BEARING_METHOD = "mixed-EHL rolling-loss regression, slice by slice"
-BEARING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), Eq. 3.2 to 3.6"
-PALMGREN_METHOD = "friction coefficient f1 of Palmgren"
-PALMGREN_SOURCE = "A. Palmgren, Ball and Roller Bearing Engineering (1959); Talbot (2012), Eq. 3.1"
+__all__ = ["most_loaded_duties", "planetary_duties", "solve_planetary"]
 
 
 def solve_planetary(case: PlanetaryCase, flow_tables: FlowTables) -> Result:
@@ -98,17 +69,7 @@ def solve_planetary(case: PlanetaryCase, flow_tables: FlowTables) -> Result:
     parts = drag_parts | _sum_parts(branches) | {"thrust_bearing_viscous": thrust}
     terms = loss_terms(parts, case.losses)
     most_loaded = branches[0]
-    drags = _housing_drags(case, terms)
-    flow = planetary_power_flow(
-        case.sun.teeth,
-        case.ring.teeth,
-        speeds,
-        case.operation.input,
-        _held_member(case),
-        case.operation.torque,
-        sum(term.watts for term in terms) - sum(drags.values()),
-        drags,
-    )
+    flow = _power_flow(case, speeds, terms)
     angles = build.planet_angles(case.sun, case.planet, case.ring)
     distribution = LOAD_DISTRIBUTIONS[case.models.load_distribution]
     sharing, sharing_source = SHARING_METHODS[case.load_sharing.method]
@@ -141,6 +102,22 @@ def solve_planetary(case: PlanetaryCase, flow_tables: FlowTables) -> Result:
     )
 
 
+def _power_flow(
+    case: PlanetaryCase, speeds: Mapping[str, float], terms: Sequence[LossTerm]
+) -> PowerFlow:
+    drags = _housing_drags(case, terms)
+    return planetary_power_flow(
+        case.sun.teeth,
+        case.ring.teeth,
+        speeds,
+        case.operation.input,
+        _held_member(case),
+        case.operation.torque,
+        sum(term.watts for term in terms) - sum(drags.values()),
+        drags,
+    )
+
+
 def most_loaded_duties(case: PlanetaryCase) -> tuple[MeshDuty, MeshDuty]:
     """Both meshes of the planet that carries most, misaligned if the case asks for its tilt."""
     duties, _ = _tilted(case, planetary_duties(case, max(_shares(case))), member_speeds(case))
@@ -148,7 +125,7 @@ def most_loaded_duties(case: PlanetaryCase) -> tuple[MeshDuty, MeshDuty]:
 
 
 def _shares(case: PlanetaryCase) -> tuple[float, ...]:
-    return planet_shares(case, planetary_duties(case, 1 / case.planet.count), _bearing(case))
+    return planet_shares(case, planetary_duties(case, 1 / case.planet.count), planet_bearing(case))
 
 
 def planetary_duties(case: PlanetaryCase, share: float) -> tuple[MeshDuty, MeshDuty]:
@@ -242,7 +219,8 @@ def _solve_branch(
 ) -> _Branch:
     duties, load = _tilted(case, planetary_duties(case, share), speeds)
     meshes = {duty.key: solve_mesh(case, duty, fluids, flows[duty.key], count) for duty in duties}
-    bearing = _solve_bearing(case, load, count, fluids.oil, speeds)
+    speed = planet_speed(case.sun.teeth, case.planet.teeth, speeds)
+    bearing = solve_bearing(case, load, count, fluids.oil, speed)
     parts, flags = dict(bearing.parts), bearing.flags
     for mesh in meshes.values():
         parts |= mesh.parts
@@ -256,7 +234,7 @@ def _tilted(
     case: PlanetaryCase, duties: tuple[MeshDuty, MeshDuty], speeds: Mapping[str, float]
 ) -> tuple[tuple[MeshDuty, MeshDuty], PlanetLoad]:
     """The duties of a planet, misaligned by its tilt if the case asks for it, and its load."""
-    centrifugal, bearing = _centrifugal(case, speeds), _bearing(case)
+    centrifugal, bearing = _centrifugal(case, speeds), planet_bearing(case)
     if case.models.planet_tilt == "left-out" or bearing is None or duties[0].torque1 == 0:
         return duties, planet_load(duties, centrifugal)
     return tilt_planet(duties, bearing, centrifugal, case.numerics)
@@ -279,135 +257,11 @@ def _widest_flags(branches: Sequence[_Branch]) -> tuple[ValidityFlag, ...]:
     return tuple(flags.values())
 
 
-@dataclass(frozen=True, slots=True)
-class _BearingOutcome:
-    parts: dict[str, Part]
-    figures: BearingFigures | None = None
-    flags: tuple[ValidityFlag, ...] = ()
-
-
-def _solve_bearing(
-    case: PlanetaryCase,
-    load: PlanetLoad,
-    count: int,
-    oil: OilState,
-    speeds: Mapping[str, float],
-) -> _BearingOutcome:
-    """Losses of `count` planet bearings under the same load."""
-    table, bearing = case.planet_bearing, _bearing(case)
-    mechanical, viscous = "planet_bearing_mechanical", "planet_bearing_viscous"
-    if table is None or bearing is None:
-        reason = "the case has no [planet_bearing]"
-        return _BearingOutcome(
-            {
-                mechanical: Part(LOAD_DEPENDENT, left_out=reason),
-                viscous: Part(LOAD_INDEPENDENT, left_out=reason),
-            }
-        )
-    speed = planet_speed(case.sun.teeth, case.planet.teeth, speeds)
-    loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
-    name = resolve_models(case)["bearing"]
-    if name == "mixed-ehl":
-        loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil)
-    elif name == FittedRolling.name:
-        model = fitted_rolling(case, "bearing_rolling_loss")
-        loss = fitted_rolling_loss(bearing, loads, speed, oil, model)
-    else:
-        watts = palmgren_loss(
-            palmgren_coefficient(table), load.force, bearing.pitch_diameter, speed
-        )
-        loss = BearingLoss(watts, palmgren_flags(bearing, loads, speed))
-    method, source = bearing_method(case)
-    viscous_loss = bearing_viscous_loss(
-        viscous_factor(table), oil.kinematic_viscosity, speed, bearing.pitch_diameter
-    )
-    return _BearingOutcome(
-        {
-            mechanical: Part(LOAD_DEPENDENT, count * loss.loss, method, source),
-            viscous: Part(LOAD_INDEPENDENT, count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE),
-        },
-        _bearing_figures(bearing, loads, load, speed),
-        loss.flags + viscous_flags("planet bearing", speed, bearing.pitch_diameter),
-    )
-
-
-def bearing_method(case: PlanetaryCase) -> tuple[str, str]:
-    """How the load-dependent loss of the planet bearings is found, and where that is printed."""
-    name = resolve_models(case)["bearing"]
-    if name == "mixed-ehl":
-        return BEARING_METHOD, BEARING_SOURCE
-    if name == FittedRolling.name:
-        model = fitted_rolling(case, "bearing_rolling_loss")
-        return model.title, model.source
-    return PALMGREN_METHOD, PALMGREN_SOURCE
-
-
-def viscous_factor(table: PlanetBearing) -> float:
-    """f0 of the case, or that of caged cylindrical rollers for each row. [1]"""
-    return (
-        VISCOUS_FACTOR_PER_ROW * table.rows
-        if table.viscous_factor is None
-        else (table.viscous_factor)
-    )
-
-
-def palmgren_coefficient(table: PlanetBearing) -> float:
-    """f1 of the case, or the published one of the bearing's kind. [1]"""
-    if table.palmgren_coefficient is not None:
-        return table.palmgren_coefficient
-    return CAGED_PALMGREN if table.cage == "caged" else FULL_COMPLEMENT_PALMGREN
-
-
-def _bearing(case: PlanetaryCase) -> RollerBearing | None:
-    table = case.planet_bearing
-    return None if table is None else roller_bearing(table, case.numerics.bearing_slices)
-
-
-def roller_bearing(table: PlanetBearing, slices: int) -> RollerBearing:
-    """The bearing that `table` describes, each roller cut into `slices`."""
-    modulus, poisson = table.material.elastic_modulus, table.material.poisson_ratio
-    return RollerBearing(
-        rows=table.rows,
-        rollers_per_row=table.rollers_per_row,
-        roller_diameter=table.roller_diameter,
-        roller_length=table.roller_length,
-        inner_diameter=table.pin_diameter,
-        diametral_clearance=table.diametral_clearance,
-        crown_drop=table.crown_drop,
-        crown_length_fraction=table.crown_length_fraction,
-        row_gap=table.row_gap,
-        roller_roughness=table.roller_roughness,
-        race_roughness=table.race_roughness,
-        equivalent_modulus=equivalent_modulus(modulus, poisson, modulus, poisson),
-        slices=slices,
-    )
-
-
 def _centrifugal(case: PlanetaryCase, speeds: Mapping[str, float]) -> float:
     """Centrifugal force of one planet. Theory (B3). [N]"""
     if case.planet.mass is None:
         return 0.0
     return case.planet.mass * case.gears.center_distance * speeds["carrier"] ** 2
-
-
-def _bearing_figures(
-    bearing: RollerBearing, loads: RollerLoads, load: PlanetLoad, speed: float
-) -> BearingFigures:
-    rollers = loads.intensity.sum(axis=2) * bearing.slice_width
-    row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
-    pressure = hertz_pressure(
-        float(loads.intensity.max()), bearing.inner_radius, bearing.equivalent_modulus
-    )
-    return BearingFigures(
-        radial_force=load.force,
-        moment=math.hypot(load.moment_x, load.moment_y),
-        speed=abs(speed),
-        rollers_loaded=float(np.count_nonzero(rollers)),
-        roller_load_max=float(rollers[row, most]),
-        roller_azimuth=math.remainder(float(loads.azimuth[most]), 2 * math.pi),
-        hertz_pressure_max=pressure,
-        loads=loads,
-    )
 
 
 # --- drag and thrust bearing ----------------------------------------------------------------------

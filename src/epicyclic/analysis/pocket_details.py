@@ -17,7 +17,9 @@ from epicyclic.analysis.planetary import planetary_duties
 from epicyclic.analysis.pockets import pocket_notes, solve_pockets
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.errors import InputError, Problem
+from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.outline import tooth_outline
+from epicyclic.geometry.tools import Tool
 from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow
 from epicyclic.pocketing.geometry import (
     PocketGeometry,
@@ -250,12 +252,12 @@ def _shapes(life: _Life, width: float) -> dict[str, Variable]:
 
     return {
         "live": (
-            (*_LIFE, "slice"), alive, {"long_name": "whether a slice is a pocket", "units": "1"}
+            (*_LIFE, "slice"),
+            alive,
+            {"long_name": "whether a slice is a pocket", "units": "1"},
         ),
         "end_area": variable(station, known(area), "area of the section", SQUARE_MILLIMETRE),
-        "slice_volume": variable(
-            (*_LIFE, "slice"), slices, "volume of a slice", CUBIC_MILLIMETRE
-        ),
+        "slice_volume": variable((*_LIFE, "slice"), slices, "volume of a slice", CUBIC_MILLIMETRE),
         "volume": variable(_LIFE, volume, "volume of the pocket", CUBIC_MILLIMETRE),
         "contact_gap": variable(station, known(contact), "gap at the contact side", MICROMETRE),
         "backlash_gap": variable(station, known(backlash), "gap at the backlash side", MICROMETRE),
@@ -265,7 +267,7 @@ def _shapes(life: _Life, width: float) -> dict[str, Variable]:
             "centroid of the section, axis of member 1 at the origin",
             MILLIMETRE,
         ),
-    }  # fmt: skip
+    }
 
 
 def _flows(life: _Life) -> dict[str, Variable]:
@@ -321,7 +323,7 @@ def _pictures(duty: MeshDuty, life: _Life) -> dict[str, Variable]:
     )
     at_end = (*_LIFE, "end")
     leading, trailing = contact_clearances(mesh, duty.drives1)
-    variables = {
+    return {
         "outline": variable(
             (*at_end, "point", _AXIS),
             points(outlines),
@@ -342,16 +344,15 @@ def _pictures(duty: MeshDuty, life: _Life) -> dict[str, Variable]:
             DEGREE,
         ),
         "twist": variable((), life.flow.station[-1], "turn of the helix over the face", DEGREE),
+        "tooth1": _tooth(mesh.gear1, duty.tools[0], "tooth1_point"),
+        "tooth2": _tooth(mesh.gear2, duty.tools[1], "tooth2_point"),
     }
-    for number, gear, tool in zip((1, 2), (mesh.gear1, mesh.gear2), duty.tools, strict=True):
-        tooth = tooth_outline(gear, tool).points(teeth=1) @ np.array([[0.0, -1.0], [1.0, 0.0]])
-        variables[f"tooth{number}"] = variable(
-            (f"tooth{number}_point", _AXIS),
-            tooth,
-            f"outline of a tooth of the {gear.name}, along x",
-            MILLIMETRE,
-        )
-    return variables
+
+
+def _tooth(gear: Gear, tool: Tool, dimension: str) -> Variable:
+    points = tooth_outline(gear, tool).points(teeth=1) @ np.array([[0.0, -1.0], [1.0, 0.0]])
+    label = f"outline of a tooth of the {gear.name}, along x"
+    return variable((dimension, _AXIS), points, label, MILLIMETRE)
 
 
 def _numbers(case: Case, duty: MeshDuty, flow: PocketFlow) -> dict[str, Variable]:
@@ -371,9 +372,11 @@ def _numbers(case: Case, duty: MeshDuty, flow: PocketFlow) -> dict[str, Variable
             RPM,
         ),
         "oil_fraction": (
-            case.surroundings.oil_air_ratio, "share of oil in the mixture, by volume", NUMBER
+            case.surroundings.oil_air_ratio,
+            "share of oil in the mixture, by volume",
+            NUMBER,
         ),
-    }  # fmt: skip
+    }
     return {
         name: variable((), value, label, unit) for name, (value, label, unit) in numbers.items()
     }

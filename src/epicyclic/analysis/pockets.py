@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from epicyclic.case.case import Case
-from epicyclic.case.schema import LossOption
+from epicyclic.case.model_tables import LossOption
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow

@@ -1,8 +1,4 @@
-"""Results: what `solve` returns, and its JSON form.
-
-Figures are dataclass fields that carry their label and unit, so that tables, JSON and sweeps read
-them from one place.
-"""
+"""Results: what `solve` returns, and its JSON form."""
 
 from __future__ import annotations
 
@@ -16,82 +12,29 @@ from functools import cache, partial
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
-from epicyclic.case.schema import GearPairLosses, PlanetaryLosses
+from epicyclic.analysis.figures import (
+    BearingFigures,
+    Figure,
+    FluidFigures,
+    MeshFigures,
+    displayed,
+    figures,
+)
+from epicyclic.case.model_tables import GearPairLosses, PlanetaryLosses
 from epicyclic.kinematics import MEMBERS, PowerFlow
-from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.losses.validity import ValidityFlag, describe_flags
 from epicyclic.status import Status
-from epicyclic.units import (
-    BAR,
-    DEGREE,
-    GIGAPASCAL,
-    KILOGRAM_PER_CUBIC_METRE,
-    METRE_PER_SECOND,
-    MICROMETRE,
-    MILLIMETRE,
-    MILLIPASCAL_SECOND,
-    NEWTON,
-    NEWTON_METRE,
-    NEWTON_PER_MM,
-    NEWTON_PER_UM,
-    NUMBER,
-    PER_GIGAPASCAL,
-    RPM,
-    SQUARE_MM_PER_SECOND,
-    WATT,
-    Quantity,
-)
+from epicyclic.units import DEGREE, NEWTON_METRE, RPM, WATT
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = [
-    "BearingFigures",
-    "Figure",
-    "FluidFigures",
-    "LossTerm",
-    "MeshFigures",
-    "NumberField",
-    "Result",
-    "figures",
-    "number_fields",
-    "versions",
-]
+__all__ = ["LossTerm", "NumberField", "Result", "number_fields", "versions"]
 
 _POWERS = ("losses", "load_dependent", "load_independent", "total", "input_power")
 
 LOAD_DEPENDENT = "load-dependent"
 LOAD_INDEPENDENT = "load-independent"
-
-
-def _figure(label: str, unit: Quantity) -> Any:
-    return dataclasses.field(metadata={"label": label, "unit": unit})
-
-
-@dataclass(frozen=True, slots=True)
-class Figure:
-    """One number for the user, in its display unit; the unit of a pure number is ``"1"``."""
-
-    key: str
-    label: str
-    value: float
-    unit: str
-
-
-def figures(source: DataclassInstance) -> Iterator[Figure]:
-    """The labelled numbers of a dataclass."""
-    for field in dataclasses.fields(source):
-        if "label" in field.metadata:
-            label, unit = field.metadata["label"], field.metadata["unit"]
-            yield Figure(field.name, label, _shown(source, field), unit.display or "1")
-
-
-def _shown(source: DataclassInstance, field: dataclasses.Field[Any]) -> float:
-    """A labelled number of a dataclass in its display unit."""
-    unit: Quantity = field.metadata["unit"]
-    value: float = getattr(source, field.name)
-    return unit.to_display(value) if unit.si else value
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,76 +64,6 @@ class LossTerm:
     source: str
     factor: float = 1.0
     left_out: str = ""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class MeshFigures:
-    """What an engineer checks by eye on a mesh; NaN where there is no load or no motion.
-
-    The largest line load and pressure leave out the 1 % of the contact that carries most: in the
-    corners of a helical face without end relief the load has no bound, and its largest value would
-    be that of the resolution.
-
-    Transmission error and stiffness, in the transverse plane of action, are those of elastic teeth
-    and NaN with another load distribution.
-    """
-
-    contact: MeshContact | None
-    pressure_angle: float = _figure("operating pressure angle, transverse", DEGREE)
-    transverse_contact_ratio: float = _figure("transverse contact ratio", NUMBER)
-    overlap_ratio: float = _figure("overlap ratio", NUMBER)
-    backlash: float = _figure("circumferential backlash", MILLIMETRE)
-    misalignment: float = _figure("misalignment, with tilt of the planet if coupled", MICROMETRE)
-    pitch_line_speed: float = _figure("pitch-line speed, relative to carrier", METRE_PER_SECOND)
-    sliding_speed_max: float = _figure("largest sliding speed", METRE_PER_SECOND)
-    line_load_max: float = _figure("largest line load but for 1 % of the contact", NEWTON_PER_MM)
-    hertz_pressure_max: float = _figure(
-        "largest Hertz pressure but for 1 % of the contact", GIGAPASCAL
-    )
-    contact_share: float = _figure("share of the contact lines that carries", NUMBER)
-    film_ratio_min: float = _figure("film ratio, smallest", NUMBER)
-    film_ratio_max: float = _figure("film ratio, largest", NUMBER)
-    friction_mean: float = _figure("mean coefficient of friction", NUMBER)
-    loss_factor: float = _figure("loss factor H_V (Ohlendorf)", NUMBER)
-    transmission_error_range: float = _figure("loaded transmission error, peak to peak", MICROMETRE)
-    mesh_stiffness: float = _figure("mean mesh stiffness at this load", NEWTON_PER_UM)
-    pocket_pressure_max: float = _figure("highest pressure in the pockets, above ambient", BAR)
-    pocket_pressure_min: float = _figure("lowest pressure in the pockets, above ambient", BAR)
-    pocket_speed_max: float = _figure("fastest flow out of or into a pocket", METRE_PER_SECOND)
-    pocket_power_difference: float = _figure(
-        "pocketing loss: energy balance over work, less 1", NUMBER
-    )
-    pocket_interpolation_error: float = _figure(
-        "pocketing loss: largest error of its interpolation", NUMBER
-    )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class BearingFigures:
-    """What an engineer checks by eye on the planet bearing."""
-
-    loads: RollerLoads | None
-    radial_force: float = _figure("radial force", NEWTON)
-    moment: float = _figure("tilting moment", NEWTON_METRE)
-    speed: float = _figure("speed relative to carrier", RPM)
-    rollers_loaded: float = _figure("loaded rollers, all rows", NUMBER)
-    roller_load_max: float = _figure("most loaded roller", NEWTON)
-    roller_azimuth: float = _figure("azimuth of that roller from the load", DEGREE)
-    hertz_pressure_max: float = _figure("largest Hertz pressure, inner race", GIGAPASCAL)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class FluidFigures:
-    """Properties of the oil at its inlet temperature, and of its mixture with air."""
-
-    kinematic_viscosity: float = _figure("kinematic viscosity of the oil", SQUARE_MM_PER_SECOND)
-    dynamic_viscosity: float = _figure("dynamic viscosity of the oil", MILLIPASCAL_SECOND)
-    density: float = _figure("density of the oil", KILOGRAM_PER_CUBIC_METRE)
-    pressure_viscosity: float = _figure("pressure-viscosity coefficient", PER_GIGAPASCAL)
-    mixture_density: float = _figure("density of the air-oil mixture", KILOGRAM_PER_CUBIC_METRE)
-    mixture_viscosity: float = _figure(
-        "dynamic viscosity of the air-oil mixture", MILLIPASCAL_SECOND
-    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -475,7 +348,7 @@ def _part_number(
     result: Result,
 ) -> float:
     source = part(result)
-    return math.nan if source is None else _shown(source, field)
+    return math.nan if source is None else displayed(source, field)
 
 
 def _loss(name: str, result: Result) -> float:

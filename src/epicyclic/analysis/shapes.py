@@ -15,10 +15,11 @@ from epicyclic.analysis.datasets import variable
 from epicyclic.analysis.pocket_details import mesh_duties
 from epicyclic.case import build
 from epicyclic.case.case import Case, PlanetaryCase
-from epicyclic.case.schema import GearTable
+from epicyclic.case.gear_tables import GearTable
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import Tool, tooth_outline
+from epicyclic.geometry.outline import tooth_outline
+from epicyclic.geometry.tools import Tool
 from epicyclic.units import DEGREE, MILLIMETRE
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from functools import lru_cache
 
-from epicyclic.case.schema import Gears, GearTable, PairGear, Planet, Ring
+from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring
 from epicyclic.geometry.assembly import admissible_angles
 from epicyclic.geometry.gear import (
     BasicRack,
@@ -14,15 +14,10 @@ from epicyclic.geometry.gear import (
     half_angle_from_profile_shift,
     half_angle_from_thickness,
 )
+from epicyclic.geometry.generation import default_tool
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import (
-    RackTool,
-    ShaperTool,
-    Tool,
-    default_tool,
-    form_radius,
-    tooth_outline,
-)
+from epicyclic.geometry.outline import form_radius, tooth_outline
+from epicyclic.geometry.tools import RackTool, ShaperTool, Tool
 
 __all__ = [
     "basic_rack",

@@ -13,33 +13,28 @@ from pydantic.json_schema import GenerateJsonSchema
 from epicyclic import library
 from epicyclic.case.checks import cross_check
 from epicyclic.case.fields import find_field, locate, to_inputs
-from epicyclic.case.nearest import did_you_mean, misspelt
-from epicyclic.case.plain import plain, value_at, with_value, without
-from epicyclic.case.reading import read_file
-from epicyclic.case.schema import (
-    Carrier,
+from epicyclic.case.gear_tables import Gears, GearTable, MeshTable, PairGear, Planet, Ring
+from epicyclic.case.model_tables import (
     ContactSolver,
     FrictionTable,
     GearPairLosses,
     GearPairModels,
-    GearPairOperation,
-    Gears,
-    GearTable,
     LoadSharing,
-    Lubricant,
-    MeshTable,
     Numerics,
-    PairGear,
-    Planet,
     PlanetaryLosses,
     PlanetaryModels,
-    PlanetaryOperation,
-    PlanetBearing,
-    Ring,
-    Surroundings,
-    Table,
-    ThrustBearing,
 )
+from epicyclic.case.nearest import did_you_mean, misspelt
+from epicyclic.case.operation_tables import (
+    GearPairOperation,
+    Lubricant,
+    PlanetaryOperation,
+    Surroundings,
+)
+from epicyclic.case.part_tables import Carrier, PlanetBearing, ThrustBearing
+from epicyclic.case.plain import plain, value_at, with_value, without
+from epicyclic.case.reading import read_file
+from epicyclic.case.schema import Table
 from epicyclic.case.translation import unknown_key
 from epicyclic.case.validation import tables_of, validate
 from epicyclic.case.wording import one_line, path_of, written

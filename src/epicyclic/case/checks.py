@@ -13,21 +13,17 @@ from pathlib import Path
 
 from epicyclic.case import build
 from epicyclic.case.gear_checks import check_pair, check_planetary
-from epicyclic.case.schema import (
+from epicyclic.case.gear_tables import Gears, GearTable, Planet, Ring
+from epicyclic.case.model_tables import (
     FrictionTable,
     GearPairModels,
-    GearPairOperation,
-    Gears,
-    GearTable,
     LoadSharing,
     Numerics,
-    Planet,
     PlanetaryModels,
-    PlanetaryOperation,
-    PlanetBearing,
-    Ring,
-    Table,
 )
+from epicyclic.case.operation_tables import GearPairOperation, PlanetaryOperation
+from epicyclic.case.part_tables import PlanetBearing
+from epicyclic.case.schema import Table
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.assembly import are_evenly_spaced
@@ -262,11 +258,13 @@ def _check_oil_model(models: GearPairModels, folder: Path) -> list[Problem]:
     if models.oil_model is None:
         return [
             Problem(
-                f"models.{key}", '"fitted"', "needs a file of fitted models.",
+                f"models.{key}",
+                '"fitted"',
+                "needs a file of fitted models.",
                 "Give models.oil_model, a file of 'epicyclic oil characterise'.",
             )
             for key in asked
-        ]  # fmt: skip
+        ]
     try:
         fits = read_oil_model(folder / models.oil_model).fits
     except InputError as error:

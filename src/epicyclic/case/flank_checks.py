@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from epicyclic.case.flanks import roll_length_at, working_flank
-from epicyclic.case.schema import GearTable, MicroGeometryTable, TopographyTable
+from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, TopographyTable
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 from epicyclic.geometry.gear import Gear
@@ -47,7 +47,7 @@ def check_flanks(mesh: Mesh, tables: tuple[GearTable, GearTable]) -> list[Proble
     problems = []
     for member, gear in ((1, mesh.gear1), (2, mesh.gear2)):
         gear_table = tables[member - 1]
-        table = working_flank(mesh, member, gear_table)
+        table = working_flank(member, gear_table)
         if table is not None:
             name = "micro_geometry"
             if table is not gear_table.micro_geometry:

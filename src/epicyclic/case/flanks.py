@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Literal
 
 from epicyclic.case import build
-from epicyclic.case.schema import GearTable, MicroGeometryTable, Planet, TopographyTable
+from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, Planet, TopographyTable
 from epicyclic.elasticity.mesh_compliance import GearBody
 from epicyclic.elasticity.rim import Rim
 from epicyclic.geometry.gear import Gear
@@ -62,8 +62,8 @@ def flank_deviations(mesh: Mesh, tables: Tables, misalignment: float) -> FlankDe
     return FlankDeviations(one, two, misalignment)
 
 
-def working_flank(mesh: Mesh, member: int, table: GearTable) -> MicroGeometryTable | None:
-    """The table of the flank of a member that works in `mesh`.
+def working_flank(member: int, table: GearTable) -> MicroGeometryTable | None:
+    """The table of the flank of a member of a mesh that works in it.
 
     A planet's other flank works against the ring, where the planet is member 1.
     """
@@ -73,7 +73,7 @@ def working_flank(mesh: Mesh, member: int, table: GearTable) -> MicroGeometryTab
 
 
 def _of_member(mesh: Mesh, member: int, table: GearTable) -> MicroGeometry:
-    flank = working_flank(mesh, member, table)
+    flank = working_flank(member, table)
     if flank is None:
         return MicroGeometry()
     gear = (mesh.gear1, mesh.gear2)[member - 1]

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 from epicyclic.case import build
 from epicyclic.case.flank_checks import check_flanks
-from epicyclic.case.schema import Gears, GearTable, PairGear, Planet, Ring
+from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 from epicyclic.geometry.assembly import nearest_admissible_angle, smallest_planet_gap

@@ -7,8 +7,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.options import case_argument, load_with, set_option
-from epicyclic.cli.output import check_picture, draw, write_file
+from epicyclic.cli.options import (
+    case_argument,
+    jobs_option,
+    json_option,
+    load_with,
+    plot_option,
+    set_option,
+)
+from epicyclic.cli.output import check_ending, draw, show, write_file
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -41,24 +48,15 @@ __all__ = ["compare"]
 )
 @click.option("--seed", type=click.IntRange(0), default=0, help="Of that share; default 0.")
 @click.option(
-    "-o", "--output", metavar="FILE", type=click.Path(path_type=Path),
-    help="Write the calibrated case (.toml).",
-)  # fmt: skip
-@click.option(
-    "--plot",
+    "-o",
+    "--output",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="Draw parity and residuals to .png, .svg or .pdf.",
+    help="Write the calibrated case (.toml).",
 )
-@click.option(
-    "--json",
-    "json_file",
-    metavar="[FILE]",
-    is_flag=False,
-    flag_value="-",
-    help="Write everything as JSON, to standard output if no FILE or - is given.",
-)
-@click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
+@plot_option("Draw parity and residuals to .png, .svg or .pdf.")
+@json_option
+@jobs_option
 def compare(
     case: str,
     measured: Path,
@@ -82,22 +80,23 @@ def compare(
     from epicyclic.cli.progress import progress_bar
     from epicyclic.measurement.compare import compare_measured
     from epicyclic.report.measured_table import measured_tables
-    from epicyclic.report.tables import terminal
 
     keys = [key.strip() for key in (fit or "").split(",") if key.strip()]
     _check_outputs(output, plot, keys)
     loaded = load_with(case, changes)
     with progress_bar("points") as progress:
         comparison = compare_measured(
-            loaded, measured, component=component, group=group, fit=keys, hold_out=hold_out,
-            seed=seed, jobs=jobs, progress=progress,
-        )  # fmt: skip
-    if json_file == "-":
-        click.echo(comparison.to_json())
-    else:
-        terminal().print(measured_tables(comparison))
-        if json_file is not None:
-            write_file(Path(json_file), comparison.to_json() + "\n")
+            loaded,
+            measured,
+            component=component,
+            group=group,
+            fit=keys,
+            hold_out=hold_out,
+            seed=seed,
+            jobs=jobs,
+            progress=progress,
+        )
+    show(lambda: measured_tables(comparison), comparison.to_json, json_file)
     if output is not None:
         write_file(output, _calibrated_text(comparison))
     if plot is not None:
@@ -108,12 +107,11 @@ def compare(
 
 def _check_outputs(output: Path | None, plot: Path | None, keys: list[str]) -> None:
     if plot is not None:
-        check_picture("--plot", plot)
-    if output is not None and output.suffix != ".toml":
-        raise InputError(
-            [Problem("-o", str(output), "must end in .toml.", "Name a case file.")], "the command"
-        )
-    if output is not None and not keys:
+        check_ending("--plot", plot)
+    if output is None:
+        return
+    check_ending("-o", output, (".toml",))
+    if not keys:
         allowed = "holds the calibrated case, and nothing is calibrated."
         raise InputError(
             [Problem("-o", str(output), allowed, "Name the keys with --fit.")], "the command"

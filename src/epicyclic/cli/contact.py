@@ -9,8 +9,8 @@ from typing import Any
 import click
 
 from epicyclic.cli.exit_codes import EXIT_NO_SOLUTION
-from epicyclic.cli.options import contact_set_option, parse_changes
-from epicyclic.cli.output import PICTURES, check_picture, picture_bytes, write_file
+from epicyclic.cli.options import contact_set_option, json_option, parse_changes, plot_option
+from epicyclic.cli.output import PICTURES, check_ending, picture_bytes, show, write_file
 from epicyclic.status import Status
 
 __all__ = ["contact"]
@@ -41,11 +41,9 @@ def contact_options(command: Any) -> Any:
 @click.argument("file", type=click.Path(path_type=Path), required=False)
 @contact_options
 @contact_set_option
-@click.option("--json", "json_file", metavar="FILE", help="Write the result as JSON; - for stdout.")
-@click.option(
-    "--plot",
-    type=click.Path(path_type=Path),
-    help="Draw pressure, film, shear stress (.png, .svg, .pdf); a rough contact moves in a .gif.",
+@json_option
+@plot_option(
+    "Draw pressure, film, shear stress (.png, .svg, .pdf); a rough contact moves in a .gif."
 )
 def contact(
     file: Path | None,
@@ -67,6 +65,7 @@ def contact(
     from epicyclic.analysis.contact import solve_contact
     from epicyclic.case.contact import load_contact_case
     from epicyclic.case.values import parse_value
+    from epicyclic.report.contact_table import contact_tables
 
     given = {
         CONTACT_OPTIONS[name][0]: parse_value(text)
@@ -74,19 +73,10 @@ def contact(
         if text is not None
     }
     if plot is not None:
-        check_picture("--plot", plot, (*PICTURES, ANIMATION))
+        check_ending("--plot", plot, (*PICTURES, ANIMATION))
     case = load_contact_case(file or {}, given | parse_changes(changes))
     result = solve_contact(case, frames=plot is not None or json_file is not None)
-    if json_file == "-":
-        click.echo(result.to_json())
-    else:
-        from epicyclic.report.contact_table import contact_tables
-        from epicyclic.report.tables import terminal
-
-        terminal().print(contact_tables(result))
-        if json_file is not None:
-            write_file(Path(json_file), result.to_json() + "\n")
-            click.echo(f"Wrote {json_file}.")
+    show(lambda: contact_tables(result), result.to_json, json_file)
     if plot is not None and result.smooth.status is Status.CONVERGED:
         from epicyclic.plots.contact import contact_animation, contact_figure
 

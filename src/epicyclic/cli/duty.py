@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.options import load_with, set_option
-from epicyclic.cli.output import write_file
+from epicyclic.cli.options import jobs_option, json_option, load_with, set_option
+from epicyclic.cli.output import show, write_file, wrong_ending
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -44,15 +44,8 @@ _OUTPUTS = (".nc", ".csv")
 @click.option(
     "-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="Write .nc or .csv."
 )
-@click.option(
-    "--json",
-    "json_file",
-    metavar="[FILE]",
-    is_flag=False,
-    flag_value="-",
-    help="Write the result as JSON, to standard output if no FILE or - is given.",
-)
-@click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
+@json_option
+@jobs_option
 def duty(
     map_or_case: str,
     cycle: str,
@@ -100,9 +93,8 @@ def _check_options(
             if value
         ]
     for name, path, suffixes in (("--map", map_file, (_MAP_SUFFIX,)), ("-o", output, _OUTPUTS)):
-        if path is not None and path.suffix not in suffixes:
-            allowed = f"must end in {' or '.join(suffixes)}."
-            problems.append(Problem(name, str(path), allowed, "Name another file."))
+        if path is not None:
+            problems += wrong_ending(name, path, suffixes)
     if problems:
         raise InputError(problems, "the command")
     for path in (map_file, output):
@@ -137,16 +129,10 @@ def _map(
 
 def _write(result: xr.Dataset, output: Path | None, json_file: str | None) -> None:
     from epicyclic.report.duty_table import duty_json, duty_rows, duty_tables
-    from epicyclic.report.tables import terminal
     from epicyclic.sweeps.dataset import write_dataset
 
     if output is not None and output.suffix == _MAP_SUFFIX:
         write_dataset(result, output)
     elif output is not None:
         write_file(output, duty_rows(result).to_csv(index=False))
-    if json_file == "-":
-        click.echo(duty_json(result))
-        return
-    if json_file is not None:
-        write_file(Path(json_file), duty_json(result) + "\n")
-    terminal().print(duty_tables(result))
+    show(lambda: duty_tables(result), lambda: duty_json(result), json_file)

@@ -92,7 +92,7 @@ def main() -> None:
         click.echo(f"No solution: {error}", err=True)
         sys.exit(EXIT_NO_SOLUTION)
     except BrokenPipeError:  # the reader of a pipe has seen enough
-        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(EXIT_BROKEN_PIPE)
     except (KeyboardInterrupt, click.Abort):
         _end_interrupted()

@@ -12,7 +12,13 @@ from typing import TYPE_CHECKING
 import click
 
 from epicyclic.cli.exit_codes import EXIT_FAILED_POINTS
-from epicyclic.cli.options import case_argument, load_with, set_option
+from epicyclic.cli.options import (
+    case_argument,
+    jobs_option,
+    load_with,
+    set_option,
+    temperature_option,
+)
 from epicyclic.cli.output import finishing
 from epicyclic.errors import InputError, Problem
 from epicyclic.status import Status
@@ -39,7 +45,7 @@ SHOWN_FAILURES = 10
 @click.option(
     "-o", "--output", required=True, type=click.Path(path_type=Path), help=".nc, .csv or .parquet"
 )
-@click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
+@jobs_option
 def sweep(
     case: str, changes: tuple[str, ...], vary: tuple[str, ...], output: Path, jobs: int | None
 ) -> None:
@@ -74,11 +80,7 @@ def sweep(
     required=True,
     help='On the input member, as in "-1000:1000:41 N*m"; against the speed is coasting.',
 )
-@click.option(
-    "--temperature",
-    metavar="VALUES",
-    help='Of the oil at the inlet, as in "40,60,90 degC"; default: that of the case.',
-)
+@temperature_option
 @click.option(
     "--vary", metavar="KEY=VALUES", multiple=True, help='Further keys, as in "planet.count=3,4".'
 )
@@ -86,7 +88,7 @@ def sweep(
     "-o", "--output", required=True, type=click.Path(path_type=Path), help="File of the map."
 )
 @click.option("--format", "name", metavar="NAME", help="Default: by the ending of the file.")
-@click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
+@jobs_option
 def loss_map(
     case: str,
     changes: tuple[str, ...],
@@ -125,12 +127,14 @@ def check_values(values: Mapping[str, str | None]) -> None:
     """Raise `InputError` for options that name no values."""
     problems = [
         Problem(
-            f"--{name}", f'"{text}"', "must be a,b,c or start:stop:count with a unit.",
+            f"--{name}",
+            f'"{text}"',
+            "must be a,b,c or start:stop:count with a unit.",
             'For example "0:4000:41 rpm" for the speed.',
         )
         for name, text in values.items()
         if text is not None and not text.strip()
-    ]  # fmt: skip
+    ]
     if problems:
         raise InputError(problems, "the command")
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.options import contact_set_option, parse_changes
-from epicyclic.cli.output import check_picture, draw
+from epicyclic.cli.options import contact_set_option, jobs_option, parse_changes, plot_option
+from epicyclic.cli.output import check_ending, draw
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -17,12 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["oil"]
 
 
-plot_option = click.option(
-    "--plot",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Draw the models against the simulations (.png, .svg, .pdf).",
-)
+plot_models = plot_option("Draw the models against the simulations (.png, .svg, .pdf).")
 
 
 @click.group()
@@ -59,9 +54,9 @@ def oil() -> None:
     help='Limits of the gear contacts, as in "hertz_pressure=0.3:1.5 GPa"; with --size.',
 )
 @contact_set_option
-@click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
+@jobs_option
 @click.option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster, tcp://host:8786.")
-@plot_option
+@plot_models
 def characterise(
     source: str,
     output: Path,
@@ -91,11 +86,15 @@ def characterise(
         problem = Problem("--range", ranges[0], "is for a design of a --size.", "Give --size.")
         raise InputError([problem], "the command")
     if plot is not None:
-        check_picture("--plot", plot)
+        check_ending("--plot", plot)
     campaign = make_campaign(
-        source, size=size, bearing_size=bearing_size, seed=seed,
-        ranges=parse_ranges(ranges), changes=parse_changes(changes),
-    )  # fmt: skip
+        source,
+        size=size,
+        bearing_size=bearing_size,
+        seed=seed,
+        ranges=parse_ranges(ranges),
+        changes=parse_changes(changes),
+    )
     folder = CampaignFolder(output, campaign)
     folder.prepare()
     try:
@@ -114,13 +113,13 @@ def characterise(
 
 @oil.command()
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
-@plot_option
+@plot_models
 def fit(folder: Path, plot: Path | None) -> None:
     """Fit models to the simulations in DIR again."""
     from epicyclic.campaigns.folder import open_folder
 
     if plot is not None:
-        check_picture("--plot", plot)
+        check_ending("--plot", plot)
     _fit(open_folder(folder), plot)
 
 

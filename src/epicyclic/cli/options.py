@@ -1,8 +1,9 @@
-"""Options that commands share: a case, and changes of its keys."""
+"""Options that commands share, above all a case and changes of its keys."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import click
@@ -13,12 +14,32 @@ __all__ = [
     "case_argument",
     "contact_set_option",
     "from_rexs",
+    "jobs_option",
+    "json_option",
     "load_with",
     "parse_changes",
+    "plot_option",
     "set_option",
+    "temperature_option",
 ]
 
 case_argument = click.argument("case", metavar="CASE")
+json_option = click.option(
+    "--json",
+    "json_file",
+    metavar="[FILE]",
+    is_flag=False,
+    flag_value="-",
+    help="Write the result as JSON, to standard output if no FILE or - is given.",
+)
+jobs_option = click.option(
+    "--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays."
+)
+temperature_option = click.option(
+    "--temperature",
+    metavar="VALUES",
+    help='Of the oil at the inlet, as in "40,60,90 degC"; default: that of the case.',
+)
 
 
 def set_option_for(what: str, example: str) -> Callable[[Any], Any]:
@@ -34,6 +55,11 @@ def set_option_for(what: str, example: str) -> Callable[[Any], Any]:
 
 set_option = set_option_for("the case", "operation.torque=500 N*m")
 contact_set_option = set_option_for("the contact", "lubricant.eyring_stress=8 MPa")
+
+
+def plot_option(text: str) -> Callable[[Any], Any]:
+    """The option --plot, with its help."""
+    return click.option("--plot", metavar="FILE", type=click.Path(path_type=Path), help=text)
 
 
 def load_with(case: str, changes: Sequence[str]) -> Any:
@@ -67,10 +93,12 @@ def parse_changes(options: Sequence[str]) -> dict[str, Any]:
         if not equals or not key.strip():
             problems.append(
                 Problem(
-                    "--set", f'"{option}"', "must be KEY=VALUE.",
+                    "--set",
+                    f'"{option}"',
+                    "must be KEY=VALUE.",
                     'For example --set "operation.torque=500 N*m".',
                 )
-            )  # fmt: skip
+            )
         else:
             changes[key.strip()] = parse_value(text.strip()) if text.strip() else None
     if problems:

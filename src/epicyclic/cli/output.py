@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import signal
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,17 +15,55 @@ from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from rich.console import RenderableType
 
-__all__ = ["PICTURES", "check_picture", "draw", "finishing", "picture_bytes", "write_file"]
+__all__ = [
+    "PICTURES",
+    "beside",
+    "check_ending",
+    "draw",
+    "finishing",
+    "picture_bytes",
+    "show",
+    "write_file",
+    "wrong_ending",
+]
 
 PICTURES = (".png", ".svg", ".pdf")
 
 
-def check_picture(option: str, path: Path, formats: Sequence[str] = PICTURES) -> None:
-    if path.suffix not in formats:
-        allowed = f"must end in {', '.join(formats)}."
-        problem = Problem(option, str(path), allowed, "Choose one of these formats.")
-        raise InputError([problem], "the command")
+def check_ending(option: str, path: Path, endings: Sequence[str] = PICTURES) -> None:
+    """Raise `InputError` for a file that ends otherwise."""
+    problems = wrong_ending(option, path, endings)
+    if problems:
+        raise InputError(problems, "the command")
+
+
+def wrong_ending(option: str, path: Path, endings: Sequence[str]) -> list[Problem]:
+    """The problem of a file that ends otherwise."""
+    if path.suffix in endings:
+        return []
+    allowed = f"must end in {' or '.join(endings)}."
+    return [Problem(option, str(path), allowed, "Name such a file.")]
+
+
+def beside(path: Path, part: str) -> Path:
+    """The file beside `path` for one part of what it is to hold."""
+    return path.with_name(f"{path.stem}-{part}{path.suffix}")
+
+
+def show(
+    tables: Callable[[], RenderableType], as_json: Callable[[], str], json_file: str | None
+) -> None:
+    """Print tables, or JSON in their place if `json_file` is -; else write that file first."""
+    if json_file == "-":
+        click.echo(as_json())
+        return
+    from epicyclic.report.tables import terminal
+
+    if json_file is not None:
+        write_file(Path(json_file), as_json() + "\n")
+    terminal().print(tables())
 
 
 def draw(figure: Figure, path: Path) -> None:

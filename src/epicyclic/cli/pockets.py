@@ -10,8 +10,8 @@ import click
 
 from epicyclic.cli.exit_codes import EXIT_FAILED_POINTS
 from epicyclic.cli.many import kept_in, open_journal, print_failures
-from epicyclic.cli.options import case_argument, load_with, set_option
-from epicyclic.cli.output import PICTURES, check_picture, draw, finishing, write_file
+from epicyclic.cli.options import case_argument, jobs_option, load_with, plot_option, set_option
+from epicyclic.cli.output import PICTURES, beside, check_ending, draw, finishing, write_file
 from epicyclic.errors import InputError, Problem
 from epicyclic.status import Status
 
@@ -28,12 +28,7 @@ ANIMATION = ".gif"
 @click.command()
 @case_argument
 @set_option
-@click.option(
-    "--plot",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Draw each mesh to FILE-MESH.png, .svg or .pdf, and its section to FILE-MESH-section.",
-)
+@plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf, and its section to FILE-MESH-section.")
 @click.option(
     "--animate",
     metavar="FILE",
@@ -47,9 +42,9 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
     from epicyclic.report.tables import terminal
 
     if plot is not None:
-        check_picture("--plot", plot)
+        check_ending("--plot", plot)
     if animate is not None:
-        check_picture("--animate", animate, (ANIMATION,))
+        check_ending("--animate", animate, (ANIMATION,))
     meshes = pocket_details(load_with(case, changes))
     terminal().print(pocket_tables(meshes))
     for key, mesh in meshes.items():
@@ -57,22 +52,17 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
             from epicyclic.plots.pocket_section import section_figure
             from epicyclic.plots.pockets import pocket_figure
 
-            draw(pocket_figure(mesh), _named(plot, key))
-            draw(section_figure(mesh), _named(plot, f"{key}-section"))
+            draw(pocket_figure(mesh), beside(plot, key))
+            draw(section_figure(mesh), beside(plot, f"{key}-section"))
         if animate is not None:
             from epicyclic.cli.progress import progress_bar
             from epicyclic.plots.pocket_animation import pocket_animation
 
             with progress_bar("frames") as progress:
                 moving = pocket_animation(mesh, progress)
-            path = _named(animate, key)
+            path = beside(animate, key)
             write_file(path, moving)
             click.echo(f"Wrote {path}.")
-
-
-def _named(path: Path, part: str) -> Path:
-    """The file beside `path` for one part of what is drawn."""
-    return path.with_name(f"{path.stem}-{part}{path.suffix}")
 
 
 @click.command()
@@ -103,7 +93,7 @@ def _named(path: Path, part: str) -> Path:
 @click.option(
     "-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder of the results."
 )
-@click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
+@jobs_option
 def study(
     case: str,
     changes: tuple[str, ...],

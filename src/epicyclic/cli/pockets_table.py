@@ -7,9 +7,8 @@ from pathlib import Path
 import click
 
 from epicyclic.cli.many import check_values
-from epicyclic.cli.options import case_argument, load_with, set_option
-from epicyclic.cli.output import finishing
-from epicyclic.errors import InputError, Problem
+from epicyclic.cli.options import case_argument, load_with, set_option, temperature_option
+from epicyclic.cli.output import check_ending, finishing
 
 __all__ = ["pockets_table"]
 
@@ -22,11 +21,7 @@ FORMATS = (".nc", ".csv")
 @click.option(
     "--speed", metavar="VALUES", required=True, help='Of the input member, as in "500:5000:10 rpm".'
 )
-@click.option(
-    "--temperature",
-    metavar="VALUES",
-    help='Of the oil at the inlet, as in "40,60,90 degC"; default: that of the case.',
-)
+@temperature_option
 @click.option(
     "-o",
     "--output",
@@ -46,10 +41,7 @@ def pockets_table(case: str, changes: tuple[str, ...], output: Path, **values: s
     from epicyclic.sweeps.pocketing_table import SPEED, TEMPERATURE, pocketing_table
 
     loaded = load_with(case, changes)
-    if output.suffix not in FORMATS:
-        allowed = f"must end in {' or '.join(FORMATS)}."
-        problem = Problem("-o", str(output), allowed, "Choose one of these formats.")
-        raise InputError([problem], "the command")
+    check_ending("-o", output, FORMATS)
     check_place(output)
     check_values(values)
     keys = {"speed": SPEED, "temperature": TEMPERATURE}

@@ -31,9 +31,12 @@ def rexs() -> None:
 @rexs.command("import")
 @click.argument("file")
 @click.option(
-    "-o", "--output", metavar="CASE.toml", type=click.Path(path_type=Path),
+    "-o",
+    "--output",
+    metavar="CASE.toml",
+    type=click.Path(path_type=Path),
     help="The case file to write. Default: FILE with the ending .toml, in this folder.",
-)  # fmt: skip
+)
 @component_option
 @click.option("--load-case", type=int, metavar="ID", help="A load case of the load spectrum.")
 @set_option

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from epicyclic.cli.options import load_with, set_option
-from epicyclic.cli.output import PICTURES, check_picture, draw, write_file
+from epicyclic.cli.output import PICTURES, check_ending, draw, write_file
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def report(source: str, changes: tuple[str, ...], output: Path) -> None:
     """
     from epicyclic.cli.progress import progress_bar
 
-    check_picture("-o", output, (PAGE, PRINT))
+    check_ending("-o", output, (PAGE, PRINT))
     if output.suffix == PRINT:
         from epicyclic.report.pdf import check_pdf
 
@@ -69,7 +69,7 @@ def plot(source: str, what: str | None, changes: tuple[str, ...], output: Path |
     FILE.nc is what run --save or map wrote; a CASE is solved first.
     """
     if output is not None:
-        check_picture("-o", output)
+        check_ending("-o", output)
     from epicyclic.plots.catalogue import available, figure_of
 
     stored = _stored(source, changes)
@@ -91,8 +91,10 @@ def _stored(source: str, changes: Sequence[str]) -> Stored:
         return record(load_with(source, changes))
     if changes:
         problem = Problem(
-            "--set", f'"{changes[0]}"', "changes a case, and a stored result is none.",
+            "--set",
+            f'"{changes[0]}"',
+            "changes a case, and a stored result is none.",
             "Solve the case with it: epicyclic run CASE --set ... --save FILE.nc.",
-        )  # fmt: skip
+        )
         raise InputError([problem], "the command")
     return open_result(source)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from epicyclic.cli.options import case_argument, load_with, set_option
-from epicyclic.cli.output import check_picture, draw, write_file
+from epicyclic.cli.options import case_argument, json_option, load_with, plot_option, set_option
+from epicyclic.cli.output import beside, check_ending, draw, show
 
 __all__ = ["check", "friction", "mesh", "run"]
 
@@ -15,14 +15,7 @@ __all__ = ["check", "friction", "mesh", "run"]
 @click.command()
 @case_argument
 @set_option
-@click.option(
-    "--json",
-    "json_file",
-    metavar="[FILE]",
-    is_flag=False,
-    flag_value="-",
-    help="Write the result as JSON, to standard output if no FILE or - is given.",
-)
+@json_option
 @click.option(
     "--save",
     metavar="FILE",
@@ -32,6 +25,7 @@ __all__ = ["check", "friction", "mesh", "run"]
 def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path | None) -> None:
     """Compute the losses of a case and print them by component."""
     from epicyclic.analysis.solve import solve
+    from epicyclic.report.tables import result_tables
 
     loaded = load_with(case, changes)
     if save is not None:
@@ -40,14 +34,7 @@ def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path |
         check_result_output(save)
         save_result(loaded, save)
     result = solve(loaded)
-    if json_file == "-":
-        click.echo(result.to_json())
-        return
-    from epicyclic.report.tables import result_tables, terminal
-
-    if json_file is not None:
-        write_file(Path(json_file), result.to_json() + "\n")
-    terminal().print(result_tables(result))
+    show(lambda: result_tables(result), result.to_json, json_file)
 
 
 @click.command()
@@ -73,12 +60,7 @@ def friction(case: str, changes: tuple[str, ...]) -> None:
 @click.command()
 @case_argument
 @set_option
-@click.option(
-    "--plot",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Draw each mesh to FILE-MESH.png, .svg or .pdf.",
-)
+@plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf.")
 def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     """Show how the teeth carry: load, transmission error, stiffness, pressure, friction power."""
     from epicyclic.analysis.mesh_details import mesh_details
@@ -86,11 +68,11 @@ def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     from epicyclic.report.tables import terminal
 
     if plot is not None:
-        check_picture("--plot", plot)
+        check_ending("--plot", plot)
     meshes = mesh_details(load_with(case, changes))
     terminal().print(mesh_tables(meshes))
     if plot is not None:
         from epicyclic.plots.mesh import mesh_figure
 
         for key, details in meshes.items():
-            draw(mesh_figure(details), plot.with_name(f"{plot.stem}-{key}{plot.suffix}"))
+            draw(mesh_figure(details), beside(plot, key))

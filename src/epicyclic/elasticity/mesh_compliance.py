@@ -18,8 +18,9 @@ from epicyclic.elasticity.tooth_plate import ToothPlate, tooth_plate
 from epicyclic.errors import ConvergenceError
 from epicyclic.geometry.contact_lines import ContactLines, contact_lines
 from epicyclic.geometry.gear import Gear
+from epicyclic.geometry.generation import default_tool
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import Tool, default_tool
+from epicyclic.geometry.tools import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_half_width
 
 __all__ = ["GearBody", "MeshCompliance", "mesh_compliance"]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager
 from functools import cache
+from importlib import import_module
 
 from threadpoolctl import ThreadpoolController
 
@@ -22,6 +23,5 @@ def one_thread() -> AbstractContextManager[object]:
 
 @cache
 def _controller() -> ThreadpoolController:
-    import scipy.linalg  # noqa: F401  compiled kernels call its library, which must be loaded first
-
+    import_module("scipy.linalg")  # compiled kernels call its library, which must be there first
     return ThreadpoolController()

@@ -29,7 +29,8 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from epicyclic.geometry.gear import Gear
-from epicyclic.geometry.outline import Tool, tooth_outline
+from epicyclic.geometry.outline import tooth_outline
+from epicyclic.geometry.tools import Tool
 
 __all__ = ["ToothPlate", "tooth_plate"]
 

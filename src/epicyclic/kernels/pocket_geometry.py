@@ -159,7 +159,7 @@ def _gap(
     """
     flank1, joints1, gear1, flank2, joints2, gear2 = gears
     centre2, _, _, side, alpha, action, clear_leading, clear_trailing = mesh
-    turn2, mirror2 = _facing(phi, leading, mesh, gear1, gear2)
+    turn2, mirror2 = _facing(phi, leading, mesh, gear2)
     clearance = clear_leading if leading > 0.0 else clear_trailing
     base1, half1, form1, tip1, out1 = gear1
     base2, half2, form2, tip2, out2 = gear2
@@ -201,9 +201,7 @@ def _gap(
 
 
 @kernel
-def _facing(
-    phi: float, leading: float, mesh: Floats, gear1: Floats, gear2: Floats
-) -> tuple[float, float]:
+def _facing(phi: float, leading: float, mesh: Floats, gear2: Floats) -> tuple[float, float]:
     """Turn and mirroring of the flank of gear 2 that faces a flank of gear 1. Theory (Q1)."""
     _, z1, z2, side, _, _, clear_leading, clear_trailing = mesh
     # Half the difference of the clearances, as an angle of gear 2.
@@ -342,7 +340,7 @@ def _add_pocket(
     From the leading foot of the tooth over its tip and back along the space. Arguments as for
     `pocket_table`, `phi` one angle.
     """
-    flank1, _, gear1, flank2, _, gear2 = gears
+    flank1, _, _, flank2, _, gear2 = gears
     centre2, z1 = mesh[0], mesh[1]
     side = mesh[3]
     half_pitch = math.pi / z1
@@ -351,8 +349,8 @@ def _add_pocket(
     trail = phi if member == 1 else phi + half_pitch
     _, lead1, lead2, lead_after1, lead_after2 = _gap(lead, 1.0, gears, mesh)
     _, trail1, trail2, trail_after1, trail_after2 = _gap(trail, -1.0, gears, mesh)
-    lead_turn2, mirror2 = _facing(lead, 1.0, mesh, gear1, gear2)
-    trail_turn2, _ = _facing(trail, -1.0, mesh, gear1, gear2)
+    lead_turn2, mirror2 = _facing(lead, 1.0, mesh, gear2)
+    trail_turn2, _ = _facing(trail, -1.0, mesh, gear2)
     if member == 1:
         polygon[0] = lead1
         count = _add_tooth(polygon, 1, flank1, (lead_after1, trail_after1), (lead, 0.0))

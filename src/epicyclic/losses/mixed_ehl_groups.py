@@ -63,9 +63,13 @@ VISCOSITY_RANGE = Range(
 )
 """Viscosities of the simulations: the fluid is that of `atf-talbot-2012`, Tables 3.1 and 5.1."""
 PRESSURE_VISCOSITY_RANGE = Range(
-    "pressure_viscosity", "pressure-viscosity coefficient", 10.6, 16.5, PER_GIGAPASCAL,
+    "pressure_viscosity",
+    "pressure-viscosity coefficient",
+    10.6,
+    16.5,
+    PER_GIGAPASCAL,
     f"{_FLUID_SOURCE}, calibrated",
-)  # fmt: skip
+)
 """As calibrated for that fluid. The regressions contain exp(G) and are the most sensitive to it."""
 _ROUGHNESS = Range("roughness", "rms roughness", 0.1, 0.7, MICROMETRE, _SOURCE)
 

@@ -70,9 +70,13 @@ _ROLLER = Range(
     "roller_roughness", "rms roughness of the rollers", 0.055, 0.165, MICROMETRE, _SOURCE
 )
 _COMPOSITE = Range(
-    "composite_roughness", "composite rms roughness", math.hypot(0.02, 0.055),
-    math.hypot(0.10, 0.165), MICROMETRE, _SOURCE,
-)  # fmt: skip
+    "composite_roughness",
+    "composite rms roughness",
+    math.hypot(0.02, 0.055),
+    math.hypot(0.10, 0.165),
+    MICROMETRE,
+    _SOURCE,
+)
 _RADIUS = Range("radius", "equivalent radius", 0.5, 4.0, MILLIMETRE, _SOURCE)
 _SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SOURCE)
 NEEDLE_RANGES = (
@@ -87,11 +91,15 @@ NEEDLE_RANGES = (
 """Ranges of the 2,880 simulations behind Eq. 3.5, with `_PRESSURE`."""
 PALMGREN_RANGES = (
     Range(
-        "hertz_pressure", "Hertz pressure", None, 4.0, GIGAPASCAL,
+        "hertz_pressure",
+        "Hertz pressure",
+        None,
+        4.0,
+        GIGAPASCAL,
         "static load rating of roller bearings, ISO 76",
     ),
     SPEED_PARAMETER,
-)  # fmt: skip
+)
 """Of the coefficient f1."""
 
 
@@ -364,9 +372,11 @@ def fitted_rolling_loss(
     )
     local = bearing.slice_width * model.density(states)
     flags = check_ranges(
-        ModelUse("bearing", model.name, "planet bearing"), model.ranges,
-        {item.name: item.found_in(states) for item in model.ranges}, local,
-    )  # fmt: skip
+        ModelUse("bearing", model.name, "planet bearing"),
+        model.ranges,
+        {item.name: item.found_in(states) for item in model.ranges},
+        local,
+    )
     return BearingLoss(float(local.sum()), flags)
 
 

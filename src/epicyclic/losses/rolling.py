@@ -106,11 +106,16 @@ class GoksemHargreaves:
     made_for: ClassVar[RegressionFluid | None] = None
     ranges: ClassVar[tuple[Range, ...]] = (
         Range(
-            "moes_load", "load parameter M of Moes", 3.0, 200.0, NUMBER,
-            "numerical solutions of the smooth line contact", moes_load,
+            "moes_load",
+            "load parameter M of Moes",
+            3.0,
+            200.0,
+            NUMBER,
+            "numerical solutions of the smooth line contact",
+            moes_load,
         ),
         Range("film_ratio", "film ratio", 1.0, None, NUMBER, "the formula is for full films"),
-    )  # fmt: skip
+    )
 
     def loss_density(self, contact: MeshContact) -> FloatArray:
         """See the class. [W/m]"""

@@ -221,10 +221,17 @@ def check_ranges(
         share = float(weights[outside].sum()) / total if total > 0 else 1.0
         flags.append(
             ValidityFlag(
-                use, item.label, float(shown.min()), float(shown.max()),
-                item.low, item.high, item.unit.display, part * min(share, 1.0), item.source,
+                use,
+                item.label,
+                float(shown.min()),
+                float(shown.max()),
+                item.low,
+                item.high,
+                item.unit.display,
+                part * min(share, 1.0),
+                item.source,
             )
-        )  # fmt: skip
+        )
     return tuple(flags)
 
 

@@ -46,17 +46,29 @@ SPEED_PARAMETER = Range(
 )
 """Of the formulas of Palmgren and Harris, which come from tests at moderate speed."""
 _FACES = Range(
-    "reynolds_number", "Reynolds number of the faces", None, 1e7, NUMBER,
+    "reynolds_number",
+    "Reynolds number of the faces",
+    None,
+    1e7,
+    NUMBER,
     "one-seventh power law of the flat plate, Schlichting, Boundary-Layer Theory",
-)  # fmt: skip
+)
 _CREEPING = Range(
-    "reynolds_number", "Reynolds number of the faces", 70.0, None, NUMBER,
+    "reynolds_number",
+    "Reynolds number of the faces",
+    70.0,
+    None,
+    NUMBER,
     "below, a disc in creeping flow, 32/3 mu omega r^3, drags more: Lamb, Hydrodynamics",
-)  # fmt: skip
+)
 _RIM = Range(
-    "reynolds_number", "Reynolds number of the rim", None, 60.0, NUMBER,
+    "reynolds_number",
+    "Reynolds number of the rim",
+    None,
+    60.0,
+    NUMBER,
     "laminar flow around a cylinder, Theodorsen and Regier, NACA Report 793 (1944)",
-)  # fmt: skip
+)
 
 
 def bearing_viscous_loss(

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
@@ -17,6 +17,7 @@ from epicyclic.units import (
     PressureViscosity,
     Quantity,
     Temperature,
+    as_stated,
 )
 
 __all__ = ["Oil"]
@@ -128,7 +129,7 @@ class Oil(_Data):
     kind: Literal["mineral", "pao", "ester", "pag", "atf"]
     description: str = ""
     temperature_range: tuple[Temperature, Temperature] = Field(
-        default=cast("Any", ("0 degC", "120 degC")),
+        default=as_stated(("0 degC", "120 degC")),
         description="Where the values are meant to hold.",
     )
     kinematic_viscosity: tuple[ViscosityPoint, ...] = Field(min_length=2)
@@ -157,23 +158,13 @@ class Oil(_Data):
         return self
 
     def _viscosity_faults(self) -> Iterator[InitErrorDetails]:
-        order = sorted(
-            range(len(self.kinematic_viscosity)),
-            key=lambda index: self.kinematic_viscosity[index].temperature,
-        )
-        for first, second in pairwise(order):
+        for first, second in _neighbours(self.kinematic_viscosity):
             colder, warmer = self.kinematic_viscosity[first], self.kinematic_viscosity[second]
-            place = ("kinematic_viscosity", second)
             if warmer.temperature == colder.temperature:
-                yield _fault(
-                    (*place, "temperature"),
-                    CELSIUS.text(warmer.temperature),
-                    f"is that of kinematic_viscosity[{first}] too",
-                    "give one value for each temperature",
-                )
+                yield _repeated("kinematic_viscosity", first, second, warmer.temperature)
             elif warmer.value >= colder.value:
                 yield _fault(
-                    (*place, "value"),
+                    ("kinematic_viscosity", second, "value"),
                     SQUARE_MM_PER_SECOND.text(warmer.value),
                     "must fall with rising temperature; at "
                     f"{CELSIUS.text(colder.temperature)} it is "
@@ -182,22 +173,15 @@ class Oil(_Data):
                 )
 
     def _density_faults(self) -> Iterator[InitErrorDetails]:
-        order = sorted(range(len(self.density)), key=lambda index: self.density[index].temperature)
-        for first, second in pairwise(order):
+        for first, second in _neighbours(self.density):
             colder, warmer = self.density[first], self.density[second]
-            place = ("density", second)
             if warmer.temperature == colder.temperature:
-                yield _fault(
-                    (*place, "temperature"),
-                    CELSIUS.text(warmer.temperature),
-                    f"is that of density[{first}] too",
-                    "give one value for each temperature",
-                )
+                yield _repeated("density", first, second, warmer.temperature)
                 continue
             slope = (warmer.value - colder.value) / (warmer.temperature - colder.temperature)
             if not STEEPEST_DENSITY <= slope <= 0:
                 yield _fault(
-                    (*place, "value"),
+                    ("density", second, "value"),
                     f"{warmer.value:g} kg/m^3",
                     "must fall with rising temperature, by 2 kg/(m^3 K) at most",
                     "correct one of the two points",
@@ -212,6 +196,20 @@ class Oil(_Data):
                 "must rise",
                 "give the lower temperature first",
             )
+
+
+def _neighbours(points: Sequence[ViscosityPoint | DensityPoint]) -> Iterator[tuple[int, int]]:
+    """Indices of points next to each other in temperature, the colder one first."""
+    return pairwise(sorted(range(len(points)), key=lambda index: points[index].temperature))
+
+
+def _repeated(name: str, first: int, second: int, temperature: float) -> InitErrorDetails:
+    return _fault(
+        (name, second, "temperature"),
+        CELSIUS.text(temperature),
+        f"is that of {name}[{first}] too",
+        "give one value for each temperature",
+    )
 
 
 def _fault(place: tuple[str | int, ...], given: str, what: str, remedy: str) -> InitErrorDetails:

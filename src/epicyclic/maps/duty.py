@@ -333,9 +333,13 @@ def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: Totals
         if ranges[name][0] < axis[0] or ranges[name][1] > axis[-1]:
             allowed = f"leaves the map, which has {first} to {last} {unit.display}."
             problems.append(
-                Problem(name, f"{low} to {high} {unit.display}", allowed,
-                        f"Make a larger map, or clamp; {share:.3g} of the duration is outside.")
-            )  # fmt: skip
+                Problem(
+                    name,
+                    f"{low} to {high} {unit.display}",
+                    allowed,
+                    f"Make a larger map, or clamp; {share:.3g} of the duration is outside.",
+                )
+            )
     return InputError(problems, "the cycle")
 
 

@@ -224,19 +224,30 @@ def _variables(data: xr.Dataset, lookup: Lookup) -> list[Any]:
     for number, (name, text) in enumerate(about.items()):
         unit, shown = _UNITS.get(name, _UNITS["power_loss"])
         variable = ModelVariable(
-            name=name, valueReference=number, type="Real", description=text, unit=unit,
-            displayUnit=shown, variability="continuous", causality="output", initial="calculated",
-        )  # fmt: skip
+            name=name,
+            valueReference=number,
+            type="Real",
+            description=text,
+            unit=unit,
+            displayUnit=shown,
+            variability="continuous",
+            causality="output",
+            initial="calculated",
+        )
         if number < len(axes):
             variable.causality, variable.initial = "input", None
             variable.start = repr(_start(axes)[number])
             variable.min, variable.max = (repr(float(axes[number][end])) for end in (0, -1))
         variables.append(variable)
     inside = ModelVariable(
-        name=_INSIDE, valueReference=len(about), type="Boolean", variability="discrete",
-        causality="output", initial="calculated",
+        name=_INSIDE,
+        valueReference=len(about),
+        type="Boolean",
+        variability="discrete",
+        causality="output",
+        initial="calculated",
         description="false: the point is outside of the map and taken at its border",
-    )  # fmt: skip
+    )
     return [*variables, inside]
 
 

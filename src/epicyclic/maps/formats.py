@@ -121,17 +121,20 @@ def _choose(path: Path, format: str | None) -> Format:
     if path.suffix in by_suffix:
         return by_suffix[path.suffix]
     problem = Problem(
-        "-o", str(path), f"must end in {', '.join(by_suffix)}, or --format must be given.",
+        "-o",
+        str(path),
+        f"must end in {', '.join(by_suffix)}, or --format must be given.",
         "Choose one of these formats.",
-    )  # fmt: skip
+    )
     raise InputError([problem], "the command")
 
 
 def _several(axes: Coordinates, allowed: tuple[str, ...]) -> list[Problem]:
     """Axes of which the format can hold one value only."""
     return [
-        Problem(name, "", f"has {len(values)} values; the format holds one.",
-                "Write one file for each.")
+        Problem(
+            name, "", f"has {len(values)} values; the format holds one.", "Write one file for each."
+        )
         for name, values in axes.items()
         if name not in allowed and len(values) > 1
-    ]  # fmt: skip
+    ]

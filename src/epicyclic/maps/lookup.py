@@ -175,11 +175,15 @@ def _nearest_moving(speed: Array) -> NDArray[np.intp]:
 
 def _check_usable(data: xr.Dataset) -> None:
     problems = [
-        Problem(str(name), "", f"has {data.sizes[name]} values; a single one can be used.",
-                f"Select one, as with .isel({name}=[0]).")
+        Problem(
+            str(name),
+            "",
+            f"has {data.sizes[name]} values; a single one can be used.",
+            f"Select one, as with .isel({name}=[0]).",
+        )
         for name in data["torque_loss"].dims
         if name not in AXES and data.sizes[name] > 1
-    ]  # fmt: skip
+    ]
     if not data.attrs["held_shaft"]:
         allowed = "is driven; only one speed and one torque can be looked up."
         problems.append(

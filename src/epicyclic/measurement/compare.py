@@ -223,9 +223,13 @@ def _check_options(
         problems.append(Problem("group", group, "is no column.", f"Columns are {known}."))
     if hold_out is not None and not keys:
         problems.append(
-            Problem("hold_out", str(hold_out), "keeps points from a fit, and there is none.",
-                    "Name the keys to fit.")
-        )  # fmt: skip
+            Problem(
+                "hold_out",
+                str(hold_out),
+                "keeps points from a fit, and there is none.",
+                "Name the keys to fit.",
+            )
+        )
     if not 0 < confidence < 1:
         problems.append(
             Problem("confidence", f"{confidence:g}", "must be > 0 and < 1.", "Give 0.95.")

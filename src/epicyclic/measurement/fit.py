@@ -186,9 +186,15 @@ def fit_parameters(
     _check_influence(residuals, start)
     ends = np.array([item.ends for item in parameters])
     found = least_squares(
-        residuals, start, residuals.derivatives, (ends[:, 0], ends[:, 1]),
-        xtol=TOLERANCE, ftol=SQUARES_TOLERANCE, gtol=TOLERANCE**2, max_nfev=MOST_ROUNDS,
-    )  # fmt: skip
+        residuals,
+        start,
+        residuals.derivatives,
+        (ends[:, 0], ends[:, 1]),
+        xtol=TOLERANCE,
+        ftol=SQUARES_TOLERANCE,
+        gtol=TOLERANCE**2,
+        max_nfev=MOST_ROUNDS,
+    )
     if found.status < 1:
         raise ConvergenceError(
             f"the fit did not converge in {MOST_ROUNDS} rounds; fit fewer keys, or start from "
@@ -222,10 +228,13 @@ def _described(residuals: _Residuals, found: Linearised) -> Fit:
     fitted = tuple(
         _fitted(item, float(z), found.quantile * float(error), float(error), bool(bound))
         for item, z, error, bound in zip(
-            residuals.parameters, found.solution, found.standard_errors(), found.at_bound,
+            residuals.parameters,
+            found.solution,
+            found.standard_errors(),
+            found.at_bound,
             strict=True,
         )
-    )  # fmt: skip
+    )
     return Fit(
         parameters=fitted,
         settings=residuals.settings(found.solution),

@@ -349,8 +349,12 @@ def _refused(
             case.updated(changes[row])
         except InputError as error:
             problems += [
-                Problem(f"line {lines[row]}: {problem.key}", problem.value, problem.allowed,
-                        problem.remedy)
+                Problem(
+                    f"line {lines[row]}: {problem.key}",
+                    problem.value,
+                    problem.allowed,
+                    problem.remedy,
+                )
                 for problem in error.problems
-            ]  # fmt: skip
+            ]
     return problems

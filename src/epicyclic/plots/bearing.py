@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import cast
 
 import numpy as np
 import xarray as xr
@@ -22,24 +21,30 @@ HATCHES = ("", "///", "...", "xxx", "\\\\\\", "+++")
 
 def plot_roller_loads(bearing: xr.Dataset, ax: Axes) -> Axes:
     """Load of every roller over its azimuth from the load, rows side by side, on polar Axes."""
-    polar = cast("PolarAxes", ax)
+    if not isinstance(ax, PolarAxes):
+        raise TypeError("loads of rollers are drawn on polar Axes")
     rows, rollers = bearing.sizes["row"], bearing.sizes["roller"]
     room = 2 * math.pi / rollers
     width = 0.8 * room / rows
     azimuth = bearing["azimuth"].to_numpy() * math.pi / 180
     for number in range(rows):
-        polar.bar(
-            azimuth + (number - (rows - 1) / 2) * width, bearing["load"].to_numpy()[number],
-            width=width, color=COLOURS[number % len(COLOURS)], edgecolor="black", linewidth=0.5,
-            hatch=HATCHES[number % len(HATCHES)], label=f"row {bearing['row'].values[number]}",
-        )  # fmt: skip
-    polar.set_theta_zero_location("N")
-    polar.set_rlabel_position(180.0)
-    polar.yaxis.set_major_locator(MaxNLocator(CIRCLES))
-    polar.set_title(f"Load of each roller, {label_of(bearing['load']).rpartition(', ')[2]}")
-    polar.set_xlabel("azimuth from the load on the planet, degrees")
+        ax.bar(
+            azimuth + (number - (rows - 1) / 2) * width,
+            bearing["load"].to_numpy()[number],
+            width=width,
+            color=COLOURS[number % len(COLOURS)],
+            edgecolor="black",
+            linewidth=0.5,
+            hatch=HATCHES[number % len(HATCHES)],
+            label=f"row {bearing['row'].values[number]}",
+        )
+    ax.set_theta_zero_location("N")
+    ax.set_rlabel_position(180.0)
+    ax.yaxis.set_major_locator(MaxNLocator(CIRCLES))
+    ax.set_title(f"Load of each roller, {label_of(bearing['load']).rpartition(', ')[2]}")
+    ax.set_xlabel("azimuth from the load on the planet, degrees")
     if rows > 1:
-        polar.legend(loc="upper left", bbox_to_anchor=(1.05, 1.0), fontsize="small")
+        ax.legend(loc="upper left", bbox_to_anchor=(1.05, 1.0), fontsize="small")
     return ax
 
 
@@ -49,10 +54,13 @@ def plot_roller_profile(bearing: xr.Dataset, ax: Axes) -> Axes:
         row = bearing.isel(row=number)
         most = int(np.argmax(row["load"].to_numpy()))
         ax.plot(
-            row["axial_position"], row["pressure"].isel(roller=most),
-            color=COLOURS[number % len(COLOURS)], ls=LINE_STYLES[number % len(LINE_STYLES)],
-            marker=".", label=f"row {row['row'].item()}, roller {most + 1}",
-        )  # fmt: skip
+            row["axial_position"],
+            row["pressure"].isel(roller=most),
+            color=COLOURS[number % len(COLOURS)],
+            ls=LINE_STYLES[number % len(LINE_STYLES)],
+            marker=".",
+            label=f"row {row['row'].item()}, roller {most + 1}",
+        )
     ax.set(
         title="Pressure along the most loaded rollers",
         xlabel=label_of(bearing["axial_position"]),

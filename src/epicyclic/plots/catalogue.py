@@ -247,8 +247,9 @@ def figure_of(stored: Stored, name: str) -> Figure:
     title = stored.title if isinstance(stored, ResultRecord) else str(stored.attrs.get("title", ""))
     plot = PLOTS[name]
     with styled_figure(rows, columns, title, panel=PANEL, projection=plot.projection) as (
-        figure, axes,
-    ):  # fmt: skip
+        figure,
+        axes,
+    ):
         spare = axes.ravel()[len(panels) :]
         for panel, ax in zip(panels, axes.ravel(), strict=False):
             panel.draw(ax)

@@ -50,10 +50,13 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
                 shape = Path.make_compound_path(_path(rim[::-1]), shape)
             ax.add_patch(
                 PathPatch(
-                    shape, facecolor=FILLS.get(name, "0.9"), edgecolor="black", linewidth=0.5,
+                    shape,
+                    facecolor=FILLS.get(name, "0.9"),
+                    edgecolor="black",
+                    linewidth=0.5,
                     label=label if number == 0 else None,
                 )
-            )  # fmt: skip
+            )
             ax.plot(*center, marker="+", color="black", ms=5, mew=0.6)
             radius = _scalar(gear, "outside_diameter") / 2
             low, high = np.minimum(low, center - radius), np.maximum(high, center + radius)
@@ -75,10 +78,13 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
         turn = math.radians(float(view["direction"][number])) - math.pi / 2
         ax.add_patch(
             PathPatch(
-                _path(_some_teeth(gear, turn, half) + center), facecolor=FILLS.get(name, "0.9"),
-                edgecolor="black", linewidth=0.8, label=name,
+                _path(_some_teeth(gear, turn, half) + center),
+                facecolor=FILLS.get(name, "0.9"),
+                edgecolor="black",
+                linewidth=0.8,
+                label=name,
             )
-        )  # fmt: skip
+        )
         pitch = _circle(float(view["operating_radius"][number])) + center
         base = _circle(_scalar(gear, "base_diameter") / 2) + center
         label = number == 0

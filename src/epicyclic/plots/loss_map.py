@@ -63,9 +63,14 @@ def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes) -> Axes:
     for number, index in enumerate(_some(data[other])):
         line = data.isel({other: index})
         ax.plot(
-            line[over], _shown(line[name]), color=COLOURS[number], ls=LINE_STYLES[number],
-            marker=".", ms=3, label=f"{float(line[other]):g} {unit}",
-        )  # fmt: skip
+            line[over],
+            _shown(line[name]),
+            color=COLOURS[number],
+            ls=LINE_STYLES[number],
+            marker=".",
+            ms=3,
+            label=f"{float(line[other]):g} {unit}",
+        )
     ax.legend(title=other, fontsize="small", title_fontsize="small")
     values = _shown(data[name])
     ax.set(
@@ -81,15 +86,18 @@ def plot_map_parts(data: xr.Dataset, ax: Axes) -> Axes:
     highest = data.isel(torque=-1)
     unit = data["total"].attrs["units"]
     parts = [
-        name for name, values in highest.data_vars.items()
-        if values.attrs.get("units") == unit and name not in LOSS_SUMS
-        and float(values.max()) > 0
-    ]  # fmt: skip
+        name
+        for name, values in highest.data_vars.items()
+        if values.attrs.get("units") == unit and name not in LOSS_SUMS and float(values.max()) > 0
+    ]
     areas = ax.stackplot(
-        highest["speed"], [highest[name] for name in parts],
+        highest["speed"],
+        [highest[name] for name in parts],
         labels=[str(name).replace("_", " ") for name in parts],
-        colors=COLOURS, edgecolor="white", linewidth=0.6,
-    )  # fmt: skip
+        colors=COLOURS,
+        edgecolor="white",
+        linewidth=0.6,
+    )
     for number, area in enumerate(areas):
         area.set_hatch("//" * (number // len(COLOURS)))
     torque = f"{float(highest['torque']):g} {unit_text(str(highest['torque'].attrs['units']))}"

@@ -27,9 +27,13 @@ def plot_losses(result: ResultContents, ax: Axes) -> Axes:
     for row, value in enumerate(watts):
         share = f" ({value / result.total:.1%})" if result.total else ""
         ax.annotate(
-            f"{value:.1f}{share}", (value, row), xytext=(3, 0), textcoords="offset points",
-            va="center", fontsize="small",
-        )  # fmt: skip
+            f"{value:.1f}{share}",
+            (value, row),
+            xytext=(3, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize="small",
+        )
     _finish(ax, watts)
     ax.set(title="Losses by component", xlabel="power loss, W")
     return ax
@@ -59,9 +63,13 @@ def plot_loss_sum(result: ResultContents, ax: Axes) -> Axes:
 def _step(ax: Axes, row: int, start: float, watts: float, colour: str) -> None:
     ax.barh(row, watts, left=start, color=colour, edgecolor="black", linewidth=0.5)
     ax.annotate(
-        f"{watts:.1f}", (start + watts, row), xytext=(3, 0), textcoords="offset points",
-        va="center", fontsize="small",
-    )  # fmt: skip
+        f"{watts:.1f}",
+        (start + watts, row),
+        xytext=(3, 0),
+        textcoords="offset points",
+        va="center",
+        fontsize="small",
+    )
 
 
 def _words(names: Iterable[str]) -> list[str]:

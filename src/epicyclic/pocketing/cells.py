@@ -106,13 +106,6 @@ def pocket_cells(geometry: PocketGeometry, slices: int, steps: int, end: float) 
         )
     )
     gap, middle = (_mean_of_ends(array[:, :-1]) for array in (gap[..., 0], middle))
-    cell = _mean_of_ends(centroid)
-    reach = np.zeros((times.size, 2, *area.shape[1:]))
-    reach[:, 0, :, 1:] = np.hypot(width / 2, np.linalg.norm(centroid[:, :, 1:] - cell, axis=-1))
-    reach[:, 1, :, :-1] = np.hypot(width / 2, np.linalg.norm(centroid[:, :, :-1] - cell, axis=-1))
-    gap_reach = np.zeros((times.size, 2, *gap.shape[1:]))
-    gap_reach[:, 0, 1:] = np.linalg.norm(middle[:, 1:] - cell, axis=-1)
-    gap_reach[:, 1, :-1] = np.linalg.norm(middle[:, :-1] - cell, axis=-1)
     volume = width * _mean_of_ends(area)
     growth = _growth(volume, width * _mean_of_ends(rate), pitch / steps)
     cells = Cells(
@@ -120,8 +113,7 @@ def pocket_cells(geometry: PocketGeometry, slices: int, steps: int, end: float) 
         growth,
         area,
         width * gap,
-        reach,
-        gap_reach,
+        *_reaches(width, centroid, middle),
         live=_live(geometry, spaces),
         place=np.add.outer(-teeth[:-1], [0.0, -0.5]).ravel() * pitch,
         station=stations,
@@ -130,6 +122,28 @@ def pocket_cells(geometry: PocketGeometry, slices: int, steps: int, end: float) 
     for array in (*cells.shape, cells.live, cells.place, cells.station, cells.face):
         array.flags.writeable = False
     return cells
+
+
+def _reaches(width: Floats, centroid: Floats, middle: Floats) -> tuple[Floats, Floats]:
+    """`Cells.axial_reach` and `Cells.gap_reach`.
+
+    Parameters
+    ----------
+    width : ndarray, shape (slices,)
+        [m]
+    centroid : ndarray, shape (times, pockets, slices + 1, 2)
+        Of the sections of the pockets. [m]
+    middle : ndarray, shape (times, pockets + 1, slices, 2)
+        Of the gaps. [m]
+    """
+    cell = _mean_of_ends(centroid)
+    axial = np.zeros((len(centroid), 2, *centroid.shape[1:3]))
+    axial[:, 0, :, 1:] = np.hypot(width / 2, np.linalg.norm(centroid[:, :, 1:] - cell, axis=-1))
+    axial[:, 1, :, :-1] = np.hypot(width / 2, np.linalg.norm(centroid[:, :, :-1] - cell, axis=-1))
+    gap = np.zeros((len(middle), 2, *middle.shape[1:3]))
+    gap[:, 0, 1:] = np.linalg.norm(middle[:, 1:] - cell, axis=-1)
+    gap[:, 1, :-1] = np.linalg.norm(middle[:, :-1] - cell, axis=-1)
+    return axial, gap
 
 
 def _growth(volume: Floats, rate: Floats, step: float) -> Floats:

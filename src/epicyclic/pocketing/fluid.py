@@ -154,11 +154,7 @@ def pocket_flow(
         geometry, slices, steps, end_length * geometry.mesh.gear1.rack.normal_module
     )
     pockets, count = cells.live.shape[1:]
-    oil = min(mixture.oil_fraction, 1 - LEAST_AIR)
-    xi = 1.0 if model == "incompressible" else oil
-    c2 = pressure / mixture.density
-    central = model == "central-differences"
-    choke = np.empty(0) if central or model == "mean-density" else choking_table(xi)
+    fluid = _fluid(model, mixture, pressure)
     period = geometry.pitch / abs(speed)
     history = (
         np.zeros((steps, pockets, count)),
@@ -170,7 +166,7 @@ def pocket_flow(
     periods = periodic_flow(
         cells.shape,
         cells.live,
-        (xi, c2, choke, central),
+        fluid,
         period / steps,
         POCKETS_PER_PITCH,
         (PERIODS_MOST, PERIOD_TOLERANCE),
@@ -192,7 +188,7 @@ def pocket_flow(
         mass_error=(come - out - gone - stored) / come,
         periods=abs(periods),
         periodic=periods > 0,
-        sound_speed=_sound_speed(xi, c2),
+        sound_speed=_sound_speed(*fluid[:2]),
         angle=geometry.pitch * np.arange(1, steps + 1) / steps,
         place=cells.place,
         station=cells.station,
@@ -203,6 +199,17 @@ def pocket_flow(
         gap_speed=history[2],
         instant_power=pressure * work * steps / period,
     )
+
+
+def _fluid(
+    model: PocketModel, mixture: MixtureState, pressure: float
+) -> tuple[float, float, Floats, bool]:
+    """What the kernel takes of the fluid: see `kernels.pocket_stage.solve_stage`."""
+    oil = min(mixture.oil_fraction, 1 - LEAST_AIR)
+    xi = 1.0 if model == "incompressible" else oil
+    central = model == "central-differences"
+    choke = np.empty(0) if central or model == "mean-density" else choking_table(xi)
+    return xi, pressure / mixture.density, choke, central
 
 
 def _sound_speed(xi: float, c2: float) -> float:

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from epicyclic.geometry.gear import Gear, involute
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import Tool, tooth_outline
+from epicyclic.geometry.outline import tooth_outline
+from epicyclic.geometry.tools import Tool
 from epicyclic.kernels import pocket_geometry as kernels
 
 __all__ = [

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from epicyclic.errors import ConvergenceError
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import Tool
+from epicyclic.geometry.tools import Tool
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.fluid import PocketFlow, PocketModel, pocket_flow
 from epicyclic.pocketing.geometry import PocketGeometry, pocket_geometry

@@ -149,14 +149,15 @@ def _table(path: Path, changed: int, size: int, family: FlowFamily) -> FlowTable
     stored = alike[0]
     differing = [
         Problem(
-            _KEY, str(path),
+            _KEY,
+            str(path),
             f"was made for a {family.mesh.name} with {name} = {_shown(stored.family, name)}, "
             f"not {_shown(wanted, name)}.",
             "Make it again with 'epicyclic pockets-table', or leave the key out.",
         )
         for name in dict.fromkeys([*wanted, *stored.family])
         if not _same(wanted.get(name), stored.family.get(name))
-    ]  # fmt: skip
+    ]
     if differing:
         raise InputError(differing, str(path))
     return FlowTable(

@@ -65,9 +65,14 @@ _ATTRIBUTES: dict[str, tuple[tuple[str, type], ...]] = {
 _MAY_LACK = {"meshes", "pockets"}
 """Groups with NaN where nothing touches, or no pocket is; but places are known everywhere."""
 _PLACES = {
-    "roll_angle", "weight", "path_position", "face_position", "slice_position",
-    "station_position", "period_angle",
-}  # fmt: skip
+    "roll_angle",
+    "weight",
+    "path_position",
+    "face_position",
+    "slice_position",
+    "station_position",
+    "period_angle",
+}
 _OPERATING = ("speed", "torque", "temperature")
 _MAP_NUMBERS = ("torque_loss", "total", "efficiency")
 _MAP_TEXTS = ("status", "message", "warnings")

@@ -39,11 +39,11 @@ def draw(stored: Stored, name: str) -> list[Drawing]:
             caption = f"{title}, {panel.subject}" if panel.subject else title
             ax.set_title("", loc="left")
             ax.set_title("")
-            drawings.append(Drawing(key, caption, svg_text(figure, key, caption), explorable(ax)))
+            drawings.append(Drawing(key, caption, svg_text(figure, key), explorable(ax)))
     return drawings
 
 
-def svg_text(figure: Figure, key: str, title: str) -> str:
+def svg_text(figure: Figure, key: str) -> str:
     """A figure as an ``svg`` element that fits any width, its ids beginning with `key`."""
     file = io.StringIO()
     with mpl.rc_context({"svg.hashsalt": key}):

@@ -31,8 +31,10 @@ def duty_tables(data: xr.Dataset) -> RenderableType:
             parts += _tables(data.sel(temperature=value), title)
     else:
         parts += _tables(data, "Duty cycle")
-    stated = [f"{name.replace('_', ' ')}: {data.attrs[name]}" for name in
-              ("cycle", "basis", "reference_shaft", "modes")]  # fmt: skip
+    stated = [
+        f"{name.replace('_', ' ')}: {data.attrs[name]}"
+        for name in ("cycle", "basis", "reference_shaft", "modes")
+    ]
     parts.append(Text("\n".join(stated)))
     return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
 

@@ -8,7 +8,7 @@ from typing import Any
 from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.fields import locate, quantity_of
 from epicyclic.report.page import Cell, Table
-from epicyclic.units import unit_text
+from epicyclic.units import format_number, unit_text
 
 __all__ = ["input_tables"]
 
@@ -85,7 +85,7 @@ def _changed_losses(title: str, losses: Mapping[str, Any]) -> list[Table]:
         (
             Cell(name.replace("_", " ")),
             Cell("included" if option["include"] else "left out"),
-            Cell(f"{option['factor']:g}"),
+            Cell(format_number(option["factor"])),
         )
         for name, option in losses.items()
         if not option["include"] or option["factor"] != 1.0
@@ -141,7 +141,7 @@ def _text(schema: Any, path: Path, value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        return f"{value:.6g}"
+        return format_number(value)
     place = locate(schema, path)
     dimensional = quantity_of(place.annotation, place.metadata) is not None
     return unit_text(str(value)) if dimensional else str(value)

@@ -27,7 +27,7 @@ from epicyclic.report.page import (
 )
 from epicyclic.report.shown import MISSING
 from epicyclic.status import Status
-from epicyclic.units import unit_text
+from epicyclic.units import format_number, unit_text
 
 __all__ = ["map_key_figures", "map_line", "map_sections"]
 
@@ -81,14 +81,16 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
         Section("conventions", "Conventions", _conventions(data)),
         Section("inputs", "Inputs", tuple(input_tables(map_inputs(data), map_inputs(data)))),
         Section("versions", "Versions", _versions(data)),
-    ]  # fmt: skip
+    ]
     return [section for section in sections if section.items]
 
 
 def _span(axis: xr.DataArray) -> str:
     low, high = float(axis.min()), float(axis.max())
     unit = unit_text(str(axis.attrs["units"]))
-    return f"{low:g} {unit}" if low == high else f"{low:g} to {high:g} {unit}"
+    if low == high:
+        return f"{format_number(low)} {unit}"
+    return f"{format_number(low)} to {format_number(high)} {unit}"
 
 
 def _further(data: xr.Dataset) -> str:
@@ -118,14 +120,14 @@ def _grid(data: xr.Dataset, name: str, temperature: int) -> Table:
     values = point[name].transpose("speed", "torque").to_numpy()
     rows = tuple(
         (
-            Cell(f"{float(point['speed'][i]):g}"),
+            Cell(format_number(float(point["speed"][i]))),
             *(_value(name, values[i, j], f"{name}[{i},{j},{temperature}]") for j in torques),
         )
         for i in speeds
     )
     unit = unit_text(str(data["torque"].attrs["units"]))
-    heads = (f"{float(point['torque'][j]):g} {unit}" for j in torques)
-    title = f"{GRIDS[name]}, at {celsius:g} °C"
+    heads = (f"{format_number(float(point['torque'][j]))} {unit}" for j in torques)
+    title = f"{GRIDS[name]}, at {format_number(celsius)} °C"
     return Table((f"speed, {unit_text(str(data['speed'].attrs['units']))}", *heads), rows, title)
 
 

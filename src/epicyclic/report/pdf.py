@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import logging
+from importlib import import_module
+from types import ModuleType
 
 from epicyclic.errors import InputError, Problem
 
@@ -11,13 +13,19 @@ __all__ = ["check_pdf", "report_pdf"]
 
 def check_pdf() -> None:
     """Raise `InputError` if WeasyPrint, which is optional, cannot be used."""
+    _weasyprint()
+
+
+def _weasyprint() -> ModuleType:
     try:
-        import weasyprint  # noqa: F401
+        return import_module("weasyprint")
     except (ImportError, OSError) as error:  # it needs Pango, a library of the system
         problem = Problem(
-            "-o", ".pdf", f"needs WeasyPrint, which cannot be used: {error}.",
+            "-o",
+            ".pdf",
+            f"needs WeasyPrint, which cannot be used: {error}.",
             'Install it (pip install "epicyclic[pdf]"), or print the .html page from a browser.',
-        )  # fmt: skip
+        )
         raise InputError([problem], "the command") from None
 
 
@@ -34,8 +42,7 @@ def report_pdf(page: str) -> bytes:
     InputError
         If WeasyPrint cannot be used.
     """
-    check_pdf()
-    import weasyprint
+    weasyprint = _weasyprint()
 
     # it reports every property of style sheets for screens
     logging.getLogger("weasyprint").setLevel(logging.CRITICAL)

@@ -22,9 +22,15 @@ __all__ = ["pocket_tables"]
 FloatArray = NDArray[np.float64]
 
 _BALANCE = (
-    "power", "power_from_flow", "power_difference", "mass_error", "periods", "speed",
-    "oil_fraction", "sound_speed",
-)  # fmt: skip
+    "power",
+    "power_from_flow",
+    "power_difference",
+    "mass_error",
+    "periods",
+    "speed",
+    "oil_fraction",
+    "sound_speed",
+)
 _EXTREMES = (
     ("highest pressure", "pressure", np.nanargmax),
     ("lowest pressure", "pressure", np.nanargmin),

@@ -12,15 +12,8 @@ from rich.table import Table
 from rich.text import Text
 
 from epicyclic.analysis.compare import FrictionComparison
-from epicyclic.analysis.result import (
-    LOAD_DEPENDENT,
-    LOAD_INDEPENDENT,
-    Figure,
-    LossTerm,
-    MeshFigures,
-    Result,
-    figures,
-)
+from epicyclic.analysis.figures import Figure, MeshFigures, figures
+from epicyclic.analysis.result import LOAD_DEPENDENT, LOAD_INDEPENDENT, LossTerm, Result
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.units import DEGREE, NEWTON_METRE, RPM, unit_text
 

@@ -111,9 +111,11 @@ class Journal:
             whole, reason = False, str(error.strerror)
         if not whole:
             problem = Problem(
-                "journal", str(self.path), f"cannot be written: {reason}.",
+                "journal",
+                str(self.path),
+                f"cannot be written: {reason}.",
                 "Finished points are kept; make room, and give the same command again.",
-            )  # fmt: skip
+            )
             raise InputError([problem], "the sweep")
 
     def remove(self) -> None:

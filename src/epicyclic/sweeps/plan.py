@@ -45,8 +45,13 @@ _LARGEST_WHOLE = 2**53
 
 # Tables whose keys leave geometry alone: varied innermost, so that geometry is built once.
 _OPERATING_TABLES = (
-    "operation", "lubricant", "surroundings", "models", "contact_solver", "losses",
-)  # fmt: skip
+    "operation",
+    "lubricant",
+    "surroundings",
+    "models",
+    "contact_solver",
+    "losses",
+)
 
 
 class Points(Protocol):
@@ -155,7 +160,7 @@ class PointList:
 
     def order(self) -> list[int]:
         """Indices of all points, by geometry, then operation, then torque, as in a loss map."""
-        return sorted(range(self.size), key=lambda index: self._place(index))
+        return sorted(range(self.size), key=self._place)
 
     def _place(self, index: int) -> tuple[list[str], list[str], str]:
         torque = "operation.torque"
@@ -234,9 +239,10 @@ def _make_axis(case: Case, key: str, values: list[Any]) -> tuple[Axis | None, li
         except PydanticCustomError as error:
             remedy = str((error.context or {}).get("remedy", ""))
             problems.append(
-                Problem(key, written(value), sentence(error.message(), capital=False),
-                        sentence(remedy))
-            )  # fmt: skip
+                Problem(
+                    key, written(value), sentence(error.message(), capital=False), sentence(remedy)
+                )
+            )
     if not problems and len(set(coordinate)) < len(coordinate):
         problems.append(Problem(key, "", "has the same value twice.", "Give each value once."))
     if problems:
@@ -303,10 +309,12 @@ def parse_vary(
         if not equals or not text.strip():
             problems.append(
                 Problem(
-                    name, f'"{option}"', "must be key=a,b,c or key=start:stop:count.",
+                    name,
+                    f'"{option}"',
+                    "must be key=a,b,c or key=start:stop:count.",
                     f'For example {name} "{example}=1000:4000:4 rpm".',
                 )
-            )  # fmt: skip
+            )
             continue
         if key in vary:
             problems.append(

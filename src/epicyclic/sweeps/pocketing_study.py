@@ -36,19 +36,19 @@ __all__ = ["pocketing_study", "run_study", "study_datasets"]
 
 _NUMBERS: dict[str, tuple[str, Quantity, Callable[[PocketFlow], float]]] = {
     "pocketing_loss": ("pocketing loss of one mesh", WATT, lambda flow: flow.power),
-    "power_difference": (
-        "energy balance over work, less 1", NUMBER, lambda flow: flow.difference
-    ),
+    "power_difference": ("energy balance over work, less 1", NUMBER, lambda flow: flow.difference),
     "pressure_max": (
-        "highest pressure above ambient", BAR, lambda flow: float(flow.pressure.max())
+        "highest pressure above ambient",
+        BAR,
+        lambda flow: float(flow.pressure.max()),
     ),
-    "pressure_min": (
-        "lowest pressure above ambient", BAR, lambda flow: float(flow.pressure.min())
-    ),
+    "pressure_min": ("lowest pressure above ambient", BAR, lambda flow: float(flow.pressure.min())),
     "speed_max": (
-        "fastest flow through any opening", METRE_PER_SECOND, lambda flow: flow.speed_max
+        "fastest flow through any opening",
+        METRE_PER_SECOND,
+        lambda flow: flow.speed_max,
     ),
-}  # fmt: skip
+}
 
 
 def pocketing_study(

@@ -152,9 +152,11 @@ def _client(address: str) -> Any:
         return _distributed().Client(address, timeout="10s")
     except (OSError, ValueError) as error:
         problem = Problem(
-            "--dask", f'"{address}"', f"cannot be reached: {error}.",
+            "--dask",
+            f'"{address}"',
+            f"cannot be reached: {error}.",
             "Give the address of a running scheduler, as in tcp://host:8786.",
-        )  # fmt: skip
+        )
         raise InputError([problem], "the command") from None
 
 

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from epicyclic.analysis.pair import pair_duty
 from epicyclic.analysis.parts import elastic_loads, fluids_of
+from epicyclic.analysis.planet_bearing import roller_bearing
 from epicyclic.analysis.planet_load import planet_load
-from epicyclic.analysis.planetary import planetary_duties, roller_bearing
+from epicyclic.analysis.planetary import planetary_duties
 from epicyclic.analysis.result import Result
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import GearPairCase, PlanetaryCase, load_case

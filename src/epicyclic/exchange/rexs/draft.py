@@ -169,7 +169,9 @@ class Draft:
         place = f"{attribute.id} of {component}"
         self.problems.append(
             Problem(
-                place, f'"{attribute.text()}"', f"{what}.",
+                place,
+                f'"{attribute.text()}"',
+                f"{what}.",
                 "Correct the file." + (f" It is for {key}." if key else ""),
             )
-        )  # fmt: skip
+        )

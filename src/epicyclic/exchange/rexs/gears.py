@@ -198,9 +198,10 @@ def _roughness(draft: Draft, key: str, gears: Sequence[Component]) -> None:
     number, unit, origin = found
     value = amount_text(float(f"{number / RA_OVER_RQ:.6g}"), unit)
     draft.give(
-        f"{key}.roughness", value,
+        f"{key}.roughness",
+        value,
         f"computed: Rq = {1 / RA_OVER_RQ:.4g} Ra of a Gaussian profile, Ra from {origin}",
-    )  # fmt: skip
+    )
 
 
 def _material(draft: Draft, model: Model, key: str, gears: Sequence[Component]) -> None:

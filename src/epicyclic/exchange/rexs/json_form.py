@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from typing import Any, NoReturn
+from typing import Any
+
+from pydantic_core import from_json
 
 from epicyclic.case.wording import one_line
 from epicyclic.exchange.rexs.content import RawComponent, RawRelation
@@ -25,11 +27,9 @@ class JsonContent:
     def parse(cls, content: bytes) -> JsonContent:
         """Read a file."""
         try:
-            data = json.loads(content.decode("utf-8-sig"), parse_constant=_no_number)
+            data = from_json(content.decode("utf-8-sig"), allow_inf_nan=False)
         except UnicodeDecodeError:
             raise refuse("is not UTF-8 text.", "Save it as UTF-8 text.") from None
-        except RecursionError:
-            raise refuse("is nested too deep.", "Name a REXS file.") from None
         except ValueError as error:
             message = one_line(str(error), 200)
             raise refuse(f"is not sound JSON: {message}.", "Export it again.") from None
@@ -83,10 +83,6 @@ class JsonContent:
 
     def to_bytes(self) -> bytes:
         return (json.dumps(self.data, ensure_ascii=False, indent=2) + "\n").encode()
-
-
-def _no_number(text: str) -> NoReturn:
-    raise ValueError(f"{text} is no number")
 
 
 def _objects(owner: dict[str, Any], name: str) -> list[dict[str, Any]]:

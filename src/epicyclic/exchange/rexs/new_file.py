@@ -11,7 +11,9 @@ from typing import Any
 
 from epicyclic.case.build import gear
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
-from epicyclic.case.schema import GearTable, Material, PlanetBearing
+from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.part_tables import PlanetBearing
+from epicyclic.case.schema import Material
 from epicyclic.exchange.rexs.model import Attribute, Component, Relation
 from epicyclic.exchange.rexs.vocabulary import term, written
 from epicyclic.geometry.gear import Gear
@@ -212,9 +214,11 @@ def _carrier(builder: _Builder, case: PlanetaryCase, stage: int, shaft: int) -> 
     if case.carrier is not None:
         size = case.carrier
         plate = builder.add(
-            "side_plate", "carrier as a disc",
-            outer_diameter=(size.outer_diameter, "m"), length=(size.width, "m"),
-        )  # fmt: skip
+            "side_plate",
+            "carrier as a disc",
+            outer_diameter=(size.outer_diameter, "m"),
+            length=(size.width, "m"),
+        )
         builder.part(carrier, plate)
 
 
@@ -260,8 +264,9 @@ def _bearing(builder: _Builder, bearing: PlanetBearing, pin: int, shaft: int, na
         )
         builder.relate("ordered_assembly", order, assembly=number, part=row)
         roller = builder.add(
-            "rolling_element", "roller",
+            "rolling_element",
+            "roller",
             diameter_of_rolling_element=(bearing.roller_diameter, "m"),
             length_of_rolling_element=(bearing.roller_length, "m"),
-        )  # fmt: skip
+        )
         builder.relate("ordered_assembly", 1, assembly=row, part=roller)

@@ -131,9 +131,10 @@ def _speed_and_torque(
         watts = power.number * _WATTS[power.unit]
         torque_value = watts / (abs(speed.number) * math.pi / 30)
         draft.give(
-            "operation.torque", amount_text(float(f"{torque_value:.12g}"), "N*m"),
+            "operation.torque",
+            amount_text(float(f"{torque_value:.12g}"), "N*m"),
             f"computed: {power.origin} over the speed",
-        )  # fmt: skip
+        )
         return
     stated = f" ({power.origin} is {power.text})" if power is not None else ""
     draft.lack("operation.torque", f"torque_around_u_axis{stated}", loads or shafts)

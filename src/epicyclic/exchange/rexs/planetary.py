@@ -105,9 +105,10 @@ def _pin(draft: Draft, rows: list[Component], roller: float | None) -> None:
         draft.lack(key, name, rows)
         return
     draft.give(
-        key, amount_text(pitch.number - roller, pitch.unit),
+        key,
+        amount_text(pitch.number - roller, pitch.unit),
         f"computed: {pitch.origin} less the roller diameter",
-    )  # fmt: skip
+    )
 
 
 def carrier_table(draft: Draft, model: Model, planetary: PlanetarySet) -> None:
@@ -141,9 +142,10 @@ def carrier_table(draft: Draft, model: Model, planetary: PlanetarySet) -> None:
     ends = [start + item[1].number for start, item in zip(axial, known, strict=True)]
     width = max(ends) - min(axial)
     draft.give(
-        "carrier.width", amount_text(round(width, 9), length.unit),
+        "carrier.width",
+        amount_text(round(width, 9), length.unit),
         f"computed over {len(known)} side plates from support_vector and length",
-    )  # fmt: skip
+    )
 
 
 def _position(component: Component) -> tuple[float, ...] | None:

@@ -11,7 +11,8 @@ import math
 from collections.abc import Iterator
 from importlib.metadata import version
 
-from epicyclic.analysis.result import MeshFigures, Result
+from epicyclic.analysis.figures import MeshFigures
+from epicyclic.analysis.result import Result
 from epicyclic.errors import InputError, Problem
 from epicyclic.exchange.rexs.content import Content
 from epicyclic.exchange.rexs.draft import DIGITS
@@ -45,10 +46,14 @@ def check_match(chosen: PlanetarySet | Pair, result: Result) -> None:
         here = table["teeth"] if table else None
         there = None if stated is None else abs(stated.number())
         if here != there:
-            problems.append(Problem(
-                f"{name}.teeth", f"{here}", f"is {there} in {component}.",
-                "Write the results of a gear set into its own file.",
-            ))  # fmt: skip
+            problems.append(
+                Problem(
+                    f"{name}.teeth",
+                    f"{here}",
+                    f"is {there} in {component}.",
+                    "Write the results of a gear set into its own file.",
+                )
+            )
     if problems:
         raise InputError(problems)
 

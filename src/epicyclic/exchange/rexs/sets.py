@@ -13,9 +13,12 @@ __all__ = ["Mesh", "Pair", "PlanetarySet", "choose", "fixed_by", "gear_sets", "r
 GEARS = ("cylindrical_gear", "ring_gear")
 
 _RIGID = (
-    "coupling", "switchable_coupling", "cylindrical_interference_fit", "tapered_interference_fit",
+    "coupling",
+    "switchable_coupling",
+    "cylindrical_interference_fit",
+    "tapered_interference_fit",
     "feather_key_connection",
-)  # fmt: skip
+)
 """Components that make two parts turn as one."""
 
 
@@ -91,9 +94,10 @@ def gear_sets(model: Model) -> list[Component]:
     planetary = model.of_type("planetary_stage")
     inside = {mesh.stage.id for stage in planetary for mesh in _planet_meshes(model, stage)}
     inside |= {
-        part.id for stage in planetary
+        part.id
+        for stage in planetary
         for part in model.partners(stage.id, "assembly", "assembly", "part", "cylindrical_stage")
-    }  # fmt: skip
+    }
     cylindrical = model.of_type("cylindrical_stage")
     return [*planetary, *(stage for stage in cylindrical if stage.id not in inside)]
 
@@ -173,10 +177,16 @@ def _planetary_set(model: Model, stage: Component) -> PlanetarySet:
         found = f"{counts[0]} suns, {counts[2]} planets, {counts[1]} rings and {counts[3]} meshes"
         if between:
             found += ", planets that mesh with each other"
-        raise InputError([Problem(
-            str(stage), "", f"has {found}.",
-            "One sun, one ring and planets that mesh with both can be read.",
-        )])  # fmt: skip
+        raise InputError(
+            [
+                Problem(
+                    str(stage),
+                    "",
+                    f"has {found}.",
+                    "One sun, one ring and planets that mesh with both can be read.",
+                )
+            ]
+        )
     (sun,), (ring,) = suns.values(), rings.values()
     for name, gear in (("sun", sun), ("ring", ring)):
         own = [shaft for shaft in central if gear.id in {g.id for g in gears_on(model, [shaft])}]

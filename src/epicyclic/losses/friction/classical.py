@@ -35,9 +35,14 @@ _LOAD = Range(
     "specific_load", "load for each face width", 150.0, None, NEWTON_PER_MM, _NIEMANN, specific_load
 )
 _PRESSURE = Range(
-    "pitch_point_pressure", "Hertz pressure at the pitch point", None, 2.5, GIGAPASCAL,
-    OF_THIS_PACKAGE, pitch_point_pressure,
-)  # fmt: skip
+    "pitch_point_pressure",
+    "Hertz pressure at the pitch point",
+    None,
+    2.5,
+    GIGAPASCAL,
+    OF_THIS_PACKAGE,
+    pitch_point_pressure,
+)
 _ROUGHNESS = Range(
     "mean_ra", "mean roughness Ra", None, 5.0, MICROMETRE, OF_THIS_PACKAGE, mean_roughness_ra
 )
@@ -111,9 +116,14 @@ class NiemannWinter:
     source: ClassVar = "K. Michaelis, Diss. TU Muenchen (1987); Niemann and Winter, vol. II"
     made_for: ClassVar[RegressionFluid | None] = None
     RELATIVE_ROUGHNESS: ClassVar = Range(
-        "relative_roughness", "Ra over reference diameter, um/mm", None, 0.1, NUMBER,
-        OF_THIS_PACKAGE, _relative_roughness,
-    )  # fmt: skip
+        "relative_roughness",
+        "Ra over reference diameter, um/mm",
+        None,
+        0.1,
+        NUMBER,
+        OF_THIS_PACKAGE,
+        _relative_roughness,
+    )
     ranges: ClassVar[tuple[Range, ...]] = (*_GEAR_TESTS, RELATIVE_ROUGHNESS)
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
@@ -151,13 +161,23 @@ class BenedictKelley:
     SMALLEST_SLIDING: ClassVar = 0.01
     MICROINCH: ClassVar = 25.4e-9
     ARGUMENT: ClassVar = Range(
-        "log_argument", "argument of the logarithm", 10.0, 1e8, NUMBER, OF_THIS_PACKAGE,
+        "log_argument",
+        "argument of the logarithm",
+        10.0,
+        1e8,
+        NUMBER,
+        OF_THIS_PACKAGE,
         _log_argument,
-    )  # fmt: skip
+    )
     ROUGHNESS: ClassVar = Range(
-        "mean_rms", "mean rms roughness", None, 0.0254 * 100 / 3, MICROMETRE,
-        "AGMA 925-A03: 50/(50 - S) at most 3", _mean_rms,
-    )  # fmt: skip
+        "mean_rms",
+        "mean rms roughness",
+        None,
+        0.0254 * 100 / 3,
+        MICROMETRE,
+        "AGMA 925-A03: 50/(50 - S) at most 3",
+        _mean_rms,
+    )
     ranges: ClassVar[tuple[Range, ...]] = (ARGUMENT, ROUGHNESS)
 
     def coefficient(self, contact: MeshContact) -> FloatArray:

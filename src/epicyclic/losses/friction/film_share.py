@@ -7,6 +7,7 @@ are keys of the case. Film thicknesses are those of smooth, isothermal contacts.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -36,48 +37,62 @@ FILM_RANGES = (
 
 
 @dataclass(frozen=True, slots=True)
-class Doleschel:
+class _FilmShare(ABC):
+    """mu = xi mu_b + (1 - xi) mu_f. Theory (F8).
+
+    Attributes
+    ----------
+    boundary, fluid : float
+        mu_b and mu_f. [1]
+    """
+
+    made_for: ClassVar[RegressionFluid | None] = None
+    ranges: ClassVar[tuple[Range, ...]] = FILM_RANGES
+
+    boundary: float
+    fluid: float
+
+    @abstractmethod
+    def share(self, contact: MeshContact) -> FloatArray:
+        """Share xi of dry contact. [1]"""
+
+    def coefficient(self, contact: MeshContact) -> FloatArray:
+        """See the class. [1]"""
+        dry = self.share(contact)
+        return dry * self.boundary + (1 - dry) * self.fluid
+
+
+@dataclass(frozen=True, slots=True)
+class Doleschel(_FilmShare):
     """xi = (1 - lambda/2)^2 for lambda < 2, else 0; lambda = h_c/[(Ra1 + Ra2)/2].
 
-    Theory (F8), (F9).
+    Theory (F9).
     """
 
     name: ClassVar = "doleschel"
     title: ClassVar = "film share of Doleschel"
     source: ClassVar = "A. Doleschel, Diss. TU Muenchen (2002)"
-    made_for: ClassVar[RegressionFluid | None] = None
-    ranges: ClassVar[tuple[Range, ...]] = FILM_RANGES
 
-    boundary: float
-    fluid: float
-
-    def coefficient(self, contact: MeshContact) -> FloatArray:
+    def share(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
         film = contact.radius * pan_hamrock_central_film(
             contact.speed_number, contact.material_number, contact.load_number
         )
         ratio = np.minimum(film / mean_roughness_ra(contact), 2.0)
-        share = (1 - ratio / 2) ** 2
-        mu: FloatArray = share * self.boundary + (1 - share) * self.fluid
-        return mu
+        dry: FloatArray = (1 - ratio / 2) ** 2
+        return dry
 
 
 @dataclass(frozen=True, slots=True)
-class Matsumoto:
-    """xi = log10(D)/2 within 0 to 1, D = (Rz1 + Rz2)/h_min. Theory (F8), (F10)."""
+class Matsumoto(_FilmShare):
+    """xi = log10(D)/2 within 0 to 1, D = (Rz1 + Rz2)/h_min. Theory (F10)."""
 
     name: ClassVar = "matsumoto"
     title: ClassVar = "film share of Matsumoto and Morikawa"
     source: ClassVar = "S. Matsumoto and K. Morikawa, Int. Gear Conf. Lyon (2014) 1078"
-    made_for: ClassVar[RegressionFluid | None] = None
-    ranges: ClassVar[tuple[Range, ...]] = FILM_RANGES
 
-    boundary: float
-    fluid: float
-
-    def coefficient(self, contact: MeshContact) -> FloatArray:
+    def share(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
         rz = RZ_OVER_RA * RA_OVER_RQ * (contact.flanks.roughness1 + contact.flanks.roughness2)
-        share = np.clip(np.log10(rz / contact.minimum_film) / 2, 0.0, 1.0)
-        mu: FloatArray = share * self.boundary + (1 - share) * self.fluid
-        return mu
+        dry: FloatArray = np.clip(np.log10(rz / contact.minimum_film) / 2, 0.0, 1.0)
+        return dry

@@ -52,9 +52,13 @@ _PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SUC
 _SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SUCCESSOR)
 _RADIUS = Range("radius", "equivalent radius", 5.0, 40.0, MILLIMETRE, _SUCCESSOR)
 _VISCOSITY = Range(
-    "dynamic_viscosity", "dynamic viscosity", 5.0, 180.0, MILLIPASCAL_SECOND,
+    "dynamic_viscosity",
+    "dynamic viscosity",
+    5.0,
+    180.0,
+    MILLIPASCAL_SECOND,
     "none is in print; a 75W-90 gear oil from 150 to 25 degC",
-)  # fmt: skip
+)
 _ROUGHNESS = Range(
     "composite_roughness", "composite rms roughness", None, 1.0, MICROMETRE, OF_THIS_PACKAGE
 )

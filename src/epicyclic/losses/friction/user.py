@@ -69,12 +69,16 @@ class FrictionMap:
         """From the first to the last point of every axis."""
         return tuple(
             Range(
-                name, label, _shown(points[0], unit), _shown(points[-1], unit), unit,
+                name,
+                label,
+                _shown(points[0], unit),
+                _shown(points[-1], unit),
+                unit,
                 "[friction_table] of the case",
             )
             for name, points in self.axes
             for label, unit in (_AXES[name],)
-        )  # fmt: skip
+        )
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""

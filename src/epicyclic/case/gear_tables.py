@@ -1,0 +1,216 @@
+"""Tables of a case file on gears, their flanks and their meshes."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from epicyclic.case.schema import NamedMaterial, Roughness, ShortLength, Table
+from epicyclic.units import (
+    Angle,
+    Deviation,
+    HelixAngle,
+    Length,
+    Mass,
+    Number,
+    Quantity,
+    SmallLength,
+    as_stated,
+)
+
+
+class Gears(Table):
+    """What all gears share."""
+
+    EXACTLY_ONE = (
+        ("normal_module", "transverse_module"),
+        ("normal_pressure_angle", "transverse_pressure_angle"),
+    )
+
+    normal_module: Length | None = Field(default=None, description="m_n.")
+    transverse_module: Length | None = Field(default=None, description="m_t = m_n/cos(beta).")
+    normal_pressure_angle: (
+        Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)] | None
+    ) = Field(default=None, description="alpha_n at the reference circle.")
+    transverse_pressure_angle: (
+        Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=40.0)] | None
+    ) = Field(default=None, description="alpha_t at the reference circle.")
+    helix_angle: HelixAngle = Field(description="beta at the reference circle, magnitude.")
+    center_distance: Length = Field(description="Of every mesh.")
+    addendum_coefficient: Number = Field(
+        default=1.0,
+        gt=0,
+        le=3,
+        description="h_aP/m_n, for gears without tip_diameter. ISO 53, profile A.",
+    )
+    dedendum_coefficient: Number = Field(
+        default=1.25,
+        gt=0,
+        le=4,
+        description="h_fP/m_n, for gears without root_diameter. ISO 53, profile A.",
+    )
+
+
+ReliefShape = Literal["linear", "parabolic"]
+
+
+class TopographyTable(Table):
+    """Measured deviations of a flank, positive where material is missing."""
+
+    diameter: tuple[Length, ...] = Field(description="Two or more, rising.")
+    face_position: tuple[ShortLength, ...] = Field(
+        description="Two or more, rising, from the end of the face where contact begins."
+    )
+    deviation: tuple[tuple[Deviation, ...], ...] = Field(
+        description="One row for each diameter, with one value for each face position."
+    )
+
+
+class MicroGeometryTable(Table):
+    """Modifications and deviations of the working flanks, positive where material is missing."""
+
+    tip_relief: SmallLength = Field(default=as_stated("0 um"), description="At the tip.")
+    tip_relief_roll_length: Length | None = Field(
+        default=None, description="Roll length from the tip to the start of the relief."
+    )
+    tip_relief_diameter: Length | None = Field(
+        default=None, description="Instead of it: the diameter where the relief starts."
+    )
+    tip_relief_shape: ReliefShape = "linear"
+    root_relief: SmallLength = Field(
+        default=as_stated("0 um"), description="At the start of the active profile."
+    )
+    root_relief_roll_length: Length | None = Field(
+        default=None, description="Roll length from the start of the active profile."
+    )
+    root_relief_diameter: Length | None = Field(
+        default=None, description="Instead of it: the diameter where the relief starts."
+    )
+    root_relief_shape: ReliefShape = "linear"
+    profile_crown: Deviation = Field(
+        default=as_stated("0 um"), description="Parabola over the active profile."
+    )
+    profile_slope: Deviation = Field(
+        default=as_stated("0 um"), description="Positive: material is missing at the tip."
+    )
+    lead_crown: Deviation = Field(
+        default=as_stated("0 um"), description="Parabola over the face width of the gear."
+    )
+    lead_slope: Deviation = Field(
+        default=as_stated("0 um"),
+        description="Positive: material is missing at the end where contact ends.",
+    )
+    end_relief: SmallLength = Field(default=as_stated("0 um"), description="At both ends.")
+    end_relief_length: Length | None = Field(default=None, description="From each end.")
+    end_relief_shape: ReliefShape = "linear"
+    topography: TopographyTable | None = Field(
+        default=None, description="Deviations over the flank, added to the others."
+    )
+
+
+class GearTable(Table):
+    """One gear."""
+
+    STAND_INS: ClassVar[dict[str, object]] = {
+        "roughness": "1 um",
+        "material": None,
+        "tool_tip_radius": None,
+        "micro_geometry": None,
+    }
+    EXACTLY_ONE = (("tooth_thickness+thickness_diameter", "profile_shift_coefficient"),)
+
+    teeth: int = Field(ge=5, le=2000, description="Number of teeth.")
+    face_width: Length
+    tip_diameter: Length | None = Field(
+        default=None, description="Inner diameter of a ring. Default: from addendum_coefficient."
+    )
+    root_diameter: Length | None = Field(
+        default=None, description="Default: from dedendum_coefficient."
+    )
+    tip_chamfer: ShortLength = Field(
+        default=as_stated("0 mm"),
+        description="Radial height of the 45 degree chamfers of the tip corners.",
+    )
+    tooth_thickness: Length | None = Field(
+        default=None, description="Transverse arc thickness at thickness_diameter."
+    )
+    thickness_diameter: Length | None = None
+    profile_shift_coefficient: Number | None = Field(
+        default=None, ge=-3, le=5, description="x; positive thickens the teeth, on a ring too."
+    )
+    roughness: Roughness = Field(description="rms roughness Rq of the flanks, or a finish.")
+    material: NamedMaterial = Field(default=as_stated("steel"), description="A name or a table.")
+    tool_tip_radius: ShortLength | None = Field(
+        default=None,
+        description="Rounding of the cutting tool's tip, which leaves the root fillet. Default: "
+        "0.38 m_n (rack) or 0.2 m_n (shaper), or less where the mate needs the involute.",
+    )
+    micro_geometry: MicroGeometryTable | None = Field(
+        default=None, description="Modifications and deviations of the flanks."
+    )
+
+
+_RimThickness = Annotated[
+    Length | None,
+    Field(
+        description="From root to outside. Default: 3 normal modules (estimate) for the drag, and "
+        "a rim that is held on its outside and does not bend."
+    ),
+]
+
+
+class PairGear(GearTable):
+    """The gear that meets the pinion."""
+
+    STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
+
+    internal: bool = Field(default=False, description="true: a ring gear around the pinion.")
+    rim_thickness: _RimThickness = None
+
+
+class Planet(GearTable):
+    """The planets, all alike."""
+
+    STAND_INS = GearTable.STAND_INS | {
+        "angles": None,
+        "mass": None,
+        "micro_geometry_ring_side": None,
+    }
+
+    count: int = Field(ge=1, le=24, description="Number of planets.")
+    angles: tuple[Angle, ...] | None = Field(
+        default=None,
+        description="Position of each planet on the carrier. Default: the admissible positions "
+        "nearest to equal spacing.",
+    )
+    mass: Mass | None = Field(
+        default=None,
+        description="Of one planet with its rollers. If given, its centrifugal force loads the "
+        "planet bearing.",
+    )
+    micro_geometry_ring_side: MicroGeometryTable | None = Field(
+        default=None,
+        description="Of the flanks that work against the ring. Default: micro_geometry holds on "
+        "both sides.",
+    )
+
+
+class Ring(GearTable):
+    """The ring gear."""
+
+    STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
+
+    rim_thickness: _RimThickness = None
+
+
+class MeshTable(Table):
+    """What belongs to a mesh and to none of its gears."""
+
+    STAND_INS: ClassVar[dict[str, object]] = {"misalignment": None}
+
+    misalignment: Deviation = Field(
+        default=as_stated("0 um"),
+        description="F_beta_x over the common face width, in the plane of action; positive: the "
+        "flanks open towards the end where contact ends.",
+    )

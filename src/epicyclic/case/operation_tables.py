@@ -1,0 +1,77 @@
+"""Tables of a case file on how it runs: operating point, oil, surroundings."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from epicyclic.case.schema import NamedOil, Table
+from epicyclic.units import Number, Pressure, RotationalSpeed, Temperature, Torque, as_stated
+
+Member = Literal["sun", "ring", "carrier"]
+
+
+_ANY_OPERATION: dict[str, object] = {
+    "torque": "0 N*m",
+    "speed": "0 rpm",
+    "oil_inlet_temperature": "40 degC",
+}
+
+
+class PlanetaryOperation(Table):
+    """How the gear set runs."""
+
+    STAND_INS = _ANY_OPERATION
+    EXACTLY_ONE = (("fixed", "second_input+second_speed"),)
+
+    input: Member = Field(description="The member to which torque and speed belong.")
+    fixed: Member | None = Field(
+        default=None, description="The member held still; the third one is the output."
+    )
+    second_input: Member | None = Field(
+        default=None, description="Instead of fixed: a second member of given speed."
+    )
+    second_speed: RotationalSpeed | None = Field(
+        default=None, description="Speed of the second member; same sign = same sense of rotation."
+    )
+    torque: Torque = Field(
+        description="On the input member; negative = coasting, power flows back through it."
+    )
+    speed: RotationalSpeed = Field(description="Of the input member.")
+    oil_inlet_temperature: Temperature = Field(description="Oil temperature at all contacts.")
+
+
+class GearPairOperation(Table):
+    """How the gear pair runs."""
+
+    STAND_INS = _ANY_OPERATION
+
+    torque: Torque = Field(description="On the pinion; negative = coasting.")
+    speed: RotationalSpeed = Field(description="Of the pinion.")
+    oil_inlet_temperature: Temperature = Field(description="Oil temperature at all contacts.")
+
+
+class Lubricant(Table):
+    """The oil."""
+
+    STAND_INS: ClassVar[dict[str, object]] = {"pressure_viscosity_factor": None}
+
+    oil: NamedOil = Field(
+        description="A name of the oil library (epicyclic oils) or a table of properties."
+    )
+    pressure_viscosity_factor: Number = Field(
+        default=1.0,
+        ge=0.1,
+        le=10,
+        description="Multiplies the pressure-viscosity coefficient of the oil.",
+    )
+
+
+class Surroundings(Table):
+    """What surrounds the gears."""
+
+    oil_air_ratio: Number = Field(
+        default=0.05, ge=0, le=1, description="Oil share by volume at ambient pressure."
+    )
+    pressure: Pressure = Field(default=as_stated("1.01325 bar"), description="Ambient pressure.")
