@@ -63,6 +63,7 @@ def show(
 
     if json_file is not None:
         write_file(Path(json_file), as_json() + "\n")
+        click.echo(f"Wrote {json_file}.")
     terminal().print(tables())
 
 
