@@ -116,3 +116,16 @@ def test_the_figure_has_a_panel_for_whatever_there_is(rough):
     assert labels == ["pressure, GPa", "film, µm", "shear stress, MPa", "temperature rise, K"]
     rolling = contact_figure(solved(contact={"slide_to_roll_ratio": 0.0}))
     assert [ax.get_ylabel() for ax in rolling.axes] == labels[:2]
+
+
+def test_progress_ends_at_what_was_expected():
+    calls = []
+    case = load_contact_case(
+        {"contact": CONTACT, "surface1": {"roughness": "0.3 um"}, "numerics": {"nodes": 128}}
+        | TABLES
+    )
+    result = solve_contact(case, progress=lambda *call: calls.append(call))
+    assert [done for done, _ in calls] == list(range(1, len(calls) + 1))
+    assert all(done <= expected <= 1024 for done, expected in calls)
+    assert calls[-1] == (len(calls), len(calls))
+    assert result.status == "converged"

@@ -67,6 +67,7 @@ def contact(
     from epicyclic.analysis.contact import solve_contact
     from epicyclic.case.contact import load_contact_case
     from epicyclic.case.values import parse_value
+    from epicyclic.cli.progress import progress_bar
 
     given = {
         CONTACT_OPTIONS[name][0]: parse_value(text)
@@ -76,7 +77,9 @@ def contact(
     if plot is not None:
         check_picture("--plot", plot, (*PICTURES, ANIMATION))
     case = load_contact_case(file or {}, given | parse_changes(changes))
-    result = solve_contact(case, frames=plot is not None or json_file is not None)
+    moments = plot is not None or json_file is not None
+    with progress_bar("percent") as percent:  # of a number that changes
+        result = solve_contact(case, moments, lambda done, all_: percent(100 * done // all_, 100))
     if json_file == "-":
         click.echo(result.to_json())
     else:
