@@ -102,6 +102,14 @@ def test_roughness_that_the_grid_does_not_resolve_is_told():
     assert any("of the Rq of surface1" in warning for warning in result.warnings)
 
 
+def test_averages_that_say_little_are_told():
+    rough = {"surface1": {"roughness": "0.05 um"}}
+    frozen = solved(**rough, numerics=COARSE["numerics"] | {"frozen_roughness": True})
+    assert any("stands still" in warning for warning in frozen.warnings)
+    rolling = solved(**rough, contact={"slide_to_roll_ratio": 0.0})
+    assert any("Without sliding" in warning for warning in rolling.warnings)
+
+
 def test_profiles_too_coarse_for_the_contact_are_told(tmp_path):
     file = tmp_path / "micrometres.csv"
     file.write_text("\n".join(f"{n}, {0.1 * np.sin(n):.4f}" for n in range(100)), encoding="utf-8")

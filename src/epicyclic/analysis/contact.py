@@ -81,7 +81,7 @@ class ContactResult:
         if self.smooth.status is not Status.CONVERGED:
             return ()
         left = (range_left([flag]) for flag in self.flags)
-        return (*left, *contact_notes(self.model, self.smooth, self.rough))
+        return (*left, *contact_notes(self.case, self.model, self.smooth, self.rough))
 
     @property
     def figures(self) -> list[ContactFigure]:
