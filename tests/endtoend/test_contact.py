@@ -115,6 +115,27 @@ def test_problems_of_both_surfaces_are_told_with_their_keys(epicyclic):
     assert "surface2.kurtosis = 1.01: cannot be less" in done.stderr
 
 
+def test_keys_without_effect_are_refused(epicyclic, tmp_path):
+    (tmp_path / "p.csv").write_text("".join(f"{n}, {n % 3}\n" for n in range(50)))
+    changes = {
+        "lubricant.second_slope": "8 1/GPa",
+        "lubricant.shear_stress": "1 MPa",
+        "surface1.skewness": "1",
+        "surface2.profile": str(tmp_path / "p.csv"),
+        "surface2.correlation_length": "5 um",
+    }
+    done = epicyclic(*SMOOTH, *(f"--set={key}={value}" for key, value in changes.items()))
+    assert done.returncode == 2
+    assert done.stderr.startswith("4 problems")
+    for told in (
+        "second_slope: is for two-slope only",
+        "shear_stress: is for limiting-stress and carreau only",
+        "surface1.skewness: has no effect on a smooth surface",
+        "surface2.correlation_length: is for a generated profile",
+    ):
+        assert told in done.stderr
+
+
 def test_two_generated_surfaces_are_not_the_same():
     tables = {
         "contact": {"radius": "10 mm", "line_load": "300 N/mm", "rolling_speed": "8 m/s"},

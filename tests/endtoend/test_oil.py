@@ -251,6 +251,9 @@ def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
     notes = [note for note in result.notes if "ehl-direct" in note]
     assert len(notes) == 1
     assert "contacts of the mesh solved, 1 of them without convergence" in notes[0]
+    thin = contact.film_ratio < 0.7
+    share = power[thin].sum() / power.sum()
+    assert f"{share:.0%} of the sliding power is at film ratios below 0.7" in notes[0]
 
 
 def test_too_many_unsolved_contacts_are_no_result(monkeypatch):

@@ -102,6 +102,14 @@ def test_roughness_that_the_grid_does_not_resolve_is_told():
     assert any("of the Rq of surface1" in warning for warning in result.warnings)
 
 
+def test_averages_that_say_little_are_told():
+    rough = {"surface1": {"roughness": "0.05 um"}}
+    frozen = solved(**rough, numerics=COARSE["numerics"] | {"frozen_roughness": True})
+    assert any("stands still" in warning for warning in frozen.warnings)
+    rolling = solved(**rough, contact={"slide_to_roll_ratio": 0.0})
+    assert any("Without sliding" in warning for warning in rolling.warnings)
+
+
 def test_profiles_too_coarse_for_the_contact_are_told(tmp_path):
     file = tmp_path / "micrometres.csv"
     file.write_text("\n".join(f"{n}, {0.1 * np.sin(n):.4f}" for n in range(100)), encoding="utf-8")
@@ -116,3 +124,16 @@ def test_the_figure_has_a_panel_for_whatever_there_is(rough):
     assert labels == ["pressure, GPa", "film, µm", "shear stress, MPa", "temperature rise, K"]
     rolling = contact_figure(solved(contact={"slide_to_roll_ratio": 0.0}))
     assert [ax.get_ylabel() for ax in rolling.axes] == labels[:2]
+
+
+def test_progress_ends_at_what_was_expected():
+    calls = []
+    case = load_contact_case(
+        {"contact": CONTACT, "surface1": {"roughness": "0.3 um"}, "numerics": {"nodes": 128}}
+        | TABLES
+    )
+    result = solve_contact(case, progress=lambda *call: calls.append(call))
+    assert [done for done, _ in calls] == list(range(1, len(calls) + 1))
+    assert all(done <= expected <= 1024 for done, expected in calls)
+    assert calls[-1] == (len(calls), len(calls))
+    assert result.status == "converged"

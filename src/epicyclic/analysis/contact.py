@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -80,7 +81,7 @@ class ContactResult:
         if self.smooth.status is not Status.CONVERGED:
             return ()
         left = (range_left([flag]) for flag in self.flags)
-        return (*left, *contact_notes(self.model, self.smooth, self.rough))
+        return (*left, *contact_notes(self.case, self.model, self.smooth, self.rough))
 
     @property
     def figures(self) -> list[ContactFigure]:
@@ -206,8 +207,15 @@ def _statistics(surface: Profile) -> dict[str, float]:
     }
 
 
-def solve_contact(case: ContactCase, frames: bool = False) -> ContactResult:
-    """Solve a contact, with `FRAMES` moments of a rough one over 6 half-widths if `frames`."""
+def solve_contact(
+    case: ContactCase,
+    frames: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> ContactResult:
+    """Solve a contact, with `FRAMES` moments of a rough one over 6 half-widths if `frames`.
+
+    `progress` is called with the numbers of blocks of a rough contact done and expected.
+    """
     model = contact_model(case)
     contact = model.contact
     if model.smooth:
@@ -216,6 +224,6 @@ def solve_contact(case: ContactCase, frames: bool = False) -> ContactResult:
     rough = solve_rough(
         contact, *model.surfaces, model.asperities, case.numerics.nodes, interval, model.heating,
         case.numerics.frozen_roughness, case.numerics.most_blocks,
-        case.numerics.friction_tolerance,
+        case.numerics.friction_tolerance, progress,
     )  # fmt: skip
     return ContactResult(case, model, rough.smooth, rough)

@@ -59,6 +59,9 @@ NEEDED = {
     "carreau": ("shear_stress", "shear_exponent"),
 }
 """Keys of the lubricant without which a law cannot be used."""
+OF_GENERATED: tuple[str, ...] = ("correlation_length", "skewness", "kurtosis", "seed")
+OF_MEASURED: tuple[str, ...] = ("cutoff", "short_cutoff")
+"""Keys of a surface that are for profiles of either kind."""
 
 
 class Contact(Table):
@@ -268,15 +271,10 @@ def _beside(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 def _cross_check(sections: Mapping[str, Table]) -> list[Problem]:
     """What is wrong across keys."""
-    lubricant = sections.get("lubricant")
     problems = []
+    lubricant = sections.get("lubricant")
     if isinstance(lubricant, ContactLubricant):
-        problems += [
-            Problem(f"lubricant.{key}", "", f"is missing; {law} needs it.", "Give it.")
-            for law in (lubricant.pressure_law, lubricant.shear_law)
-            for key in NEEDED.get(law, ())
-            if getattr(lubricant, key) is None
-        ]
+        problems += _check_laws(lubricant)
     for name in SURFACES:
         surface = sections.get(name)
         if isinstance(surface, Surface):
@@ -284,16 +282,39 @@ def _cross_check(sections: Mapping[str, Table]) -> list[Problem]:
     return problems
 
 
+def _check_laws(lubricant: ContactLubricant) -> list[Problem]:
+    """Each law has the keys that it needs, and no others are given."""
+    chosen = (lubricant.pressure_law, lubricant.shear_law)
+    needed = {key: law for law in chosen for key in NEEDED.get(law, ())}
+    problems = []
+    for key in sorted({key for keys in NEEDED.values() for key in keys}):
+        given = getattr(lubricant, key) is not None
+        if key in needed and not given:
+            allowed = f"is missing; {needed[key]} needs it."
+            problems.append(Problem(f"lubricant.{key}", "", allowed, "Give it."))
+        elif given and key not in needed:
+            laws = " and ".join(law for law, keys in NEEDED.items() if key in keys)
+            remedy = "Choose such a law, or leave it out."
+            problems.append(Problem(f"lubricant.{key}", "", f"is for {laws} only.", remedy))
+    return problems
+
+
 def _check_surface(name: str, surface: Surface) -> list[Problem]:
-    """A measured profile must be sound, a generated one possible."""
-    if surface.profile is None:
-        problems = [
-            Problem(f"{name}.{key}", "", "is for a measured profile.", "Give its file.")
-            for key in ("cutoff", "short_cutoff")
-            if getattr(surface, key) is not None
-        ]
-        if problems:
-            return problems
+    """A measured profile must be sound, a generated one possible, and nothing be without effect."""
+    if surface.profile is not None:
+        idle, allowed = OF_GENERATED, "is for a generated profile, not for a measured one."
+    elif surface.roughness is not None:
+        idle, allowed = OF_MEASURED, "is for a measured profile."
+    else:
+        idle, allowed = (*OF_GENERATED, *OF_MEASURED), "has no effect on a smooth surface."
+    remedy = "Give profile or roughness to suit, or leave it out."
+    problems = [
+        Problem(f"{name}.{key}", "", allowed, remedy)
+        for key in idle
+        if key in surface.model_fields_set and getattr(surface, key) is not None
+    ]
+    if problems:
+        return problems
     try:
         _profile(surface)
     except InputError as error:

@@ -65,6 +65,7 @@ def contact(
     from epicyclic.analysis.contact import solve_contact
     from epicyclic.case.contact import load_contact_case
     from epicyclic.case.values import parse_value
+    from epicyclic.cli.progress import progress_bar
     from epicyclic.report.contact_table import contact_tables
 
     given = {
@@ -75,7 +76,9 @@ def contact(
     if plot is not None:
         check_ending("--plot", plot, (*PICTURES, ANIMATION))
     case = load_contact_case(file or {}, given | parse_changes(changes))
-    result = solve_contact(case, frames=plot is not None or json_file is not None)
+    moments = plot is not None or json_file is not None
+    with progress_bar("percent") as percent:  # of a number that changes
+        result = solve_contact(case, moments, lambda done, all_: percent(100 * done // all_, 100))
     show(lambda: contact_tables(result), result.to_json, json_file)
     if plot is not None and result.smooth.status is Status.CONVERGED:
         from epicyclic.plots.contact import contact_animation, contact_figure

@@ -15,4 +15,4 @@ SOLVER_BOX: dict[str, tuple[float, float]] = {
 """Lowest and highest equivalent radius [m], Hertz pressure [Pa], rolling speed [m/s], slip [1], and
 of rough contacts minimum film over composite roughness [1], composite roughness [m]."""
 VALIDATED_FILM_RATIO = 0.7
-"""Film ratio below which friction of rough contacts depends on the grid. [1]"""
+"""Film ratio below which friction of rough contacts is not validated. [1]"""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -269,6 +269,7 @@ def solve_rough(
     frozen: bool = False,
     most_blocks: int = MOST_BLOCKS,
     tolerance: float = STATIONARY,
+    progress: Callable[[int, int], None] | None = None,
 ) -> RoughSolution:
     """Simulate until the mean friction is known well enough.
 
@@ -291,6 +292,8 @@ def solve_rough(
         Times b/u_r after which it is given up if the friction is still not known.
     tolerance : float
         Standard error of the mean friction over it at which it is known. [1]
+    progress : callable, optional
+        Called with the numbers of blocks done and expected.
     """
     smooth = solve_smooth(contact, heating=heating)
     if smooth.status is not Status.CONVERGED:
@@ -306,12 +309,24 @@ def solve_rough(
     ):
         blocks.append(run.advance(BLOCK))
         mean, error = _mean_shear(blocks)
+        if progress is not None:
+            progress(len(blocks), _expected(blocks, mean, error, tolerance, most_blocks))
     return _averages(run, settling, np.concatenate(blocks), mean, error, tolerance)
 
 
 def _is_known(blocks: Sequence[FloatArray], mean: float, error: float, tolerance: float) -> bool:
     """Enough blocks for the error wanted."""
     return len(blocks) >= FEWEST_BLOCKS and error <= tolerance * mean
+
+
+def _expected(
+    blocks: Sequence[FloatArray], mean: float, error: float, tolerance: float, most_blocks: int
+) -> int:
+    """Blocks that it takes if the error goes on falling with the root of their number."""
+    if not error < math.sqrt(most_blocks / len(blocks)) * tolerance * mean:
+        return most_blocks
+    enough = math.ceil(len(blocks) * (error / (tolerance * mean)) ** 2)
+    return max(FEWEST_BLOCKS, len(blocks), enough)
 
 
 def _mean_shear(blocks: Sequence[FloatArray]) -> tuple[float, float]:

@@ -15,7 +15,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.ehl.box import SOLVER_BOX
+from epicyclic.ehl.box import SOLVER_BOX, VALIDATED_FILM_RATIO
 from epicyclic.ehl.conditions import ContactOil, LineContact, Roelands
 from epicyclic.ehl.rough import BRIEF, LARGEST_UNSOLVED_SHARE, AsperityContact, solve_rough
 from epicyclic.ehl.roughness import generate_profile
@@ -24,7 +24,7 @@ from epicyclic.elasticity.threads import one_thread
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.fitted import contact_states
-from epicyclic.losses.validity import Range, RegressionFluid
+from epicyclic.losses.validity import SMALLEST_SHOWN_SHARE, Range, RegressionFluid
 from epicyclic.oilmodel.structured import eyring_friction
 from epicyclic.status import Status
 from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, MILLIMETRE, NUMBER, Quantity
@@ -168,7 +168,20 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
         friction,
         f"models.friction ehl-direct: {found.size} contacts of the {contact.mesh.name} solved, "
         f"{np.count_nonzero(~found)} of them without convergence and left out; error of "
-        f"interpolated contacts {error:.1%} in the mean{missed}, of their power {bias:+.1%}.",
+        f"interpolated contacts {error:.1%} in the mean{missed}, of their power {bias:+.1%}."
+        f"{_unvalidated(contact, power)}",
+    )
+
+
+def _unvalidated(contact: MeshContact, power: FloatArray) -> str:
+    """What to say of film ratios for which the solver is not validated."""
+    thin = contact.film_ratio < VALIDATED_FILM_RATIO
+    if not power[thin].sum() > SMALLEST_SHOWN_SHARE * power.sum():
+        return ""
+    share = power[thin].sum() / power.sum()
+    return (
+        f" {share:.0%} of the sliding power is at film ratios below {VALIDATED_FILM_RATIO:g}, "
+        "for which the solver is not validated."
     )
 
 

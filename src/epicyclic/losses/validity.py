@@ -14,6 +14,7 @@ from epicyclic.units import Quantity, format_number
 __all__ = [
     "OF_THIS_PACKAGE",
     "OUT_OF_RANGE",
+    "SMALLEST_SHOWN_SHARE",
     "ModelUse",
     "Range",
     "RegressionFluid",
