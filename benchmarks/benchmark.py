@@ -65,9 +65,16 @@ def median_process_seconds(*arguments: str) -> float:
     return statistics.median(process_seconds(*arguments) for _ in range(REPEATS))
 
 
-def points() -> list[ep.PlanetaryCase]:
-    """Operating points that differ in everything but the geometry, so that nothing is cached."""
+def test_article() -> ep.PlanetaryCase:
+    """The case that most figures are of."""
     case = ep.load_case("talbot-2012")
+    assert isinstance(case, ep.PlanetaryCase)
+    return case
+
+
+def points() -> list[ep.PlanetaryCase | ep.GearPairCase]:
+    """Operating points that differ in everything but the geometry, so that nothing is cached."""
+    case = test_article()
     return [
         case.updated({"operation.torque": f"{900 + i} N*m", "operation.speed": f"{3000 + i} rpm"})
         for i in range(50)
@@ -157,7 +164,7 @@ def compliance_seconds(segments: int) -> tuple[float, float]:
     from epicyclic.elasticity.loaded_mesh import load_mesh_elastically
     from epicyclic.elasticity.mesh_compliance import mesh_compliance
 
-    case = ep.load_case("talbot-2012")
+    case = test_article()
     meshes = build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)
     tables = ((case.sun, case.planet), (case.planet, case.ring))
     bodies = [flanks.gear_bodies(mesh, pair) for mesh, pair in zip(meshes, tables, strict=True)]
@@ -210,7 +217,7 @@ def pocket_seconds() -> tuple[float, float]:
     from epicyclic.pocketing.fluid import pocket_flow
     from epicyclic.pocketing.geometry import pocket_geometry
 
-    case = ep.load_case("talbot-2012")
+    case = test_article()
     mixture = fluids_of(case).mixture
     geometry_times, flow_times = [], []
     for duty in planetary_duties(case, 1 / 3):
@@ -278,7 +285,7 @@ def direct_seconds() -> float:
 
 
 def main() -> None:
-    case = ep.load_case("talbot-2012")
+    case = test_article()
     with tempfile.TemporaryDirectory() as empty:
         first = process_seconds("-m", "epicyclic", "run", "talbot-2012", NUMBA_CACHE_DIR=empty)
     python = median_process_seconds("-c", "pass")

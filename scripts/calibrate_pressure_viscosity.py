@@ -14,12 +14,9 @@ from scipy.optimize import brentq
 
 import epicyclic as ep
 from epicyclic.analysis.parts import fluids_of
-from epicyclic.analysis.planetary import (
-    member_speeds,
-    planet_load,
-    planetary_duties,
-    roller_bearing,
-)
+from epicyclic.analysis.planet_bearing import roller_bearing
+from epicyclic.analysis.planet_load import planet_load
+from epicyclic.analysis.planetary import member_speeds, planetary_duties
 from epicyclic.kinematics import planet_speed
 from epicyclic.losses.planet_bearing import mixed_ehl_rolling_loss, roller_loads
 
@@ -32,8 +29,10 @@ def calibrate(temperature: str, loss: float) -> float:
     case = ep.load_case("talbot-2012-n3").updated(
         {"operation.torque": "999 N*m", "operation.oil_inlet_temperature": temperature}
     )
+    assert isinstance(case, ep.PlanetaryCase)
+    assert case.planet_bearing is not None
     bearing = roller_bearing(case.planet_bearing, case.numerics.bearing_slices)
-    load = planet_load(planetary_duties(case), 0.0)
+    load = planet_load(planetary_duties(case, 1 / case.planet.count), 0.0)
     loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
     speed = planet_speed(case.sun.teeth, case.planet.teeth, member_speeds(case))
     oil = fluids_of(case).oil
@@ -46,7 +45,7 @@ def calibrate(temperature: str, loss: float) -> float:
             - loss
         )
 
-    return brentq(excess, 5e-9, 30e-9, xtol=1e-15)
+    return float(brentq(excess, 5e-9, 30e-9, xtol=1e-15))
 
 
 if __name__ == "__main__":

@@ -236,7 +236,7 @@ def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
 
     calls = []
 
-    def friction(line, roughness, seeds, settings):
+    def friction(line, roughness, seeds, heating, settings):
         calls.append(line)
         return np.nan if len(calls) == 3 else 0.05 * (line.radius / 0.01) ** 0.3
 
@@ -254,6 +254,57 @@ def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
     thin = contact.film_ratio < 0.7
     share = power[thin].sum() / power.sum()
     assert f"{share:.0%} of the sliding power is at film ratios below 0.7" in notes[0]
+
+
+def test_oil_and_heat_of_the_contact_solver_reach_every_contact(monkeypatch):
+    from epicyclic.ehl.rheology import LimitingStress, TwoSlope
+    from epicyclic.losses import direct
+
+    calls = []
+
+    def friction(line, roughness, seeds, heating, settings):
+        calls.append((line.oil, heating, settings))
+        return 0.05
+
+    monkeypatch.setattr(direct, "_friction", friction)
+    case = ep.load_case("talbot-2012-pair").updated(
+        PAIR
+        | {
+            "models.friction": "ehl-direct",
+            "models.boundary_friction": 0.12,
+            "contact_solver.pressure_law": "two-slope",
+            "contact_solver.second_slope": "5 1/GPa",
+            "contact_solver.transition_pressure": "0.4 GPa",
+            "contact_solver.shear_law": "limiting-stress",
+            "contact_solver.shear_stress": "1 MPa",
+            "contact_solver.shear_stress_slope": 0.04,
+            "contact_solver.heating": "inlet-and-film",
+            "contact_solver.asperity_film": "30 nm",
+        }
+    )
+    state = ep.solve(case).meshes["mesh"].contact.oil
+    oil, heating, settings = calls[0]
+    assert oil.pressure_law == TwoSlope(state.pressure_viscosity, 5e-9, 0.4e9)
+    assert oil.shear == LimitingStress(1e6, 0.04)
+    assert settings.asperities.film == pytest.approx(30e-9)
+    assert settings.asperities.friction == 0.12
+    # sqrt(k rho c) of steel of 7850 kg/m^3
+    assert heating.effusivity1 == heating.effusivity2 == pytest.approx((46 * 7850 * 460) ** 0.5)
+    assert heating.thermoviscosity == state.thermoviscosity
+
+
+def test_laws_of_the_contact_solver_have_all_they_need():
+    case = ep.load_case("talbot-2012-pair")
+    with pytest.raises(ep.InputError) as caught:
+        case.updated(
+            {"contact_solver.pressure_law": "two-slope", "contact_solver.shear_exponent": 0.5}
+        )
+    found = {problem.key: problem.allowed for problem in caught.value.problems}
+    assert found == {
+        "contact_solver.second_slope": "is missing; two-slope needs it.",
+        "contact_solver.transition_pressure": "is missing; two-slope needs it.",
+        "contact_solver.shear_exponent": "is for carreau only.",
+    }
 
 
 def test_too_many_unsolved_contacts_are_no_result(monkeypatch):

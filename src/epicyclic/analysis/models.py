@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from epicyclic.case.case import Case, PlanetaryCase
-from epicyclic.losses.direct import DirectSettings, EhlDirect
+from epicyclic.case.oil_laws import oil_laws
+from epicyclic.ehl.rough import AsperityContact
+from epicyclic.losses.direct import DirectSettings, EhlDirect, SolidHeat
 from epicyclic.losses.fitted import FittedFriction, FittedRolling
 from epicyclic.losses.friction import FrictionModel, FrictionSettings, friction_model
 from epicyclic.losses.friction.user import FrictionMap
@@ -62,9 +66,19 @@ def friction_of(case: Case) -> FrictionModel:
 
 def _direct_settings(case: Case) -> DirectSettings:
     solver = case.contact_solver
+    solids = None
+    if solver.heating != "isothermal":
+        gears = (
+            (case.sun, case.planet, case.ring)
+            if isinstance(case, PlanetaryCase)
+            else (case.pinion, case.gear)
+        )
+        density = float(np.mean([gear.material.density for gear in gears]))
+        solids = SolidHeat(solver.solid_conductivity, solver.solid_heat_capacity, density)
     return DirectSettings(
-        eyring_stress=solver.eyring_stress,
-        boundary_friction=case.models.boundary_friction,
+        laws=oil_laws(solver),
+        asperities=AsperityContact(solver.asperity_film, case.models.boundary_friction),
+        solids=solids,
         correlation_length=solver.correlation_length,
         seed=solver.seed,
         error=solver.error,

@@ -15,12 +15,14 @@ from epicyclic.case import build
 from epicyclic.case.gear_checks import check_pair, check_planetary
 from epicyclic.case.gear_tables import Gears, GearTable, Planet, Ring
 from epicyclic.case.model_tables import (
+    ContactSolver,
     FrictionTable,
     GearPairModels,
     LoadSharing,
     Numerics,
     PlanetaryModels,
 )
+from epicyclic.case.oil_laws import law_problems
 from epicyclic.case.operation_tables import GearPairOperation, PlanetaryOperation
 from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.case.schema import Table
@@ -56,6 +58,9 @@ def cross_check(
         problems += _check_friction_model(models, {*given, *sections})
         problems += _check_oil_model(models, folder)
         problems += _check_pocketing_table(models, folder)
+    solver = sections.get("contact_solver")
+    if isinstance(solver, ContactSolver):
+        problems += law_problems("contact_solver", solver)
     if isinstance(models, PlanetaryModels):
         problems += _check_planet_tilt(models, {*given, *sections})
     for check, needed in _CHECKS:

@@ -4,27 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from epicyclic.case.oil_laws import (
+    HEATING,
+    HeatingModel,
+    LoadPressure,
+    OilBehaviour,
+    law_problems,
+    oil_laws,
+)
 from epicyclic.case.plain import plain, value_at, with_value
 from epicyclic.case.reading import read_file
-from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Stress, Table
+from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Table
 from epicyclic.case.validation import validate
 from epicyclic.ehl.conditions import ContactOil, LineContact
 from epicyclic.ehl.heating import Heating
 from epicyclic.ehl.profile_file import read_profile
-from epicyclic.ehl.rheology import (
-    PRESSURE_LAWS,
-    SHEAR_LAWS,
-    PressureLaw,
-    ReeEyring,
-    ShearLaw,
-    TwoSlope,
-)
 from epicyclic.ehl.rough import MOST_BLOCKS, NODES, STATIONARY, AsperityContact
 from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile
 from epicyclic.errors import InputError, Problem
@@ -34,10 +34,10 @@ from epicyclic.lubricant.properties import oil_state
 from epicyclic.units import (
     Length,
     Number,
-    PressureViscosity,
     Quantity,
     SmallLength,
     Temperature,
+    as_stated,
 )
 
 __all__ = ["ContactCase", "ContactModel", "contact_model", "load_contact_case"]
@@ -46,19 +46,9 @@ LineLoad = Annotated[
     float, Quantity("a line load", "N/m", "N/mm", low=0.0, high=1e5, open_low=True)
 ]
 RollingSpeed = Annotated[float, Quantity("a speed", "m/s", "m/s", low=0.0, high=1e4, open_low=True)]
-LoadPressure = Annotated[
-    float, Quantity("a pressure", "Pa", "GPa", low=0.0, high=100.0, open_low=True)
-]
-
 SURFACES = ("surface1", "surface2")
 PERIOD = 200.0
 """Length of a generated profile, over its correlation length. [1]"""
-NEEDED = {
-    "two-slope": ("second_slope", "transition_pressure"),
-    "limiting-stress": ("shear_stress",),
-    "carreau": ("shear_stress", "shear_exponent"),
-}
-"""Keys of the lubricant without which a law cannot be used."""
 OF_GENERATED: tuple[str, ...] = ("correlation_length", "skewness", "kurtosis", "seed")
 OF_MEASURED: tuple[str, ...] = ("cutoff", "short_cutoff")
 """Keys of a surface that are for profiles of either kind."""
@@ -80,53 +70,26 @@ class Contact(Table):
     )
 
 
-class ContactLubricant(Table):
+class ContactLubricant(OilBehaviour):
     """The oil in the contact."""
 
     oil: NamedOil = Field(
         description="A name of the oil library (epicyclic oils) or a table of properties."
     )
     temperature: Temperature = Field(description="Of the oil at the inlet.")
-    pressure_law: Literal["roelands", "barus", "two-slope"] = Field(
-        default="roelands", description="Viscosity under pressure."
-    )
-    second_slope: PressureViscosity | None = Field(
-        default=None, description="For two-slope: slope at high pressure."
-    )
-    transition_pressure: LoadPressure | None = Field(
-        default=None, description="For two-slope: where the slopes meet."
-    )
-    eyring_stress: Stress = Field(
-        default=cast("Any", "5 MPa"),
-        description="Of the default law: stress beyond which the oil thins (estimate; mineral "
-        "oils 2 to 10 MPa).",
-    )
-    shear_law: Literal["ree-eyring", "newtonian", "limiting-stress", "carreau"] = Field(
-        default="ree-eyring", description="Viscosity under shear."
-    )
-    shear_stress: Stress | None = Field(
-        default=None, description="For limiting-stress and carreau: the stress of the law."
-    )
-    shear_stress_slope: Number = Field(
-        default=0.0, ge=0.0, le=1.0,
-        description="Of ree-eyring and limiting-stress: rise of the stress with the pressure.",
-    )  # fmt: skip
-    shear_exponent: Number | None = Field(
-        default=None, gt=0.0, le=1.0, description="For carreau: n."
-    )
 
 
 class Surface(Table):
     """A surface: its material and its roughness, generated or measured."""
 
     material: NamedMaterial = Field(
-        default=cast("Any", "steel"), description="A name or a table of elastic constants."
+        default=as_stated("steel"), description="A name or a table of elastic constants."
     )
     roughness: Roughness | None = Field(
         default=None, description="Rq; a measured profile is scaled to it. Smooth by default."
     )
     correlation_length: SmallLength = Field(
-        default=cast("Any", "20 um"), description="Where the autocorrelation has fallen to 1/e."
+        default=as_stated("20 um"), description="Where the autocorrelation has fallen to 1/e."
     )
     skewness: Number = Field(default=0.0, ge=-5.0, le=5.0, description="Rsk.")
     kurtosis: Number = Field(default=3.0, ge=1.0, le=50.0, description="Rku.")
@@ -153,7 +116,7 @@ class Asperities(Table):
     """Where the film vanishes."""
 
     film: SmallLength = Field(
-        default=cast("Any", "20 nm"), description="Film below which surfaces touch (estimate)."
+        default=as_stated("20 nm"), description="Film below which surfaces touch (estimate)."
     )
     friction: Number = Field(
         default=0.1, ge=0.0, le=1.0, description="Friction where they touch (estimate)."
@@ -163,15 +126,12 @@ class Asperities(Table):
 class ContactHeating(Table):
     """Heat of sliding."""
 
-    model: Literal["isothermal", "inlet-and-film"] = Field(
-        default="isothermal",
-        description="With or without thinner inlet film, flash and film temperature.",
-    )
+    model: HeatingModel = Field(default="isothermal", description=HEATING)
     solid_conductivity: Conductivity = Field(
-        default=cast("Any", "46 W/(m*K)"), description="Of both solids."
+        default=as_stated("46 W/(m*K)"), description="Of both solids."
     )
     solid_heat_capacity: HeatCapacity = Field(
-        default=cast("Any", "460 J/(kg*K)"), description="Of both solids."
+        default=as_stated("460 J/(kg*K)"), description="Of both solids."
     )
 
 
@@ -274,28 +234,11 @@ def _cross_check(sections: Mapping[str, Table]) -> list[Problem]:
     problems = []
     lubricant = sections.get("lubricant")
     if isinstance(lubricant, ContactLubricant):
-        problems += _check_laws(lubricant)
+        problems += law_problems("lubricant", lubricant)
     for name in SURFACES:
         surface = sections.get(name)
         if isinstance(surface, Surface):
             problems += _check_surface(name, surface)
-    return problems
-
-
-def _check_laws(lubricant: ContactLubricant) -> list[Problem]:
-    """Each law has the keys that it needs, and no others are given."""
-    chosen = (lubricant.pressure_law, lubricant.shear_law)
-    needed = {key: law for law in chosen for key in NEEDED.get(law, ())}
-    problems = []
-    for key in sorted({key for keys in NEEDED.values() for key in keys}):
-        given = getattr(lubricant, key) is not None
-        if key in needed and not given:
-            allowed = f"is missing; {needed[key]} needs it."
-            problems.append(Problem(f"lubricant.{key}", "", allowed, "Give it."))
-        elif given and key not in needed:
-            laws = " and ".join(law for law, keys in NEEDED.items() if key in keys)
-            remedy = "Choose such a law, or leave it out."
-            problems.append(Problem(f"lubricant.{key}", "", f"is for {laws} only.", remedy))
     return problems
 
 
@@ -352,33 +295,10 @@ def _modulus(one: Material, two: Material) -> float:
 
 def _oil(table: ContactLubricant) -> ContactOil:
     state = oil_state(table.oil, table.temperature)
+    laws = oil_laws(table)
     return ContactOil(
-        state.dynamic_viscosity,
-        _pressure_law(table, state.pressure_viscosity),
-        table.eyring_stress,
-        shear_law=_shear_law(table),
+        state.dynamic_viscosity, laws.pressure(state.pressure_viscosity), shear_law=laws.shear
     )
-
-
-def _pressure_law(table: ContactLubricant, alpha: float) -> PressureLaw:
-    law = PRESSURE_LAWS[table.pressure_law]
-    if law is TwoSlope:
-        assert table.second_slope is not None
-        assert table.transition_pressure is not None
-        return TwoSlope(alpha, table.second_slope, table.transition_pressure)
-    return law(alpha)  # type: ignore[call-arg]
-
-
-def _shear_law(table: ContactLubricant) -> ShearLaw:
-    law = SHEAR_LAWS[table.shear_law]
-    if law is ReeEyring:
-        return ReeEyring(table.eyring_stress, table.shear_stress_slope)
-    constants: dict[str, Any] = {
-        "stress": table.shear_stress,
-        "slope": table.shear_stress_slope,
-        "exponent": table.shear_exponent,
-    }
-    return law(**{field.name: constants[field.name] for field in fields(law)})
 
 
 def _heating(case: ContactCase) -> Heating | None:

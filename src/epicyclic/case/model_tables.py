@@ -6,7 +6,9 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from epicyclic.case.schema import Stress, Table
+from epicyclic.case.oil_laws import HEATING, HeatingModel, OilBehaviour
+from epicyclic.case.schema import Table
+from epicyclic.lubricant.oil import Conductivity, HeatCapacity
 from epicyclic.units import (
     Deviation,
     HertzPressure,
@@ -134,12 +136,18 @@ class FrictionTable(Table):
         return (len(self.friction), lengths.pop() if len(lengths) == 1 else -1)
 
 
-class ContactSolver(Table):
+class ContactSolver(OilBehaviour):
     """How the contacts of a mesh are solved for friction = ehl-direct."""
 
-    eyring_stress: Stress = Field(
-        default=as_stated("5 MPa"),
-        description="Stress beyond which the oil thins (estimate; mineral oils 2 to 10 MPa).",
+    heating: HeatingModel = Field(default="isothermal", description=HEATING)
+    solid_conductivity: Conductivity = Field(
+        default=as_stated("46 W/(m*K)"), description="Of the gears, with heating."
+    )
+    solid_heat_capacity: HeatCapacity = Field(
+        default=as_stated("460 J/(kg*K)"), description="Of the gears, with heating."
+    )
+    asperity_film: SmallLength = Field(
+        default=as_stated("20 nm"), description="Film below which flanks touch (estimate)."
     )
     correlation_length: SmallLength = Field(
         default=as_stated("20 um"), description="Of the roughness of both flanks (estimate)."

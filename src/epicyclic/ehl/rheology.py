@@ -13,6 +13,7 @@ __all__ = [
     "Carreau",
     "LimitingStress",
     "Newtonian",
+    "OilLaws",
     "PressureLaw",
     "ReeEyring",
     "Roelands",
@@ -132,6 +133,28 @@ SHEAR_LAWS: Mapping[str, type[ShearLaw]] = {
     "limiting-stress": LimitingStress,
     "carreau": Carreau,
 }
+
+
+@dataclass(frozen=True, slots=True)
+class OilLaws:
+    """How an oil behaves in a contact, but for viscosity and slope at ambient pressure.
+
+    Attributes
+    ----------
+    pressure_law : type
+        Barus, Roelands or TwoSlope.
+    constants : tuple of float
+        Of that law, after the slope at ambient pressure.
+    shear : Newtonian, ReeEyring, LimitingStress or Carreau
+    """
+
+    pressure_law: type[PressureLaw]
+    constants: tuple[float, ...]
+    shear: ShearLaw
+
+    def pressure(self, alpha: float) -> PressureLaw:
+        """The law for an oil of slope `alpha` at ambient pressure."""
+        return self.pressure_law(alpha, *self.constants)
 
 
 def shear_problems(law: ShearLaw) -> list[tuple[str, float, str]]:

@@ -8,6 +8,7 @@ are drawn by the sliding power and take no part, tell the error. Theory (O10).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
@@ -16,7 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.ehl.box import SOLVER_BOX, VALIDATED_FILM_RATIO
-from epicyclic.ehl.conditions import ContactOil, LineContact, Roelands
+from epicyclic.ehl.conditions import ContactOil, LineContact
+from epicyclic.ehl.heating import Heating
+from epicyclic.ehl.rheology import OilLaws
 from epicyclic.ehl.rough import BRIEF, LARGEST_UNSOLVED_SHARE, AsperityContact, solve_rough
 from epicyclic.ehl.roughness import generate_profile
 from epicyclic.ehl.steady import solve_smooth
@@ -25,11 +28,11 @@ from epicyclic.errors import ConvergenceError
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.fitted import contact_states
 from epicyclic.losses.validity import SMALLEST_SHOWN_SHARE, Range, RegressionFluid
-from epicyclic.oilmodel.structured import eyring_friction
+from epicyclic.oilmodel.structured import EYRING_STRESS, eyring_friction
 from epicyclic.status import Status
 from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, MILLIMETRE, NUMBER, Quantity
 
-__all__ = ["DirectSettings", "EhlDirect", "solver_range"]
+__all__ = ["DirectSettings", "EhlDirect", "SolidHeat", "solver_range"]
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
@@ -61,15 +64,41 @@ def solver_range(name: str, label: str, unit: Quantity) -> Range:
 
 
 @dataclass(frozen=True, slots=True)
+class SolidHeat:
+    """What carries heat through the gears.
+
+    Attributes
+    ----------
+    conductivity : float
+        [W/(m K)]
+    heat_capacity : float
+        [J/(kg K)]
+    density : float
+        [kg/m^3]
+    """
+
+    conductivity: float
+    heat_capacity: float
+    density: float
+
+    @property
+    def effusivity(self) -> float:
+        """sqrt(k rho c). Theory (H30). [W s^0.5/(m^2 K)]"""
+        return math.sqrt(self.conductivity * self.heat_capacity * self.density)
+
+
+@dataclass(frozen=True, slots=True)
 class DirectSettings:
     """Numbers that the solver takes from the case.
 
     Attributes
     ----------
-    eyring_stress : float
-        [Pa]
-    boundary_friction : float
-        Where surfaces touch. [1]
+    laws : OilLaws
+        How the oil behaves under pressure and shear.
+    asperities : AsperityContact
+        Where surfaces touch.
+    solids : SolidHeat or None
+        None for isothermal contacts.
     correlation_length : float
         Of both flanks. [m]
     seed : int
@@ -79,8 +108,9 @@ class DirectSettings:
         Solved for a mesh, those for the error not counted.
     """
 
-    eyring_stress: float
-    boundary_friction: float
+    laws: OilLaws
+    asperities: AsperityContact
+    solids: SolidHeat | None
     correlation_length: float
     seed: int
     error: float
@@ -133,7 +163,7 @@ class EhlDirect:
 @lru_cache(maxsize=16)
 def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
     states = contact_states(contact)
-    base = eyring_friction(states, settings.eyring_stress)
+    base = eyring_friction(states, EYRING_STRESS)
     place = np.stack([_spread(contact.path), _spread(np.log(contact.line_load))], axis=1)
     power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
     sliding = np.flatnonzero(states.slide_to_roll_ratio >= SMALLEST_SLIP)
@@ -222,9 +252,13 @@ def _ratios(
     contact: MeshContact, settings: DirectSettings, points: IntArray, base: FloatArray
 ) -> FloatArray:
     """Friction over `base` at some points; not a number where there is no solution."""
+    laws = settings.laws
     oil = ContactOil(
-        contact.dynamic_viscosity, Roelands(contact.pressure_viscosity), settings.eyring_stress
+        contact.oil.dynamic_viscosity,
+        laws.pressure(contact.oil.pressure_viscosity),
+        shear_law=laws.shear,
     )
+    heating = _heating(contact, settings.solids)
     smooth = bool(contact.film_ratio.min() > SMOOTH_FILM_RATIO)
     found = []
     for i in points:
@@ -240,8 +274,19 @@ def _ratios(
         )
         roughness = (0.0, 0.0) if smooth else contact.roughness
         seeds = np.random.SeedSequence([settings.seed, int(i)]).generate_state(2)
-        found.append(abs(_friction(line, roughness, (int(seeds[0]), int(seeds[1])), settings)))
+        pair = (int(seeds[0]), int(seeds[1]))
+        found.append(abs(_friction(line, roughness, pair, heating, settings)))
     return np.array(found) / base[points]
+
+
+def _heating(contact: MeshContact, solids: SolidHeat | None) -> Heating | None:
+    """What carries the heat away; None for isothermal contacts."""
+    if solids is None:
+        return None
+    oil = contact.oil
+    return Heating(
+        oil.thermoviscosity, oil.thermal_conductivity, solids.effusivity, solids.effusivity
+    )
 
 
 @lru_cache(maxsize=4096)
@@ -249,12 +294,13 @@ def _friction(
     line: LineContact,
     roughness: tuple[float, float],
     seeds: tuple[int, int],
+    heating: Heating | None,
     settings: DirectSettings,
 ) -> float:
     """Friction of one contact; not a number without a solution. [1]"""
     with one_thread():
         if max(roughness) == 0:
-            smooth = solve_smooth(line)
+            smooth = solve_smooth(line, heating=heating)
             converged = smooth.status is Status.CONVERGED
             return smooth.friction_coefficient if converged else np.nan
         length = settings.correlation_length
@@ -262,8 +308,7 @@ def _friction(
             generate_profile(rms, length, PROFILE_LENGTHS * length, seed)
             for rms, seed in zip(roughness, seeds, strict=True)
         )
-        asperities = AsperityContact(friction=settings.boundary_friction)
-        rough = solve_rough(line, one, two, asperities, most_blocks=BRIEF)
+        rough = solve_rough(line, one, two, settings.asperities, heating=heating, most_blocks=BRIEF)
     known = rough.friction_error <= LARGEST_ERROR * abs(rough.friction_coefficient)
     unsolved = rough.unsolved_steps > LARGEST_UNSOLVED_SHARE * max(rough.steps, 1)
     return rough.friction_coefficient if known and not unsolved else np.nan

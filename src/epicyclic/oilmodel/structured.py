@@ -18,7 +18,13 @@ from epicyclic.kernels.line_contact import pan_hamrock_central_film
 from epicyclic.lubricant.properties import ROELANDS_OFFSET, ROELANDS_PRESSURE
 from epicyclic.oilmodel.states import ContactStates
 
-__all__ = ["STRUCTURED_FRICTION", "STRUCTURED_ROLLING", "Structured", "eyring_friction"]
+__all__ = [
+    "EYRING_STRESS",
+    "STRUCTURED_FRICTION",
+    "STRUCTURED_ROLLING",
+    "Structured",
+    "eyring_friction",
+]
 
 FloatArray = NDArray[np.float64]
 

@@ -1,0 +1,93 @@
+"""Keys that choose how an oil behaves in a line contact."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from epicyclic.case.schema import Stress, Table
+from epicyclic.ehl.rheology import PRESSURE_LAWS, SHEAR_LAWS, OilLaws, ReeEyring, ShearLaw
+from epicyclic.errors import Problem
+from epicyclic.units import Number, PressureViscosity, Quantity, as_stated
+
+__all__ = ["HEATING", "HeatingModel", "LoadPressure", "OilBehaviour", "law_problems", "oil_laws"]
+
+LoadPressure = Annotated[
+    float, Quantity("a pressure", "Pa", "GPa", low=0.0, high=100.0, open_low=True)
+]
+
+HeatingModel = Literal["isothermal", "inlet-and-film"]
+HEATING = "With or without thinner inlet film, flash and film temperature."
+"""What the key says."""
+NEEDED = {
+    "two-slope": ("second_slope", "transition_pressure"),
+    "limiting-stress": ("shear_stress",),
+    "carreau": ("shear_stress", "shear_exponent"),
+}
+"""Keys without which a law cannot be used."""
+KEYS = {"stress": "shear_stress", "slope": "shear_stress_slope", "exponent": "shear_exponent"}
+"""Keys that hold the constants of a law of shear."""
+
+
+class OilBehaviour(Table):
+    """Viscosity under pressure and under shear."""
+
+    pressure_law: Literal["roelands", "barus", "two-slope"] = Field(
+        default="roelands", description="Viscosity under pressure."
+    )
+    second_slope: PressureViscosity | None = Field(
+        default=None, description="For two-slope: slope at high pressure."
+    )
+    transition_pressure: LoadPressure | None = Field(
+        default=None, description="For two-slope: where the slopes meet."
+    )
+    eyring_stress: Stress = Field(
+        default=as_stated("5 MPa"),
+        description="Of the default law: stress beyond which the oil thins (estimate; mineral "
+        "oils 2 to 10 MPa).",
+    )
+    shear_law: Literal["ree-eyring", "newtonian", "limiting-stress", "carreau"] = Field(
+        default="ree-eyring", description="Viscosity under shear."
+    )
+    shear_stress: Stress | None = Field(
+        default=None, description="For limiting-stress and carreau: the stress of the law."
+    )
+    shear_stress_slope: Number = Field(
+        default=0.0, ge=0.0, le=1.0,
+        description="Of ree-eyring and limiting-stress: rise of the stress with the pressure.",
+    )  # fmt: skip
+    shear_exponent: Number | None = Field(
+        default=None, gt=0.0, le=1.0, description="For carreau: n."
+    )
+
+
+def law_problems(section: str, table: OilBehaviour) -> list[Problem]:
+    """Each law has the keys that it needs, and no others are given."""
+    chosen = (table.pressure_law, table.shear_law)
+    needed = {key: law for law in chosen for key in NEEDED.get(law, ())}
+    problems = []
+    for key in sorted({key for keys in NEEDED.values() for key in keys}):
+        given = getattr(table, key) is not None
+        if key in needed and not given:
+            allowed = f"is missing; {needed[key]} needs it."
+            problems.append(Problem(f"{section}.{key}", "", allowed, "Give it."))
+        elif given and key not in needed:
+            laws = " and ".join(law for law, keys in NEEDED.items() if key in keys)
+            remedy = "Choose such a law, or leave it out."
+            problems.append(Problem(f"{section}.{key}", "", f"is for {laws} only.", remedy))
+    return problems
+
+
+def oil_laws(table: OilBehaviour) -> OilLaws:
+    """The laws that a table without problems chooses."""
+    constants = tuple(getattr(table, key) for key in NEEDED.get(table.pressure_law, ()))
+    return OilLaws(PRESSURE_LAWS[table.pressure_law], constants, _shear_law(table))
+
+
+def _shear_law(table: OilBehaviour) -> ShearLaw:
+    law = SHEAR_LAWS[table.shear_law]
+    if law is ReeEyring:
+        return ReeEyring(table.eyring_stress, table.shear_stress_slope)
+    return law(*(getattr(table, KEYS[field.name]) for field in fields(law)))
