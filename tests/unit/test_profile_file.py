@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -106,6 +107,13 @@ def test_an_x3p_profile_is_that_of_its_heights(tmp_path):
     same = read_profile(write(tmp_path / "p.csv", X, MIDDLE + 2 * X), cutoff=0.25e-3)
     assert profile.spacing == pytest.approx(1e-6)
     assert profile.heights == pytest.approx(same.heights, abs=1e-12)  # six decimals of um
+
+
+def test_x3p_files_need_their_package(tmp_path, monkeypatch):
+    x3pio.write(tmp_path / "p.x3p", 1e-6 * MIDDLE, x_scale=1e-6)
+    monkeypatch.setitem(sys.modules, "x3pio", None)  # as if it were not installed
+    with pytest.raises(InputError, match=r'Install "epicyclic\[x3p\]"'):
+        read_profile(tmp_path / "p.x3p")
 
 
 def test_x3p_files_without_one_whole_profile_are_refused(tmp_path):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -18,7 +18,7 @@ from epicyclic.case.fields import find_field, quantity_of
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.ehl.box import SOLVER_BOX
 from epicyclic.errors import InputError, Problem
-from epicyclic.units import NUMBER, Quantity, format_number
+from epicyclic.units import MICROMETRE, NUMBER, Quantity, format_number
 
 __all__ = [
     "AXES",
@@ -124,8 +124,20 @@ class Design:
                         "Give a smaller range.",
                     )
                 )
+        problems += self._check_roughness()
         if problems:
             raise InputError(problems, "the design")
+
+    def _check_roughness(self) -> Iterator[Problem]:
+        """Both surfaces together must not be rougher than the solver is tested for."""
+        names = ("roughness1", "roughness2")
+        highest = math.hypot(*(max(values) for name, values in self.axes if name in names))
+        limit = MICROMETRE.to_display(SOLVER_BOX["composite_roughness"][1])
+        if highest > limit:
+            yield Problem(
+                f"{self.part}.roughness1, roughness2", f"up to {highest:.3g} um together",
+                f"leaves what the solver is tested for, {limit:g} um.", "Give smaller ranges.",
+            )  # fmt: skip
 
 
 def quantity_of_axis(name: str) -> Quantity:

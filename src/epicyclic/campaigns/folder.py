@@ -54,6 +54,11 @@ class CampaignFolder:
         """The fitted models."""
         return self.path / "model.json"
 
+    @property
+    def finished(self) -> int:
+        """Number of finished simulations."""
+        return self.campaign.size if self.table.exists() else len(self.journal.read())
+
     def prepare(self) -> None:
         """Make the folder.
 

@@ -97,14 +97,14 @@ def characterise(
     )
     folder = CampaignFolder(output, campaign)
     folder.prepare()
+    click.echo(f"{campaign.size} contacts, {folder.finished} of them simulated before.", err=True)
     try:
         with progress_bar("contacts") as progress:
             folder.run(jobs=jobs, cluster=dask, progress=progress)
     except (KeyboardInterrupt, Exception):
-        kept = len(folder.journal.read())
         click.echo(
-            f"{kept} of {campaign.size} simulations kept in {output}; give the same command again "
-            "to go on.",
+            f"{folder.finished} of {campaign.size} simulations kept in {output}; give the same "
+            "command again to go on.",
             err=True,
         )
         raise
