@@ -159,3 +159,10 @@ def test_fingerprint_follows_case_and_values(case):
     ]
     assert len({plan.fingerprint() for plan in plans}) == 3
     assert plans[0].fingerprint() == make_plan(case, {"planet.count": [3, 4]}).fingerprint()
+
+
+def test_values_with_the_same_fault_are_one_problem(case):
+    with pytest.raises(ep.InputError) as caught:
+        make_plan(case, {"operation.speed": [1000.0, "2000 rpm", 3000.0, 4000.0, "5 kg"]})
+    bare, wrong = caught.value.problems
+    assert (bare.value, wrong.value) == ("1000.0 and 2 more", '"5 kg"')

@@ -7,7 +7,7 @@ import json
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import metadata
 from numbers import Integral, Real
 from typing import Any, Protocol
@@ -246,13 +246,24 @@ def _make_axis(case: Case, key: str, values: list[Any]) -> tuple[Axis | None, li
     if not problems and len(set(coordinate)) < len(coordinate):
         problems.append(Problem(key, "", "has the same value twice.", "Give each value once."))
     if problems:
-        return None, problems
+        return None, _one_for_alike(problems)
     if any(isinstance(item, str) for item in coordinate):
         coordinate = [str(item) for item in coordinate]
         unit = ""
     else:
         unit = "1" if quantity is None else quantity.display
     return Axis(key, tuple(values), tuple(coordinate), unit), []
+
+
+def _one_for_alike(problems: Sequence[Problem]) -> list[Problem]:
+    """One problem for all values that have the same."""
+    alike: dict[str, list[Problem]] = {}
+    for problem in problems:
+        alike.setdefault(problem.allowed, []).append(problem)
+    return [
+        replace(first, value=f"{first.value} and {len(others)} more") if others else first
+        for first, *others in alike.values()
+    ]
 
 
 def _unsuitable(key: str, annotation: Any, metadata: tuple[Any, ...]) -> Problem | None:
