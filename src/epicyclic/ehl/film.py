@@ -7,7 +7,7 @@ import math
 __all__ = ["moes_central_film"]
 
 
-def moes_central_film(m: float, l: float) -> float:  # noqa: E741
+def moes_central_film(load: float, material: float) -> float:
     """Central film of an incompressible oil in Moes' units, H = (h/R)(2U)^-1/2. Theory (H20).
 
     H. Moes, Lubrication and Beyond, University of Twente (2000). A fit of numerical solutions over
@@ -15,14 +15,14 @@ def moes_central_film(m: float, l: float) -> float:  # noqa: E741
 
     Parameters
     ----------
-    m : float
-        Load M. [1]
-    l : float
-        Material L. [1]
+    load : float
+        M. [1]
+    material : float
+        L. [1]
     """
-    rigid_isoviscous, elastic_isoviscous = 3 / m, 2.621 * m**-0.2
-    rigid_piezoviscous = 1.287 * math.pow(l, 2 / 3)
-    elastic_piezoviscous = 1.311 * m**-0.125 * math.pow(l, 0.75)
+    rigid_isoviscous, elastic_isoviscous = 3 / load, 2.621 * load**-0.2
+    rigid_piezoviscous = 1.287 * math.pow(material, 2 / 3)
+    elastic_piezoviscous = 1.311 * load**-0.125 * math.pow(material, 0.75)
     s = (7 + 8 * math.exp(-2 * elastic_isoviscous / rigid_isoviscous)) / 5
     isoviscous = rigid_isoviscous ** (7 / 3) + elastic_isoviscous ** (7 / 3)
     piezoviscous = rigid_piezoviscous**-3.5 + elastic_piezoviscous**-3.5
