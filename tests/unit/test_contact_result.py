@@ -63,6 +63,12 @@ def test_json_holds_all_that_varies_over_x(rough):
     )
 
 
+def test_json_holds_inputs_that_make_the_same_contact():
+    result = solved(surface1={"roughness": "0.1 um", "seed": 5})
+    again = load_contact_case(json.loads(result.to_json())["inputs"])
+    assert again == result.case
+
+
 def test_every_quantity_beyond_the_tested_range_is_flagged():
     contact = {"radius": "0.1 mm", "hertz_pressure": "4 GPa", "rolling_speed": "100 m/s"}
     result = solved(contact=contact, lubricant=TABLES["lubricant"] | {"temperature": "20 degC"})

@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.analysis.contact_limits import contact_flags, contact_notes, film_ratio
+from epicyclic.analysis.result import versions
 from epicyclic.case.contact import ContactCase, ContactModel, contact_model
+from epicyclic.case.plain import plain
 from epicyclic.ehl.heating import thinning
 from epicyclic.ehl.rough import Frame, RoughSolution, solve_rough
 from epicyclic.ehl.roughness import Profile
@@ -151,9 +153,11 @@ class ContactResult:
         return touching
 
     def to_json(self) -> str:
-        """Everything in SI units: status, warnings, figures, and all that varies over x."""
+        """Inputs, status, warnings; in SI units figures and all that varies over x."""
         data: dict[str, Any] = {
             "title": self.case.title,
+            "versions": versions(),
+            "inputs": plain(self.case),
             "status": str(self.status),
             "message": self.message,
             "warnings": self.warnings,

@@ -251,10 +251,11 @@ def _check_surface(name: str, surface: Surface) -> list[Problem]:
     else:
         idle, allowed = (*OF_GENERATED, *OF_MEASURED), "has no effect on a smooth surface."
     remedy = "Give profile or roughness to suit, or leave it out."
+    usual = type(surface)()
     problems = [
         Problem(f"{name}.{key}", "", allowed, remedy)
         for key in idle
-        if key in surface.model_fields_set and getattr(surface, key) is not None
+        if getattr(surface, key) != getattr(usual, key)
     ]
     if problems:
         return problems
