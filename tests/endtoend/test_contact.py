@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from epicyclic.case.contact import contact_model, load_contact_case
+from epicyclic.case.contact import ContactCase, contact_model, load_contact_case
+from epicyclic.case.validation import tables_of
 from epicyclic.errors import InputError
 
 SMOOTH = (
@@ -113,6 +116,20 @@ def test_problems_of_both_surfaces_are_told_with_their_keys(epicyclic):
     assert done.returncode == 2
     assert "surface1.profile = none.csv: the file cannot be read" in done.stderr
     assert "surface2.kurtosis = 1.01: cannot be less" in done.stderr
+
+
+def test_the_how_to_shows_every_key():
+    page = Path(__file__).parents[2] / "docs" / "how-to" / "line-contact.md"
+    tables = re.split(r"^\[(\w+)\]$", page.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    shown = {
+        name: set(re.findall(r"^(?:# )?(\w+) = ", text, flags=re.MULTILINE))
+        for name, text in zip(tables[1::2], tables[2::2], strict=True)
+    }
+    shown["contact"].add("hertz_pressure")  # in the comment beside line_load
+    both = shown["surface1"] | shown["surface2"]
+    shown |= {"surface1": both, "surface2": both}
+    keys = {name: set(table.model_fields) for name, table in tables_of(ContactCase).items()}
+    assert shown == keys
 
 
 def test_keys_without_effect_are_refused(epicyclic, tmp_path):
