@@ -119,11 +119,15 @@ class ContactResult:
                 ContactFigure("friction of asperities", rough.asperity_friction_share, "1", "%"),
                 ContactFigure("load on asperities", rough.asperity_load_share, "1", "%"),
                 ContactFigure("length in contact", rough.contact_share, "1", "%"),
+                ContactFigure("central film, mean in time", rough.mean_central_film, "m", "um"),
                 ContactFigure("least film, mean in time", rough.mean_least_film, "m", "um"),
                 ContactFigure(
                     "highest pressure, mean in time", rough.mean_highest_pressure, "Pa", "GPa"
                 ),
                 ContactFigure("rolling loss", rough.rolling_loss, "W/m", "W/m"),
+                ContactFigure(
+                    "standard error of the rolling loss", rough.rolling_loss_error, "W/m", "W/m"
+                ),
             ]
         return [figure for figure in found if math.isfinite(figure.value)]
 

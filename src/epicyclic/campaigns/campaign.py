@@ -28,7 +28,7 @@ from epicyclic.sweeps.work import guarded
 
 __all__ = ["Campaign", "make_campaign", "oil_tables"]
 
-SCHEMA = 1
+SCHEMA = 2
 """Version of the files of a campaign."""
 BRIEFLY = {"numerics.most_blocks": BRIEF, "numerics.friction_tolerance": 0.05}
 """How long a simulation takes: its error need not be smaller than the scatter of the best fit."""
@@ -224,6 +224,7 @@ def _row(result: ContactResult) -> Row:
         "friction": smooth.friction_coefficient,
         "friction_error": 0.0,
         "rolling_loss": smooth.rolling_loss,
+        "rolling_loss_error": 0.0,
         "unsolved_share": 0.0,
         "smooth_friction": smooth.friction_coefficient,
         "smooth_rolling_loss": smooth.rolling_loss,
@@ -235,6 +236,7 @@ def _row(result: ContactResult) -> Row:
             "friction": rough.friction_coefficient,
             "friction_error": rough.friction_error,
             "rolling_loss": rough.rolling_loss,
+            "rolling_loss_error": rough.rolling_loss_error,
             "unsolved_share": rough.unsolved_steps / max(rough.steps, 1),
             "asperity_load_share": rough.asperity_load_share,
             "asperity_friction_share": rough.asperity_friction_share,

@@ -33,14 +33,14 @@ __all__ = ["characterise_oil", "fit_and_write", "fit_campaign", "simulated_quant
 FloatArray = NDArray[np.float64]
 
 LARGEST_ERROR = 0.10
-"""Standard error of a simulated friction over it above which it is not fitted. [1]"""
+"""Standard error of a simulated mean over it above which it is not fitted. [1]"""
 LARGEST_UNSOLVED_SHARE = 0.01
 """Share of time steps without convergence above which a simulation is not fitted. [1]"""
 SCATTER = 0.05
 """Relative error that a form has anyway: smaller ones of a simulation do not count more. [1]"""
 QUANTITIES = {
     "friction": ("gear", "friction", "1"),
-    "rolling_loss": ("gear", "smooth_rolling_loss", "W/m"),
+    "rolling_loss": ("gear", "rolling_loss", "W/m"),
     "bearing_rolling_loss": ("bearing", "rolling_loss", "W/m"),
 }
 """What is fitted: to which contacts, to which column, in which unit."""
@@ -115,8 +115,8 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
 
     Theory (O8).
 
-    A simulation counts if nearly all of its time steps converged and its friction is known to
-    10 %, whether or not it reached the 2 % at which it is called converged.
+    A simulation counts if nearly all of its time steps converged and what is fitted is known to
+    10 %, whether or not it reached the error at which it is called converged.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
             reasons.append(Problem(quantity, given, f"not fitted: {error}.", remedy))
     if reasons:
         raise InputError(reasons, str(folder.path))
-    frame = folder.read()
+    frame, parts = folder.read(), QUANTITIES.values()
     return OilModel(
         format=FORMAT,
         version=metadata.version("epicyclic"),
@@ -146,13 +146,11 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
         simulations={
             "simulated": len(frame),
             "not converged": int(frame["status"].eq("failed").sum()),
-            "fitted": int(_good(frame).sum()),
+            "fitted": int(
+                np.any([_good(frame, part, column) for part, column, _ in parts], axis=0).sum()
+            ),
         },
-        notes=(
-            "Rolling losses of gear contacts are those of the smooth contacts, of bearing contacts "
-            "those of the rough ones.",
-            "Errors are those against the simulations, not against measurements.",
-        ),
+        notes=("Errors are those against the simulations, not against measurements.",),
         equivalent_modulus=_modulus(folder),
         fits=fits,
     )
@@ -163,22 +161,20 @@ def simulated_quantities(
 ) -> dict[str, tuple[ContactStates, FloatArray, FloatArray]]:
     """Conditions, value and weight of the simulations that are good enough, by quantity."""
     frame = folder.read()
-    good = _good(frame)
     found = {}
     for quantity, (part, column, _) in QUANTITIES.items():
         if frame["part"].eq(part).any():
-            rows = frame[good & frame["part"].eq(part) & frame[column].gt(0)]
+            rows = frame[_good(frame, part, column)]
             states = _states(rows, folder)
             found[quantity] = (states, rows[column].to_numpy(), _weights(rows, column))
     return found
 
 
-def _good(frame: pd.DataFrame) -> pd.Series:
-    """Which simulations are fitted."""
-    known = frame["friction"].gt(0) & frame["friction_error"].le(LARGEST_ERROR * frame["friction"])
-    return frame["unsolved_share"].le(LARGEST_UNSOLVED_SHARE) & (
-        known | frame["part"].eq("bearing")
-    )
+def _good(frame: pd.DataFrame, part: str, column: str) -> pd.Series:
+    """Which simulations of a part are known well enough to be fitted."""
+    value, error = frame[column], frame[f"{column}_error"]
+    solved = frame["part"].eq(part) & frame["unsolved_share"].le(LARGEST_UNSOLVED_SHARE)
+    return solved & value.gt(0) & error.le(LARGEST_ERROR * value)
 
 
 def _modulus(folder: CampaignFolder) -> float:
@@ -203,9 +199,7 @@ def _states(rows: pd.DataFrame, folder: CampaignFolder) -> ContactStates:
 
 
 def _weights(rows: pd.DataFrame, column: str) -> FloatArray:
-    """What each simulation counts: less where its friction is known less well."""
-    if column != "friction":
-        return np.ones(len(rows))
-    error: FloatArray = (rows["friction_error"] / rows["friction"]).to_numpy()
+    """What each simulation counts: less where its mean is known less well."""
+    error: FloatArray = (rows[f"{column}_error"] / rows[column]).to_numpy()
     weight: FloatArray = SCATTER**2 / (SCATTER**2 + error**2)
     return weight

@@ -183,8 +183,8 @@ class LineContact:
     def _speed_number(self) -> float:
         return self.oil.viscosity * self.rolling_speed / (self.equivalent_modulus * self.radius)
 
-    def scaled_fluid(self) -> ScaledFluid:
-        """The oil in the units of this contact. Theory (H2)."""
+    def scaled_fluid(self, easing: float = 1.0) -> ScaledFluid:
+        """The oil in the units of this contact, its flow under pressure eased. Theory (H2)."""
         oil, p_h = self.oil, self.hertz_pressure
         law = oil.pressure_law
         code, second, third = BARUS, 0.0, 0.0
@@ -200,7 +200,7 @@ class LineContact:
             third=third,
             stiffening=STIFFENING * p_h if oil.compressible else 0.0,
             packing=PACKING * p_h if oil.compressible else 0.0,
-            poiseuille=self.half_width**3 * p_h / wedge,
+            poiseuille=easing * self.half_width**3 * p_h / wedge,
             sliding=oil.viscosity * abs(self.sliding_speed) / (p_h * self.film_scale),
             shear_law=SHEAR_CODES[type(oil.shear)],
             stress=getattr(oil.shear, "stress", math.inf) / p_h,

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from epicyclic.ehl.conditions import LineContact
 from epicyclic.ehl.rheology import Roelands
-from epicyclic.kernels.ehl_fluid import ScaledFluid
 from epicyclic.kernels.ehl_steady import shear_stresses
 from epicyclic.lubricant.properties import ROELANDS_PRESSURE
 
-__all__ = ["Heating", "flow_fluid", "inlet_factor", "temperature_rise", "thinning"]
+__all__ = ["Heating", "flow_easing", "inlet_factor", "temperature_rise", "thinning"]
 
 FloatArray = NDArray[np.float64]
 
@@ -56,16 +55,14 @@ def inlet_factor(contact: LineContact, heating: Heating) -> float:
     return 1 / (1 + 0.1 * (1 + 14.8 * math.pow(slip, 0.83)) * math.pow(load, 0.64))
 
 
-def flow_fluid(contact: LineContact, heating: Heating | None) -> ScaledFluid:
-    """The oil for film and pressure: eased in its flow so that the film falls by the inlet factor.
+def flow_easing(contact: LineContact, heating: Heating | None) -> float:
+    """Factor on the flow under pressure by which the film falls by the inlet factor.
 
     Theory (H29).
     """
-    fluid = contact.scaled_fluid()
     if heating is None:
-        return fluid
-    easing = math.pow(inlet_factor(contact, heating), -1 / FILM_EXPONENT)
-    return fluid._replace(poiseuille=easing * fluid.poiseuille)
+        return 1.0
+    return math.pow(inlet_factor(contact, heating), -1 / FILM_EXPONENT)
 
 
 def thinning(
@@ -84,7 +81,7 @@ def temperature_rise(
 ) -> FloatArray:
     """Mean over the film of the temperature above that of the inlet, shape (n,). [K]
 
-    Theory (H30), (H31).
+    Theory (H30), (H31). Not a number everywhere if it does not settle.
 
     Parameters
     ----------
@@ -109,8 +106,8 @@ def temperature_rise(
         change = DAMPING * (new - rise)
         rise = rise + change
         if np.abs(change).max() < SMALLEST_CHANGE:
-            break
-    return rise
+            return rise
+    return np.full_like(x, math.nan)
 
 
 def _moving_source(x: FloatArray) -> FloatArray:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.ehl.conditions import LineContact
-from epicyclic.ehl.heating import Heating, flow_fluid, thinning
+from epicyclic.ehl.heating import Heating, flow_easing, thinning
 from epicyclic.ehl.roughness import SMOOTH, Profile
 from epicyclic.ehl.steady import SmoothSolution, expected_film, solve_smooth
 from epicyclic.kernels.ehl_linear import GROUP
@@ -43,7 +45,9 @@ STATIONARY = 0.02
 """Standard error of the mean friction over it at which a simulation ends by default. [1]"""
 LARGEST_UNSOLVED_SHARE = 0.01
 """Share of time steps without convergence above which a result is failed. [1]"""
-COLUMNS = 9
+COLUMNS = 10
+MOST_FRAMES = 60
+"""Moments kept at most, the last ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,14 +106,16 @@ class RoughSolution:
     mean_highest_pressure : float
         Mean over all moments of the highest pressure; above the hardness of a surface it would
         yield, and this solution be wrong there. [Pa]
-    rolling_loss : float
-        Power per length of the pressure flow. [W/m]
+    mean_central_film : float
+        Mean over all moments of the film at x = 0. [m]
+    rolling_loss, rolling_loss_error : float
+        Power per length of the pressure flow: mean and its standard error. [W/m]
     steps, unsolved_steps : int
         Time steps in all, and those without convergence.
     newton_steps : float
         Mean over the time steps.
     frames : list of Frame
-        Moments kept, if asked for.
+        The last moments, if asked for.
     """
 
     contact: LineContact
@@ -125,8 +131,10 @@ class RoughSolution:
     asperity_load_share: float
     minimum_film: float
     mean_least_film: float
+    mean_central_film: float
     mean_highest_pressure: float
     rolling_loss: float
+    rolling_loss_error: float
     steps: int
     unsolved_steps: int
     newton_steps: float
@@ -145,12 +153,13 @@ class _Simulation:
         self.smooth = smooth
         self.contact, self.asperities = contact, asperities
         self.boundary_friction = asperities.friction if contact.sliding_speed else 0.0
-        parabola = math.sqrt(2 * expected_film(contact))
+        easing = flow_easing(contact, heating)
+        parabola = math.sqrt(2 * expected_film(contact, easing))
         inlet, outlet = -(1 + max(1.5, 3 * parabola)), 1 + max(0.5, 1.5 * parabola)
         self.x: FloatArray = np.linspace(inlet, outlet, nodes, dtype=np.float64)
         self.dx = float(self.x[1] - self.x[0])
         self.stride = _stride(contact, surfaces, self.dx * contact.half_width)
-        fluid = flow_fluid(contact, heating)
+        fluid = contact.scaled_fluid(easing)
         self.fluid = fluid._replace(poiseuille=self.stride * fluid.poiseuille)
         reach = self.x - self.x[0]
         cell = np.array([-self.dx, 0.0, self.dx], dtype=np.float64)
@@ -199,15 +208,16 @@ class _Simulation:
                 (contact.speed1, contact.speed2), self.heights, surfaces, strict=True
             )
         ]
-        self.steps = 0
-        self.frames: list[Frame] = []
+        self.steps = self.unsolved = 0
+        self.frames: deque[Frame] = deque(maxlen=MOST_FRAMES)
+        self.center = int(np.argmin(np.abs(self.x)))
         self.steps_to_frame = 0
         if frame_interval is not None:
             time = frame_interval * contact.rolling_speed / contact.half_width
             self.steps_to_frame = self.step_count(time)
 
     def advance(self, time: float) -> FloatArray:
-        """Records of a `time` in b/u_r, shape (steps, 9); keeps frames if they are asked for."""
+        """Records of a `time` in b/u_r, shape (steps, 10); keeps frames if they are asked for."""
         left = self.step_count(time)
         parts = []
         while left > 0:
@@ -219,18 +229,20 @@ class _Simulation:
         return np.concatenate(parts)
 
     def march(self, steps: int) -> FloatArray:
-        """Records of `steps` more time steps, shape (steps, 9)."""
+        """Records of `steps` more time steps, shape (steps, 10)."""
         records = np.zeros((steps, COLUMNS))
         scale = self.contact.film_scale
         self.approach = march(
             self.pressure, self.film, self.now, self.before, self.active, self.approach,
             self.smooth_pressure, self.base, self.kernel_row, self.grouped, self.included,
             self.heights[0], self.heights[1], self.shifts[0], self.shifts[1], self.stride,
-            self.steps, self.step_count(GROWTH), self.fluid, self.thinned, self.dx, self.load,
+            self.center, self.steps, self.step_count(GROWTH), self.fluid, self.thinned, self.dx,
+            self.load,
             self.asperities.film / scale, self.boundary_friction, TOLERANCE, MAX_ITERATIONS,
             records,
         )  # fmt: skip
         self.steps += steps
+        self.unsolved += int((~(records[:, 7] < TOLERANCE)).sum())
         return records
 
     def step_count(self, time: float) -> int:
@@ -303,42 +315,71 @@ def solve_rough(
     run = _Simulation(smooth, surfaces, nodes, asperities, frame_interval, heating, frozen)
     settling = run.advance(GROWTH + SETTLING)
     blocks: list[FloatArray] = []
-    error = mean = 0.0
-    while not (
-        math.isnan(mean) or len(blocks) >= most_blocks or _is_known(blocks, mean, error, tolerance)
-    ):
+    judged = _Mean(0.0, math.inf)
+    while not (math.isnan(judged.value) or len(blocks) >= most_blocks or judged.within(tolerance)):
         blocks.append(run.advance(BLOCK))
-        mean, error = _mean_shear(blocks)
+        friction = _mean([_shear(block) for block in blocks])
+        rolling = _rolling_loss(run, settling, blocks)
+        judged = friction if contact.sliding_speed else rolling
         if progress is not None:
-            progress(len(blocks), _expected(blocks, mean, error, tolerance, most_blocks))
-    return _averages(run, settling, np.concatenate(blocks), mean, error, tolerance)
+            progress(len(blocks), _expected(len(blocks), judged, tolerance, most_blocks))
+    message = _failure(run, judged, tolerance)
+    return _averages(run, np.concatenate(blocks), friction, rolling, message)
 
 
-def _is_known(blocks: Sequence[FloatArray], mean: float, error: float, tolerance: float) -> bool:
-    """Enough blocks for the error wanted."""
-    return len(blocks) >= FEWEST_BLOCKS and error <= tolerance * mean
+class _Mean(NamedTuple):
+    """A mean over blocks, and its standard error."""
+
+    value: float
+    error: float
+
+    def within(self, tolerance: float) -> bool:
+        return self.error <= tolerance * self.value
 
 
-def _expected(
-    blocks: Sequence[FloatArray], mean: float, error: float, tolerance: float, most_blocks: int
-) -> int:
-    """Blocks that it takes if the error goes on falling with the root of their number."""
-    if not error < math.sqrt(most_blocks / len(blocks)) * tolerance * mean:
-        return most_blocks
-    enough = math.ceil(len(blocks) * (error / (tolerance * mean)) ** 2)
-    return max(FEWEST_BLOCKS, len(blocks), enough)
-
-
-def _mean_shear(blocks: Sequence[FloatArray]) -> tuple[float, float]:
-    """Integral of the shear stress, mean and standard error.
+def _mean(blocks: Sequence[FloatArray]) -> _Mean:
+    """Of the values at every time step of each block; infinite error of too few blocks.
 
     A ridge crosses the contact in two blocks, so that blocks are taken to depend on the next.
     """
-    means = np.array([_shear(block).mean() for block in blocks])
+    means = np.array([block.mean() for block in blocks])
     rest = means - means.mean()
     following = max(0.0, float(rest[1:] @ rest[:-1]))
     variance = (float(rest @ rest) + 2 * following) / max(1, means.size - 1)
-    return float(means.mean()), math.sqrt(variance / means.size)
+    error = math.sqrt(variance / means.size) if means.size >= FEWEST_BLOCKS else math.inf
+    return _Mean(float(means.mean()), error)
+
+
+def _rolling_loss(run: _Simulation, settling: FloatArray, blocks: Sequence[FloatArray]) -> _Mean:
+    """That of the smooth contact and what the roughness adds to the power of the flow. [W/m]"""
+    contact = run.contact
+    power = contact.hertz_pressure * contact.film_scale * contact.rolling_speed
+    # the first step still has next to no roughness
+    return _mean(
+        [run.smooth.rolling_loss + power * (block[:, 5] - settling[0, 5]) for block in blocks]
+    )
+
+
+def _expected(done: int, judged: _Mean, tolerance: float, most_blocks: int) -> int:
+    """Blocks that it takes if the error goes on falling with the root of their number."""
+    wanted = tolerance * judged.value
+    if not judged.error < math.sqrt(most_blocks / done) * wanted:
+        return most_blocks
+    return max(FEWEST_BLOCKS, done, math.ceil(done * (judged.error / wanted) ** 2))
+
+
+def _failure(run: _Simulation, judged: _Mean, tolerance: float) -> str:
+    """Why there is no result to rely on; empty if there is."""
+    unsolved = run.unsolved
+    if math.isnan(judged.value):
+        return "a time step broke down"
+    if not judged.within(tolerance):
+        what = "friction" if run.contact.sliding_speed else "rolling loss"
+        share = judged.error / abs(judged.value)
+        return f"{what} is known to {share:.1%} only after {run.steps} time steps"
+    if unsolved > LARGEST_UNSOLVED_SHARE * run.steps:
+        return f"{unsolved} of {run.steps} time steps did not converge"
+    return ""
 
 
 def _shear(records: FloatArray) -> FloatArray:
@@ -348,43 +389,34 @@ def _shear(records: FloatArray) -> FloatArray:
 
 
 def _averages(
-    run: _Simulation, settling: FloatArray, records: FloatArray, mean: float, error: float,
-    tolerance: float,
-) -> RoughSolution:  # fmt: skip
-    """The result of a simulation; `mean` and `error` of the integral of the shear stress."""
-    contact, smooth = run.contact, run.smooth
-    unsolved = _unsolved(settling) + _unsolved(records)
-    message = ""
-    if math.isnan(mean):
-        message = "a time step broke down"
-    elif error > tolerance * mean:
-        message = f"friction is known to {error / mean:.1%} only after {run.steps} time steps"
-    elif unsolved > LARGEST_UNSOLVED_SHARE * run.steps:
-        message = f"{unsolved} of {run.steps} time steps did not converge"
+    run: _Simulation, records: FloatArray, shear: _Mean, rolling: _Mean, message: str
+) -> RoughSolution:
+    """The result of a simulation; `shear` is the integral of the shear stress."""
+    contact = run.contact
     load = math.pi / 2
     column = records.mean(axis=0)
-    power = contact.hertz_pressure * contact.film_scale * contact.rolling_speed
     return RoughSolution(
         contact=contact,
-        smooth=smooth,
+        smooth=run.smooth,
         status=Status.FAILED if message else Status.CONVERGED,
         message=message,
         x=run.x * contact.half_width,
         friction=_shear(records) / load,
-        friction_coefficient=mean / load,
-        friction_error=error / load,
-        asperity_friction_share=float(column[1]) / mean if mean > 0 else 0.0,
+        friction_coefficient=shear.value / load,
+        friction_error=shear.error / load,
+        asperity_friction_share=float(column[1]) / shear.value if shear.value > 0 else 0.0,
         contact_share=float(column[2]),
         asperity_load_share=float(column[3]) / load,
         minimum_film=float(records[:, 4].min()) * contact.film_scale,
         mean_least_film=float(column[4]) * contact.film_scale,
+        mean_central_film=float(column[9]) * contact.film_scale,
         mean_highest_pressure=float(column[8]) * contact.hertz_pressure,
-        # the first step still has next to no roughness
-        rolling_loss=smooth.rolling_loss + power * float(column[5] - settling[0, 5]),
+        rolling_loss=rolling.value,
+        rolling_loss_error=rolling.error,
         steps=run.steps,
-        unsolved_steps=unsolved,
+        unsolved_steps=run.unsolved,
         newton_steps=float(records[:, 6].mean()),
-        frames=run.frames,
+        frames=list(run.frames),
     )
 
 
@@ -393,10 +425,6 @@ def _failed(smooth: SmoothSolution, message: str) -> RoughSolution:
     nothing = math.nan
     return RoughSolution(
         smooth.contact, smooth, Status.FAILED, message, np.empty(0), np.empty(0), nothing, nothing,
-        nothing, nothing, nothing, nothing, nothing, nothing, nothing, 0, 0, nothing,
+        nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, 0, 0,
+        nothing,
     )  # fmt: skip
-
-
-def _unsolved(records: FloatArray) -> int:
-    """Number of time steps that did not meet the tolerance."""
-    return int((~(records[:, 7] < TOLERANCE)).sum())

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from epicyclic.ehl.conditions import LineContact
 from epicyclic.ehl.film import moes_central_film
 from epicyclic.ehl.grid import gap_length, graded_nodes, grid_for
-from epicyclic.ehl.heating import Heating, flow_fluid, temperature_rise, thinning
+from epicyclic.ehl.heating import Heating, flow_easing, temperature_rise, thinning
 from epicyclic.kernels.ehl_steady import deflection_matrix, shear_stresses, solve_steady
 from epicyclic.status import Status
 
@@ -135,8 +135,9 @@ def solve_smooth(
     heating : Heating, optional
         Isothermal without.
     """
-    film = expected_film(contact)
-    fluid = flow_fluid(contact, heating)
+    easing = flow_easing(contact, heating)
+    film = expected_film(contact, easing)
+    fluid = contact.scaled_fluid(easing)
     grid = grid_for(film, inlet)
     x = graded_nodes(node_counts(nodes)[0], grid)
     pressure, approach = _first_guess(x, film), 0.0
@@ -174,6 +175,8 @@ def _in_si(
     if heating is not None and not message:
         rise = temperature_rise(contact, heating, *si)
         thinned = thinning(contact, heating, si[1], rise)
+        if np.isnan(rise).any():
+            message = "the temperature of the film does not settle"
     stress = shear_stresses(pressure, height, thinned, contact.scaled_fluid())
     return SmoothSolution(
         contact=contact,
@@ -190,10 +193,14 @@ def _in_si(
     )
 
 
-def expected_film(contact: LineContact) -> float:
-    """H = h R/b^2 from the fit of Moes. Theory (H3), (H20)."""
-    m = contact.moes_load
-    return moes_central_film(m, contact.moes_material) * math.pi / (8 * m)
+def expected_film(contact: LineContact, easing: float = 1.0) -> float:
+    """H = h R/b^2 from the fit of Moes. Theory (H3), (H20).
+
+    A flow that is eased by a factor is that of an oil thinner by it, with the same slope.
+    """
+    load = contact.moes_load * math.sqrt(easing)
+    material = contact.moes_material * math.pow(easing, -0.25)
+    return moes_central_film(load, material) * math.pi / (8 * load)
 
 
 def node_counts(nodes: int) -> Sequence[int]:

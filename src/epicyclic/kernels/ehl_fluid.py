@@ -20,6 +20,7 @@ __all__ = [
     "TWO_SLOPE",
     "ScaledFluid",
     "density_ratio",
+    "flow_work",
     "log_viscosity_ratio",
     "mean_fluidity",
     "mean_shear",
@@ -125,6 +126,18 @@ def density_ratio(pressure: float, fluid: ScaledFluid) -> tuple[float, float]:
     below = 1.0 + fluid.packing * pressure
     ratio = (1.0 + fluid.stiffening * pressure) / below
     return ratio, (fluid.stiffening - fluid.packing) / (below * below)
+
+
+@kernel
+def flow_work(pressure: float, fluid: ScaledFluid) -> float:
+    """Integral of the pressure over the density ratio: work to press a unit of mass in.
+
+    Theory (H33).
+    """
+    a, b = fluid.stiffening, fluid.packing
+    if a == 0.0:
+        return pressure
+    return b / a * pressure + (1.0 - b / a) * math.log1p(a * pressure) / a
 
 
 @kernel

@@ -16,6 +16,7 @@ from epicyclic.kernels._jit import kernel
 from epicyclic.kernels.ehl_fluid import (
     ScaledFluid,
     density_ratio,
+    flow_work,
     log_viscosity_ratio,
     mean_fluidity,
     mean_shear,
@@ -154,7 +155,7 @@ def solve_step(
     kernel_row: FloatArray, order: FloatArray, history: FloatArray, fluid: ScaledFluid, dx: float,
     load: float, active: BoolArray, grouped: FloatArray, included: BoolArray, held: float,
     tolerance: float, max_iterations: int,
-) -> tuple[float, int, float, float]:  # fmt: skip
+) -> tuple[float, int, float]:  # fmt: skip
     """Pressure and film after one time step, in place.
 
     Theory (H21), (H22).
@@ -188,8 +189,6 @@ def solve_step(
     iterations : int
     error : float
         What `tolerance` bounds; not a number if the iteration broke down.
-    dissipation : float
-        Power of the pressure flow.
     """
     n = pressure.size
     rho, d_rho = np.empty(n), np.empty(n)
@@ -218,7 +217,7 @@ def solve_step(
             lack, kernel_row, coarse, rows, grouped, local, by_film, band, active, dx, change
         )
         if not np.isfinite(change).all():
-            return approach, iteration, np.nan, 0.0
+            return approach, iteration, np.nan
         # asperities may carry many times p_h
         peak = max(1.0, pressure.max())
         length = min(1.0, LARGEST_STEP * peak / np.abs(change[:n]).max())
@@ -235,11 +234,7 @@ def solve_step(
         deflect(kernel_row, pressure, bent)
         for i in range(n):
             film[i] = gap[i] + approach + bent[i]
-    dissipation = 0.0
-    for i in range(n - 1):
-        difference = pressure[i + 1] - pressure[i]
-        dissipation += conductance[i] * difference**2 / (0.5 * (rho[i] + rho[i + 1]))
-    return approach, iteration, error, dissipation
+    return approach, iteration, error
 
 
 @kernel
@@ -290,6 +285,22 @@ def masses(pressure: FloatArray, film: FloatArray, fluid: ScaledFluid, out: Floa
 
 
 @kernel
+def flow_power(
+    pressure: FloatArray, now: FloatArray, order: FloatArray, history: FloatArray,
+    fluid: ScaledFluid,
+) -> float:  # fmt: skip
+    """Power of the pressure flow in a time step: the mass it takes from every node, lifted.
+
+    Theory (H33). Linear in the pressure, so that what the iteration leaves does not spoil it.
+    """
+    power = 0.0
+    for i in range(1, pressure.size - 1):
+        if pressure[i] > 0.0:
+            power += flow_work(pressure[i], fluid) * (history[i] - order[i] * now[i])
+    return power
+
+
+@kernel
 def measure(
     pressure: FloatArray, film: FloatArray, thinned: FloatArray, fluid: ScaledFluid, dx: float,
     contact_film: float, boundary_friction: float, record: FloatArray,
@@ -314,9 +325,10 @@ def march(
     pressure: FloatArray, film: FloatArray, now: FloatArray, before: FloatArray,
     active: BoolArray, approach: float, smooth: FloatArray, base: FloatArray,
     kernel_row: FloatArray, grouped: FloatArray, included: BoolArray, heights1: FloatArray,
-    heights2: FloatArray, shift1: float, shift2: float, stride: int, first: int, growth: int,
-    fluid: ScaledFluid, thinned: FloatArray, dx: float, load: float, contact_film: float,
-    boundary_friction: float, tolerance: float, max_iterations: int, records: FloatArray,
+    heights2: FloatArray, shift1: float, shift2: float, stride: int, center: int, first: int,
+    growth: int, fluid: ScaledFluid, thinned: FloatArray, dx: float, load: float,
+    contact_film: float, boundary_friction: float, tolerance: float, max_iterations: int,
+    records: FloatArray,
 ) -> float:  # fmt: skip
     """Time steps, as many as `records` has rows; state arrays change in place.
 
@@ -343,6 +355,8 @@ def march(
         Nodes by which each surface moves in a step, `stride` times u_k/u_r.
     stride : int
         Nodes by which the entrained mass moves in a step.
+    center : int
+        Node at X = 0.
     first, growth : int
         Steps done before; steps in which the roughness grows from zero.
     fluid, dx, load
@@ -353,9 +367,10 @@ def march(
         Film below which surfaces touch; friction there over the pressure.
     tolerance, max_iterations
         Of `solve_step`.
-    records : ndarray, shape (steps, 9)
+    records : ndarray, shape (steps, 10)
         Integrals over X of fluid and of asperity shear, contact length over 2 b, integral of the
-        pressure in contact, least film, dissipation, Newton steps, error, highest pressure.
+        pressure in contact, least film, power of the pressure flow, Newton steps, error, highest
+        pressure, film at the center.
 
     Returns
     -------
@@ -406,8 +421,9 @@ def march(
         before[:] = now
         masses(pressure, film, fluid, now)
         measure(pressure, film, thinned, fluid, dx, contact_film, boundary_friction, records[t])
-        records[t, 5] = result[3] / stride
+        records[t, 5] = flow_power(pressure, now, order, history, fluid) / stride
         records[t, 6] = iterations
         records[t, 7] = result[2]
         records[t, 8] = pressure.max()
+        records[t, 9] = film[center]
     return approach
