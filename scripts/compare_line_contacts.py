@@ -15,12 +15,14 @@ import sys
 import time
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from epicyclic.analysis.contact import solve_contact
 from epicyclic.case.contact import load_contact_case
+from epicyclic.case.values import parse_value
 from epicyclic.kernels.line_contact import pan_hamrock_minimum_film
 from epicyclic.kernels.mixed_ehl import sliding_friction
 from epicyclic.lubricant.properties import oil_state
@@ -60,7 +62,7 @@ DUMMY = {"radius": "10 mm", "hertz_pressure": "1 GPa", "rolling_speed": "1 m/s"}
 
 
 def compare(
-    point: dict[str, float], law: str, changes: Mapping[str, str]
+    point: dict[str, float], law: str, changes: Mapping[str, Any]
 ) -> dict[str, float | str]:
     """Friction of both, and how the solution ended."""
     case = load_contact_case(
@@ -109,7 +111,7 @@ def compare(
     }
 
 
-def main(count: int, seed: int, law: str, changes: Mapping[str, str]) -> None:
+def main(count: int, seed: int, law: str, changes: Mapping[str, Any]) -> None:
     rng = np.random.default_rng(seed)
     rows: list[dict[str, float | str]] = []
     for _ in range(count):
@@ -146,4 +148,5 @@ def report(table: pd.DataFrame) -> None:
 
 if __name__ == "__main__":
     count, seed, law, *others = sys.argv[1:]
-    main(int(count), int(seed), law, dict(other.split("=", 1) for other in others))
+    pairs = (other.split("=", 1) for other in others)
+    main(int(count), int(seed), law, {key: parse_value(value) for key, value in pairs})
