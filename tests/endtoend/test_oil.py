@@ -246,7 +246,11 @@ def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
 
     monkeypatch.setattr(direct, "_friction", friction)
     case = ep.load_case("talbot-2012-pair").updated(PAIR | {"models.friction": "ehl-direct"})
-    result = ep.solve(case)
+    told = []
+    with direct.contacts_told(lambda *numbers: told.append(numbers)):
+        result = ep.solve(case)
+    assert [done for done, _ in told] == list(range(1, len(calls) + 1))
+    assert told[-1] == (len(calls), len(calls))
     contact = result.meshes["mesh"].contact
     power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
     exact = float((0.05 * (contact.radius / 0.01) ** 0.3 * power).sum())

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from epicyclic.cli.options import case_argument, json_option, load_with, plot_option, set_option
 from epicyclic.cli.output import beside, check_ending, draw, show
+
+if TYPE_CHECKING:
+    from epicyclic.case.case import Case
 
 __all__ = ["check", "friction", "mesh", "run"]
 
@@ -33,8 +39,22 @@ def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path |
 
         check_result_output(save)
         save_result(loaded, save)
-    result = solve(loaded)
+    with telling_contacts(loaded):
+        result = solve(loaded)
     show(lambda: result_tables(result), result.to_json, json_file)
+
+
+@contextmanager
+def telling_contacts(case: Case) -> Iterator[None]:
+    """A progress bar if the contacts of each mesh are solved, which takes minutes."""
+    if case.models.friction != "ehl-direct":
+        yield
+        return
+    from epicyclic.cli.progress import progress_bar
+    from epicyclic.losses.direct import contacts_told
+
+    with progress_bar("contacts of the mesh") as progress, contacts_told(progress):
+        yield
 
 
 @click.command()

@@ -9,6 +9,9 @@ are drawn by the sliding power and take no part, tell the error. Theory (O10).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
@@ -32,7 +35,7 @@ from epicyclic.oilmodel.structured import EYRING_STRESS, eyring_friction
 from epicyclic.status import Status
 from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, MILLIMETRE, NUMBER, Quantity
 
-__all__ = ["DirectSettings", "EhlDirect", "SolidHeat", "solver_range"]
+__all__ = ["DirectSettings", "EhlDirect", "SolidHeat", "contacts_told", "solver_range"]
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
@@ -61,6 +64,19 @@ def solver_range(name: str, label: str, unit: Quantity) -> Range:
     scale, _ = unit.scale_and_offset()
     low, high = SOLVER_BOX[name]
     return Range(name, label, low * scale, high * scale, unit, "tests of the solver")
+
+
+_PROGRESS: ContextVar[Callable[[int, int], None]] = ContextVar("progress", default=lambda *_: None)
+
+
+@contextmanager
+def contacts_told(progress: Callable[[int, int], None]) -> Iterator[None]:
+    """Call `progress` with the numbers of contacts solved and planned so far, mesh by mesh."""
+    token = _PROGRESS.set(progress)
+    try:
+        yield
+    finally:
+        _PROGRESS.reset(token)
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,13 +187,13 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
     checks = _quantiles(contact.path, power, usable)
     others = np.setdiff1d(usable, checks)
     order = others[_spread_out(place[others], settings.most_contacts)]
-    known = _ratios(contact, settings, checks, base)
+    known = _ratios(contact, settings, checks, base, 0)
     trusted = known[np.isfinite(known)]
     ratio = np.empty(0)
     error = bias = np.inf
     while error > settings.error and ratio.size < order.size:
         more = order[ratio.size : ratio.size + BATCH]
-        ratio = np.append(ratio, _ratios(contact, settings, more, base))
+        ratio = np.append(ratio, _ratios(contact, settings, more, base, checks.size + ratio.size))
         found = np.isfinite(ratio)
         if found.sum() < 4:
             continue
@@ -249,9 +265,9 @@ def _interpolated(known: FloatArray, ratio: FloatArray, place: FloatArray) -> Fl
 
 
 def _ratios(
-    contact: MeshContact, settings: DirectSettings, points: IntArray, base: FloatArray
+    contact: MeshContact, settings: DirectSettings, points: IntArray, base: FloatArray, done: int
 ) -> FloatArray:
-    """Friction over `base` at some points; not a number where there is no solution."""
+    """Friction over `base` at some points, after others; not a number without a solution."""
     laws = settings.laws
     oil = ContactOil(
         contact.oil.dynamic_viscosity,
@@ -276,6 +292,7 @@ def _ratios(
         seeds = np.random.SeedSequence([settings.seed, int(i)]).generate_state(2)
         pair = (int(seeds[0]), int(seeds[1]))
         found.append(abs(_friction(line, roughness, pair, heating, settings)))
+        _PROGRESS.get()(done + len(found), done + points.size)
     return np.array(found) / base[points]
 
 
