@@ -153,6 +153,15 @@ def test_heat_lowers_friction_and_its_temperature_is_consistent():
     assert warm.temperature_rise[i] == pytest.approx(expected, rel=0.05)  # midpoint rule at x - s
 
 
+@pytest.mark.parametrize("law", [LimitingStress(1e6, 0.05), Newtonian()], ids=repr)
+def test_a_temperature_that_does_not_settle_is_no_solution(law):
+    contact = contact_of(2e9, 20.0, 0.5, law, viscosity=0.05)
+    assert solve_smooth(contact).status is Status.CONVERGED
+    hot = solve_smooth(contact, heating=HEATING)
+    assert hot.status is Status.FAILED
+    assert "temperature" in hot.message
+
+
 def test_frozen_roughness_is_the_steady_rough_contact():
     # marching in time against Newton's method on the steady equations, another discretisation
     contact = contact_of(0.8e9, 10.0, 0.0)
