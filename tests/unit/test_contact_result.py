@@ -69,6 +69,23 @@ def test_json_holds_inputs_that_make_the_same_contact():
     assert again == result.case
 
 
+def test_a_solution_that_broke_down_says_so_in_json():
+    # viscosity beyond what a float holds
+    law = {
+        "pressure_law": "two-slope", "second_slope": "40 1/GPa", "transition_pressure": "0.5 GPa",
+        "shear_law": "carreau", "shear_stress": "5 MPa", "shear_exponent": 0.5,
+    }  # fmt: skip
+    result = solved(
+        contact={"hertz_pressure": "10 GPa", "rolling_speed": "5 m/s"},
+        lubricant={"oil": "atf-talbot-2012", "temperature": "25 degC"} | law,
+        surface1={"roughness": "1 um"},
+    )
+    data = json.loads(result.to_json())
+    assert data["status"] == "failed"
+    assert data["message"] == "a time step broke down"
+    assert None in data["rough"]["friction"]
+
+
 def test_every_quantity_beyond_the_tested_range_is_flagged():
     contact = {"radius": "0.1 mm", "hertz_pressure": "4 GPa", "rolling_speed": "100 m/s"}
     result = solved(contact=contact, lubricant=TABLES["lubricant"] | {"temperature": "20 degC"})

@@ -108,6 +108,12 @@ def test_bad_constants_of_a_law_are_named():
     assert keys == {"oil.shear_law.stress", "oil.shear_law.exponent"}
 
 
+def test_an_endless_stress_is_refused():
+    # inf times arsinh(0) is not a number
+    with pytest.raises(InputError, match=r"oil\.shear_law\.stress"):
+        contact_of(1e9, 5.0, 0.1, ReeEyring(math.inf))
+
+
 HEATING = Heating(0.03, 0.14, STEEL, STEEL)
 
 
