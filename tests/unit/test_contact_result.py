@@ -140,6 +140,15 @@ def test_profiles_too_coarse_for_the_contact_are_told(tmp_path):
     assert any("its positions are not in mm" in warning for warning in result.warnings)
 
 
+def test_a_profile_shorter_than_the_contact_is_told(tmp_path):
+    file = tmp_path / "short.csv"
+    rows = (f"{0.005 * n:.3f}, {0.1 * np.sin(n):.4f}" for n in range(40))
+    file.write_text("\n".join(rows), encoding="utf-8")
+    result = solved(surface2={"profile": str(file)})
+    assert result.model.contact.half_width == pytest.approx(0.176e-3, rel=0.01)
+    assert any("0.2 mm long, repeats itself" in warning for warning in result.warnings)
+
+
 def test_the_figure_has_a_panel_for_whatever_there_is(rough):
     from epicyclic.plots.contact import contact_figure
 

@@ -95,6 +95,7 @@ def _profile_notes(
         for key, value, unit in (
             ("spacing", spacing, MICROMETRE),
             ("own", surface.spacing, MICROMETRE),
+            ("length", surface.length, MILLIMETRE),
             ("width", 2 * model.contact.half_width, MILLIMETRE),
         )
     }
@@ -108,4 +109,9 @@ def _profile_notes(
         yield (
             f"The points of {name} are {shown['own']} um apart, in a contact {shown['width']} mm "
             "wide: a finer profile is needed, or its positions are not in mm."
+        )
+    if surface.length < 2 * model.contact.half_width:
+        yield (
+            f"The profile of {name}, {shown['length']} mm long, repeats itself within the contact, "
+            f"{shown['width']} mm wide: give a longer one."
         )
