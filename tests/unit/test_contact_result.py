@@ -129,8 +129,6 @@ def test_averages_that_say_little_are_told():
     rough = {"surface1": {"roughness": "0.05 um"}}
     frozen = solved(**rough, numerics=COARSE["numerics"] | {"frozen_roughness": True})
     assert any("stands still" in warning for warning in frozen.warnings)
-    rolling = solved(**rough, contact={"slide_to_roll_ratio": 0.0})
-    assert any("Without sliding" in warning for warning in rolling.warnings)
 
 
 def test_profiles_too_coarse_for_the_contact_are_told(tmp_path):
