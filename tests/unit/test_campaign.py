@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -140,6 +142,13 @@ def test_what_cannot_be_simulated_is_refused(oil, given, told):
         make_campaign(oil, size=4, **given)
 
 
+def test_ranges_without_effect_are_refused():
+    with pytest.raises(InputError, match="no axis"):
+        make_campaign(ATF, size=4, ranges={"hertz_presure": (1.0, 2.0)})
+    with pytest.raises(InputError, match="Give a size"):
+        make_campaign(ATF, ranges={"hertz_pressure": (1.0, 2.0)})
+
+
 def test_ranges_are_read_in_any_unit_and_all_mistakes_told():
     assert parse_ranges(["hertz_pressure = 500:1500 MPa", "slide_to_roll_ratio=0:1"]) == {
         "hertz_pressure": pytest.approx((0.5, 1.5)),
@@ -150,12 +159,24 @@ def test_ranges_are_read_in_any_unit_and_all_mistakes_told():
     assert len(caught.value.problems) == 4
 
 
+def test_a_table_without_any_solution_says_so(tmp_path):
+    folder = CampaignFolder(tmp_path, make_campaign(ATF, size=2))
+    folder.table.write_text("number,part,status,message\n0,gear,failed,x\n1,gear,failed,x\n")
+    with pytest.raises(InputError, match="no simulation with a solution"):
+        folder.read()
+
+
 def test_a_folder_keeps_one_campaign(tmp_path):
     campaign = make_campaign(ATF, size=4)
     folder = CampaignFolder(tmp_path / "atf", campaign)
     folder.prepare()
     folder.prepare()
     assert open_folder(tmp_path / "atf").campaign == campaign
+    older = CampaignFolder(tmp_path / "older", replace(campaign, version="0.0.1"))
+    older.prepare()
+    assert open_folder(tmp_path / "older").campaign.version == "0.0.1"
+    with pytest.raises(InputError, match="another campaign"):
+        CampaignFolder(tmp_path / "older", campaign).prepare()
     with pytest.raises(InputError, match="another campaign"):
         CampaignFolder(tmp_path / "atf", make_campaign(ATF, size=5)).prepare()
     with pytest.raises(InputError, match="cannot be read"):

@@ -69,6 +69,23 @@ def test_json_holds_inputs_that_make_the_same_contact():
     assert again == result.case
 
 
+def test_a_solution_that_broke_down_says_so_in_json():
+    # viscosity beyond what a float holds
+    law = {
+        "pressure_law": "two-slope", "second_slope": "40 1/GPa", "transition_pressure": "0.5 GPa",
+        "shear_law": "carreau", "shear_stress": "5 MPa", "shear_exponent": 0.5,
+    }  # fmt: skip
+    result = solved(
+        contact={"hertz_pressure": "10 GPa", "rolling_speed": "5 m/s"},
+        lubricant={"oil": "atf-talbot-2012", "temperature": "25 degC"} | law,
+        surface1={"roughness": "1 um"},
+    )
+    data = json.loads(result.to_json())
+    assert data["status"] == "failed"
+    assert data["message"] == "a time step broke down"
+    assert None in data["rough"]["friction"]
+
+
 def test_every_quantity_beyond_the_tested_range_is_flagged():
     contact = {"radius": "0.1 mm", "hertz_pressure": "4 GPa", "rolling_speed": "100 m/s"}
     result = solved(contact=contact, lubricant=TABLES["lubricant"] | {"temperature": "20 degC"})
@@ -112,8 +129,6 @@ def test_averages_that_say_little_are_told():
     rough = {"surface1": {"roughness": "0.05 um"}}
     frozen = solved(**rough, numerics=COARSE["numerics"] | {"frozen_roughness": True})
     assert any("stands still" in warning for warning in frozen.warnings)
-    rolling = solved(**rough, contact={"slide_to_roll_ratio": 0.0})
-    assert any("Without sliding" in warning for warning in rolling.warnings)
 
 
 def test_profiles_too_coarse_for_the_contact_are_told(tmp_path):
@@ -121,6 +136,15 @@ def test_profiles_too_coarse_for_the_contact_are_told(tmp_path):
     file.write_text("\n".join(f"{n}, {0.1 * np.sin(n):.4f}" for n in range(100)), encoding="utf-8")
     result = solved(surface2={"profile": str(file)})
     assert any("its positions are not in mm" in warning for warning in result.warnings)
+
+
+def test_a_profile_shorter_than_the_contact_is_told(tmp_path):
+    file = tmp_path / "short.csv"
+    rows = (f"{0.005 * n:.3f}, {0.1 * np.sin(n):.4f}" for n in range(40))
+    file.write_text("\n".join(rows), encoding="utf-8")
+    result = solved(surface2={"profile": str(file)})
+    assert result.model.contact.half_width == pytest.approx(0.176e-3, rel=0.01)
+    assert any("0.2 mm long, repeats itself" in warning for warning in result.warnings)
 
 
 def test_the_figure_has_a_panel_for_whatever_there_is(rough):

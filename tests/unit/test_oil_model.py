@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -12,6 +13,8 @@ import pytest
 from epicyclic.case.plain import plain
 from epicyclic.errors import InputError
 from epicyclic.kernels import mixed_ehl
+from epicyclic.losses.fitted import domain_ranges
+from epicyclic.losses.validity import ModelUse, check_ranges
 from epicyclic.oilmodel import regressions, structured
 from epicyclic.oilmodel.fitting import fit_quantity
 from epicyclic.oilmodel.model import FORMAT, FORMS, OilModel, read_oil_model
@@ -203,6 +206,29 @@ def test_conditions_are_held_in_the_domain(model):
         equivalent_modulus=STEEL,
     )
     assert np.array_equal(model.value("friction", outside), model.value("friction", at_limit))
+
+
+def test_every_condition_that_is_held_is_flagged(talbot):
+    # each surface on its own: the range of one is none of the other
+    contacts = states(60, roughness1=1e-7, roughness2=4e-7)
+    target = np.ones(60)
+    fit = fit_quantity("bearing_rolling_loss", "W/m", contacts, target, target)
+    model = OilModel(
+        format=FORMAT, version="0", settings={"lubricant": {"oil": plain(talbot.lubricant.oil)}},
+        designs=(), seed=0, simulations={}, equivalent_modulus=STEEL,
+        fits={"bearing_rolling_loss": fit},
+    )  # fmt: skip
+    ranges = list(domain_ranges(model, "bearing_rolling_loss"))
+    for name in CONDITIONS:
+        limits = fit.domain[name]
+        outside = replace(contacts, **{name: np.full(60, 1.1 * limits[1])})
+        values = {item.name: item.found_in(outside) for item in ranges}
+        flags = check_ranges(ModelUse("bearing", "fitted", "bearing"), ranges, values)
+        assert len(flags) == 1, name
+    swapped = replace(contacts, roughness1=contacts.roughness2, roughness2=contacts.roughness1)
+    values = {item.name: item.found_in(swapped) for item in ranges}
+    flags = check_ranges(ModelUse("bearing", "fitted", "bearing"), ranges, values)
+    assert [flag.quantity[-1] for flag in flags] == ["1", "2"]
 
 
 @pytest.mark.parametrize(

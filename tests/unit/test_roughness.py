@@ -7,7 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from epicyclic.ehl.roughness import SMOOTH, generate_profile, mean_line, sinusoidal_profile
+from epicyclic.ehl.roughness import (
+    SMOOTH,
+    Profile,
+    generate_profile,
+    mean_line,
+    sinusoidal_profile,
+)
 from epicyclic.errors import InputError
 
 
@@ -51,9 +57,17 @@ def test_resampling_keeps_what_the_spacing_resolves(count):
 
 
 def test_resampling_drops_waves_it_cannot_resolve():
-    wave = sinusoidal_profile(1e-6, 1e-3)
-    assert np.abs(wave.resampled(0.6e-3)).max() < 1.1e-6  # no alias
+    # waves 10 and 70 of a period of 1024 points; at 8 points apart there are 128, up to wave 64
+    phase = 2 * np.pi * np.arange(1024) / 1024
+    profile = Profile(1e-6 * (np.cos(10 * phase) + np.cos(70 * phase)), 1e-6)
+    left = 1e-6 * np.cos(10 * phase[::8])
+    assert profile.resampled(8e-6) == pytest.approx(left, abs=1e-15)
     assert SMOOTH.resampled(0.1) == pytest.approx(0)
+
+
+@pytest.mark.parametrize("spacing", [0.3e-3, 0.6e-3, 5e-3])
+def test_a_period_that_is_not_resolved_is_not_stretched_to_a_longer_one(spacing):
+    assert not sinusoidal_profile(1e-6, 1e-3).resampled(spacing).any()
 
 
 def test_no_height_is_smooth():

@@ -108,6 +108,12 @@ def test_bad_constants_of_a_law_are_named():
     assert keys == {"oil.shear_law.stress", "oil.shear_law.exponent"}
 
 
+def test_an_endless_stress_is_refused():
+    # inf times arsinh(0) is not a number
+    with pytest.raises(InputError, match=r"oil\.shear_law\.stress"):
+        contact_of(1e9, 5.0, 0.1, ReeEyring(math.inf))
+
+
 HEATING = Heating(0.03, 0.14, STEEL, STEEL)
 
 
@@ -151,6 +157,15 @@ def test_heat_lowers_friction_and_its_temperature_is_consistent():
     carried = STEEL * (math.sqrt(contact.speed1) + math.sqrt(contact.speed2))
     expected = source.sum() / (math.sqrt(math.pi) * carried) + heat[i] * warm.film[i] / 12 / 0.14
     assert warm.temperature_rise[i] == pytest.approx(expected, rel=0.05)  # midpoint rule at x - s
+
+
+@pytest.mark.parametrize("law", [LimitingStress(1e6, 0.05), Newtonian()], ids=repr)
+def test_a_temperature_that_does_not_settle_is_no_solution(law):
+    contact = contact_of(2e9, 20.0, 0.5, law, viscosity=0.05)
+    assert solve_smooth(contact).status is Status.CONVERGED
+    hot = solve_smooth(contact, heating=HEATING)
+    assert hot.status is Status.FAILED
+    assert "temperature" in hot.message
 
 
 def test_frozen_roughness_is_the_steady_rough_contact():

@@ -189,7 +189,7 @@ class ContactResult:
         data: dict[str, Any] = {
             "time_steps": rough.steps,
             "unsolved_time_steps": rough.unsolved_steps,
-            "friction": rough.friction.tolist(),
+            "friction": [value if math.isfinite(value) else None for value in rough.friction],
         }
         if rough.frames and np.isfinite(rough.frames[-1].pressure).all():
             frame = rough.frames[-1]

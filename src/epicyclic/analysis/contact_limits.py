@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from epicyclic.analysis.parts import oil_flags
 from epicyclic.case.contact import ContactCase, ContactModel
 from epicyclic.ehl.box import VALIDATED_FILM_RATIO
-from epicyclic.ehl.rough import FEWEST_BLOCKS, RoughSolution
+from epicyclic.ehl.rough import RoughSolution
 from epicyclic.ehl.roughness import Profile
 from epicyclic.ehl.steady import SmoothSolution
 from epicyclic.losses.direct import EhlDirect, solver_range
@@ -61,18 +61,13 @@ def contact_flags(
 def contact_notes(
     case: ContactCase, model: ContactModel, smooth: SmoothSolution, rough: RoughSolution | None
 ) -> Iterator[str]:
-    """What else limits a rough contact: film ratio, short averages, profiles that do not suit."""
+    """What else limits a rough contact: standing roughness, thin films, unsuitable profiles."""
     if rough is None or not rough.x.size:
         return
     if case.numerics.frozen_roughness:
         yield (
             "The roughness stands still: all is of one place of the profiles, whatever the "
             "standard error, and the rolling loss has no meaning for surfaces that move."
-        )
-    elif model.contact.sliding_speed == 0:
-        yield (
-            f"Without sliding the averages are those of {FEWEST_BLOCKS} half-widths of oil only: "
-            "vary the seeds."
         )
     ratio = film_ratio(model, smooth)
     if ratio < VALIDATED_FILM_RATIO:
@@ -95,6 +90,7 @@ def _profile_notes(
         for key, value, unit in (
             ("spacing", spacing, MICROMETRE),
             ("own", surface.spacing, MICROMETRE),
+            ("length", surface.length, MILLIMETRE),
             ("width", 2 * model.contact.half_width, MILLIMETRE),
         )
     }
@@ -108,4 +104,9 @@ def _profile_notes(
         yield (
             f"The points of {name} are {shown['own']} um apart, in a contact {shown['width']} mm "
             "wide: a finer profile is needed, or its positions are not in mm."
+        )
+    if surface.length < 2 * model.contact.half_width:
+        yield (
+            f"The profile of {name}, {shown['length']} mm long, repeats itself within the contact, "
+            f"{shown['width']} mm wide: give a longer one."
         )

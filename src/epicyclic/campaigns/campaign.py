@@ -6,7 +6,7 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -48,11 +48,14 @@ class Campaign:
     designs : tuple of Design
     seed : int
         Every profile of every point follows from it and the number of the point.
+    version : str
+        Of this package, which solves the contacts.
     """
 
     settings: str
     designs: tuple[Design, ...]
     seed: int = 0
+    version: str = field(default_factory=lambda: metadata.version("epicyclic"))
 
     @property
     def size(self) -> int:
@@ -89,7 +92,7 @@ class Campaign:
         """As plain data: equal for equal results."""
         return {
             "schema": SCHEMA,
-            "version": metadata.version("epicyclic"),
+            "version": self.version,
             "settings": json.loads(self.settings),
             "designs": [design.describe() for design in self.designs],
             "seed": self.seed,
@@ -150,6 +153,13 @@ def make_campaign(
         designs.append(BEARING_TABLE)
     elif bearing_size:
         designs.append(BEARING_TABLE.filling(bearing_size, seed))
+    if ranges and not size:
+        problem = Problem(
+            "ranges", ", ".join(ranges), "needs a space-filling design.", "Give a size."
+        )
+        raise InputError([problem], "the command")
+    for name in ranges or {}:
+        quantity_of_axis(name)  # says which axes there are
     for design in designs:
         design.check()
     _check_changes(changes or {})

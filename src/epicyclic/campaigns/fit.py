@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -139,7 +138,7 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
     frame, parts = folder.read(), QUANTITIES.values()
     return OilModel(
         format=FORMAT,
-        version=metadata.version("epicyclic"),
+        version=campaign.version,
         settings=campaign.describe()["settings"],
         designs=tuple(campaign.describe()["designs"]),
         seed=campaign.seed,

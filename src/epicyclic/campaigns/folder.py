@@ -120,8 +120,11 @@ class CampaignFolder:
         except (OSError, ValueError) as error:
             allowed = f"cannot be read: {error}."
             raise _folder_error(self.table, allowed) from None
-        if len(frame) != self.campaign.size or "friction" not in frame:
+        if len(frame) != self.campaign.size or "status" not in frame:
             raise _folder_error(self.table, "does not have one line for each simulation.")
+        if "friction" not in frame:
+            remedy = "See why in its column of messages, and name another folder."
+            raise _folder_error(self.table, "has no simulation with a solution.", remedy)
         return frame
 
     def _frame(self, rows: Sequence[Row]) -> pd.DataFrame:
@@ -163,7 +166,7 @@ def open_folder(path: Path) -> CampaignFolder:
             for item in data["designs"]
         )
         settings = json.dumps(data["settings"], sort_keys=True)
-        return CampaignFolder(path, Campaign(settings, designs, data["seed"]))
+        return CampaignFolder(path, Campaign(settings, designs, data["seed"], data["version"]))
     except (KeyError, TypeError, AttributeError):
         raise _folder_error(path / "campaign.json", "is no plan of a campaign.") from None
 

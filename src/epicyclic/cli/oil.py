@@ -9,7 +9,6 @@ import click
 
 from epicyclic.cli.options import contact_set_option, jobs_option, parse_changes, plot_option
 from epicyclic.cli.output import check_ending, draw
-from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from epicyclic.campaigns.folder import CampaignFolder
@@ -82,9 +81,6 @@ def characterise(
     from epicyclic.campaigns.folder import CampaignFolder
     from epicyclic.cli.progress import progress_bar
 
-    if ranges and size is None:
-        problem = Problem("--range", ranges[0], "is for a design of a --size.", "Give --size.")
-        raise InputError([problem], "the command")
     if plot is not None:
         check_ending("--plot", plot)
     campaign = make_campaign(

@@ -160,11 +160,11 @@ class OilLaws:
 def shear_problems(law: ShearLaw) -> list[tuple[str, float, str]]:
     """Name, value and what is allowed of every constant of `law` that is out of its range."""
     found = []
-    for name, low, high in (("stress", 0.0, math.inf), ("exponent", 0.0, 1.0)):
-        value = getattr(law, name, 1.0)
-        if not low < value <= high:
-            allowed = "must be above zero." if high == math.inf else "must be in (0, 1]."
-            found.append((name, value, allowed))
+    stress, exponent = getattr(law, "stress", 1.0), getattr(law, "exponent", 1.0)
+    if not 0.0 < stress < math.inf:
+        found.append(("stress", stress, "must be a finite number above zero."))
+    if not 0.0 < exponent <= 1.0:
+        found.append(("exponent", exponent, "must be in (0, 1]."))
     slope = getattr(law, "slope", 0.0)
     if not 0.0 <= slope < math.inf:
         found.append(("slope", slope, "must be zero or more."))

@@ -316,7 +316,9 @@ def solve_rough(
     settling = run.advance(GROWTH + SETTLING)
     blocks: list[FloatArray] = []
     judged = _Mean(0.0, math.inf)
-    while not (math.isnan(judged.value) or len(blocks) >= most_blocks or judged.within(tolerance)):
+    while (
+        math.isfinite(judged.value) and len(blocks) < most_blocks and not judged.within(tolerance)
+    ):
         blocks.append(run.advance(BLOCK))
         friction = _mean([_shear(block) for block in blocks])
         rolling = _rolling_loss(run, settling, blocks)
@@ -371,7 +373,7 @@ def _expected(done: int, judged: _Mean, tolerance: float, most_blocks: int) -> i
 def _failure(run: _Simulation, judged: _Mean, tolerance: float) -> str:
     """Why there is no result to rely on; empty if there is."""
     unsolved = run.unsolved
-    if math.isnan(judged.value):
+    if not math.isfinite(judged.value):
         return "a time step broke down"
     if not judged.within(tolerance):
         what = "friction" if run.contact.sliding_speed else "rolling loss"

@@ -16,6 +16,8 @@ FloatArray = NDArray[np.float64]
 
 POINTS_PER_CORRELATION = 8
 """Points of a generated profile within one correlation length."""
+FEWEST_SAMPLES = 4
+"""Of a period that a grid resolves."""
 GAUSSIAN = math.sqrt(math.log(2) / math.pi)
 """alpha of the Gaussian filter: half of a wave as long as the cutoff passes. [1]"""
 
@@ -68,9 +70,12 @@ class Profile:
     def resampled(self, spacing: float) -> FloatArray:
         """Heights at about `spacing`, without what that cannot resolve, shape (m,).
 
-        The period is kept, so that the spacing is stretched by less than half a point in it.
+        The period is kept, so that the spacing is stretched by less than half a point in it. Of a
+        period shorter than `FEWEST_SAMPLES` nothing is left: it would be stretched to a longer one.
         """
-        count = max(4, round(self.length / spacing))
+        count = round(self.length / spacing)
+        if count < FEWEST_SAMPLES:
+            return np.zeros(FEWEST_SAMPLES)
         spectrum = np.fft.rfft(self.heights)
         kept = np.zeros(count // 2 + 1, dtype=complex)
         shared = min(kept.size, spectrum.size)

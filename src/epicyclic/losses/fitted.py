@@ -34,11 +34,14 @@ _LABELS: dict[str, tuple[str, Quantity]] = {
     "rolling_speed": ("rolling speed", METRE_PER_SECOND),
     "radius": ("equivalent radius", MILLIMETRE),
     "hertz_pressure": ("Hertz pressure", GIGAPASCAL),
-    "roughness": ("rms roughness", MICROMETRE),
+    "roughness1": ("rms roughness of surface 1", MICROMETRE),
+    "roughness2": ("rms roughness of surface 2", MICROMETRE),
     "dynamic_viscosity": ("dynamic viscosity", MILLIPASCAL_SECOND),
     "pressure_viscosity": ("pressure-viscosity coefficient", PER_GIGAPASCAL),
 }
 """Label and unit of each condition that spans a domain."""
+_OF = {"roughness1": lambda of: of.roughness[0], "roughness2": lambda of: of.roughness[1]}
+"""How to find conditions that the points of a mesh have under another name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,10 +146,9 @@ def _source(model: OilModel) -> str:
 
 
 def domain_ranges(model: OilModel, quantity: str) -> Iterator[Range]:
-    """The domain of a fit; both surfaces share one range of roughness."""
-    domain = dict(model.fits[quantity].domain)
-    pairs = [domain["roughness1"], domain["roughness2"]]
-    domain["roughness"] = (min(low for low, _ in pairs), max(high for _, high in pairs))
+    """The domain of a fit."""
+    source = f"the simulations of {model.oil.name}"
     for name, (label, unit) in _LABELS.items():
-        low, high = (unit.to_display(value) if unit.si else value for value in domain[name])
-        yield Range(name, label, low, high, unit, f"the simulations of {model.oil.name}")
+        limits = model.fits[quantity].domain[name]
+        low, high = (unit.to_display(value) if unit.si else value for value in limits)
+        yield Range(name, label, low, high, unit, source, _OF.get(name))
