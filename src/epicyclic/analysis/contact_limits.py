@@ -73,8 +73,8 @@ def contact_notes(
     if ratio < VALIDATED_FILM_RATIO:
         yield (
             f"At a film ratio of {format_number(ratio, 2)}, below {VALIDATED_FILM_RATIO:g}, "
-            "friction, load on asperities and rolling loss are not validated: vary asperities.film, "
-            "asperities.friction and the correlation lengths."
+            "friction, load on asperities and rolling loss are not validated: vary "
+            "asperities.film, asperities.friction and the correlation lengths."
         )
     spacing = float(rough.x[1] - rough.x[0])
     for number, surface in enumerate(model.surfaces, 1):
