@@ -132,6 +132,33 @@ def test_friction_of_touching_surfaces_follows_their_coefficient(mixed):
     assert slippery.friction_coefficient < result.friction_coefficient
 
 
+def test_power_of_the_flow_is_steady_before_there_is_roughness():
+    for contact in (contact_of(20, 8), contact_of(50, 8), contact_of(200, 10)):
+        run = rough._Simulation(solve_smooth(contact), (SMOOTH, SMOOTH), 512, AsperityContact())
+        assert run.advance(2.0)[-1, 5] == pytest.approx(run.smooth_power, rel=0.01)
+
+
+def test_little_roughness_adds_little_to_the_rolling_loss():
+    contact = contact_of(20, 8, slip=0.1, eyring_stress=5e6)
+    rms = solve_smooth(contact).minimum_film / 100
+    result = solve_rough(contact, *rough_pair(rms))
+    # a wave's loss goes with its amplitude squared; 2 % is what the grid leaves
+    assert result.rolling_loss == pytest.approx(result.smooth.rolling_loss, rel=0.02)
+
+
+def test_rolling_loss_in_pure_rolling_is_known_as_well_as_asked():
+    contact = contact_of(20, 8)
+    rms = solve_smooth(contact).minimum_film / 2
+    losses = []
+    for seed in range(1, 7):
+        result = solve_rough(contact, *rough_pair(rms, seed), nodes=NODES, tolerance=0.03)
+        assert result.status is Status.CONVERGED
+        assert result.rolling_loss_error <= 0.03 * result.rolling_loss
+        losses.append(result.rolling_loss)
+    # seeds scatter by up to twice the error of one pair of profiles, and 6 are few
+    assert np.std(losses) < 3 * 0.03 * np.mean(losses)
+
+
 def test_pure_rolling_has_no_sliding_friction():
     contact = contact_of(20, 8)
     rms = solve_smooth(contact).minimum_film

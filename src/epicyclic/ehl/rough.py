@@ -31,10 +31,13 @@ TOLERANCE = 1e-2
 p_h; what is left is its square. [1]"""
 MAX_ITERATIONS = 40
 """Newton steps of a time step, doubled in a second attempt."""
-GROWTH, SETTLING = 1.0, 2.0
-"""Times b/u_r in which the roughness grows, and until averages begin. [1]"""
-BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 4, 1024
+STILL, GROWTH, SETTLING = 2.0, 1.0, 2.0
+"""Times b/u_r in which the smooth contact settles on the grid, in which the roughness grows, and
+until averages begin. [1]"""
+BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 8, 1024
 """Time b/u_r of a block, and numbers of blocks that an average takes."""
+MORE_BLOCKS = 1.5
+"""Growth of their number between looks at the error: each look may end on a lucky one. [1]"""
 BRIEF = 64
 """Number of blocks where many contacts are solved and the error of each is weighed."""
 FINEST_FEATURE = 0.2
@@ -215,6 +218,8 @@ class _Simulation:
         if frame_interval is not None:
             time = frame_interval * contact.rolling_speed / contact.half_width
             self.steps_to_frame = self.step_count(time)
+        self.still = self.step_count(STILL)
+        self.smooth_power = float(self.march(self.still)[-1, 5])
 
     def advance(self, time: float) -> FloatArray:
         """Records of a `time` in b/u_r, shape (steps, 10); keeps frames if they are asked for."""
@@ -236,8 +241,8 @@ class _Simulation:
             self.pressure, self.film, self.now, self.before, self.active, self.approach,
             self.smooth_pressure, self.base, self.kernel_row, self.grouped, self.included,
             self.heights[0], self.heights[1], self.shifts[0], self.shifts[1], self.stride,
-            self.center, self.steps, self.step_count(GROWTH), self.fluid, self.thinned, self.dx,
-            self.load,
+            self.center, self.steps - self.still, self.step_count(GROWTH), self.fluid, self.thinned,
+            self.dx, self.load,
             self.asperities.film / scale, self.boundary_friction, TOLERANCE, MAX_ITERATIONS,
             records,
         )  # fmt: skip
@@ -313,18 +318,19 @@ def solve_rough(
     surfaces = (surface1, surface2)
     asperities = asperities or AsperityContact()
     run = _Simulation(smooth, surfaces, nodes, asperities, frame_interval, heating, frozen)
-    settling = run.advance(GROWTH + SETTLING)
+    run.advance(GROWTH + SETTLING)
     blocks: list[FloatArray] = []
-    judged = _Mean(0.0, math.inf)
-    while (
-        math.isfinite(judged.value) and len(blocks) < most_blocks and not judged.within(tolerance)
-    ):
+    judged, wanted = _Mean(0.0, math.inf), min(FEWEST_BLOCKS, most_blocks)
+    while len(blocks) < wanted:
         blocks.append(run.advance(BLOCK))
-        friction = _mean([_shear(block) for block in blocks])
-        rolling = _rolling_loss(run, settling, blocks)
-        judged = friction if contact.sliding_speed else rolling
+        if len(blocks) == wanted:
+            friction = _mean([_shear(block) for block in blocks])
+            rolling = _rolling_loss(run, blocks)
+            judged = friction if contact.sliding_speed else rolling
+            if math.isfinite(judged.value) and not judged.within(tolerance):
+                wanted = min(most_blocks, math.ceil(MORE_BLOCKS * wanted))
         if progress is not None:
-            progress(len(blocks), _expected(len(blocks), judged, tolerance, most_blocks))
+            progress(len(blocks), _expected(wanted, judged, tolerance, most_blocks))
     message = _failure(run, judged, tolerance)
     return _averages(run, np.concatenate(blocks), friction, rolling, message)
 
@@ -340,7 +346,7 @@ class _Mean(NamedTuple):
 
 
 def _mean(blocks: Sequence[FloatArray]) -> _Mean:
-    """Of the values at every time step of each block; infinite error of too few blocks.
+    """Of the values at every time step of each block.
 
     A ridge crosses the contact in two blocks, so that blocks are taken to depend on the next.
     """
@@ -348,26 +354,25 @@ def _mean(blocks: Sequence[FloatArray]) -> _Mean:
     rest = means - means.mean()
     following = max(0.0, float(rest[1:] @ rest[:-1]))
     variance = (float(rest @ rest) + 2 * following) / max(1, means.size - 1)
-    error = math.sqrt(variance / means.size) if means.size >= FEWEST_BLOCKS else math.inf
-    return _Mean(float(means.mean()), error)
+    return _Mean(float(means.mean()), math.sqrt(variance / means.size))
 
 
-def _rolling_loss(run: _Simulation, settling: FloatArray, blocks: Sequence[FloatArray]) -> _Mean:
+def _rolling_loss(run: _Simulation, blocks: Sequence[FloatArray]) -> _Mean:
     """That of the smooth contact and what the roughness adds to the power of the flow. [W/m]"""
     contact = run.contact
     power = contact.hertz_pressure * contact.film_scale * contact.rolling_speed
-    # the first step still has next to no roughness
-    return _mean(
-        [run.smooth.rolling_loss + power * (block[:, 5] - settling[0, 5]) for block in blocks]
-    )
+    smooth = run.smooth.rolling_loss
+    return _mean([smooth + power * (block[:, 5] - run.smooth_power) for block in blocks])
 
 
 def _expected(done: int, judged: _Mean, tolerance: float, most_blocks: int) -> int:
     """Blocks that it takes if the error goes on falling with the root of their number."""
     wanted = tolerance * judged.value
+    if math.isinf(judged.error) or judged.error <= wanted:
+        return done
     if not judged.error < math.sqrt(most_blocks / done) * wanted:
         return most_blocks
-    return max(FEWEST_BLOCKS, done, math.ceil(done * (judged.error / wanted) ** 2))
+    return max(done, math.ceil(done * (judged.error / wanted) ** 2))
 
 
 def _failure(run: _Simulation, judged: _Mean, tolerance: float) -> str:

@@ -358,7 +358,7 @@ def march(
     center : int
         Node at X = 0.
     first, growth : int
-        Steps done before; steps in which the roughness grows from zero.
+        Steps done before, negative before any roughness; steps in which it grows from zero.
     fluid, dx, load
         Oil, with `stride` times its conductance; spacing; load on the grid.
     thinned : ndarray, shape (n,)
@@ -383,7 +383,7 @@ def march(
     tried = np.empty(n)
     for t in range(records.shape[0]):
         step = first + t + 1
-        amplitude = min(1.0, step / growth)
+        amplitude = min(1.0, max(0.0, step / growth))
         for i in range(n):
             gap[i] = base[i] - amplitude * (
                 height_at(heights1, i - step * shift1) + height_at(heights2, i - step * shift2)

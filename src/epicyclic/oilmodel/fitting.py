@@ -96,7 +96,10 @@ def _errors_of(error: FloatArray, film_ratio: FloatArray) -> tuple[FitError, ...
 
 
 def _limits(values: FloatArray) -> tuple[float, float]:
-    return _rounded(values.min()), _rounded(values.max())
+    """What the values span, and on either side their mean distance: a design fills its range."""
+    low, high = float(values.min()), float(values.max())
+    beyond = min((high - low) / values.size, low / 2)
+    return _rounded(low - beyond), _rounded(high + beyond)
 
 
 def _rounded(value: float) -> float:

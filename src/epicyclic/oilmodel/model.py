@@ -185,9 +185,8 @@ class OilModel(_Data):
         coefficients = np.array(fitted.coefficients)
         limits = dict(fit.domain)
         if fitted.form == STRUCTURED_FRICTION.name and quantity == "friction":
-            # (O5) goes on to no sliding and to light loads
-            for name in ("slide_to_roll_ratio", "hertz_pressure"):
-                limits[name] = (0.0, limits[name][1])
+            # (O5) goes on to no sliding
+            limits["slide_to_roll_ratio"] = (0.0, limits["slide_to_roll_ratio"][1])
         return FORMS[quantity][fitted.form].value(states.held(limits), coefficients)
 
 
