@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from epicyclic.ehl.conditions import LineContact
 from epicyclic.ehl.rheology import Roelands
-from epicyclic.kernels.ehl_steady import shear_stresses
+from epicyclic.kernels.ehl_fluid import mean_shear
 from epicyclic.lubricant.properties import ROELANDS_PRESSURE
 
 __all__ = ["Heating", "flow_easing", "inlet_factor", "temperature_rise", "thinning"]
@@ -19,10 +19,8 @@ FloatArray = NDArray[np.float64]
 
 FILM_EXPONENT = 0.694
 """Of the viscosity in the film of Pan and Hamrock (1989). [1]"""
-DAMPING = 0.5
-"""Share of a new temperature taken over in each pass."""
-SMALLEST_CHANGE, MOST_PASSES = 0.01, 200
-"""Change of temperature at which the passes end, and their largest number. [K]"""
+SMALLEST_CHANGE = 1e-3
+"""To which the temperature of a node is found. [K]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +79,7 @@ def temperature_rise(
 ) -> FloatArray:
     """Mean over the film of the temperature above that of the inlet, shape (n,). [K]
 
-    Theory (H30), (H31). Not a number everywhere if it does not settle.
+    Theory (H30), (H31). Heat only acts downstream, so that node after node has one unknown.
 
     Parameters
     ----------
@@ -90,24 +88,37 @@ def temperature_rise(
     x, pressure, film : ndarray, shape (n,)
         Nodes [m], pressure [Pa] and film [m] of a steady solution.
     """
-    fluid = contact.scaled_fluid()
-    scaled = pressure / contact.hertz_pressure, film / contact.film_scale
+    from scipy.optimize import brentq
+
+    fluid, slip = contact.scaled_fluid(), abs(contact.sliding_speed)
     conveyed = heating.effusivity1 * math.sqrt(abs(contact.speed1))
     conveyed += heating.effusivity2 * math.sqrt(abs(contact.speed2))
     surfaces = _moving_source(x) / (math.sqrt(math.pi) * conveyed)
-    rise = np.zeros_like(x)
-    for _ in range(MOST_PASSES):
-        thinned = thinning(contact, heating, pressure, rise)
-        stress = shear_stresses(*scaled, thinned, fluid) * contact.hertz_pressure
-        heat = stress * abs(contact.sliding_speed)
-        new = surfaces @ ((heat[1:] + heat[:-1]) / 2) + heat * film / (
-            12 * heating.oil_conductivity
-        )
-        change = DAMPING * (new - rise)
-        rise = rise + change
-        if np.abs(change).max() < SMALLEST_CHANGE:
-            return rise
-    return np.full_like(x, math.nan)
+    # by the heat of a node itself, half of which is that of the cell before it
+    own = film / (12 * heating.oil_conductivity)
+    own[1:] += np.diagonal(surfaces, -1)[: x.size - 1] / 2
+    per_kelvin = thinning(contact, heating, pressure, np.ones_like(x))
+    rise, heat = np.zeros_like(x), np.zeros_like(x)
+
+    def source(warmer: float, i: int) -> float:
+        scaled = pressure[i] / contact.hertz_pressure, film[i] / contact.film_scale
+        stress = mean_shear(*scaled, per_kelvin[i] * warmer, fluid)
+        return float(stress * contact.hertz_pressure * slip)
+
+    def excess(warmer: float, i: int, before: float) -> float:
+        return warmer - before - float(own[i]) * source(warmer, i)
+
+    for i in range(x.size):
+        before = float(surfaces[i, :i] @ (heat[1 : i + 1] + heat[:i])) / 2
+        rise[i] = before
+        if pressure[i] > 0:
+            # the warmer the film the less heat: one answer, and no warmer than this
+            most = before + own[i] * source(before, i)
+            if excess(most, i, before) > SMALLEST_CHANGE:
+                most = brentq(excess, before, most, args=(i, before), xtol=SMALLEST_CHANGE)
+            rise[i] = most
+            heat[i] = source(rise[i], i)
+    return rise
 
 
 def _moving_source(x: FloatArray) -> FloatArray:

@@ -175,8 +175,6 @@ def _in_si(
     if heating is not None and not message:
         rise = temperature_rise(contact, heating, *si)
         thinned = thinning(contact, heating, si[1], rise)
-        if np.isnan(rise).any():
-            message = "the temperature of the film does not settle"
     stress = shear_stresses(pressure, height, thinned, contact.scaled_fluid())
     return SmoothSolution(
         contact=contact,
