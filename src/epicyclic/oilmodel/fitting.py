@@ -12,6 +12,8 @@ __all__ = ["fit_quantity"]
 
 FloatArray = NDArray[np.float64]
 
+BEYOND = 3
+"""Mean distances of the values of a condition by which its domain goes beyond them. [1]"""
 FOLDS = 10
 """Parts of the contacts, each of which is predicted from the others."""
 DIGITS = 12
@@ -96,9 +98,9 @@ def _errors_of(error: FloatArray, film_ratio: FloatArray) -> tuple[FitError, ...
 
 
 def _limits(values: FloatArray) -> tuple[float, float]:
-    """What the values span, and on either side their mean distance: a design fills its range."""
+    """What the values span, and some of their distances more: a design fills its range."""
     low, high = float(values.min()), float(values.max())
-    beyond = min((high - low) / values.size, low / 2)
+    beyond = min(BEYOND * (high - low) / values.size, low / 2)
     return _rounded(low - beyond), _rounded(high + beyond)
 
 

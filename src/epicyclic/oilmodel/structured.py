@@ -37,6 +37,9 @@ FLASH = 100.0
 LARGEST_EXPONENT = 300.0
 """Of the viscosity under pressure: what is larger is solid, and overflows."""
 
+FIT_TOLERANCE = 1e-5
+"""Relative gain of a step in the sum of squares at which a fit ends: what the data do not tell
+apart, such as size and exponent of a roughness that adds next to nothing, need not be found. [1]"""
 SMALLEST_SLIP = 0.01
 """Added to the slide-to-roll ratio where it is raised to a power. [1]"""
 
@@ -97,8 +100,9 @@ class Structured:
             return residual
 
         found = least_squares(
-            lack, self.start, bounds=(self.low, self.high), x_scale="jac", max_nfev=400
-        )
+            lack, self.start, bounds=(self.low, self.high), x_scale="jac", ftol=FIT_TOLERANCE,
+            max_nfev=400,
+        )  # fmt: skip
         if not found.success:
             raise ValueError(f"no least squares: {found.message}")
         coefficients: FloatArray = found.x
