@@ -49,7 +49,8 @@ def test_a_file_explains_itself_to_other_programs(talbot, file):
         for node in tree.subtree:
             for name, array in node.data_vars.items():
                 if array.dtype.kind == "f":
-                    assert array.attrs["long_name"] and array.attrs["units"], name  # noqa: PT018
+                    assert array.attrs["long_name"], name
+                    assert array.attrs["units"], name
 
 
 def test_the_json_of_a_result_is_what_a_record_holds(talbot, talbot_record):

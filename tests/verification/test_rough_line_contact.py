@@ -19,10 +19,10 @@ RADIUS, MODULUS = 0.01, 2.2e11
 NODES = 256  # where nothing is compared with another solution
 
 
-def contact_of(m, l, slip=0.0, eyring_stress=math.inf):  # noqa: E741
+def contact_of(m, el, slip=0.0, eyring_stress=math.inf):
     """A contact by Moes' numbers and its slide-to-roll ratio."""
     alpha, viscosity = 2e-8, 0.03
-    doubled_speed_number = (l / (alpha * MODULUS)) ** 4
+    doubled_speed_number = (el / (alpha * MODULUS)) ** 4
     load = m * math.sqrt(doubled_speed_number) * MODULUS * RADIUS
     speed = doubled_speed_number * MODULUS * RADIUS / viscosity / 2
     oil = ContactOil(viscosity, Roelands(alpha), eyring_stress)
@@ -51,15 +51,15 @@ def amplitude_ratio(contact, wavelength, nodes=512):
 
 
 @pytest.mark.parametrize(
-    ("m", "l", "wavelength"),
+    ("m", "el", "wavelength"),
     [(20, 8, 0.5), (20, 8, 1.0), (50, 10, 0.25), (50, 10, 0.5), (100, 10, 0.5), (100, 10, 1.0)],
 )
-def test_waviness_is_flattened_as_published(m, l, wavelength):  # noqa: E741
+def test_waviness_is_flattened_as_published(m, el, wavelength):
     # Venner, Couhier, Lubrecht and Greenwood (1997): one curve of nabla = (lambda/b) M^3/4/L^1/2,
     # fitted by 1/(1 + 0.125 nabla + 0.04 nabla^2); their solutions scatter by some 0.1 around it
-    nabla = wavelength * m**0.75 / math.sqrt(l)
+    nabla = wavelength * m**0.75 / math.sqrt(el)
     published = 1 / (1 + 0.125 * nabla + 0.04 * nabla**2)
-    assert amplitude_ratio(contact_of(m, l), wavelength) == pytest.approx(published, abs=0.12)
+    assert amplitude_ratio(contact_of(m, el), wavelength) == pytest.approx(published, abs=0.12)
 
 
 def test_waviness_converges_with_the_grid_in_space_and_time():

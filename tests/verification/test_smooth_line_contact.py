@@ -24,9 +24,9 @@ WITNESS = tomllib.loads(
 RADIUS, MODULUS = 0.01, 2.2e11
 
 
-def contact_of(m, l, *, alpha=2e-8, law=Barus, viscosity=0.03, compressible=False):  # noqa: E741
+def contact_of(m, el, *, alpha=2e-8, law=Barus, viscosity=0.03, compressible=False):
     """A contact in pure rolling by Moes' numbers: the speed follows from L, the load from M."""
-    doubled_speed_number = (l / (alpha * MODULUS)) ** 4
+    doubled_speed_number = (el / (alpha * MODULUS)) ** 4
     load = m * math.sqrt(doubled_speed_number) * MODULUS * RADIUS
     speed = doubled_speed_number * MODULUS * RADIUS / viscosity / 2
     oil = ContactOil(viscosity, law(alpha), compressible=compressible)
@@ -83,12 +83,12 @@ def test_elastic_isoviscous_film_follows_moes(m):
     assert film == pytest.approx(moes_central_film(m, 1e-3), rel=0.06)
 
 
-@pytest.mark.parametrize("l", [0.5, 2, 5, 10, 15])
+@pytest.mark.parametrize("el", [0.5, 2, 5, 10, 15])
 @pytest.mark.parametrize("m", [0.1, 1, 10, 100, 300])
-def test_flow_of_incompressible_oil_follows_moes_in_all_regimes(m, l):  # noqa: E741
-    contact = contact_of(m, l)
+def test_flow_of_incompressible_oil_follows_moes_in_all_regimes(m, el):
+    contact = contact_of(m, el)
     mean_film = converged(contact).flow[0] / contact.rolling_speed / moes_unit(contact)
-    assert mean_film == pytest.approx(moes_central_film(m, l), rel=0.10)  # his fit: 5 to 10 %
+    assert mean_film == pytest.approx(moes_central_film(m, el), rel=0.10)  # his fit: 5 to 10 %
 
 
 @pytest.mark.parametrize("temperature", [40, 90])
@@ -107,9 +107,9 @@ def test_minimum_film_follows_pan_and_hamrock(atf, temperature, p_h, speed):
 
 @pytest.mark.parametrize("row", WITNESS, ids=lambda row: f"M{row[0]}-L{row[1]}")
 def test_agrees_with_independent_solutions(row):
-    m, l, central, minimum, traction = row  # noqa: E741
+    m, el, central, minimum, traction = row
     viscosity = math.exp(2e-8 * 1.96e8 / 0.68 - 9.67)  # makes z = 0.68
-    contact = contact_of(m, l, law=Roelands, viscosity=viscosity, compressible=True)
+    contact = contact_of(m, el, law=Roelands, viscosity=viscosity, compressible=True)
     assert contact.oil.roelands_index == pytest.approx(0.68, rel=1e-12)
     solution = converged(contact, inlet=-4.5)
     unit = moes_unit(contact)
