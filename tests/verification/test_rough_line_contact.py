@@ -13,6 +13,7 @@ from epicyclic.ehl.rough import AsperityContact, solve_rough
 from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, sinusoidal_profile
 from epicyclic.ehl.steady import solve_smooth
 from epicyclic.kernels import ehl_linear
+from epicyclic.kernels.ehl_rough import Column
 from epicyclic.status import Status
 
 RADIUS, MODULUS = 0.01, 2.2e11
@@ -45,7 +46,7 @@ def amplitude_ratio(contact, wavelength, nodes=512):
     run.advance(4.0)
     films = []
     for _ in range(run.step_count(2 * wavelength)):
-        assert run.march(1)[0, 7] < rough.TOLERANCE
+        assert run.march(1)[0, Column.ERROR] < rough.TOLERANCE
         films.append(np.interp(0.0, run.x, run.film))
     return np.ptp(films) / 2 * contact.film_scale / amplitude
 
@@ -135,7 +136,7 @@ def test_friction_of_touching_surfaces_follows_their_coefficient(mixed):
 def test_power_of_the_flow_is_steady_before_there_is_roughness():
     for contact in (contact_of(20, 8), contact_of(50, 8), contact_of(200, 10)):
         run = rough._Simulation(solve_smooth(contact), (SMOOTH, SMOOTH), 512, AsperityContact())
-        assert run.advance(2.0)[-1, 5] == pytest.approx(run.smooth_power, rel=0.01)
+        assert run.advance(2.0)[-1, Column.FLOW_POWER] == pytest.approx(run.smooth_power, rel=0.01)
 
 
 def test_little_roughness_adds_little_to_the_rolling_loss():
@@ -265,5 +266,5 @@ def test_the_roughest_contacts_of_the_published_table_are_solved(
     pair = generate_profile(rq1, 20e-6, 4e-3, 1), generate_profile(rq2, 20e-6, 4e-3, 2)
     run = rough._Simulation(solve_smooth(contact), pair, rough.NODES, AsperityContact())
     records = run.march(250)
-    assert (records[:, 7] < rough.TOLERANCE).mean() >= 1 - rough.LARGEST_UNSOLVED_SHARE
+    assert (records[:, Column.ERROR] < rough.TOLERANCE).mean() >= 1 - rough.LARGEST_UNSOLVED_SHARE
     assert np.isfinite(records).all()

@@ -16,7 +16,7 @@ from epicyclic.ehl.heating import Heating, flow_easing, thinning
 from epicyclic.ehl.roughness import SMOOTH, Profile
 from epicyclic.ehl.steady import SmoothSolution, expected_film, solve_smooth
 from epicyclic.kernels.ehl_linear import GROUP
-from epicyclic.kernels.ehl_rough import march, masses
+from epicyclic.kernels.ehl_rough import Column, march, masses
 from epicyclic.kernels.ehl_steady import deflection_matrix
 from epicyclic.status import Status
 
@@ -48,7 +48,6 @@ STATIONARY = 0.02
 """Standard error of the mean friction over it at which a simulation ends by default. [1]"""
 LARGEST_UNSOLVED_SHARE = 0.01
 """Share of time steps without convergence above which a result is failed. [1]"""
-COLUMNS = 10
 MOST_FRAMES = 60
 """Moments kept at most, the last ones."""
 
@@ -219,7 +218,7 @@ class _Simulation:
             time = frame_interval * contact.rolling_speed / contact.half_width
             self.steps_to_frame = self.step_count(time)
         self.still = self.step_count(STILL)
-        self.smooth_power = float(self.march(self.still)[-1, 5])
+        self.smooth_power = float(self.march(self.still)[-1, Column.FLOW_POWER])
 
     def advance(self, time: float) -> FloatArray:
         """Records of a `time` in b/u_r, shape (steps, 10); keeps frames if they are asked for."""
@@ -235,7 +234,7 @@ class _Simulation:
 
     def march(self, steps: int) -> FloatArray:
         """Records of `steps` more time steps, shape (steps, 10)."""
-        records = np.zeros((steps, COLUMNS))
+        records = np.zeros((steps, len(Column)))
         scale = self.contact.film_scale
         self.approach = march(
             self.pressure, self.film, self.now, self.before, self.active, self.approach,
@@ -247,7 +246,7 @@ class _Simulation:
             records,
         )  # fmt: skip
         self.steps += steps
-        self.unsolved += int((~(records[:, 7] < TOLERANCE)).sum())
+        self.unsolved += int((~(records[:, Column.ERROR] < TOLERANCE)).sum())
         return records
 
     def step_count(self, time: float) -> int:
@@ -362,7 +361,9 @@ def _rolling_loss(run: _Simulation, blocks: Sequence[FloatArray]) -> _Mean:
     contact = run.contact
     power = contact.hertz_pressure * contact.film_scale * contact.rolling_speed
     smooth = run.smooth.rolling_loss
-    return _mean([smooth + power * (block[:, 5] - run.smooth_power) for block in blocks])
+    return _mean(
+        [smooth + power * (block[:, Column.FLOW_POWER] - run.smooth_power) for block in blocks]
+    )
 
 
 def _expected(done: int, judged: _Mean, tolerance: float, most_blocks: int) -> int:
@@ -391,7 +392,7 @@ def _failure(run: _Simulation, judged: _Mean, tolerance: float) -> str:
 
 def _shear(records: FloatArray) -> FloatArray:
     """Integral of the shear stress at every step, shape (steps,)."""
-    total: FloatArray = records[:, 0] + records[:, 1]
+    total: FloatArray = records[:, Column.FLUID_SHEAR] + records[:, Column.ASPERITY_SHEAR]
     return total
 
 
@@ -401,7 +402,7 @@ def _averages(
     """The result of a simulation; `shear` is the integral of the shear stress."""
     contact = run.contact
     load = math.pi / 2
-    column = records.mean(axis=0)
+    mean = records.mean(axis=0)
     return RoughSolution(
         contact=contact,
         smooth=run.smooth,
@@ -411,18 +412,20 @@ def _averages(
         friction=_shear(records) / load,
         friction_coefficient=shear.value / load,
         friction_error=shear.error / load,
-        asperity_friction_share=float(column[1]) / shear.value if shear.value > 0 else 0.0,
-        contact_share=float(column[2]),
-        asperity_load_share=float(column[3]) / load,
-        minimum_film=float(records[:, 4].min()) * contact.film_scale,
-        mean_least_film=float(column[4]) * contact.film_scale,
-        mean_central_film=float(column[9]) * contact.film_scale,
-        mean_highest_pressure=float(column[8]) * contact.hertz_pressure,
+        asperity_friction_share=float(mean[Column.ASPERITY_SHEAR]) / shear.value
+        if shear.value > 0
+        else 0.0,
+        contact_share=float(mean[Column.CONTACT_SHARE]),
+        asperity_load_share=float(mean[Column.ASPERITY_LOAD]) / load,
+        minimum_film=float(records[:, Column.LEAST_FILM].min()) * contact.film_scale,
+        mean_least_film=float(mean[Column.LEAST_FILM]) * contact.film_scale,
+        mean_central_film=float(mean[Column.CENTRAL_FILM]) * contact.film_scale,
+        mean_highest_pressure=float(mean[Column.HIGHEST_PRESSURE]) * contact.hertz_pressure,
         rolling_loss=rolling.value,
         rolling_loss_error=rolling.error,
         steps=run.steps,
         unsolved_steps=run.unsolved,
-        newton_steps=float(records[:, 6].mean()),
+        newton_steps=float(records[:, Column.NEWTON_STEPS].mean()),
         frames=list(run.frames),
     )
 

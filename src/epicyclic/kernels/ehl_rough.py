@@ -8,6 +8,7 @@ the load are implicit. Each step is solved by Newton's method.
 from __future__ import annotations
 
 import math
+from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,10 +34,31 @@ from epicyclic.kernels.ehl_linear import (
     update_groups,
 )
 
-__all__ = ["march", "masses"]
+__all__ = ["Column", "march", "masses"]
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+
+
+class Column(IntEnum):
+    """What a record of a time step holds."""
+
+    FLUID_SHEAR = 0
+    """Integral over X, scaled, as the next."""
+    ASPERITY_SHEAR = 1
+    CONTACT_SHARE = 2
+    """Touching length over 2 b."""
+    ASPERITY_LOAD = 3
+    """Integral over X of the pressure where surfaces touch."""
+    LEAST_FILM = 4
+    FLOW_POWER = 5
+    """Of the pressure flow. Theory (H33)."""
+    NEWTON_STEPS = 6
+    ERROR = 7
+    """What the tolerance of a step bounds."""
+    HIGHEST_PRESSURE = 8
+    CENTRAL_FILM = 9
+
 
 REFRESH = 3
 """GMRES steps beyond which the preconditioner is made anew in the next Newton step."""
@@ -306,18 +328,18 @@ def measure(
     contact_film: float, boundary_friction: float, record: FloatArray,
 ) -> None:  # fmt: skip
     """Friction and contact of one moment into `record`. Theory (H23), (H24)."""
-    record[:5] = 0.0
-    record[4] = np.inf
+    record[: Column.FLOW_POWER] = 0.0
+    record[Column.LEAST_FILM] = np.inf
     for i in range(pressure.size):
         p = pressure[i]
         if p > 0.0:
-            record[4] = min(record[4], film[i])
+            record[Column.LEAST_FILM] = min(record[Column.LEAST_FILM], film[i])
             if film[i] < contact_film:
-                record[1] += boundary_friction * p * dx
-                record[2] += 0.5 * dx
-                record[3] += p * dx
+                record[Column.ASPERITY_SHEAR] += boundary_friction * p * dx
+                record[Column.CONTACT_SHARE] += 0.5 * dx
+                record[Column.ASPERITY_LOAD] += p * dx
             else:
-                record[0] += mean_shear(p, film[i], thinned[i], fluid) * dx
+                record[Column.FLUID_SHEAR] += mean_shear(p, film[i], thinned[i], fluid) * dx
 
 
 @kernel
@@ -368,9 +390,7 @@ def march(
     tolerance, max_iterations
         Of `solve_step`.
     records : ndarray, shape (steps, 10)
-        Integrals over X of fluid and of asperity shear, contact length over 2 b, integral of the
-        pressure in contact, least film, power of the pressure flow, Newton steps, error, highest
-        pressure, film at the center.
+        See `Column`.
 
     Returns
     -------
@@ -421,9 +441,9 @@ def march(
         before[:] = now
         masses(pressure, film, fluid, now)
         measure(pressure, film, thinned, fluid, dx, contact_film, boundary_friction, records[t])
-        records[t, 5] = flow_power(pressure, now, order, history, fluid) / stride
-        records[t, 6] = iterations
-        records[t, 7] = result[2]
-        records[t, 8] = pressure.max()
-        records[t, 9] = film[center]
+        records[t, Column.FLOW_POWER] = flow_power(pressure, now, order, history, fluid) / stride
+        records[t, Column.NEWTON_STEPS] = iterations
+        records[t, Column.ERROR] = result[2]
+        records[t, Column.HIGHEST_PRESSURE] = pressure.max()
+        records[t, Column.CENTRAL_FILM] = film[center]
     return approach
