@@ -6,8 +6,9 @@ import numpy as np
 
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.oil_laws import oil_laws
+from epicyclic.ehl.heating import effusivity
 from epicyclic.ehl.rough import AsperityContact
-from epicyclic.losses.direct import DirectSettings, EhlDirect, SolidHeat
+from epicyclic.losses.direct import DirectSettings, EhlDirect
 from epicyclic.losses.fitted import FittedFriction, FittedRolling
 from epicyclic.losses.friction import FrictionModel, FrictionSettings, friction_model
 from epicyclic.losses.friction.user import FrictionMap
@@ -66,7 +67,7 @@ def friction_of(case: Case) -> FrictionModel:
 
 def _direct_settings(case: Case) -> DirectSettings:
     solver = case.contact_solver
-    solids = None
+    carried = None
     if solver.heating != "isothermal":
         gears = (
             (case.sun, case.planet, case.ring)
@@ -74,11 +75,11 @@ def _direct_settings(case: Case) -> DirectSettings:
             else (case.pinion, case.gear)
         )
         density = float(np.mean([gear.material.density for gear in gears]))
-        solids = SolidHeat(solver.solid_conductivity, solver.solid_heat_capacity, density)
+        carried = effusivity(solver.solid_conductivity, solver.solid_heat_capacity, density)
     return DirectSettings(
         laws=oil_laws(solver),
         asperities=AsperityContact(solver.asperity_film, case.models.boundary_friction),
-        solids=solids,
+        effusivity=carried,
         correlation_length=solver.correlation_length,
         seed=solver.seed,
         error=solver.error,

@@ -23,7 +23,7 @@ from epicyclic.case.reading import read_file
 from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Table
 from epicyclic.case.validation import validate
 from epicyclic.ehl.conditions import ContactOil, LineContact
-from epicyclic.ehl.heating import Heating
+from epicyclic.ehl.heating import Heating, effusivity
 from epicyclic.ehl.profile_file import read_profile
 from epicyclic.ehl.rough import MOST_BLOCKS, NODES, STATIONARY, AsperityContact
 from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile
@@ -307,12 +307,12 @@ def _heating(case: ContactCase) -> Heating | None:
     if table.model == "isothermal":
         return None
     state = oil_state(case.lubricant.oil, case.lubricant.temperature)
-    carried = table.solid_conductivity * table.solid_heat_capacity
+    conductivity, capacity = table.solid_conductivity, table.solid_heat_capacity
     return Heating(
         state.thermoviscosity,
         state.thermal_conductivity,
-        math.sqrt(carried * case.surface1.material.density),
-        math.sqrt(carried * case.surface2.material.density),
+        effusivity(conductivity, capacity, case.surface1.material.density),
+        effusivity(conductivity, capacity, case.surface2.material.density),
     )
 
 

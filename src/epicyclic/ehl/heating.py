@@ -13,7 +13,7 @@ from epicyclic.ehl.rheology import Roelands
 from epicyclic.kernels.ehl_fluid import mean_shear
 from epicyclic.lubricant.properties import ROELANDS_PRESSURE
 
-__all__ = ["Heating", "flow_easing", "inlet_factor", "temperature_rise", "thinning"]
+__all__ = ["Heating", "effusivity", "flow_easing", "inlet_factor", "temperature_rise", "thinning"]
 
 FloatArray = NDArray[np.float64]
 
@@ -41,6 +41,11 @@ class Heating:
     oil_conductivity: float
     effusivity1: float
     effusivity2: float
+
+
+def effusivity(conductivity: float, heat_capacity: float, density: float) -> float:
+    """sqrt(k rho c) of a solid, SI. Theory (H30). [W s^0.5/(m^2 K)]"""
+    return math.sqrt(conductivity * heat_capacity * density)
 
 
 def inlet_factor(contact: LineContact, heating: Heating) -> float:

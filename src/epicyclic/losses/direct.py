@@ -8,7 +8,6 @@ are drawn by the sliding power and take no part, tell the error. Theory (O10).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -35,7 +34,7 @@ from epicyclic.oilmodel.structured import EYRING_STRESS, eyring_friction
 from epicyclic.status import Status
 from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, MILLIMETRE, NUMBER, Quantity
 
-__all__ = ["DirectSettings", "EhlDirect", "SolidHeat", "contacts_told", "solver_range"]
+__all__ = ["DirectSettings", "EhlDirect", "contacts_told", "solver_range"]
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
@@ -80,30 +79,6 @@ def contacts_told(progress: Callable[[int, int], None]) -> Iterator[None]:
 
 
 @dataclass(frozen=True, slots=True)
-class SolidHeat:
-    """What carries heat through the gears.
-
-    Attributes
-    ----------
-    conductivity : float
-        [W/(m K)]
-    heat_capacity : float
-        [J/(kg K)]
-    density : float
-        [kg/m^3]
-    """
-
-    conductivity: float
-    heat_capacity: float
-    density: float
-
-    @property
-    def effusivity(self) -> float:
-        """sqrt(k rho c). Theory (H30). [W s^0.5/(m^2 K)]"""
-        return math.sqrt(self.conductivity * self.heat_capacity * self.density)
-
-
-@dataclass(frozen=True, slots=True)
 class DirectSettings:
     """Numbers that the solver takes from the case.
 
@@ -113,8 +88,8 @@ class DirectSettings:
         How the oil behaves under pressure and shear.
     asperities : AsperityContact
         Where surfaces touch.
-    solids : SolidHeat or None
-        None for isothermal contacts.
+    effusivity : float or None
+        Of the gears; None for isothermal contacts. [W s^0.5/(m^2 K)]
     correlation_length : float
         Of both flanks. [m]
     seed : int
@@ -126,7 +101,7 @@ class DirectSettings:
 
     laws: OilLaws
     asperities: AsperityContact
-    solids: SolidHeat | None
+    effusivity: float | None
     correlation_length: float
     seed: int
     error: float
@@ -274,7 +249,7 @@ def _ratios(
         laws.pressure(contact.oil.pressure_viscosity),
         shear_law=laws.shear,
     )
-    heating = _heating(contact, settings.solids)
+    heating = _heating(contact, settings.effusivity)
     smooth = bool(contact.film_ratio.min() > SMOOTH_FILM_RATIO)
     found = []
     for i in points:
@@ -296,14 +271,12 @@ def _ratios(
     return np.array(found) / base[points]
 
 
-def _heating(contact: MeshContact, solids: SolidHeat | None) -> Heating | None:
+def _heating(contact: MeshContact, effusivity: float | None) -> Heating | None:
     """What carries the heat away; None for isothermal contacts."""
-    if solids is None:
+    if effusivity is None:
         return None
     oil = contact.oil
-    return Heating(
-        oil.thermoviscosity, oil.thermal_conductivity, solids.effusivity, solids.effusivity
-    )
+    return Heating(oil.thermoviscosity, oil.thermal_conductivity, effusivity, effusivity)
 
 
 @lru_cache(maxsize=4096)
