@@ -28,6 +28,7 @@ from rich.table import Table
 import epicyclic as ep
 from epicyclic.analysis.contact import solve_contact
 from epicyclic.case.contact import load_contact_case
+from epicyclic.sweeps.runner import Runner
 
 REPEATS = 5
 MATRIX = {
@@ -212,22 +213,21 @@ def contact_seconds(roughness: str) -> tuple[float, int]:
 
 def pocket_seconds() -> tuple[float, float]:
     """Geometry of the pockets of one mesh, and one periodic flow through them; the slower mesh."""
-    from epicyclic.analysis.parts import fluids_of
-    from epicyclic.analysis.planetary import planetary_duties
+    from epicyclic.builders.build import build
     from epicyclic.pocketing.fluid import pocket_flow
     from epicyclic.pocketing.geometry import pocket_geometry
 
     case = test_article()
-    mixture = fluids_of(case).mixture
+    built = build(case)
     geometry_times, flow_times = [], []
-    for duty in planetary_duties(case, 1 / 3):
+    for duty in built.mean_duties().values():
         shape = partial(pocket_geometry.__wrapped__, duty.mesh, duty.tools, True)
         flow = partial(
             pocket_flow.__wrapped__,
             pocket_geometry(duty.mesh, duty.tools, True),
             abs(duty.speed1),
-            mixture,
-            case.surroundings.pressure,
+            built.fluids.mixture,
+            built.fluids.pressure,
         )
         geometry_times.append(median_seconds(shape))
         flow_times.append(median_seconds(flow))
@@ -238,7 +238,7 @@ CAMPAIGN_SIZE = 24
 """Contacts of a space-filling design in the ranges of Talbot (2012), Table 5.1."""
 
 
-def campaign_seconds(jobs: int | None = None, cluster: str | None = None) -> float:
+def campaign_seconds(runner: Runner) -> float:
     """Simulations for an oil, kept and written."""
     from epicyclic.campaigns.campaign import make_campaign
     from epicyclic.campaigns.folder import CampaignFolder
@@ -247,7 +247,7 @@ def campaign_seconds(jobs: int | None = None, cluster: str | None = None) -> flo
         place = CampaignFolder(Path(folder), make_campaign("atf-talbot-2012", size=CAMPAIGN_SIZE))
         place.prepare()
         start = time.perf_counter()
-        place.run(jobs=jobs, cluster=cluster)
+        place.run(runner)
         return time.perf_counter() - start
 
 
@@ -255,9 +255,9 @@ def campaign_table() -> Table:
     """Simulations a minute in one process, in two, and on a local Dask cluster of two."""
     from distributed import LocalCluster
 
-    one, two = campaign_seconds(jobs=1), campaign_seconds(jobs=2)
+    one, two = campaign_seconds(Runner(jobs=1)), campaign_seconds(Runner(jobs=2))
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
-        dask = campaign_seconds(cluster=cluster.scheduler_address)
+        dask = campaign_seconds(Runner(dask=cluster.scheduler_address))
     title = f"Oil campaign, {CAMPAIGN_SIZE} contacts"
     table = Table("workers", title=title, title_justify="left")
     for column in ("seconds", "contacts a minute", "efficiency"):

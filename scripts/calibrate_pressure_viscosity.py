@@ -13,11 +13,8 @@ from dataclasses import replace
 from scipy.optimize import brentq
 
 import epicyclic as ep
-from epicyclic.analysis.parts import fluids_of
-from epicyclic.analysis.planet_bearing import roller_bearing
-from epicyclic.analysis.planet_load import planet_load
-from epicyclic.analysis.planetary import member_speeds, planetary_duties
-from epicyclic.kinematics import planet_speed
+from epicyclic.builders.build import build
+from epicyclic.builders.planetary import roller_bearing
 from epicyclic.losses.planet_bearing import mixed_ehl_rolling_loss, roller_loads
 
 PUBLISHED = {"40 degC": 236.0, "60 degC": 195.0, "90 degC": 181.0}
@@ -31,11 +28,13 @@ def calibrate(temperature: str, loss: float) -> float:
     )
     assert isinstance(case, ep.PlanetaryCase)
     assert case.planet_bearing is not None
-    bearing = roller_bearing(case.planet_bearing, case.numerics.bearing_slices)
-    load = planet_load(planetary_duties(case, 1 / case.planet.count), 0.0)
+    bearing = roller_bearing(case.planet_bearing, case.numerics)
+    built = build(case)
+    load = built.planet_loads()["planet_bearing"]
     loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
-    speed = planet_speed(case.sun.teeth, case.planet.teeth, member_speeds(case))
-    oil = fluids_of(case).oil
+    speeds = built.state().speeds
+    speed = speeds["planet"] - speeds["carrier"]
+    oil = built.fluids.oil
 
     def excess(alpha: float) -> float:
         return (

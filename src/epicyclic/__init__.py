@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from epicyclic.analysis.mesh_details import mesh_details
     from epicyclic.analysis.pocket_details import pocket_details
-    from epicyclic.analysis.result import Result
     from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
     from epicyclic.campaigns.fit import characterise_oil
     from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from epicyclic.records.files import open_result, save_result
     from epicyclic.records.record import ResultRecord, record
     from epicyclic.report.html import report_html
+    from epicyclic.results.result import Result
     from epicyclic.sweeps.pocketing_study import pocketing_study
     from epicyclic.sweeps.pocketing_table import pocketing_table
     from epicyclic.sweeps.run import sweep
@@ -44,7 +44,7 @@ _HOME = {
     "MeasuredComparison": "epicyclic.measurement.compare",
     "PlanetaryCase": "epicyclic.case.case",
     "Problem": "epicyclic.errors",
-    "Result": "epicyclic.analysis.result",
+    "Result": "epicyclic.results.result",
     "RexsImport": "epicyclic.exchange.rexs.importing",
     "ResultRecord": "epicyclic.records.record",
     "case_schema": "epicyclic.case.case",

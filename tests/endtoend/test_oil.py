@@ -17,6 +17,7 @@ import epicyclic as ep
 from epicyclic.campaigns.campaign import make_campaign
 from epicyclic.campaigns.fit import fit_campaign
 from epicyclic.campaigns.folder import CampaignFolder
+from epicyclic.sweeps.runner import Runner
 
 # contacts that take a tenth of a second
 RANGES = {
@@ -66,14 +67,14 @@ def finished(tmp_path_factory):
     """A campaign that nothing disturbed, in one process."""
     folder = CampaignFolder(tmp_path_factory.mktemp("oil") / "atf", campaign())
     folder.prepare()
-    folder.run(jobs=1)
+    folder.run(Runner(jobs=1))
     folder.model.write_text(fit_campaign(folder).model_dump_json(indent=2) + "\n")
     return folder.path
 
 
 def kept(folder):
     journal = folder / "simulations.partial"
-    return journal.read_bytes().count(b"\n") if journal.exists() else 0
+    return journal.read_bytes().count(b'"point":') if journal.exists() else 0
 
 
 def disturbed(folder, kills, seed):
@@ -110,9 +111,10 @@ def test_a_cluster_gives_the_same_bits(finished, tmp_path):
     folder.prepare()
     counts: list[tuple[int, int, int]] = []
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
+        n_workers=2, threads_per_worker=1, processes=False, dashboard_address=":0"
     ) as cluster:
-        folder.run(cluster=cluster.scheduler_address, progress=lambda *call: counts.append(call))
+        address = cluster.scheduler_address
+        folder.run(Runner(dask=address, progress=lambda *call: counts.append(call)))
     assert folder.table.read_bytes() == (finished / "simulations.csv").read_bytes()
     assert counts[-1][:2] == (SIZE, SIZE)
 
@@ -147,7 +149,7 @@ def test_an_unknown_scheduler_is_bad_input(tmp_path):
     folder = CampaignFolder(tmp_path / "atf", campaign())
     folder.prepare()
     with pytest.raises(ep.InputError, match="cannot be reached"):
-        folder.run(cluster="nowhere")
+        folder.run(Runner(dask="nowhere"))
 
 
 def test_the_table_states_every_condition_and_result(finished):

@@ -9,9 +9,8 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.analysis.compare import compare_friction
-from epicyclic.analysis.models import resolve_models
-from epicyclic.analysis.planet_load import planet_load
-from epicyclic.analysis.planetary import planetary_duties
+from epicyclic.builders.build import build
+from epicyclic.builders.models import resolve_models
 
 IDENTITY = 1e-12  # rounding only
 
@@ -27,7 +26,7 @@ def solve(case, **changes):
 
 def test_bearing_load_is_that_of_the_printed_equations(case):
     """Talbot (2012), Eq. 3.7 and 3.8, with operating radii."""
-    load = planet_load(planetary_duties(case, 1 / case.planet.count), 0.0)
+    load = build(case).planet_loads()["planet_bearing"]
     branch = 1000 / 3
     sun_radius = 0.09213 * 73 / 99
     planet_radius = 0.09213 * 26 / 99
@@ -40,13 +39,14 @@ def test_bearing_load_is_that_of_the_printed_equations(case):
 
 
 def test_centrifugal_force_turns_the_load_and_not_the_couple(case):
-    duties = planetary_duties(case, 1 / case.planet.count)
-    plain = planet_load(duties, 0.0)
-    loaded = planet_load(duties, 5000.0)
-    assert loaded.force == pytest.approx(math.hypot(plain.force, 5000.0), rel=1e-9)
+    plain = build(case).planet_loads()["planet_bearing"]
+    heavy = build(case.updated({"planet.mass": "5000 g"}))
+    loaded = heavy.planet_loads()["planet_bearing"]
+    force = 5.0 * case.gears.center_distance * heavy.state().speeds["carrier"] ** 2
+    assert loaded.force == pytest.approx(math.hypot(plain.force, force), rel=1e-9)
     assert math.hypot(loaded.moment_x, loaded.moment_y) == pytest.approx(plain.moment_y)
     assert math.atan2(loaded.moment_x, loaded.moment_y) == pytest.approx(
-        math.atan2(5000.0, plain.force)
+        math.atan2(force, plain.force)
     )
 
 

@@ -11,6 +11,7 @@ from epicyclic.campaigns.campaign import make_campaign
 from epicyclic.campaigns.design import BEARING_TABLE, GEAR_TABLE, parse_ranges
 from epicyclic.campaigns.folder import CampaignFolder, open_folder
 from epicyclic.errors import InputError
+from epicyclic.sweeps.runner import fingerprint
 
 ATF = "atf-talbot-2012"
 
@@ -65,7 +66,7 @@ def test_settings_hold_for_every_point_and_tell_campaigns_apart():
     other = make_campaign(ATF, size=4, changes={"lubricant.eyring_stress": "8 MPa"})
     assert other.case(3).lubricant.eyring_stress == pytest.approx(8e6)
     prints = {
-        campaign.fingerprint()
+        fingerprint(campaign)
         for campaign in (
             one,
             other,

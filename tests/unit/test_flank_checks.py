@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import epicyclic as ep
-from epicyclic.analysis.notes import load_notes
+from epicyclic.builders.notes import load_notes
 from epicyclic.case import build, flanks
 
 TIP = {"tip_relief": "20 um", "tip_relief_roll_length": "2 mm"}

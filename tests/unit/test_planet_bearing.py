@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.analysis.parts import MeshDuty
-from epicyclic.analysis.planet_bearing import palmgren_coefficient, roller_bearing
-from epicyclic.analysis.planet_load import planet_load
-from epicyclic.analysis.planetary import planetary_duties
+from epicyclic.builders.build import build
+from epicyclic.builders.planetary import palmgren_coefficient, roller_bearing
+from epicyclic.elements.gear_mesh import MeshDuty
+from epicyclic.elements.planet_load import PlanetContact, planet_load
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss
 from epicyclic.losses.planet_bearing import (
@@ -31,8 +32,8 @@ def article(talbot):
 
 
 def bearing_and_loads(case):
-    bearing = roller_bearing(case.planet_bearing, case.numerics.bearing_slices)
-    load = planet_load(planetary_duties(case, 1 / case.planet.count), 0.0)
+    bearing = roller_bearing(case.planet_bearing, case.numerics)
+    load = build(case).planet_loads()["planet_bearing"]
     return bearing, roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
 
 
@@ -48,7 +49,7 @@ def composite(bearing, value):
 @pytest.mark.parametrize("torque", [42.0, 100.0, 333.0])
 def test_load_of_the_test_article(article, torque):
     case = article.updated({"operation.torque": f"{3 * torque} N*m"})
-    load = planet_load(planetary_duties(case, 1 / case.planet.count), 0.0)
+    load = build(case).planet_loads()["planet_bearing"]
     # Talbot (2012), Eq. 3.7 and 3.8, with operating pitch radii a z/(z_s + z_p)
     r_ps, r_pp = 92.13e-3 * 73 / 99, 92.13e-3 * 26 / 99
     assert load.force == pytest.approx(2 * torque / r_ps, rel=1e-12)
@@ -96,10 +97,14 @@ def test_load_is_the_resultant_of_the_tooth_forces(make_gear, beta, centrifugal,
     # the same force along both lines of action, by the balance of the planet
     planet_torque = torque / sun.base_radius * planet.base_radius
     duties = (
-        MeshDuty("sun_mesh", meshes[0], (None, None), torque, 100.0, True, (None, None)),
-        MeshDuty("ring_mesh", meshes[1], (None, None), -planet_torque, -80.0, True, (None, None)),
+        MeshDuty(SimpleNamespace(mesh=meshes[0]), torque, 100.0, True),
+        MeshDuty(SimpleNamespace(mesh=meshes[1]), -planet_torque, -80.0, True),
     )
-    load = planet_load(duties, centrifugal)
+    contacts = [
+        PlanetContact(duties[0], 2, (0.0, 1.0), 1),
+        PlanetContact(duties[1], 1, (0.0, -1.0), -1),
+    ]
+    load = planet_load(contacts, centrifugal)
     force = np.array([0.0, centrifugal, 0.0])
     moment = np.zeros(3)
     for at, push in forces_on_planet(*meshes, torque):
@@ -218,7 +223,7 @@ def test_loss_does_not_depend_on_the_sense_of_rotation(article, atf):
 
 @pytest.mark.parametrize("celsius", [40, 90])
 def test_loss_grows_with_load_speed_and_roughness(article, atf, celsius):
-    bearing = roller_bearing(article.planet_bearing, 20)
+    bearing = roller_bearing(article.planet_bearing, article.numerics)
     by_load = [
         mixed_ehl_rolling_loss(
             bearing,

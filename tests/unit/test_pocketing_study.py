@@ -137,7 +137,7 @@ def test_finished_points_are_kept(pair, tmp_path, monkeypatch):
         "jobs": 1,
     }
     first = ep.pocketing_study(pair, ["oil-fraction"], **wanted)["oil-fraction"]
-    monkeypatch.delattr("epicyclic.sweeps.pocketing_study.solve_variant")
+    monkeypatch.delattr("epicyclic.sweeps.pocketing_plan.solve_variant")
     again = ep.pocketing_study(pair, ["oil-fraction"], **wanted)["oil-fraction"]
     assert again.equals(first)
     assert float(first["pocketing_loss"].min()) > 0

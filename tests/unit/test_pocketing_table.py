@@ -9,11 +9,12 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.analysis.pocket_details import mesh_duties
-from epicyclic.analysis.pockets import flow_family
+from epicyclic.elements.pocket_flow import flow_family
 from epicyclic.pocketing.similarity import FlowFamily
 from epicyclic.pocketing.stored import read_stored, stored_table
 from epicyclic.sweeps.dataset import write_dataset
 from epicyclic.sweeps.plan import make_plan
+from epicyclic.sweeps.runner import fingerprint
 
 COARSE = {
     "numerics.pocket_slices": 4,
@@ -117,7 +118,7 @@ def test_set_without_a_table_in_the_file_is_refused(file):
 
 
 def test_table_comes_back_as_it_was_made(case, file):
-    family = flow_family(case, mesh_duties(case)[0])
+    family = flow_family(mesh_duties(case)[0])
     stored = stored_table(file, family)
     assert stored.readable.any()
     middle = len(stored.number) // 2
@@ -163,7 +164,7 @@ def test_sweep_does_not_resume_with_another_table(case, table, tmp_path):
     for title in ("one", "two"):
         write_dataset(table.assign_attrs(title=title), path)
         reading = case.updated({"models.pocketing_table": str(path)})
-        prints.append(make_plan(reading, {"operation.speed": ["1 rpm"]}).fingerprint())
+        prints.append(fingerprint(make_plan(reading, {"operation.speed": ["1 rpm"]})))
     assert prints[0] != prints[1]
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from epicyclic.case import build
 from epicyclic.case.case import load_case
+from epicyclic.geometry.cutting import longest_involute
 from epicyclic.geometry.gear import involute
 from epicyclic.geometry.outline import form_radius
 from epicyclic.geometry.tools import RackTool, ShaperTool
@@ -166,7 +167,7 @@ def test_the_longest_involute_is_as_long_as_that_of_any_tool():
     tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
     for name, table in tables.items():
         gear = build.gear(name, table, case.gears)
-        longest = build.longest_involute(gear, table)
+        longest = longest_involute(gear, table.tool_tip_radius)
         for rounding in (0.0, 0.1e-3, 0.3e-3, 0.6e-3):
             tool = ShaperTool(42, rounding) if gear.internal else RackTool(rounding)
             form = form_radius(gear, tool)
@@ -177,7 +178,7 @@ def test_the_longest_involute_is_as_long_as_that_of_any_tool():
 def test_the_longest_involute_of_gears_that_sharp_tools_undercut(teeth):
     case = load_case(pair(teeth, 40, 0.4 if teeth < 17 else 0.0))
     gear = build.gear("pinion", case.pinion, case.gears)
-    longest = build.longest_involute(gear, case.pinion)
+    longest = longest_involute(gear, case.pinion.tool_tip_radius)
     assert longest >= gear.base_radius
     roundings = [share * gear.rack.normal_module for share in (0.0, 0.1, 0.2, 0.3, 0.38, 0.45)]
     forms = [form_radius(gear, RackTool(rounding)) for rounding in roundings]

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.analysis.pair import pair_duty
-from epicyclic.analysis.pockets import flow_family
+from epicyclic.builders.build import build
+from epicyclic.elements.pocket_flow import flow_family
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.similarity import LEAST_NUMBER, flow_figures, scaled_figures
 from epicyclic.pocketing.table import make_tables
@@ -27,7 +27,7 @@ def case():
 
 @pytest.fixture(scope="module")
 def family(case):
-    return flow_family(case, pair_duty(case))
+    return flow_family(build(case).mean_duties()["mesh"])
 
 
 @dataclass(frozen=True)

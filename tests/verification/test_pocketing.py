@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import epicyclic as ep
 from epicyclic.case import build
+from epicyclic.geometry.cutting import fitted_tool
 from epicyclic.geometry.gear import BasicRack, Gear, half_angle_from_profile_shift
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import form_radius, tooth_outline
@@ -43,8 +44,8 @@ def pair():
         )
         mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
         tools = (
-            build.fitted_tool(mesh.gear1, case.pinion, mesh.radius1_at_start),
-            build.fitted_tool(mesh.gear2, case.gear, mesh.radius2_at_end),
+            fitted_tool(mesh.gear1, None, mesh.radius1_at_start),
+            fitted_tool(mesh.gear2, None, mesh.radius2_at_end),
         )
         return pocket_geometry(mesh, tools, drives1, **kwargs)
 
@@ -148,7 +149,7 @@ def test_outline_points_and_angles_converge(pair):
 
 def test_tools_leave_the_involute_that_the_mate_needs(talbot, talbot_meshes):
     mesh = talbot_meshes[0]
-    tool = build.fitted_tool(mesh.gear2, talbot.planet, mesh.radius2_at_end)
+    tool = fitted_tool(mesh.gear2, None, mesh.radius2_at_end)
     assert form_radius(mesh.gear2, tool) <= mesh.radius2_at_end + 1e-9
 
 
@@ -308,13 +309,10 @@ def test_every_point_of_the_box_has_an_answer(rpm, xi, beta, backlash, module, i
     size = math.exp(module)
     mesh = box_mesh(size, beta, math.exp(backlash), teeth, internal, 8 * size)
 
-    class Table:
-        tool_tip_radius = None
-
     try:
         tools = (
-            build.fitted_tool(mesh.gear1, Table, mesh.radius1_at_start),
-            build.fitted_tool(mesh.gear2, Table, mesh.radius2_at_end),
+            fitted_tool(mesh.gear1, None, mesh.radius1_at_start),
+            fitted_tool(mesh.gear2, None, mesh.radius2_at_end),
         )
     except ValueError:
         assume(False)

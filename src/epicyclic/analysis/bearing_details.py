@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from epicyclic.analysis.datasets import variable
-from epicyclic.analysis.planet_bearing import roller_bearing
+from epicyclic.builders.planetary import roller_bearing
 from epicyclic.case.model_tables import Numerics
 from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.kernels.line_contact import hertz_pressure
@@ -40,7 +40,7 @@ def bearing_details(table: PlanetBearing, numerics: Numerics, loads: RollerLoads
     """
     import xarray as xr
 
-    bearing = roller_bearing(table, numerics.bearing_slices)
+    bearing = roller_bearing(table, numerics)
     modulus = bearing.equivalent_modulus
     pressure = hertz_pressure(
         loads.intensity, np.full_like(loads.intensity, bearing.inner_radius), modulus

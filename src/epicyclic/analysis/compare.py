@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from epicyclic.analysis.models import friction_of, friction_settings, resolve_models
-from epicyclic.analysis.result import LOAD_DEPENDENT, Result
 from epicyclic.analysis.solve import solve
+from epicyclic.builders.models import friction_of, friction_settings, resolve_models
 from epicyclic.case.case import Case
+from epicyclic.elements.base import LOAD_DEPENDENT
 from epicyclic.losses.friction import FRICTION_MODELS
+from epicyclic.results.result import Result
 
 __all__ = ["FrictionComparison", "compare_friction"]
 

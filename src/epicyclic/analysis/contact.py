@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.analysis.contact_limits import contact_flags, contact_notes, film_ratio
-from epicyclic.analysis.result import versions
 from epicyclic.case.contact import ContactCase, ContactModel, contact_model
 from epicyclic.case.plain import plain
 from epicyclic.ehl.heating import thinning
@@ -21,6 +20,7 @@ from epicyclic.ehl.roughness import Profile
 from epicyclic.ehl.steady import SmoothSolution, solve_smooth
 from epicyclic.kernels.ehl_steady import shear_stresses
 from epicyclic.losses.validity import ValidityFlag, range_left
+from epicyclic.results.result import versions
 from epicyclic.status import Status
 
 __all__ = ["ContactFigure", "ContactResult", "solve_contact"]

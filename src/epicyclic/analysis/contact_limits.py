@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from epicyclic.analysis.parts import oil_flags
 from epicyclic.case.contact import ContactCase, ContactModel
 from epicyclic.ehl.box import VALIDATED_FILM_RATIO
 from epicyclic.ehl.rough import RoughSolution
 from epicyclic.ehl.roughness import Profile
 from epicyclic.ehl.steady import SmoothSolution
+from epicyclic.elements.fluids import oil_flags
 from epicyclic.losses.direct import EhlDirect, solver_range
 from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.units import MICROMETRE, MILLIMETRE, NUMBER, Quantity, format_number

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.analysis.datasets import Variable, variable
-from epicyclic.analysis.models import friction_of
-from epicyclic.analysis.notes import load_notes
-from epicyclic.analysis.parts import MeshDuty, contact_under, distribute_load, fluids_of
-from epicyclic.analysis.solve import loaded_duties
+from epicyclic.builders.build import build
+from epicyclic.builders.notes import load_notes
 from epicyclic.case.case import Case
+from epicyclic.elements.gear_mesh import MeshDuty, contact_under, distribute_load
 from epicyclic.errors import InputError, Problem
 from epicyclic.losses.load_distribution import LineLoads
+from epicyclic.lubricant.properties import OilState
 from epicyclic.units import (
     DEGREE,
     GIGAPASCAL,
@@ -72,14 +72,18 @@ def mesh_details(case: Case) -> dict[str, xr.Dataset]:
             "Give a torque other than zero.",
         )
         raise InputError([problem], case.source)
-    return {duty.key: _details(case, duty, load_notes(case)) for duty in loaded_duties(case)}
+    built = build(case)
+    return {
+        key: _details(case.title, duty, built.fluids.oil, load_notes(case))
+        for key, duty in built.loaded_duties().items()
+    }
 
 
-def _details(case: Case, duty: MeshDuty, notes: tuple[str, ...]) -> xr.Dataset:
+def _details(title: str, duty: MeshDuty, oil: OilState, notes: tuple[str, ...]) -> xr.Dataset:
     import xarray as xr
 
     mesh = duty.mesh
-    loads = distribute_load(duty, case.models, case.numerics)
+    loads = distribute_load(duty)
     lines = loads.lines
     pitch_angle = 2 * math.pi / mesh.gear1.teeth
     variables = {
@@ -89,7 +93,7 @@ def _details(case: Case, duty: MeshDuty, notes: tuple[str, ...]) -> xr.Dataset:
         ),
         "face_position": _points(lines.face_position, "position across the face", MILLIMETRE),
         **_loads(loads, mesh.face_width),
-        **_contact(case, duty, loads),
+        **_contact(duty, oil, loads),
     }
     coordinates = {
         "roll_angle": variable(
@@ -100,12 +104,11 @@ def _details(case: Case, duty: MeshDuty, notes: tuple[str, ...]) -> xr.Dataset:
         ),
         "contact_line": np.arange(lines.length.shape[1]),
     }
-    title = f"{duty.key.replace('_', ' ').capitalize()} of {case.title or 'the case'}"
     attributes = {
-        "title": title,
+        "title": f"{duty.key.replace('_', ' ').capitalize()} of {title or 'the case'}",
         "notes": "\n".join(notes),
-        "load_distribution": case.models.load_distribution,
-        "force_N": abs(duty.torque1) / mesh.gear1.base_radius,
+        "load_distribution": duty.models.load_distribution,
+        "force_N": duty.force,
         "pitch_angle_deg": DEGREE.to_display(pitch_angle),
     }
     return xr.Dataset(variables, coordinates, attributes)
@@ -144,9 +147,9 @@ def _loads(loads: LineLoads, face_width: float) -> dict[str, Variable]:
     }
 
 
-def _contact(case: Case, duty: MeshDuty, loads: LineLoads) -> dict[str, Variable]:
+def _contact(duty: MeshDuty, oil: OilState, loads: LineLoads) -> dict[str, Variable]:
     """What pressure and motion add."""
-    contact = contact_under(duty, loads, fluids_of(case).oil)
+    contact = contact_under(duty, loads, oil)
     loaded = (loads.lines.length > 0) & (loads.line_load > 0)
 
     def spread(values: FloatArray) -> FloatArray:
@@ -156,7 +159,7 @@ def _contact(case: Case, duty: MeshDuty, loads: LineLoads) -> dict[str, Variable
 
     film = friction = np.full(contact.line_load.shape, math.nan)
     if duty.speed1 != 0:
-        film, friction = contact.film_ratio, friction_of(case).coefficient(contact)
+        film, friction = contact.film_ratio, duty.models.friction.coefficient(contact)
     power = friction * contact.line_load * np.abs(contact.sliding_speed)
     return {
         "hertz_pressure": _points(spread(contact.hertz_pressure), "contact pressure", GIGAPASCAL),

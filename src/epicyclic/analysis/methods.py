@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from epicyclic.analysis.load_sharing import SHARING_METHODS
-from epicyclic.analysis.models import friction_of, resolve_models, rolling_of
-from epicyclic.analysis.parts import OHLENDORF_SOURCE
-from epicyclic.analysis.planet_bearing import bearing_method
-from epicyclic.analysis.pockets import POCKETING_SOURCE, pocketing_method
-from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.builders.build import build
+from epicyclic.builders.models import friction_of, resolve_models, rolling_of
+from epicyclic.case.case import Case
+from epicyclic.elements.gear_mesh import OHLENDORF_SOURCE
+from epicyclic.elements.load_sharing import SHARING_METHODS
+from epicyclic.elements.pocket_flow import POCKETING_SOURCE, pocketing_method
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.viscous import DRAG_METHOD, DRAG_SOURCE, VISCOUS_METHOD, VISCOUS_SOURCE
 
@@ -24,11 +24,13 @@ def methods_of(case: Case) -> dict[str, tuple[str, str]]:
         methods["rolling"] = (rolling.title, rolling.source)
     distribution = LOAD_DISTRIBUTIONS[case.models.load_distribution]
     methods["load distribution"] = (distribution.title, distribution.source)
-    methods["pocketing"] = (pocketing_method(case, None), POCKETING_SOURCE)
+    methods["pocketing"] = (pocketing_method(case.models.pocketing, None), POCKETING_SOURCE)
     methods["drag"] = (DRAG_METHOD, DRAG_SOURCE)
-    if isinstance(case, PlanetaryCase):
-        methods["load sharing"] = SHARING_METHODS[case.load_sharing.method]
-        if case.planet_bearing is not None:
-            methods["planet bearing"] = bearing_method(case)
-            methods["bearings, viscous"] = (VISCOUS_METHOD, VISCOUS_SOURCE)
+    for own in build(case).sets.values():
+        if own.sharing is not None:
+            methods["load sharing"] = SHARING_METHODS[own.sharing.method]
+        for planet in own.planets:
+            if planet.bearing is not None:
+                methods["planet bearing"] = planet.bearing.method
+                methods["bearings, viscous"] = (VISCOUS_METHOD, VISCOUS_SOURCE)
     return methods

@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
 from epicyclic.analysis.datasets import Variable, variable
-from epicyclic.analysis.pair import pair_duty
-from epicyclic.analysis.parts import MeshDuty, fluids_of
-from epicyclic.analysis.planetary import planetary_duties
-from epicyclic.analysis.pockets import pocket_notes, solve_pockets
-from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.builders.build import build
+from epicyclic.builders.built import mesh_key
+from epicyclic.case.case import Case
+from epicyclic.elements.fluids import Fluids
+from epicyclic.elements.gear_mesh import MeshDuty
+from epicyclic.elements.pocket_flow import pocket_notes, solve_pockets
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.outline import tooth_outline
@@ -81,29 +82,29 @@ def pocket_details(case: Case) -> dict[str, xr.Dataset]:
     ConvergenceError
         If the flow is not found.
     """
-    mixture = fluids_of(case).mixture
+    built = build(case)
     found = {}
-    for duty in mesh_duties(case):
-        try:
-            flow = solve_pockets(case, duty, mixture)
-        except ValueError as error:
-            raise _unsuitable(case, duty, f"has no tooth outline: {error}.") from None
-        if flow is None:
-            raise _unsuitable(case, duty, "does not turn: its pockets keep their volume.")
-        found[duty.key] = _dataset(case, duty, flow)
+    for name, own in built.sets.items():
+        for duty in own.mean_duties(built.state()):
+            key = mesh_key(name, duty.key)
+            try:
+                flow = solve_pockets(duty, built.fluids)
+            except ValueError as error:
+                raise _unsuitable(case, key, f"has no tooth outline: {error}.") from None
+            if flow is None:
+                raise _unsuitable(case, key, "does not turn: its pockets keep their volume.")
+            found[key] = _dataset(case.title, duty, flow, built.fluids, own.count)
     return found
 
 
 def mesh_duties(case: Case) -> tuple[MeshDuty, ...]:
-    """The mesh of a pair, or both meshes of one planet of equal load."""
-    if isinstance(case, PlanetaryCase):
-        return planetary_duties(case, 1 / case.planet.count)
-    return (pair_duty(case),)
+    """The mesh of a pair, or the meshes of one planet of equal load."""
+    return tuple(build(case).mean_duties().values())
 
 
-def _unsuitable(case: Case, duty: MeshDuty, what: str) -> InputError:
+def _unsuitable(case: Case, key: str, what: str) -> InputError:
     remedy = "Change operation.speed, or the tooth (tip and root diameter, tool_tip_radius)."
-    return InputError([Problem(duty.key, "", what, remedy)], case.source)
+    return InputError([Problem(key, "", what, remedy)], case.source)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -192,7 +193,9 @@ class _Life:
         return (leading, trailing) if self.drives1 else (trailing, leading)
 
 
-def _dataset(case: Case, duty: MeshDuty, flow: PocketFlow) -> xr.Dataset:
+def _dataset(
+    title: str, duty: MeshDuty, flow: PocketFlow, fluids: Fluids, meshes: int
+) -> xr.Dataset:
     import xarray as xr
 
     mesh = duty.mesh
@@ -219,18 +222,17 @@ def _dataset(case: Case, duty: MeshDuty, flow: PocketFlow) -> xr.Dataset:
         **_shapes(life, width),
         **_flows(life),
         **_pictures(duty, life),
-        **_numbers(case, duty, flow),
+        **_numbers(duty, flow, fluids),
     }
-    title = f"Pockets of the {duty.key.replace('_', ' ')} of {case.title or 'the case'}"
     attributes = {
-        "title": title,
-        "notes": "\n".join(pocket_notes(case, mesh, flow_figures(flow))),
-        "model": POCKETING_MODELS[case.models.pocketing],
+        "title": f"Pockets of the {duty.key.replace('_', ' ')} of {title or 'the case'}",
+        "notes": "\n".join(pocket_notes(mesh, flow_figures(flow), fluids.pressure)),
+        "model": POCKETING_MODELS[duty.models.pockets.model],
         "drives": mesh.gear1.name if duty.drives1 else mesh.gear2.name,
         "members": f"{mesh.gear1.name} {mesh.gear2.name}",
         "internal": int(mesh.internal),
         "teeth": [mesh.gear1.teeth, mesh.gear2.teeth],
-        "meshes": case.planet.count if isinstance(case, PlanetaryCase) else 1,
+        "meshes": meshes,
     }
     return xr.Dataset(variables, coordinates, attributes)
 
@@ -355,7 +357,7 @@ def _tooth(gear: Gear, tool: Tool, dimension: str) -> Variable:
     return variable((dimension, _AXIS), points, label, MILLIMETRE)
 
 
-def _numbers(case: Case, duty: MeshDuty, flow: PocketFlow) -> dict[str, Variable]:
+def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Variable]:
     """What holds for the whole mesh."""
     numbers: dict[str, tuple[float, str, Quantity]] = {
         "power": (flow.power, "power, from the work at the boundaries", WATT),
@@ -365,14 +367,14 @@ def _numbers(case: Case, duty: MeshDuty, flow: PocketFlow) -> dict[str, Variable
         "periods": (flow.periods, "mesh periods until the flow repeated", NUMBER),
         "sound_speed": (flow.sound_speed, "speed of sound of the mixture", METRE_PER_SECOND),
         "speed_max": (flow.speed_max, "fastest flow through any opening", METRE_PER_SECOND),
-        "ambient_pressure": (case.surroundings.pressure, "ambient pressure", BAR),
+        "ambient_pressure": (fluids.pressure, "ambient pressure", BAR),
         "speed": (
             abs(duty.speed1),
             f"speed of the {duty.mesh.gear1.name} against the line of centres",
             RPM,
         ),
         "oil_fraction": (
-            case.surroundings.oil_air_ratio,
+            duty.models.pockets.oil_fraction,
             "share of oil in the mixture, by volume",
             NUMBER,
         ),

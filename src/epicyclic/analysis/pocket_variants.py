@@ -6,11 +6,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from epicyclic.analysis.parts import MeshDuty, fluids_of
-from epicyclic.analysis.pockets import flow_family
-from epicyclic.case import build
+from epicyclic.builders.models import fluids_of
 from epicyclic.case.case import Case
+from epicyclic.elements.gear_mesh import MeshDuty
+from epicyclic.elements.pocket_flow import flow_family
 from epicyclic.errors import InputError, Problem
+from epicyclic.geometry.cutting import mated_tools
 from epicyclic.geometry.gear import BasicRack, Gear, half_angle_from_thickness
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.lubricant.properties import mixture_state
@@ -119,11 +120,8 @@ def varied_duty(duty: MeshDuty, variant: PocketVariant) -> MeshDuty:
     ):
         if value < -ROUNDING:
             raise ValueError(f"the {what} is negative")
-    tools = (
-        build.fitted_tool(mesh.gear1, duty.gears[0], mesh.radius1_at_start),
-        build.fitted_tool(mesh.gear2, duty.gears[1], mesh.radius2_at_end),
-    )
-    return replace(duty, mesh=mesh, tools=tools, speed1=variant.speed)
+    tools = mated_tools(mesh, duty.gears.roundings)
+    return replace(duty, gears=replace(duty.gears, mesh=mesh, tools=tools), speed1=variant.speed)
 
 
 def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketFlow:
@@ -139,7 +137,7 @@ def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketF
     pressure = case.surroundings.pressure
     mixture = mixture_state(fluids_of(case).oil, variant.oil_fraction, pressure)
     try:
-        family = flow_family(case, varied_duty(duty, variant))
+        family = flow_family(varied_duty(duty, variant))
         family = replace(family, oil_fraction=variant.oil_fraction)
         return family.flow(variant.speed, mixture, pressure)
     except ValueError as error:

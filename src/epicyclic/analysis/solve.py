@@ -9,19 +9,19 @@ from __future__ import annotations
 
 import math
 
-from epicyclic.analysis.pair import pair_duty, solve_pair
-from epicyclic.analysis.parts import MeshDuty, elastic_loads, fluids_of, load_mesh
-from epicyclic.analysis.planetary import most_loaded_duties, planetary_duties, solve_planetary
-from epicyclic.analysis.pockets import flow_numbers
-from epicyclic.analysis.result import Result
-from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.builders.assembly import assemble
+from epicyclic.builders.build import build
+from epicyclic.case.case import Case
 from epicyclic.elasticity.loaded_mesh import LoadedMesh
+from epicyclic.elements.gear_mesh import elastic_loads, load_mesh
+from epicyclic.elements.pocket_flow import flow_numbers
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.contact import MeshContact
 from epicyclic.pocketing.similarity import FlowFamily
 from epicyclic.pocketing.table import FlowTables
+from epicyclic.results.result import Result
 
-__all__ = ["loaded_duties", "loaded_meshes", "mesh_contacts", "pocket_flow_numbers", "solve"]
+__all__ = ["loaded_meshes", "mesh_contacts", "pocket_flow_numbers", "solve"]
 
 
 def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
@@ -44,11 +44,8 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
     ConvergenceError
         If an iteration ends without a solution, or a loss is no finite number.
     """
-    tables = flow_tables or {}
-    if isinstance(case, PlanetaryCase):
-        result = solve_planetary(case, tables)
-    else:
-        result = solve_pair(case, tables)
+    built = build(case, flow_tables)
+    result = assemble(case, built, built.solve())
     bad = [term.name for term in result.terms if not math.isfinite(term.watts)]
     if bad:
         raise ConvergenceError(
@@ -60,11 +57,8 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
 
 def pocket_flow_numbers(case: Case) -> tuple[tuple[FlowFamily, float], ...]:
     """Family and number of the flow through the pockets of every mesh whose loss is included."""
-    if isinstance(case, PlanetaryCase):
-        duties: tuple[MeshDuty, ...] = planetary_duties(case, 1 / case.planet.count)
-    else:
-        duties = (pair_duty(case),)
-    return tuple(flow_numbers(case, duties, fluids_of(case).mixture))
+    built = build(case)
+    return tuple(flow_numbers(tuple(built.mean_duties().values()), built.fluids))
 
 
 def mesh_contacts(case: Case) -> dict[str, MeshContact]:
@@ -72,9 +66,9 @@ def mesh_contacts(case: Case) -> dict[str, MeshContact]:
 
     Of a planetary set both meshes of the most loaded planet.
     """
-    oil = fluids_of(case).oil
+    built = build(case)
     contacts = {
-        duty.key: load_mesh(duty, case.models, case.numerics, oil) for duty in loaded_duties(case)
+        key: load_mesh(duty, built.fluids.oil) for key, duty in built.loaded_duties().items()
     }
     return {key: contact for key, contact in contacts.items() if contact is not None}
 
@@ -85,13 +79,5 @@ def loaded_meshes(case: Case) -> dict[str, LoadedMesh]:
     Line loads, load of each pair of teeth, contact pattern, transmission error and stiffness over
     the mesh period; of a planetary set for the most loaded planet. Empty without load.
     """
-    return {
-        duty.key: elastic_loads(duty, case.numerics)
-        for duty in loaded_duties(case)
-        if duty.torque1 != 0
-    }
-
-
-def loaded_duties(case: Case) -> tuple[MeshDuty, ...]:
-    """The mesh of a pair, or both meshes of the planet that carries most."""
-    return most_loaded_duties(case) if isinstance(case, PlanetaryCase) else (pair_duty(case),)
+    duties = build(case).loaded_duties()
+    return {key: elastic_loads(duty) for key, duty in duties.items() if duty.torque1 != 0}

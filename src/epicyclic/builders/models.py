@@ -1,13 +1,18 @@
-"""The models that a case chooses, ready to use."""
+"""The models that a case chooses, ready for its elements."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.case.model_tables import LossOption
 from epicyclic.case.oil_laws import oil_laws
 from epicyclic.ehl.heating import effusivity
 from epicyclic.ehl.rough import AsperityContact
+from epicyclic.elements.fluids import Fluids, fluids_at
+from epicyclic.elements.gear_mesh import MeshModels
+from epicyclic.elements.gear_set import LossChoice
+from epicyclic.elements.pocket_flow import PocketSettings
 from epicyclic.losses.direct import DirectSettings, EhlDirect
 from epicyclic.losses.fitted import FittedFriction, FittedRolling
 from epicyclic.losses.friction import FrictionModel, FrictionSettings, friction_model
@@ -15,12 +20,16 @@ from epicyclic.losses.friction.user import FrictionMap
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
 from epicyclic.oilmodel.model import OilModel, read_oil_model
+from epicyclic.pocketing.table import FlowTables
 
 __all__ = [
     "fitted_oil_model",
     "fitted_rolling",
+    "fluids_of",
     "friction_of",
     "friction_settings",
+    "loss_choices",
+    "mesh_models",
     "resolve_models",
     "rolling_of",
 ]
@@ -104,3 +113,50 @@ def fitted_oil_model(case: Case) -> OilModel:
     """The file of fitted models that the case names, and was checked to have."""
     assert case.models.oil_model is not None
     return read_oil_model(case.folder / case.models.oil_model)
+
+
+def fluids_of(case: Case) -> Fluids:
+    """Oil and mixture at the oil inlet temperature."""
+    return fluids_at(
+        case.lubricant.oil,
+        case.operation.oil_inlet_temperature,
+        oil_air_ratio=case.surroundings.oil_air_ratio,
+        pressure=case.surroundings.pressure,
+        pressure_viscosity_factor=case.lubricant.pressure_viscosity_factor,
+    )
+
+
+def loss_choices(case: Case) -> dict[str, LossChoice]:
+    """What becomes of each loss of a case, in the order in which they are shown."""
+    options = case.losses
+    found: dict[str, LossOption] = {
+        name: getattr(options, name) for name in type(options).model_fields
+    }
+    return {name: LossChoice(option.include, option.factor) for name, option in found.items()}
+
+
+def mesh_models(case: Case, flow_tables: FlowTables) -> dict[str, MeshModels]:
+    """How the losses of each mesh of a case are computed, by the key of the mesh."""
+    choices, friction, rolling = loss_choices(case), friction_of(case), rolling_of(case)
+    file = case.models.pocketing_table
+    return {
+        key: MeshModels(
+            friction=friction,
+            rolling=rolling,
+            by_loss_factor=case.models.mesh == "loss-factor",
+            load_distribution=case.models.load_distribution,
+            positions=case.numerics.mesh_positions,
+            segments=case.numerics.contact_segments,
+            pockets=PocketSettings(
+                include=choices[f"{key}_pocketing"].include,
+                oil_fraction=case.surroundings.oil_air_ratio,
+                model=case.models.pocketing,
+                slices=case.numerics.pocket_slices,
+                steps=case.numerics.pocket_steps,
+                end_length=case.models.pocket_end_length,
+                file=None if file is None else case.folder / file,
+                tables=flow_tables,
+            ),
+        )
+        for key in (name.removesuffix("_pocketing") for name in choices if "_pocketing" in name)
+    }

@@ -2,25 +2,42 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 
-from epicyclic.analysis.figures import MeshFigures
-from epicyclic.analysis.models import fitted_oil_model, friction_of, resolve_models, rolling_of
-from epicyclic.analysis.result import LossTerm
+from epicyclic.builders.models import fitted_oil_model, friction_of, resolve_models, rolling_of
 from epicyclic.case import build, flanks
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable, MeshTable
+from epicyclic.case.model_tables import LoadSharing
+from epicyclic.elements.figures import MeshFigures
+from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.geometry.assembly import are_evenly_spaced
 from epicyclic.losses.fitted import FittedFriction
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
+from epicyclic.results.result import LossTerm
 
-__all__ = ["NOT_INCLUDED", "contact_notes", "fluid_notes", "general_notes", "load_notes"]
+__all__ = ["NOT_INCLUDED", "case_notes", "general_notes", "load_notes"]
 
 NOT_INCLUDED = "Not included"
 """Begins the note that names loss terms which are missing."""
 LEAST_CONTACT = 0.75
 """Share of the contact lines that carries below which a result says so. [1]"""
+
+
+def case_notes(case: Case, found: GearSetResult, *, ring_turns: bool) -> tuple[str, ...]:
+    """What a user must know about a set: its oil, its load, its flows, its planets."""
+    meshes = {key: item for key, item in found.figures.items() if isinstance(item, MeshFigures)}
+    notes = (*fluid_notes(case), *load_notes(case), *contact_notes(meshes), *found.notes)
+    if not isinstance(case, PlanetaryCase):
+        return notes
+    return (
+        *notes,
+        *_planet_notes(case),
+        *_share_notes(case.load_sharing, found.shares),
+        *(_ring_notes(case) if ring_turns else ()),
+    )
 
 
 def fluid_notes(case: Case) -> tuple[str, ...]:
@@ -122,3 +139,36 @@ def general_notes(
             "The losses exceed the power passed on: no power leaves, and the output must be driven."
         )
     return tuple(notes)
+
+
+def _planet_notes(case: PlanetaryCase) -> tuple[str, ...]:
+    count, teeth = case.planet.count, case.sun.teeth + case.ring.teeth
+    if case.planet.angles is not None or teeth % count == 0:
+        return ()
+    angles = build.planet_angles(case.sun, case.planet, case.ring)
+    placed = ", ".join(f"{math.degrees(angle):.4f}" for angle in angles)
+    return (
+        f"{count} planets cannot be equally spaced, because ({case.sun.teeth} + "
+        f"{case.ring.teeth})/{count} is no integer; they stand at {placed} deg.",
+    )
+
+
+def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, ...]:
+    notes = []
+    if len(set(shares)) > 1:
+        most = shares.index(max(shares)) + 1
+        notes.append(f"Meshes and bearing are those of planet {most}, the most loaded one.")
+    notes += [
+        f"load_sharing.{key} has no effect with load_sharing.method = {sharing.method}."
+        for key in sharing.idle_keys()
+    ]
+    return tuple(notes)
+
+
+def _ring_notes(case: PlanetaryCase) -> tuple[str, ...]:
+    if case.ring.rim_thickness is not None:
+        return ()
+    return (
+        "ring.rim_thickness is not given: the drag of the turning ring is that of a rim of "
+        f"{build.DEFAULT_RIM_THICKNESS:g} normal modules.",
+    )

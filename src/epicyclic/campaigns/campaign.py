@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -24,7 +23,7 @@ from epicyclic.ehl.rough import BRIEF
 from epicyclic.elasticity.threads import one_thread
 from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.journal import Row
-from epicyclic.sweeps.work import guarded
+from epicyclic.sweeps.runner import Plan, guarded
 
 __all__ = ["Campaign", "make_campaign", "oil_tables"]
 
@@ -38,7 +37,7 @@ PROFILES = ("surface1.profile", "surface2.profile")
 
 
 @dataclass(frozen=True)
-class Campaign:
+class Campaign(Plan):
     """What is simulated.
 
     Attributes
@@ -52,10 +51,32 @@ class Campaign:
         Of this package, which solves the contacts.
     """
 
+    kind: ClassVar[str] = "oil"
+    may_fail: ClassVar[bool] = True
     settings: str
     designs: tuple[Design, ...]
     seed: int = 0
     version: str = field(default_factory=lambda: metadata.version("epicyclic"))
+
+    @classmethod
+    def again(cls, content: Mapping[str, Any], source: str = "") -> Campaign:
+        """The campaign that `describe` described."""
+        designs = tuple(
+            Design(
+                item["part"],
+                tuple((name, tuple(values)) for name, values in item["axes"].items()),
+                item["size"],
+                item["seed"],
+            )
+            for item in content["designs"]
+        )
+        settings = json.dumps(content["settings"], sort_keys=True)
+        return cls(settings, designs, content["seed"], content["version"])
+
+    @property
+    def batch(self) -> int:
+        """A simulation takes up to some seconds."""
+        return 1
 
     @property
     def size(self) -> int:
@@ -97,11 +118,6 @@ class Campaign:
             "designs": [design.describe() for design in self.designs],
             "seed": self.seed,
         }
-
-    def fingerprint(self) -> str:
-        """Follows everything that results follow."""
-        text = json.dumps(self.describe(), sort_keys=True)
-        return hashlib.sha256(text.encode()).hexdigest()[:12]
 
     def _place(self, index: int) -> tuple[Design, int]:
         row = index

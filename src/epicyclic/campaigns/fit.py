@@ -11,18 +11,14 @@ from numpy.typing import NDArray
 
 from epicyclic.campaigns.campaign import make_campaign
 from epicyclic.campaigns.design import AXES, quantity_of_axis
-from epicyclic.campaigns.folder import (
-    CampaignFolder,
-    CampaignProgress,
-    column_of,
-    write_whole,
-)
+from epicyclic.campaigns.folder import CampaignFolder, column_of, write_whole
 from epicyclic.case.contact import contact_model
 from epicyclic.errors import InputError, Problem
 from epicyclic.lubricant.properties import oil_state
 from epicyclic.oilmodel.fitting import fit_quantity
 from epicyclic.oilmodel.model import FORMAT, OilModel, QuantityFit
 from epicyclic.oilmodel.states import ContactStates
+from epicyclic.sweeps.runner import Progress, Runner
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -55,8 +51,9 @@ def characterise_oil(
     ranges: Mapping[str, tuple[float, float]] | None = None,
     changes: Mapping[str, Any] | None = None,
     jobs: int | None = None,
+    dask: str | None = None,
     cluster: str | None = None,
-    progress: CampaignProgress | None = None,
+    progress: Progress | None = None,
 ) -> OilModel:
     """Simulate contacts of an oil, and fit friction and rolling loss to them.
 
@@ -76,10 +73,10 @@ def characterise_oil(
         Other limits of gear contacts, ``{"hertz_pressure": (0.3, 1.6)}``, in display units.
     changes : mapping of str to object, optional
         Keys of a line contact that hold for all, ``{"lubricant.eyring_stress": "8 MPa"}``.
-    jobs : int, optional
-        Worker processes.
+    jobs, dask
+        As for `sweep`.
     cluster : str, optional
-        Address of a Dask scheduler instead.
+        Another name of `dask`.
     progress : callable, optional
         Called with the numbers of finished, of all, and of failed simulations.
 
@@ -98,7 +95,7 @@ def characterise_oil(
     )
     place = CampaignFolder(Path(folder), campaign)
     place.prepare()
-    place.run(jobs=jobs, cluster=cluster, progress=progress)
+    place.run(Runner(jobs, dask or cluster, progress=progress))
     return fit_and_write(place)
 
 

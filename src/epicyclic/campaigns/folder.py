@@ -1,7 +1,7 @@
 """The folder of a campaign: what is simulated, what is finished, and the table of all results.
 
 ``campaign.json``  the plan; a folder with another one is refused
-``simulations.partial``  journal of an unfinished campaign
+``simulations.partial``  journal of an unfinished campaign; of a shard ``.shard-2-of-8``
 ``simulations.csv``  one line for each simulation, when all are done
 ``model.json``  the fitted models
 """
@@ -9,27 +9,25 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from epicyclic.campaigns.campaign import SCHEMA, Campaign
-from epicyclic.campaigns.design import AXES, Design, quantity_of_axis
+from epicyclic.campaigns.design import AXES, quantity_of_axis
 from epicyclic.errors import InputError, Problem
-from epicyclic.status import Status
 from epicyclic.sweeps.dataset import whole_file
-from epicyclic.sweeps.journal import Journal, Row
-from epicyclic.sweeps.work import run_work
+from epicyclic.sweeps.journal import Journal, Rows
+from epicyclic.sweeps.runner import HERE, Runner, fingerprint
 from epicyclic.text_file import read_text
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["CampaignFolder", "CampaignProgress", "column_of", "open_folder", "write_whole"]
+__all__ = ["SIMULATIONS", "CampaignFolder", "column_of", "open_folder", "write_whole"]
 
-CampaignProgress = Callable[[int, int, int], None]
-"""Called with the numbers of finished, of all, and of failed simulations."""
+SIMULATIONS = "simulations"
+"""With which files of results begin."""
 
 
 @dataclass(frozen=True)
@@ -42,12 +40,12 @@ class CampaignFolder:
     @property
     def journal(self) -> Journal:
         """Finished simulations of an unfinished campaign."""
-        return Journal(self.path.absolute() / "simulations.partial", self.campaign.fingerprint())
+        return Journal(self.path.absolute() / f"{SIMULATIONS}.partial", fingerprint(self.campaign))
 
     @property
     def table(self) -> Path:
         """All results."""
-        return self.path / "simulations.csv"
+        return self.path / f"{SIMULATIONS}.csv"
 
     @property
     def model(self) -> Path:
@@ -72,8 +70,9 @@ class CampaignFolder:
         except OSError as error:
             raise _folder_error(self.path, f"cannot be made: {error.strerror}.") from None
         plan = self.path / "campaign.json"
+        simulated = any(self.path.glob(f"{SIMULATIONS}.*"))  # first: shards may begin at once
         if not plan.exists():
-            if any(self.path.glob("simulations.*")):
+            if simulated:
                 raise _folder_error(self.path, "holds simulations without their campaign.json.")
             write_whole(plan, json.dumps(self.campaign.describe(), indent=2) + "\n")
         elif _read_json(plan) != json.loads(json.dumps(self.campaign.describe())):
@@ -82,28 +81,16 @@ class CampaignFolder:
                 "holds another campaign: other oil, points, seed, settings or version.",
             )
 
-    def run(
-        self,
-        *,
-        jobs: int | None = None,
-        cluster: str | None = None,
-        progress: CampaignProgress | None = None,
-    ) -> None:
+    def run(self, runner: Runner = HERE) -> None:
         """Simulate all that is not finished, and write the table."""
-        if self.table.exists():
-            return
-        rows: dict[int, Row] = {}
-        failed = 0
-        for finished in run_work(
-            self.campaign, jobs=jobs, journal=self.journal, batch=1, cluster=cluster
-        ):
-            rows.update(finished)
-            failed += sum(row.status == Status.FAILED for _, row in finished)
-            if progress is not None:
-                progress(len(rows), self.campaign.size, failed)
-        ordered = [rows[index] for index in range(self.campaign.size)]
-        write_whole(self.table, self._frame(ordered).to_csv(index=False))
-        self.journal.remove()
+        if not self.table.exists():
+            runner = replace(runner, journal=self.journal.path, tell_failures=True)
+            self.write(runner.run(self.campaign))
+            self.journal.remove()
+
+    def write(self, rows: Rows) -> None:
+        """Write the table of all results."""
+        write_whole(self.table, self._frame(rows).to_csv(index=False))
 
     def read(self) -> pd.DataFrame:
         """The table of all results.
@@ -127,21 +114,18 @@ class CampaignFolder:
             raise _folder_error(self.table, "has no simulation with a solution.", remedy)
         return frame
 
-    def _frame(self, rows: Sequence[Row]) -> pd.DataFrame:
+    def _frame(self, rows: Rows) -> pd.DataFrame:
         """Conditions and results, one line for each simulation."""
         import pandas as pd
 
-        names = list(dict.fromkeys(name for row in rows for name in row.numbers))
-        lines = []
-        for index, row in enumerate(rows):
-            conditions = self.campaign.point(index)
-            lines.append(
-                {"number": index, "part": self.campaign.part(index)}
-                | {column_of(name): conditions[name] for name in AXES}
-                | {"status": row.status, "message": row.message}
-                | {name: row.numbers.get(name) for name in names}
-            )
-        return pd.DataFrame(lines)
+        every = range(self.campaign.size)
+        points = [self.campaign.point(index) for index in every]
+        return pd.DataFrame(
+            {"number": every, "part": [self.campaign.part(index) for index in every]}
+            | {column_of(name): [point[name] for point in points] for name in AXES}
+            | {"status": rows.status, "message": rows.message}
+            | {name: rows.numbers(name) for name in rows.names}
+        )
 
 
 def open_folder(path: Path) -> CampaignFolder:
@@ -156,17 +140,7 @@ def open_folder(path: Path) -> CampaignFolder:
     try:
         if data["schema"] != SCHEMA:
             raise _folder_error(path, f"has files of version {data['schema']}, not {SCHEMA}.")
-        designs = tuple(
-            Design(
-                item["part"],
-                tuple((name, tuple(values)) for name, values in item["axes"].items()),
-                item["size"],
-                item["seed"],
-            )
-            for item in data["designs"]
-        )
-        settings = json.dumps(data["settings"], sort_keys=True)
-        return CampaignFolder(path, Campaign(settings, designs, data["seed"], data["version"]))
+        return CampaignFolder(path, Campaign.again(data))
     except (KeyError, TypeError, AttributeError):
         raise _folder_error(path / "campaign.json", "is no plan of a campaign.") from None
 

@@ -22,6 +22,7 @@ __all__ = [
     "bounds_of",
     "choices_of",
     "describe",
+    "dict_value",
     "entry_of",
     "find_field",
     "is_array",
@@ -107,6 +108,14 @@ def tables_in(annotation: Any) -> Iterator[type[BaseModel]]:
             yield from tables_in(argument)
 
 
+def dict_value(annotation: Any) -> Any:
+    """Type of the values of a table whose keys are the user's names; None for others."""
+    for member in map(_without_metadata, _members(annotation)):
+        if typing.get_origin(member) is dict:
+            return typing.get_args(member)[1]
+    return None
+
+
 def is_whole_number(annotation: Any) -> bool:
     """True for keys that count."""
     return annotation is int
@@ -133,6 +142,8 @@ def describe(annotation: Any, metadata: Sequence[Any] = ()) -> str:
     if typing.get_origin(member) is tuple:
         first = typing.get_args(member)[0]
         return f"an array, each entry {describe(first)}"
+    if dict_value(annotation) is not None:
+        return "a table of names"
     if _is_table(member):
         return "a table of keys"
     quantity = quantity_of(annotation, metadata)
@@ -166,10 +177,11 @@ def all_keys(table: type[BaseModel], prefix: str = "") -> Iterator[str]:
     """Every dotted key below `table` that holds a value, in the order of the schema."""
     for name, field in table.model_fields.items():
         inner = table_of(field.annotation)
+        named = "" if dict_value(field.annotation) is None else "NAME."
         if inner is None:
             yield f"{prefix}{name}"
         else:
-            yield from all_keys(inner, f"{prefix}{name}.")
+            yield from all_keys(inner, f"{prefix}{name}.{named}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,6 +213,11 @@ def locate(table: type[BaseModel], location: Sequence[str | int]) -> Place:
     metadata: tuple[Any, ...] = ()
     owner: type[BaseModel] | None = table
     for part in location:
+        named = dict_value(annotation)
+        if named is not None:
+            path.append(part)
+            annotation, metadata, owner = named, (), None
+            continue
         branch = _branch(annotation, part)
         if branch is not None:
             annotation, metadata = branch, ()
@@ -221,6 +238,8 @@ def locate(table: type[BaseModel], location: Sequence[str | int]) -> Place:
 def _arguments(annotation: Any) -> Iterator[Any]:
     if typing.get_origin(annotation) in (types.UnionType, typing.Union, tuple):
         yield from typing.get_args(annotation)
+    elif typing.get_origin(annotation) is dict:
+        yield typing.get_args(annotation)[1]
 
 
 def _members(annotation: Any) -> Iterator[Any]:
@@ -287,6 +306,8 @@ def to_inputs(table: BaseModel) -> dict[str, Any]:
 def _to_input(value: Any, quantity: Quantity | None) -> Any:
     if isinstance(value, BaseModel):
         return to_inputs(value)
+    if isinstance(value, dict):
+        return {name: _to_input(item, quantity) for name, item in value.items()}
     if isinstance(value, tuple):
         return [_to_input(item, quantity) for item in value]
     if quantity is not None and isinstance(value, float):

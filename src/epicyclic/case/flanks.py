@@ -10,6 +10,7 @@ from epicyclic.case import build
 from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, Planet, TopographyTable
 from epicyclic.elasticity.mesh_compliance import GearBody
 from epicyclic.elasticity.rim import Rim
+from epicyclic.geometry.cutting import cutting_tool
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.micro_geometry import (
@@ -44,7 +45,7 @@ def _body(gear: Gear, table: GearTable, loads: int) -> GearBody:
     return GearBody(
         table.material.elastic_modulus,
         table.material.poisson_ratio,
-        build.cutting_tool(gear, table),
+        cutting_tool(gear, table.tool_tip_radius),
         None if thickness is None else Rim(thickness, loads),
     )
 

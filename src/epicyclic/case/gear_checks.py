@@ -15,6 +15,7 @@ from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 from epicyclic.geometry.assembly import nearest_admissible_angle, smallest_planet_gap
+from epicyclic.geometry.cutting import longest_involute
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 
@@ -258,7 +259,7 @@ def _negative_clearance(mesh: Mesh, tip: Gear, root: Gear, tables: Tables) -> Pr
     clearance = mesh.tip_clearance1 if tip is mesh.gear1 else mesh.tip_clearance2
     limit = tip.tip_radius + (-clearance if tip.internal else clearance)
     try:
-        end = build.longest_involute(root, tables[root.name])
+        end = longest_involute(root, tables[root.name].tool_tip_radius)
     except ValueError:
         pass
     else:
@@ -330,7 +331,7 @@ def _check_end_of_contact(mesh: Mesh, gear: Gear, mate: Gear, tables: Tables) ->
             "interference)"
         )
     else:
-        end = build.longest_involute(gear, tables[gear.name])
+        end = longest_involute(gear, tables[gear.name].tool_tip_radius)
         if (radius <= end + ROUNDING) if gear.internal else (radius >= end - ROUNDING):
             return []
         fault = (

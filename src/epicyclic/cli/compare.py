@@ -9,10 +9,11 @@ import click
 
 from epicyclic.cli.options import (
     case_argument,
-    jobs_option,
+    journal_option,
     json_option,
     load_with,
     plot_option,
+    runner_options,
     set_option,
 )
 from epicyclic.cli.output import check_ending, draw, show, write_file
@@ -20,6 +21,7 @@ from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from epicyclic.measurement.compare import MeasuredComparison
+    from epicyclic.sweeps.runner import Runner
 
 __all__ = ["compare"]
 
@@ -56,7 +58,8 @@ __all__ = ["compare"]
 )
 @plot_option("Draw parity and residuals to .png, .svg or .pdf.")
 @json_option
-@jobs_option
+@journal_option
+@runner_options
 def compare(
     case: str,
     measured: Path,
@@ -69,7 +72,8 @@ def compare(
     output: Path | None,
     plot: Path | None,
     json_file: str | None,
-    jobs: int | None,
+    journal: Path | None,
+    runner: Runner,
 ) -> None:
     """Compare measured losses with computed ones; with --fit, calibrate inputs to them.
 
@@ -93,7 +97,9 @@ def compare(
             fit=keys,
             hold_out=hold_out,
             seed=seed,
-            jobs=jobs,
+            jobs=runner.jobs,
+            dask=runner.dask,
+            journal=journal,
             progress=progress,
         )
     show(lambda: measured_tables(comparison), comparison.to_json, json_file)

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.options import jobs_option, json_option, load_with, set_option
+from epicyclic.cli.options import (
+    journal_option,
+    json_option,
+    load_with,
+    runner_options,
+    set_option,
+)
 from epicyclic.cli.output import show, write_file, wrong_ending
 from epicyclic.errors import InputError, Problem
 
@@ -15,6 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from epicyclic.maps.cycle import Cycle
+    from epicyclic.sweeps.runner import Runner
 
 __all__ = ["duty"]
 
@@ -45,7 +53,8 @@ _OUTPUTS = (".nc", ".csv")
     "-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="Write .nc or .csv."
 )
 @json_option
-@jobs_option
+@journal_option
+@runner_options
 def duty(
     map_or_case: str,
     cycle: str,
@@ -55,7 +64,8 @@ def duty(
     map_file: Path | None,
     output: Path | None,
     json_file: str | None,
-    jobs: int | None,
+    journal: Path | None,
+    runner: Runner,
 ) -> None:
     """Energy that a duty cycle puts in, takes out and loses, by component.
 
@@ -68,14 +78,15 @@ def duty(
     from epicyclic.maps.duty import add_up, make_duty, parse_temperatures
 
     _check_options(map_or_case, changes, map_file, output)
+    runner = replace(runner, journal=journal)
     with progress_bar("rows read") as progress:
         checked = open_cycle(cycle, progress)
     celsius = parse_temperatures(checked, temperatures or None)
-    data = _map(map_or_case, changes, checked, celsius, map_file, jobs)
+    data = _map(map_or_case, changes, checked, celsius, map_file, runner)
     with progress_bar("rows") as progress:
         sums = add_up(data, checked, celsius, clamp=clamp, progress=progress)
     with progress_bar("checked points") as progress:
-        result = make_duty(data, checked, sums, jobs, progress)
+        result = make_duty(data, checked, sums, replace(runner, progress=progress))
     _write(result, output, json_file)
 
 
@@ -108,7 +119,7 @@ def _map(
     cycle: Cycle,
     celsius: tuple[float, ...] | None,
     map_file: Path | None,
-    jobs: int | None,
+    runner: Runner,
 ) -> xr.Dataset:
     """The map that is named, or one of the case that is."""
     from epicyclic.cli.progress import progress_bar
@@ -120,7 +131,7 @@ def _map(
         return read_netcdf(Path(map_or_case))
     case = load_with(map_or_case, changes)
     with progress_bar("points of the map") as progress:
-        data = cycle_map(case, cycle, celsius, jobs=jobs, progress=progress)
+        data = cycle_map(case, cycle, celsius, replace(runner, progress=progress))
     if map_file is not None:
         write_map(data, map_file)
         click.echo(f"Wrote the map to {map_file}.", err=True)

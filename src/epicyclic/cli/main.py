@@ -25,6 +25,7 @@ from epicyclic.cli.exit_codes import (
 )
 from epicyclic.cli.listing import cases, init, oils, schema
 from epicyclic.cli.many import loss_map, sweep
+from epicyclic.cli.merge import merge
 from epicyclic.cli.oil import oil
 from epicyclic.cli.pockets import pockets, study
 from epicyclic.cli.pockets_table import pockets_table
@@ -56,6 +57,7 @@ COMMANDS = (
     check,
     sweep,
     loss_map,
+    merge,
     duty,
     mesh,
     pockets,

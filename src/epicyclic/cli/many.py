@@ -2,33 +2,48 @@
 
 from __future__ import annotations
 
+import glob
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from epicyclic.cli.exit_codes import EXIT_FAILED_POINTS
 from epicyclic.cli.options import (
     case_argument,
-    jobs_option,
     load_with,
+    runner_options,
     set_option,
+    shard_option,
     temperature_option,
 )
 from epicyclic.cli.output import finishing
 from epicyclic.errors import InputError, Problem
-from epicyclic.status import Status
 
 if TYPE_CHECKING:
-    from epicyclic.sweeps.journal import Journal, Row
-    from epicyclic.sweeps.plan import Plan
+    from epicyclic.maps.compute import MapPlan
+    from epicyclic.sweeps.journal import Journal, Rows
+    from epicyclic.sweeps.plan import SweepPlan
+    from epicyclic.sweeps.runner import Plan, Runner
 
-__all__ = ["check_values", "kept_in", "loss_map", "open_journal", "print_failures", "sweep"]
+__all__ = [
+    "Write",
+    "check_values",
+    "compute",
+    "finish",
+    "loss_map",
+    "map_writer",
+    "sweep",
+    "sweep_writer",
+]
 
+Write = Callable[["Rows"], str]
+"""Writes the rows of a plan, and tells what it wrote."""
 SHOWN_FAILURES = 10
 
 
@@ -45,27 +60,36 @@ SHOWN_FAILURES = 10
 @click.option(
     "-o", "--output", required=True, type=click.Path(path_type=Path), help=".nc, .csv or .parquet"
 )
-@jobs_option
+@shard_option
+@runner_options
 def sweep(
-    case: str, changes: tuple[str, ...], vary: tuple[str, ...], output: Path, jobs: int | None
+    case: str, changes: tuple[str, ...], vary: tuple[str, ...], output: Path, runner: Runner
 ) -> None:
     """Compute the full product of the values of some keys.
 
     Finished points are kept in a file beside OUTPUT that ends in .partial, so that an interrupted
     sweep goes on where it stopped when the same command is given again.
     """
-    from epicyclic.sweeps import dataset
+    from epicyclic.sweeps.dataset import check_output
     from epicyclic.sweeps.plan import make_plan, parse_vary
 
     loaded = load_with(case, changes)
-    dataset.check_output(output)
+    check_output(output)
     plan = make_plan(loaded, parse_vary(loaded, vary))
-    compute_points(
-        plan,
-        output,
-        jobs,
-        lambda rows: dataset.write_dataset(dataset.to_dataset(plan, rows), output),
-    )
+    compute(plan, output, runner, sweep_writer(plan, output))
+
+
+def sweep_writer(plan: SweepPlan, output: Path) -> Write:
+    """Writes a sweep; raises `InputError` if it cannot."""
+    from epicyclic.sweeps import dataset
+
+    dataset.check_output(output)
+
+    def write(rows: Rows) -> str:
+        dataset.write_dataset(dataset.to_dataset(plan, rows), output)
+        return points_written(rows, output)
+
+    return write
 
 
 @click.command("map")
@@ -88,14 +112,15 @@ def sweep(
     "-o", "--output", required=True, type=click.Path(path_type=Path), help="File of the map."
 )
 @click.option("--format", "name", metavar="NAME", help="Default: by the ending of the file.")
-@jobs_option
+@shard_option
+@runner_options
 def loss_map(
     case: str,
     changes: tuple[str, ...],
     vary: tuple[str, ...],
     output: Path,
     name: str | None,
-    jobs: int | None,
+    runner: Runner,
     **values: str | None,
 ) -> None:
     """Compute a loss map: torque loss, losses and efficiency over speed and torque.
@@ -103,8 +128,7 @@ def loss_map(
     VALUES are a,b,c or start:stop:count with a unit. The torque loss is that at the input member;
     the file states the signs. An interrupted map goes on where it stopped, as a sweep does.
     """
-    from epicyclic.maps.compute import AXES, coordinates, held_shaft, map_plan, row_length, to_map
-    from epicyclic.maps.formats import check_map_output, write_map
+    from epicyclic.maps.compute import AXES, map_plan
     from epicyclic.sweeps.plan import parse_vary
 
     loaded = load_with(case, changes)
@@ -113,14 +137,21 @@ def loss_map(
     given, further = parse_vary(loaded, axes), parse_vary(loaded, vary)
     speed, torque = given[AXES["speed"]], given[AXES["torque"]]
     plan = map_plan(loaded, speed, torque, given.get(AXES["temperature"]), further)
-    check_map_output(output, name, coordinates(plan), held_shaft(loaded))
-    compute_points(
-        plan,
-        output,
-        jobs,
-        lambda rows: write_map(to_map(plan, rows), output, name),
-        batch=row_length(plan),
-    )
+    compute(plan, output, runner, map_writer(plan, output, name), format=name)
+
+
+def map_writer(plan: MapPlan, output: Path, format: str | None = None) -> Write:
+    """Writes a map; raises `InputError` if it cannot."""
+    from epicyclic.maps.compute import coordinates, held_shaft, to_map
+    from epicyclic.maps.formats import check_map_output, write_map
+
+    check_map_output(output, format, coordinates(plan), held_shaft(plan.case))
+
+    def write(rows: Rows) -> str:
+        write_map(to_map(plan, rows), output, format)
+        return points_written(rows, output)
+
+    return write
 
 
 def check_values(values: Mapping[str, str | None]) -> None:
@@ -139,60 +170,68 @@ def check_values(values: Mapping[str, str | None]) -> None:
         raise InputError(problems, "the command")
 
 
-def compute_points(
-    plan: Plan,
-    output: Path,
-    jobs: int | None,
-    write: Callable[[Sequence[Row]], None],
-    **options: int,
+def compute(
+    plan: Plan, output: Path, runner: Runner, write: Write, noun: str = "points", **how: Any
 ) -> None:
-    """Compute the points of `plan`, resumed and kept beside `output`, and `write` their rows."""
-    from epicyclic.cli.progress import progress_bar
-    from epicyclic.sweeps.run import run_plan
+    """Compute the points of `plan`, resumed and kept beside `output`, and write them.
 
-    journal = open_journal(plan.fingerprint(), plan.size, output)
-    with kept_in(journal, plan.size):
-        with progress_bar("points") as progress:
-            rows = run_plan(plan, jobs=jobs, journal=journal, progress=progress, **options)
-        reasons = [row.message for row in rows if row.status == Status.FAILED]
-        print_failures(reasons)
-        with finishing(f"Writing {output}."):
-            write(rows)
+    Those of a shard are kept only, with `how` they are to be written.
+    """
+    from epicyclic.cli.progress import progress_bar
+    from epicyclic.sweeps.journal import Journal
+    from epicyclic.sweeps.runner import fingerprint, share_of
+
+    mark = fingerprint(plan)
+    name = f"{mark}.partial" if runner.shard is None else "shard-{}-of-{}".format(*runner.shard)
+    journal = Journal(output.with_name(f"{output.name}.{name}"), mark)
+    _tell_others(output, journal.path)
+    size, kept = len(share_of(plan, runner.shard)), len(journal.read())
+    if kept:
+        click.echo(f"Going on from {kept} of {size} points in {journal.path}.", err=True)
+    with _kept_in(journal, size):
+        with progress_bar(noun) as progress:
+            rows = replace(runner, journal=journal.path, progress=progress, output=how).run(plan)
+        if runner.shard is None:
+            finish(plan, rows, write, output, journal)
+        else:
+            click.echo(f"{size} of {plan.size} points are in {journal.path}.")
+
+
+def finish(
+    plan: Plan, rows: Rows, write: Write, output: Path, journal: Journal | None = None
+) -> None:
+    """Write the rows of all points, and end with an exit code of its own if some failed."""
+    failures = [] if plan.may_fail else rows.failures
+    _print_failures(failures)
+    with finishing(f"Writing {output}."):
+        written = write(rows)
+        if journal is not None:
             journal.remove()
-    outcome = f", {len(reasons)} of them failed." if reasons else "."
-    click.echo(f"Wrote {plan.size} point{'' if plan.size == 1 else 's'} to {output}{outcome}")
-    if reasons:
+    click.echo(written)
+    if failures:
         sys.exit(EXIT_FAILED_POINTS)
 
 
-def open_journal(fingerprint: str, size: int, output: Path) -> Journal:
-    """The journal of a sweep beside `output`; says what is there from interrupted sweeps.
+def points_written(rows: Rows, output: Path) -> str:
+    """What to say of the file."""
+    failed = len(rows.failures)
+    outcome = f", {failed} of them failed." if failed else "."
+    return f"Wrote {len(rows)} point{'' if len(rows) == 1 else 's'} to {output}{outcome}"
 
-    `fingerprint` is that of the sweep, `size` the number of its points.
-    """
-    from epicyclic.sweeps.journal import Journal
 
-    journal = Journal(output.with_name(f"{output.name}.{fingerprint}.partial"), fingerprint)
-    others = [
-        path
-        for path in output.parent.iterdir()
-        if path.name.startswith(f"{output.name}.") and path.suffix == journal.path.suffix
-        if path.name != journal.path.name
-    ]
-    for path in sorted(others):
-        click.echo(
-            f"{path} holds points of an interrupted sweep of another case or other values; it is "
-            "kept. Delete it if you do not need it.",
-            err=True,
-        )
-    kept = len(journal.read())
-    if kept:
-        click.echo(f"Going on from {kept} of {size} points in {journal.path}.", err=True)
-    return journal
+def _tell_others(output: Path, own: Path) -> None:
+    """Say what is there beside `output` from other sweeps that were interrupted."""
+    for path in sorted(output.parent.glob(f"{glob.escape(output.name)}.*.partial")):
+        if path.name != own.name:
+            click.echo(
+                f"{path} holds points of an interrupted sweep of another case or other values; it "
+                "is kept. Delete it if you do not need it.",
+                err=True,
+            )
 
 
 @contextmanager
-def kept_in(journal: Journal, size: int) -> Iterator[None]:
+def _kept_in(journal: Journal, size: int) -> Iterator[None]:
     """Say what is left of a sweep that does not reach its end."""
     try:
         yield
@@ -207,7 +246,7 @@ def kept_in(journal: Journal, size: int) -> Iterator[None]:
         raise
 
 
-def print_failures(reasons: Sequence[str]) -> None:
+def _print_failures(reasons: Sequence[str]) -> None:
     """Each reason once, with the number of points that failed for it."""
     counts = Counter(reasons)
     for reason, count in list(counts.items())[:SHOWN_FAILURES]:

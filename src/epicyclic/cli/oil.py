@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.options import contact_set_option, jobs_option, parse_changes, plot_option
+from epicyclic.cli.many import Write, compute
+from epicyclic.cli.options import (
+    contact_set_option,
+    parse_changes,
+    plot_option,
+    runner_options,
+    shard_option,
+)
 from epicyclic.cli.output import check_ending, draw
 
 if TYPE_CHECKING:
+    from epicyclic.campaigns.campaign import Campaign
     from epicyclic.campaigns.folder import CampaignFolder
+    from epicyclic.sweeps.journal import Rows
+    from epicyclic.sweeps.runner import Runner
 
-__all__ = ["oil"]
+__all__ = ["campaign_writer", "oil"]
 
 
 plot_models = plot_option("Draw the models against the simulations (.png, .svg, .pdf).")
@@ -53,8 +64,8 @@ def oil() -> None:
     help='Limits of the gear contacts, as in "hertz_pressure=0.3:1.5 GPa"; with --size.',
 )
 @contact_set_option
-@jobs_option
-@click.option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster, tcp://host:8786.")
+@shard_option
+@runner_options
 @plot_models
 def characterise(
     source: str,
@@ -64,8 +75,7 @@ def characterise(
     seed: int,
     ranges: tuple[str, ...],
     changes: tuple[str, ...],
-    jobs: int | None,
-    dask: str | None,
+    runner: Runner,
     plot: Path | None,
 ) -> None:
     """Simulate contacts of OIL, a name of 'epicyclic oils' or a TOML file, and fit models.
@@ -78,7 +88,7 @@ def characterise(
     """
     from epicyclic.campaigns.campaign import make_campaign
     from epicyclic.campaigns.design import parse_ranges
-    from epicyclic.campaigns.folder import CampaignFolder
+    from epicyclic.campaigns.folder import SIMULATIONS, CampaignFolder
     from epicyclic.cli.progress import progress_bar
 
     if plot is not None:
@@ -93,10 +103,14 @@ def characterise(
     )
     folder = CampaignFolder(output, campaign)
     folder.prepare()
+    if runner.shard is not None:
+        write = campaign_writer(campaign, output)
+        compute(campaign, output / SIMULATIONS, runner, write, "contacts")
+        return
     click.echo(f"{campaign.size} contacts, {folder.finished} of them simulated before.", err=True)
     try:
         with progress_bar("contacts") as progress:
-            folder.run(jobs=jobs, cluster=dask, progress=progress)
+            folder.run(replace(runner, progress=progress))
     except (KeyboardInterrupt, Exception):
         click.echo(
             f"{folder.finished} of {campaign.size} simulations kept in {output}; give the same "
@@ -105,6 +119,21 @@ def characterise(
         )
         raise
     _fit(folder, plot)
+
+
+def campaign_writer(campaign: Campaign, output: Path) -> Write:
+    """Writes and fits all simulations in a folder; raises `InputError` if it cannot."""
+    from epicyclic.campaigns.folder import CampaignFolder
+
+    folder = CampaignFolder(output, campaign)
+    folder.prepare()
+
+    def write(rows: Rows) -> str:
+        folder.write(rows)
+        _fit(folder, None)
+        return f"Wrote {campaign.size} simulations to {folder.table}."
+
+    return write
 
 
 @oil.command()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +15,14 @@ __all__ = [
     "case_argument",
     "contact_set_option",
     "from_rexs",
-    "jobs_option",
+    "journal_option",
     "json_option",
     "load_with",
     "parse_changes",
     "plot_option",
+    "runner_options",
     "set_option",
+    "shard_option",
     "temperature_option",
 ]
 
@@ -32,14 +35,39 @@ json_option = click.option(
     flag_value="-",
     help="Write the result as JSON, to standard output if no FILE or - is given.",
 )
-jobs_option = click.option(
-    "--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays."
-)
 temperature_option = click.option(
     "--temperature",
     metavar="VALUES",
     help='Of the oil at the inlet, as in "40,60,90 degC"; default: that of the case.',
 )
+
+
+def runner_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Where points are computed: --jobs and --dask, of which the command gets a `runner`."""
+
+    @click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
+    @click.option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster, tcp://host:8786.")
+    @wraps(command)
+    def call(
+        *args: Any, jobs: int | None, dask: str | None, shard: str | None = None, **options: Any
+    ) -> None:
+        from epicyclic.sweeps.runner import Runner, parse_shard
+
+        command(*args, runner=Runner(jobs, dask, parse_shard(shard)), **options)
+
+    return call
+
+
+journal_option = click.option(
+    "--journal",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Keep finished points there, so that the same command goes on after an interruption.",
+)
+shard_option = click.option(
+    "--shard", metavar="I/N", help="Compute share I of N; 'epicyclic merge' puts all together."
+)
+"""To stand above `runner_options`."""
 
 
 def set_option_for(what: str, example: str) -> Callable[[Any], Any]:

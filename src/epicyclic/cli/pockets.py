@@ -2,27 +2,33 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.exit_codes import EXIT_FAILED_POINTS
-from epicyclic.cli.many import kept_in, open_journal, print_failures
-from epicyclic.cli.options import case_argument, jobs_option, load_with, plot_option, set_option
-from epicyclic.cli.output import PICTURES, beside, check_ending, draw, finishing, write_file
+from epicyclic.cli.many import Write, compute
+from epicyclic.cli.options import (
+    case_argument,
+    load_with,
+    plot_option,
+    runner_options,
+    set_option,
+    shard_option,
+)
+from epicyclic.cli.output import PICTURES, beside, check_ending, draw, picture_bytes, write_file
 from epicyclic.errors import InputError, Problem
-from epicyclic.status import Status
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from epicyclic.sweeps.journal import Rows
+    from epicyclic.sweeps.pocketing_plan import StudyPlan
+    from epicyclic.sweeps.runner import Runner
 
-    from epicyclic.case.case import Case
-
-__all__ = ["pockets", "study"]
+__all__ = ["pockets", "study", "study_writer"]
 
 ANIMATION = ".gif"
+STUDY = "study"
+"""With which files of unfinished studies begin in their folder."""
 
 
 @click.command()
@@ -93,7 +99,8 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
 @click.option(
     "-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder of the results."
 )
-@jobs_option
+@shard_option
+@runner_options
 def study(
     case: str,
     changes: tuple[str, ...],
@@ -103,17 +110,15 @@ def study(
     mesh: str | None,
     picture: str,
     output: Path,
-    jobs: int | None,
+    runner: Runner,
 ) -> None:
     """Study the pocketing loss of a mesh over its main parameters, and draw the figures.
 
     Each study NAME goes to NAME.nc, NAME.csv and a picture in the folder OUTPUT. An interrupted
     study goes on where it stopped, as a sweep does.
     """
-    from epicyclic.cli.progress import progress_bar
     from epicyclic.sweeps.plan import parse_vary
     from epicyclic.sweeps.pocketing_plan import STUDIES, make_study
-    from epicyclic.sweeps.pocketing_study import run_study, study_datasets
 
     loaded = load_with(case, changes)
     plan = make_study(
@@ -123,19 +128,32 @@ def study(
         ranges=parse_vary(loaded, ranges, "--range", "speed"),
         levels=parse_vary(loaded, levels, "--level", "speed"),
     )
-    _make_folder(output)
-    size = len(plan.points)
-    journal = open_journal(plan.fingerprint(), size, output / "study")
-    with kept_in(journal, size):
-        with progress_bar("points") as progress:
-            rows = run_study(plan, jobs=jobs, journal=journal, progress=progress)
-        with finishing(f"Writing to {output}."):
-            _write_study(loaded, study_datasets(plan, rows), output, f".{picture}")
-            journal.remove()
-    reasons = [row.message for row in rows if row.status == Status.FAILED]
-    if reasons:
-        print_failures(reasons)
-        sys.exit(EXIT_FAILED_POINTS)
+    write = study_writer(plan, output, picture)
+    compute(plan, output / STUDY, runner, write, picture=picture)
+
+
+def study_writer(plan: StudyPlan, folder: Path, picture: str) -> Write:
+    """Writes tables and figures to a folder; raises `InputError` if there can be none."""
+    from epicyclic.plots.pocketing_study import study_figure
+    from epicyclic.sweeps.dataset import write_dataset
+    from epicyclic.sweeps.pocketing_study import study_datasets
+    from epicyclic.validation.pocketing import published_study
+
+    _make_folder(folder)
+
+    def write(rows: Rows) -> str:
+        written = []
+        published = published_study(plan.case)
+        for name, dataset in study_datasets(plan, rows).items():
+            for suffix in (".nc", ".csv"):
+                written.append(folder / f"{name}{suffix}")
+                write_dataset(dataset, written[-1])
+            written.append(folder / f"{name}.{picture}")
+            figure = study_figure(dataset, published)
+            write_file(written[-1], picture_bytes(figure, written[-1]))
+        return "\n".join(f"Wrote {path}." for path in written)
+
+    return write
 
 
 def _make_folder(path: Path) -> None:
@@ -145,16 +163,3 @@ def _make_folder(path: Path) -> None:
         allowed = f"is no place for a folder: {error.strerror}."
         problem = Problem("-o", str(path), allowed, "Name another folder.")
         raise InputError([problem], "the command") from None
-
-
-def _write_study(case: Case, studies: dict[str, xr.Dataset], folder: Path, picture: str) -> None:
-    from epicyclic.plots.pocketing_study import study_figure
-    from epicyclic.sweeps.dataset import write_dataset
-    from epicyclic.validation.pocketing import published_study
-
-    published = published_study(case)
-    for name, dataset in studies.items():
-        for suffix in (".nc", ".csv"):
-            write_dataset(dataset, folder / f"{name}{suffix}")
-            click.echo(f"Wrote {folder / name}{suffix}.")
-        draw(study_figure(dataset, published), folder / f"{name}{picture}")

@@ -3,14 +3,27 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.many import check_values
-from epicyclic.cli.options import case_argument, load_with, set_option, temperature_option
-from epicyclic.cli.output import check_ending, finishing
+from epicyclic.cli.many import Write, check_values, compute
+from epicyclic.cli.options import (
+    case_argument,
+    load_with,
+    runner_options,
+    set_option,
+    shard_option,
+    temperature_option,
+)
+from epicyclic.cli.output import check_ending
 
-__all__ = ["pockets_table"]
+if TYPE_CHECKING:
+    from epicyclic.sweeps.journal import Rows
+    from epicyclic.sweeps.pocketing_table import TablePlan
+    from epicyclic.sweeps.runner import Runner
+
+__all__ = ["pockets_table", "table_writer"]
 
 FORMATS = (".nc", ".csv")
 
@@ -29,27 +42,41 @@ FORMATS = (".nc", ".csv")
     type=click.Path(path_type=Path),
     help=".nc, to be used, or .csv",
 )
-def pockets_table(case: str, changes: tuple[str, ...], output: Path, **values: str | None) -> None:
+@shard_option
+@runner_options
+def pockets_table(
+    case: str, changes: tuple[str, ...], output: Path, runner: Runner, **values: str | None
+) -> None:
     """Tabulate the pocketing loss of each mesh over speed and oil temperature.
 
     VALUES are a,b,c or start:stop:count with a unit. A case whose models.pocketing_table names the
     .nc file reads its pocketing losses from there.
     """
-    from epicyclic.cli.progress import progress_bar
-    from epicyclic.sweeps.dataset import check_place, write_dataset
     from epicyclic.sweeps.plan import parse_vary
-    from epicyclic.sweeps.pocketing_table import SPEED, TEMPERATURE, pocketing_table
+    from epicyclic.sweeps.pocketing_table import SPEED, TEMPERATURE, make_table_plan
 
     loaded = load_with(case, changes)
     check_ending("-o", output, FORMATS)
-    check_place(output)
     check_values(values)
     keys = {"speed": SPEED, "temperature": TEMPERATURE}
     axes = [f"{keys[name]}={text}" for name, text in values.items() if text is not None]
     given = parse_vary(loaded, axes)
-    with progress_bar("tables") as progress:
-        table = pocketing_table(loaded, given[SPEED], given.get(TEMPERATURE), progress=progress)
-    with finishing(f"Writing {output}."):
+    plan = make_table_plan(loaded, given[SPEED], given.get(TEMPERATURE))
+    compute(plan, output, runner, table_writer(plan, output), "tables")
+
+
+def table_writer(plan: TablePlan, output: Path) -> Write:
+    """Writes tables; raises `InputError` if it cannot."""
+    from epicyclic.sweeps.dataset import check_place, write_dataset
+    from epicyclic.sweeps.pocketing_table import table_dataset
+
+    check_ending("-o", output, FORMATS)
+    check_place(output)
+
+    def write(rows: Rows) -> str:
+        table = table_dataset(plan, rows)
         write_dataset(table, output)
-    worst = float(table["interpolation_error"].max())
-    click.echo(f"Wrote {output}, interpolated within {worst:.2%} of the loss.")
+        worst = float(table["interpolation_error"].max())
+        return f"Wrote {output}, interpolated within {worst:.2%} of the loss."
+
+    return write

@@ -36,10 +36,19 @@ from epicyclic.units import (
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = ["BearingFigures", "Figure", "FluidFigures", "MeshFigures", "displayed", "figures"]
+__all__ = [
+    "BearingFigures",
+    "Figure",
+    "FluidFigures",
+    "MeshFigures",
+    "displayed",
+    "figure",
+    "figures",
+]
 
 
-def _figure(label: str, unit: Quantity) -> Any:
+def figure(label: str, unit: Quantity) -> Any:
+    """A field of a dataclass that carries its label and unit."""
     return dataclasses.field(metadata={"label": label, "unit": unit})
 
 
@@ -81,31 +90,31 @@ class MeshFigures:
     """
 
     contact: MeshContact | None
-    pressure_angle: float = _figure("operating pressure angle, transverse", DEGREE)
-    transverse_contact_ratio: float = _figure("transverse contact ratio", NUMBER)
-    overlap_ratio: float = _figure("overlap ratio", NUMBER)
-    backlash: float = _figure("circumferential backlash", MILLIMETRE)
-    misalignment: float = _figure("misalignment, with tilt of the planet if coupled", MICROMETRE)
-    pitch_line_speed: float = _figure("pitch-line speed, relative to carrier", METRE_PER_SECOND)
-    sliding_speed_max: float = _figure("largest sliding speed", METRE_PER_SECOND)
-    line_load_max: float = _figure("largest line load but for 1 % of the contact", NEWTON_PER_MM)
-    hertz_pressure_max: float = _figure(
+    pressure_angle: float = figure("operating pressure angle, transverse", DEGREE)
+    transverse_contact_ratio: float = figure("transverse contact ratio", NUMBER)
+    overlap_ratio: float = figure("overlap ratio", NUMBER)
+    backlash: float = figure("circumferential backlash", MILLIMETRE)
+    misalignment: float = figure("misalignment, with tilt of the planet if coupled", MICROMETRE)
+    pitch_line_speed: float = figure("pitch-line speed, relative to carrier", METRE_PER_SECOND)
+    sliding_speed_max: float = figure("largest sliding speed", METRE_PER_SECOND)
+    line_load_max: float = figure("largest line load but for 1 % of the contact", NEWTON_PER_MM)
+    hertz_pressure_max: float = figure(
         "largest Hertz pressure but for 1 % of the contact", GIGAPASCAL
     )
-    contact_share: float = _figure("share of the contact lines that carries", NUMBER)
-    film_ratio_min: float = _figure("film ratio, smallest", NUMBER)
-    film_ratio_max: float = _figure("film ratio, largest", NUMBER)
-    friction_mean: float = _figure("mean coefficient of friction", NUMBER)
-    loss_factor: float = _figure("loss factor H_V (Ohlendorf)", NUMBER)
-    transmission_error_range: float = _figure("loaded transmission error, peak to peak", MICROMETRE)
-    mesh_stiffness: float = _figure("mean mesh stiffness at this load", NEWTON_PER_UM)
-    pocket_pressure_max: float = _figure("highest pressure in the pockets, above ambient", BAR)
-    pocket_pressure_min: float = _figure("lowest pressure in the pockets, above ambient", BAR)
-    pocket_speed_max: float = _figure("fastest flow out of or into a pocket", METRE_PER_SECOND)
-    pocket_power_difference: float = _figure(
+    contact_share: float = figure("share of the contact lines that carries", NUMBER)
+    film_ratio_min: float = figure("film ratio, smallest", NUMBER)
+    film_ratio_max: float = figure("film ratio, largest", NUMBER)
+    friction_mean: float = figure("mean coefficient of friction", NUMBER)
+    loss_factor: float = figure("loss factor H_V (Ohlendorf)", NUMBER)
+    transmission_error_range: float = figure("loaded transmission error, peak to peak", MICROMETRE)
+    mesh_stiffness: float = figure("mean mesh stiffness at this load", NEWTON_PER_UM)
+    pocket_pressure_max: float = figure("highest pressure in the pockets, above ambient", BAR)
+    pocket_pressure_min: float = figure("lowest pressure in the pockets, above ambient", BAR)
+    pocket_speed_max: float = figure("fastest flow out of or into a pocket", METRE_PER_SECOND)
+    pocket_power_difference: float = figure(
         "pocketing loss: energy balance over work, less 1", NUMBER
     )
-    pocket_interpolation_error: float = _figure(
+    pocket_interpolation_error: float = figure(
         "pocketing loss: largest error of its interpolation", NUMBER
     )
 
@@ -115,24 +124,24 @@ class BearingFigures:
     """What an engineer checks by eye on the planet bearing."""
 
     loads: RollerLoads | None
-    radial_force: float = _figure("radial force", NEWTON)
-    moment: float = _figure("tilting moment", NEWTON_METRE)
-    speed: float = _figure("speed relative to carrier", RPM)
-    rollers_loaded: float = _figure("loaded rollers, all rows", NUMBER)
-    roller_load_max: float = _figure("most loaded roller", NEWTON)
-    roller_azimuth: float = _figure("azimuth of that roller from the load", DEGREE)
-    hertz_pressure_max: float = _figure("largest Hertz pressure, inner race", GIGAPASCAL)
+    radial_force: float = figure("radial force", NEWTON)
+    moment: float = figure("tilting moment", NEWTON_METRE)
+    speed: float = figure("speed relative to carrier", RPM)
+    rollers_loaded: float = figure("loaded rollers, all rows", NUMBER)
+    roller_load_max: float = figure("most loaded roller", NEWTON)
+    roller_azimuth: float = figure("azimuth of that roller from the load", DEGREE)
+    hertz_pressure_max: float = figure("largest Hertz pressure, inner race", GIGAPASCAL)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FluidFigures:
     """Properties of the oil at its inlet temperature, and of its mixture with air."""
 
-    kinematic_viscosity: float = _figure("kinematic viscosity of the oil", SQUARE_MM_PER_SECOND)
-    dynamic_viscosity: float = _figure("dynamic viscosity of the oil", MILLIPASCAL_SECOND)
-    density: float = _figure("density of the oil", KILOGRAM_PER_CUBIC_METRE)
-    pressure_viscosity: float = _figure("pressure-viscosity coefficient", PER_GIGAPASCAL)
-    mixture_density: float = _figure("density of the air-oil mixture", KILOGRAM_PER_CUBIC_METRE)
-    mixture_viscosity: float = _figure(
+    kinematic_viscosity: float = figure("kinematic viscosity of the oil", SQUARE_MM_PER_SECOND)
+    dynamic_viscosity: float = figure("dynamic viscosity of the oil", MILLIPASCAL_SECOND)
+    density: float = figure("density of the oil", KILOGRAM_PER_CUBIC_METRE)
+    pressure_viscosity: float = figure("pressure-viscosity coefficient", PER_GIGAPASCAL)
+    mixture_density: float = figure("density of the air-oil mixture", KILOGRAM_PER_CUBIC_METRE)
+    mixture_viscosity: float = figure(
         "dynamic viscosity of the air-oil mixture", MILLIPASCAL_SECOND
     )

@@ -1,15 +1,12 @@
-"""The share of the load that each planet of a case carries."""
+"""The share of the load that each planet of a set carries."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
-from epicyclic.analysis.parts import MeshDuty, elastic_loads
-from epicyclic.case import build
-from epicyclic.case.case import PlanetaryCase
-from epicyclic.case.model_tables import Numerics
 from epicyclic.elasticity.planet_sharing import (
     Branches,
     branch_directions,
@@ -17,10 +14,11 @@ from epicyclic.elasticity.planet_sharing import (
     mesh_load_factor_shares,
     solve_branch_forces,
 )
+from epicyclic.elements.gear_mesh import MeshDuty, elastic_loads
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.planet_bearing import RollerBearing, radial_stiffness
 
-__all__ = ["SHARING_METHODS", "planet_shares"]
+__all__ = ["SHARING_METHODS", "LoadSharing", "planet_shares"]
 
 SHARE_DIGITS = 12
 """Decimals of a share, so that planets that carry alike are solved once. [1]"""
@@ -39,16 +37,52 @@ SHARING_METHODS = {
 """What each method of load sharing is, and its source."""
 
 
+@dataclass(frozen=True, slots=True)
+class LoadSharing:
+    """How the planets of a set share the load.
+
+    Attributes
+    ----------
+    method : str
+        A key of `SHARING_METHODS`; the last two are for a sun, a ring and planets between them.
+    mesh_load_factor : float
+        K_gamma: load of the most loaded planet over the mean. [1]
+    angles : tuple of float
+        Positions of the planets. [rad]
+    position_errors : tuple of float
+        Of each pin, against the sense in which a positive torque of the sun pushes it. [m]
+    floating_member : str
+        The member that gives way, or ``"none"``.
+    support_stiffness : float
+        Radial, of that member. [N/m]
+    pin_stiffness : float or None
+        Radial, of one pin; None: rigid. [N/m]
+    """
+
+    method: str
+    mesh_load_factor: float
+    angles: tuple[float, ...]
+    position_errors: tuple[float, ...]
+    floating_member: str
+    support_stiffness: float
+    pin_stiffness: float | None
+
+    @property
+    def count(self) -> int:
+        """Number of planets."""
+        return len(self.angles)
+
+
 def planet_shares(
-    case: PlanetaryCase, duties: tuple[MeshDuty, MeshDuty], bearing: RollerBearing | None
+    sharing: LoadSharing, duties: tuple[MeshDuty, ...], bearing: RollerBearing | None
 ) -> tuple[float, ...]:
-    """Share of the sun's torque that each planet carries; their sum is 1. Theory (S1).
+    """Share of the load that each planet carries; their sum is 1. Theory (S1).
 
     Parameters
     ----------
-    case : PlanetaryCase
+    sharing : LoadSharing
     duties : tuple of MeshDuty
-        Of both meshes of a planet under the mean load.
+        The meshes of a planet under the mean load, that of the sun first.
     bearing : RollerBearing or None
         Of one planet; None: rigid.
 
@@ -57,14 +91,14 @@ def planet_shares(
     ConvergenceError
         If no loads of the planets balance, or the closed form does not hold.
     """
-    count, sharing = case.planet.count, case.load_sharing
+    count = sharing.count
     if sharing.method == "mesh-load-factor":
         return mesh_load_factor_shares(count, sharing.mesh_load_factor)
     if sharing.method == "equal" or duties[0].torque1 == 0:
         return (1 / count,) * count
-    branches = _branches(case, duties, bearing)
+    branches = _branches(sharing, duties, bearing)
     floats = sharing.floating_member != "none"
-    force = count * _mesh_force(duties[0])
+    force = count * duties[0].force
     if sharing.method == "closed-form":
         forces = closed_form_branch_forces(force, branches, floating=floats)
         if forces.min() < 0:
@@ -73,8 +107,11 @@ def planet_shares(
                 "use load_sharing.method 'direct'."
             )
     else:
+        sun_mesh, ring_mesh = duties
         directions = branch_directions(
-            branches.angles, *(duty.mesh.operating_pressure_angle for duty in duties)
+            branches.angles,
+            sun_mesh.mesh.operating_pressure_angle,
+            ring_mesh.mesh.operating_pressure_angle,
         )
         supports: dict[str, float] = (
             {sharing.floating_member: sharing.support_stiffness} if floats else {}
@@ -84,32 +121,26 @@ def planet_shares(
 
 
 def _branches(
-    case: PlanetaryCase, duties: tuple[MeshDuty, MeshDuty], bearing: RollerBearing | None
+    sharing: LoadSharing, duties: tuple[MeshDuty, ...], bearing: RollerBearing | None
 ) -> Branches:
     """The branches of all planets. Theory (S6)."""
     sun_mesh = duties[0]
-    angles = np.array(build.planet_angles(case.sun, case.planet, case.ring))
     # the branch force reaches the pin through both meshes
     through_pin = sum(math.cos(duty.mesh.operating_pressure_angle) for duty in duties)
-    pin_force = through_pin * _mesh_force(sun_mesh)
+    pin_force = through_pin * sun_mesh.force
     pin_compliance = 0.0 if bearing is None else 1 / radial_stiffness(bearing, pin_force)
-    if case.load_sharing.pin_stiffness is not None:
-        pin_compliance += 1 / case.load_sharing.pin_stiffness
-    compliance = sum(_mesh_compliance(duty, case.numerics) for duty in duties)
-    errors = np.array(case.load_sharing.position_errors or np.zeros(case.planet.count))
+    if sharing.pin_stiffness is not None:
+        pin_compliance += 1 / sharing.pin_stiffness
+    compliance = sum(_mesh_compliance(duty) for duty in duties)
+    errors = np.array(sharing.position_errors or np.zeros(sharing.count))
     return Branches(
-        angles,
+        np.array(sharing.angles),
         compliance + through_pin**2 * pin_compliance,
         math.copysign(through_pin, sun_mesh.torque1) * errors,
     )
 
 
-def _mesh_force(duty: MeshDuty) -> float:
-    """Along the transverse line of action. [N]"""
-    return abs(duty.torque1) / duty.mesh.gear1.base_radius
-
-
-def _mesh_compliance(duty: MeshDuty, numerics: Numerics) -> float:
+def _mesh_compliance(duty: MeshDuty) -> float:
     """Slope of the transmission error over the force, mean of the mesh period. [m/N]"""
-    loaded = elastic_loads(duty, numerics)
+    loaded = elastic_loads(duty)
     return loaded.mean(1 / loaded.tangent_stiffness)

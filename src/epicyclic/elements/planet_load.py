@@ -1,30 +1,27 @@
 """The load of a planet on its bearing, and how the planet tilts under it.
 
-Axes: t along the circle of the planets, in the sense in which both meshes push the planet; r
-outward from the centre of the set; y along the planet's axis, from the middle of its face towards
-the end where contact ends.
+Axes: t along the circle of the planets; r outward from the centre of the set; y along the planet's
+axis, from the middle of the bearing. In a set whose gears lie in one plane, t points in the sense
+in which the first mesh pushes the planet, and y towards the end of the face where contact ends.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.analysis.parts import MeshDuty, elastic_loads
-from epicyclic.case.model_tables import Numerics
+from epicyclic.elements.gear_mesh import MeshDuty, elastic_loads
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.planet_bearing import RollerBearing, roller_loads
 
-__all__ = ["PlanetLoad", "planet_load", "tilt_planet"]
+__all__ = ["PlanetContact", "PlanetLoad", "planet_load", "tilt_planet"]
 
 FloatArray = NDArray[np.float64]
-Duties = tuple[MeshDuty, MeshDuty]
 
-_OUTWARD = (1, -1)
-"""Senses along r in which the sun and the ring push a planet."""
 TILT_TOLERANCE = 1e-6
 """Imbalance over the tilt at which the latter counts as found. [1]"""
 SMALL_TILT = 1e-6
@@ -48,48 +45,95 @@ class PlanetLoad:
     moment_y: float
 
 
+@dataclass(frozen=True, slots=True)
+class PlanetContact:
+    """A mesh that loads a planet.
+
+    Attributes
+    ----------
+    duty : MeshDuty
+    member : int
+        Which of its gears sits on the planet, 1 or 2.
+    outward : tuple of float
+        Unit vector along t and r from the pitch point to the axis of the planet: the sense in which
+        the radial force of the mesh pushes the planet.
+    sense : int
+        +1 if the mesh turns the planet from t to r, else -1.
+    hand : int
+        +1 if a positive `sense` pushes the planet along y, else -1.
+    position : float
+        Of the middle of the face, along y. [m]
+    """
+
+    duty: MeshDuty
+    member: int
+    outward: tuple[float, float]
+    sense: int
+    hand: int = 1
+    position: float = 0.0
+
+    @property
+    def planet_radius(self) -> float:
+        """Operating radius of the planet in this mesh. [m]"""
+        mesh = self.duty.mesh
+        return mesh.operating_radius1 if self.member == 1 else mesh.operating_radius2
+
+    @property
+    def direction(self) -> FloatArray:
+        """Unit vector along t and r of the transverse force on the planet."""
+        angle = self.duty.mesh.operating_pressure_angle
+        t, r = self.outward
+        # z x e with e = -outward, the arm of the force
+        tangent = np.array([r, -t]) * self.sense
+        return math.cos(angle) * tangent + math.sin(angle) * np.array(self.outward)
+
+    @property
+    def axial_force(self) -> float:
+        """Of the mesh on the planet, along y. [N]"""
+        mesh = self.duty.mesh
+        tangential = abs(self.duty.torque1) / mesh.operating_radius1
+        return self.hand * self.sense * tangential * mesh.operating_helix_tangent
+
+
+Contacts = Sequence[PlanetContact]
+
+
 def planet_load(
-    duties: Duties, centrifugal: float, mesh_moments: tuple[float, float] = (0.0, 0.0)
+    contacts: Contacts, centrifugal: float, mesh_moments: Sequence[float] = ()
 ) -> PlanetLoad:
-    """Load on the bearing of a planet from both meshes and the centrifugal force.
+    """Load on the bearing of a planet from all its meshes and the centrifugal force.
 
     Theory (B1), (B2), (B17).
 
-    Talbot (2012), Eq. 3.7 and 3.8, for equal or unequal pressure angles: the tangential forces
-    add, the radial ones cancel or not, the axial ones form a couple in the plane of the axes.
+    Talbot (2012), Eq. 3.7 and 3.8, for any number of meshes and any pressure angles: the transverse
+    forces add as vectors, the axial ones form couples in the planes of the axes, and a force beside
+    the middle of the bearing a moment.
 
     Parameters
     ----------
-    duties : tuple of MeshDuty
+    contacts : sequence of PlanetContact
     centrifugal : float
         [N]
-    mesh_moments : tuple of float
-        Of the forces of both meshes about the middle of the face. [N m]
+    mesh_moments : sequence of float, optional
+        Of the transverse force of each mesh about the middle of its face. [N m]
     """
     moment = np.zeros(2)  # along t and r
-    for duty, outward, own in zip(duties, _OUTWARD, mesh_moments, strict=True):
-        mesh = duty.mesh
-        planet_radius = mesh.operating_radius2 if outward > 0 else mesh.operating_radius1
-        tangential = abs(duty.torque1) / mesh.operating_radius1
-        moment += own * _direction(duty, outward)
-        moment[1] += tangential * mesh.operating_helix_tangent * planet_radius
-    force = _radial_force(duties, centrifugal)
+    for contact, own in zip(contacts, mesh_moments or [0.0] * len(contacts), strict=True):
+        lever = own + contact.position * contact.duty.force
+        moment += lever * contact.direction
+        couple = contact.axial_force * contact.planet_radius
+        moment += couple * np.array(contact.outward)
+    force = _radial_force(contacts, centrifugal)
     along, across = _axes(force)
     return PlanetLoad(math.hypot(*force), float(moment @ along), float(moment @ across))
 
 
-def _radial_force(duties: Duties, centrifugal: float) -> FloatArray:
-    """Force of both meshes and of rotation on the planet, along t and r. [N]"""
+def _radial_force(contacts: Contacts, centrifugal: float) -> FloatArray:
+    """Force of all meshes and of rotation on the planet, along t and r. [N]"""
     force = np.array([0.0, centrifugal])
-    for duty, outward in zip(duties, _OUTWARD, strict=True):
-        force += abs(duty.torque1) / duty.mesh.gear1.base_radius * _direction(duty, outward)
+    for contact in contacts:
+        force += contact.duty.force * contact.direction
     return force
-
-
-def _direction(duty: MeshDuty, outward: int) -> FloatArray:
-    """Of the force of a mesh on the planet: `outward` 1 from the sun, -1 from the ring."""
-    angle = duty.mesh.operating_pressure_angle
-    return np.array([math.cos(angle), outward * math.sin(angle)])
 
 
 def _axes(force: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -100,9 +144,9 @@ def _axes(force: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def tilt_planet(
-    duties: Duties, bearing: RollerBearing, centrifugal: float, numerics: Numerics
-) -> tuple[Duties, PlanetLoad]:
-    """Duties misaligned by the tilt of the planet in its bearing, and the load that belongs to it.
+    contacts: Contacts, bearing: RollerBearing, centrifugal: float
+) -> tuple[Contacts, PlanetLoad]:
+    """Meshes misaligned by the tilt of the planet in its bearing, and the load that belongs to it.
 
     Theory (B17), (B18).
 
@@ -116,12 +160,12 @@ def tilt_planet(
     """
     from scipy.optimize import root
 
-    tilt = _tilt_under(planet_load(duties, centrifugal), duties, bearing, centrifugal)
+    tilt = _tilt_under(planet_load(contacts, centrifugal), contacts, bearing, centrifugal)
     scale = max(math.hypot(*tilt), SMALL_TILT)
 
     def imbalance(scaled: FloatArray) -> FloatArray:
-        load = _load_at(scaled * scale, duties, centrifugal, numerics)
-        answer = _tilt_under(load, duties, bearing, centrifugal)
+        load = _load_at(scaled * scale, contacts, centrifugal)
+        answer = _tilt_under(load, contacts, bearing, centrifugal)
         residual: FloatArray = scaled - answer / scale
         return residual
 
@@ -132,43 +176,41 @@ def tilt_planet(
             'use models.planet_tilt = "left-out".'
         )
     tilt = found.x * scale
-    return _misaligned(duties, tilt), _load_at(tilt, duties, centrifugal, numerics)
+    return _misaligned(contacts, tilt), _load_at(tilt, contacts, centrifugal)
 
 
-def _misaligned(duties: Duties, tilt: FloatArray) -> Duties:
-    """Misalignments of both meshes with a planet tilted by `tilt` in t and r. Theory (B18)."""
-    sun, ring = (
+def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
+    """The meshes with a planet tilted by `tilt` in t and r. Theory (B18)."""
+    return [
         replace(
-            duty,
-            misalignment=duty.misalignment
-            + duty.mesh.face_width * float(tilt @ _direction(duty, outward)),
+            contact,
+            duty=contact.duty.misaligned(
+                contact.duty.mesh.face_width * float(tilt @ contact.direction)
+            ),
         )
-        for duty, outward in zip(duties, _OUTWARD, strict=True)
-    )
-    return sun, ring
+        for contact in contacts
+    ]
 
 
-def _load_at(
-    tilt: FloatArray, duties: Duties, centrifugal: float, numerics: Numerics
-) -> PlanetLoad:
+def _load_at(tilt: FloatArray, contacts: Contacts, centrifugal: float) -> PlanetLoad:
     """Load of a planet tilted by `tilt`."""
-    sun, ring = (_mesh_moment(duty, numerics) for duty in _misaligned(duties, tilt))
-    return planet_load(duties, centrifugal, (sun, ring))
+    moments = [_mesh_moment(contact.duty) for contact in _misaligned(contacts, tilt)]
+    return planet_load(contacts, centrifugal, moments)
 
 
-def _mesh_moment(duty: MeshDuty, numerics: Numerics) -> float:
+def _mesh_moment(duty: MeshDuty) -> float:
     """Moment of the transverse force of a mesh about the middle of its face. Theory (B17). [N m]"""
-    loaded = elastic_loads(duty, numerics)
+    loaded = elastic_loads(duty)
     height = loaded.lines.face_position - duty.mesh.face_width / 2
     moments = (loaded.line_load * loaded.lines.length * height).sum(axis=(1, 2))
     return loaded.mean(moments) * math.cos(duty.mesh.gear1.rack.base_helix_angle)
 
 
 def _tilt_under(
-    load: PlanetLoad, duties: Duties, bearing: RollerBearing, centrifugal: float
+    load: PlanetLoad, contacts: Contacts, bearing: RollerBearing, centrifugal: float
 ) -> FloatArray:
     """Tilt of the planet under `load`, in t and r. [rad]"""
     loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
-    along, across = _axes(_radial_force(duties, centrifugal))
+    along, across = _axes(_radial_force(contacts, centrifugal))
     tilt: FloatArray = loads.displacement[2] * along + loads.displacement[3] * across
     return tilt

@@ -1,15 +1,15 @@
-"""Pocketing loss of the meshes of a case: solved, or read from a table of solved flows."""
+"""Flow through the pockets of meshes: solved, or read from tables of solved flows."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epicyclic.case.case import Case
-from epicyclic.case.model_tables import LossOption
+from epicyclic.elements.fluids import Fluids
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow
@@ -18,11 +18,12 @@ from epicyclic.pocketing.stored import stored_table
 from epicyclic.pocketing.table import FlowTables
 
 if TYPE_CHECKING:
-    from epicyclic.analysis.parts import MeshDuty
+    from epicyclic.elements.gear_mesh import MeshDuty
 
 __all__ = [
     "POCKETING_SOURCE",
     "MeshFlow",
+    "PocketSettings",
     "flow_family",
     "flow_numbers",
     "mesh_flows",
@@ -35,6 +36,38 @@ __all__ = [
 POCKETING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), chapter 4"
 
 _Request = tuple[FlowFamily, float, MixtureState, float]
+
+
+@dataclass(frozen=True, slots=True)
+class PocketSettings:
+    """How the flow through the pockets of a mesh is found.
+
+    Attributes
+    ----------
+    include : bool
+        False if the loss is left out, so that nobody asks for the flow.
+    oil_fraction : float
+        Oil share by volume at ambient pressure. [1]
+    model : str
+        A key of `POCKETING_MODELS`.
+    slices, steps : int
+        Resolution: across the face, in one pitch.
+    end_length : float
+        Of the control volumes at the ends of the face. [normal modules]
+    file : Path or None
+        Of a stored table.
+    tables : mapping of FlowFamily to FlowTable
+        Tables that the points of a sweep share.
+    """
+
+    include: bool
+    oil_fraction: float
+    model: str
+    slices: int
+    steps: int
+    end_length: float
+    file: Path | None = None
+    tables: FlowTables = field(default_factory=dict, hash=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,21 +86,22 @@ class MeshFlow:
     left_out: str = ""
 
 
-def flow_family(case: Case, duty: MeshDuty) -> FlowFamily:
+def flow_family(duty: MeshDuty) -> FlowFamily:
     """The flows that that of a mesh belongs to."""
+    settings = duty.models.pockets
     return FlowFamily(
         mesh=duty.mesh,
         tools=duty.tools,
         drives1=duty.drives1,
-        oil_fraction=case.surroundings.oil_air_ratio,
-        model=case.models.pocketing,
-        slices=case.numerics.pocket_slices,
-        steps=case.numerics.pocket_steps,
-        end_length=case.models.pocket_end_length,
+        oil_fraction=settings.oil_fraction,
+        model=settings.model,
+        slices=settings.slices,
+        steps=settings.steps,
+        end_length=settings.end_length,
     )
 
 
-def solve_pockets(case: Case, duty: MeshDuty, mixture: MixtureState) -> PocketFlow | None:
+def solve_pockets(duty: MeshDuty, fluids: Fluids) -> PocketFlow | None:
     """Flow through the pockets of a mesh; None without motion.
 
     Raises
@@ -79,15 +113,13 @@ def solve_pockets(case: Case, duty: MeshDuty, mixture: MixtureState) -> PocketFl
     """
     if duty.speed1 == 0:
         return None
-    return flow_family(case, duty).flow(abs(duty.speed1), mixture, case.surroundings.pressure)
+    return flow_family(duty).flow(abs(duty.speed1), fluids.mixture, fluids.pressure)
 
 
-def flow_numbers(
-    case: Case, duties: Sequence[MeshDuty], mixture: MixtureState
-) -> Iterator[tuple[FlowFamily, float]]:
-    """Family and number of the flow of each mesh whose loss the case includes.
+def flow_numbers(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[tuple[FlowFamily, float]]:
+    """Family and number of the flow of each mesh whose loss is included.
 
-    Those that ``models.pocketing_table`` holds are left out.
+    Those that a stored table holds are left out.
 
     Raises
     ------
@@ -95,35 +127,34 @@ def flow_numbers(
         If that table was made for other pockets.
     """
     for duty in duties:
-        if _included(case, duty) and duty.speed1 != 0:
-            request = _request(case, duty, mixture)
-            if _stored_figures(case, request) is None:
+        if duty.models.pockets.include and duty.speed1 != 0:
+            request = _request(duty, fluids)
+            if _stored_figures(duty.models.pockets, request) is None:
                 yield request[0], FlowFamily.number(*request[1:])
 
 
-def mesh_flows(
-    case: Case, duties: Sequence[MeshDuty], mixture: MixtureState, tables: FlowTables
-) -> dict[str, MeshFlow]:
+def mesh_flows(duties: Sequence[MeshDuty], fluids: Fluids) -> Mapping[str, MeshFlow]:
     """Flow through the pockets of each mesh, by its key.
 
-    Read from ``models.pocketing_table``, else from `tables`, where they have it.
+    Read from the stored table of its settings, else from the tables of a sweep, where they have it.
 
     Raises
     ------
     ConvergenceError
         If a flow is not found.
     InputError
-        If the table of the case was made for other pockets.
+        If the stored table was made for other pockets.
     """
     flows: dict[str, MeshFlow] = {duty.key: MeshFlow() for duty in duties}
     direct: dict[str, _Request] = {}
     for duty in duties:
-        if not _included(case, duty) or duty.speed1 == 0:
+        settings = duty.models.pockets
+        if not settings.include or duty.speed1 == 0:
             continue
-        request = _request(case, duty, mixture)
-        figures = _stored_figures(case, request)
-        if figures is None and request[0] in tables:
-            figures = tables[request[0]].figures(*request[1:])
+        request = _request(duty, fluids)
+        figures = _stored_figures(settings, request)
+        if figures is None and request[0] in settings.tables:
+            figures = settings.tables[request[0]].figures(*request[1:])
         if figures is None:
             direct[duty.key] = request
         else:
@@ -131,16 +162,15 @@ def mesh_flows(
     return flows | dict(zip(direct, _solve_all(tuple(direct.values())), strict=True))
 
 
-def _request(case: Case, duty: MeshDuty, mixture: MixtureState) -> _Request:
-    return flow_family(case, duty), abs(duty.speed1), mixture, case.surroundings.pressure
+def _request(duty: MeshDuty, fluids: Fluids) -> _Request:
+    return flow_family(duty), abs(duty.speed1), fluids.mixture, fluids.pressure
 
 
-def _stored_figures(case: Case, request: _Request) -> FlowFigures | None:
-    """From the table that the case names; None if it names none, or the table does not hold it."""
-    file = case.models.pocketing_table
-    if file is None:
+def _stored_figures(settings: PocketSettings, request: _Request) -> FlowFigures | None:
+    """From the stored table; None if there is none, or it does not hold the flow."""
+    if settings.file is None:
         return None
-    return stored_table(case.folder / file, request[0]).figures(*request[1:])
+    return stored_table(settings.file, request[0]).figures(*request[1:])
 
 
 @lru_cache(maxsize=256)
@@ -160,14 +190,9 @@ def _solve(request: _Request) -> MeshFlow:
         return MeshFlow(left_out=f"no tooth outline: {error}")
 
 
-def _included(case: Case, duty: MeshDuty) -> bool:
-    option: LossOption = getattr(case.losses, f"{duty.key}_pocketing")
-    return option.include
-
-
-def pocketing_method(case: Case, figures: FlowFigures | None) -> str:
+def pocketing_method(model: str, figures: FlowFigures | None) -> str:
     """How the loss was found, in words."""
-    method = POCKETING_MODELS[case.models.pocketing]
+    method = POCKETING_MODELS[model]
     if figures is None or not figures.nodes:
         return method
     if figures.file:
@@ -175,7 +200,7 @@ def pocketing_method(case: Case, figures: FlowFigures | None) -> str:
     return f"{method}, interpolated between {figures.nodes} flows within {figures.error:.2%}"
 
 
-def pocket_notes(case: Case, mesh: Mesh, figures: FlowFigures | None) -> tuple[str, ...]:
+def pocket_notes(mesh: Mesh, figures: FlowFigures | None, ambient: float) -> tuple[str, ...]:
     """What a user must know about the flow."""
     if figures is None:
         return ()
@@ -185,7 +210,7 @@ def pocket_notes(case: Case, mesh: Mesh, figures: FlowFigures | None) -> tuple[s
             f"The flow through the pockets of the {mesh.name} does not repeat from one mesh period "
             f"to the next; its loss is the mean of {figures.periods // 2} periods."
         )
-    if figures.pressure_min < -case.surroundings.pressure:
+    if figures.pressure_min < -ambient:
         notes.append(
             f"The pressure in the pockets of the {mesh.name} falls below zero, where the "
             "fluid would cavitate: models.pocketing = incompressible is meant for lower speeds."
@@ -193,9 +218,11 @@ def pocket_notes(case: Case, mesh: Mesh, figures: FlowFigures | None) -> tuple[s
     return tuple(notes)
 
 
-def stored_note(case: Case, mesh: Mesh, figures: FlowFigures | None) -> tuple[str, ...]:
-    """That the flow is not in the table that the case names."""
-    if case.models.pocketing_table is None or figures is None or figures.file:
+def stored_note(
+    settings: PocketSettings, mesh: Mesh, figures: FlowFigures | None
+) -> tuple[str, ...]:
+    """That the flow is not in the stored table."""
+    if settings.file is None or figures is None or figures.file:
         return ()
     return (
         f"models.pocketing_table does not hold the flow through the pockets of the {mesh.name} "

@@ -7,22 +7,21 @@ on it less the torque loss times the sign of its speed, driving and coasting.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from epicyclic.analysis.result import number_fields
+from epicyclic.builders.build import layout_of
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.errors import InputError, Problem
-from epicyclic.kinematics import MEMBERS
+from epicyclic.results.result import number_fields
 from epicyclic.sweeps.dataset import to_dataset
-from epicyclic.sweeps.journal import Journal, Row
-from epicyclic.sweeps.plan import Axis, Plan, make_plan
-from epicyclic.sweeps.run import run_plan
-from epicyclic.sweeps.work import Progress
+from epicyclic.sweeps.journal import Rows
+from epicyclic.sweeps.plan import Axis, SweepPlan, make_plan
+from epicyclic.sweeps.runner import Progress, Runner
 from epicyclic.units import NEWTON_METRE, RPM, WATT
 
 if TYPE_CHECKING:
@@ -30,12 +29,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AXES",
+    "MapPlan",
     "axis_name",
     "coordinates",
     "held_shaft",
     "loss_map",
     "map_plan",
-    "row_length",
     "to_map",
 ]
 
@@ -51,6 +50,18 @@ _CREEP = 1e-9
 """Speed that stands for slow motion; losses over speed have reached their limit by then. [rpm]"""
 
 
+@dataclass(frozen=True, slots=True)
+class MapPlan(SweepPlan):
+    """The points of a map."""
+
+    kind: ClassVar[str] = "map"
+
+    @property
+    def batch(self) -> int:
+        """Points next to each other that differ in torque only."""
+        return len(self.axes[-1].values)
+
+
 def loss_map(
     case: Case,
     speed: Iterable[Any],
@@ -59,6 +70,8 @@ def loss_map(
     vary: Mapping[str, Iterable[Any]] | None = None,
     *,
     jobs: int | None = None,
+    dask: str | None = None,
+    shard: tuple[int, int] | None = None,
     journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
@@ -74,7 +87,7 @@ def loss_map(
         Oil inlet temperatures. Default: that of the case.
     vary : mapping of str to iterable, optional
         Further keys and their values, as for `sweep`.
-    jobs, journal, progress
+    jobs, dask, shard, journal, progress
         As for `sweep`.
 
     Returns
@@ -94,10 +107,9 @@ def loss_map(
     InputError
         As for `sweep`, and for keys that decide which shaft is which.
     """
+    runner = Runner(jobs, dask, shard, journal, progress)
     plan = map_plan(case, speed, torque, temperature, vary)
-    kept = None if journal is None else Journal(Path(journal).absolute(), plan.fingerprint())
-    rows = run_plan(plan, jobs=jobs, journal=kept, progress=progress, batch=row_length(plan))
-    return to_map(plan, rows)
+    return to_map(plan, runner.run(plan))
 
 
 def map_plan(
@@ -106,7 +118,7 @@ def map_plan(
     torque: Iterable[Any],
     temperature: Iterable[Any] | None = None,
     vary: Mapping[str, Iterable[Any]] | None = None,
-) -> Plan:
+) -> MapPlan:
     """The points of a map. Parameters as for `loss_map`."""
     further = dict(vary or {})
     problems = [_own_option(key) for key in further if key in AXES.values()]
@@ -119,7 +131,7 @@ def map_plan(
     given = {AXES["temperature"]: temperature, AXES["speed"]: speed, AXES["torque"]: torque}
     plan = make_plan(case, {**further, **given})
     turns_alone = not _has_second_input(case)
-    return replace(plan, axes=tuple(_prepared(axis, turns_alone) for axis in plan.axes))
+    return MapPlan(case, tuple(_prepared(axis, turns_alone) for axis in plan.axes))
 
 
 def _own_option(key: str) -> Problem:
@@ -154,12 +166,7 @@ def _prepared(axis: Axis, turns_alone: bool) -> Axis:
     return replace(axis, values=values, coordinate=coordinate)
 
 
-def row_length(plan: Plan) -> int:
-    """Number of points next to each other that differ in torque only."""
-    return len(plan.axes[-1].values)
-
-
-def coordinates(plan: Plan) -> dict[str, tuple[float | str, ...]]:
+def coordinates(plan: MapPlan) -> dict[str, tuple[float | str, ...]]:
     """Values of the axes of the map of `plan`, by their names in it."""
     values = {axis_name(axis.key): axis.coordinate for axis in plan.axes}
     values["speed"] = tuple(0.0 if value == _CREEP else value for value in values["speed"])
@@ -172,7 +179,7 @@ def axis_name(key: str) -> str:
     return names.get(key, key.replace(".", "_"))
 
 
-def to_map(plan: Plan, rows: Sequence[Row]) -> xr.Dataset:
+def to_map(plan: MapPlan, rows: Rows) -> xr.Dataset:
     """The map of `plan` from the rows of all its points."""
     data = to_dataset(plan, rows)[[*_kept_variables(plan.case), "status", "message", "warnings"]]
     data = data.rename({axis.key: axis_name(axis.key) for axis in plan.axes})
@@ -196,7 +203,7 @@ def _kept_variables(case: Case) -> list[str]:
     shafts = [f"{name}_{what}" for name in _all_members(case) for what in ("speed", "torque")]
     return [
         item.key
-        for item in number_fields(case.kind)
+        for item in number_fields(layout_of(case))
         if item.unit == WATT.display or item.key == "efficiency" or item.key in shafts
     ]
 
@@ -214,7 +221,7 @@ def _at_rest(data: xr.Dataset) -> xr.Dataset:
 
 
 def _all_members(case: Case) -> tuple[str, ...]:
-    return MEMBERS if isinstance(case, PlanetaryCase) else ("pinion", "gear")
+    return layout_of(case).members
 
 
 def _members(case: Case) -> tuple[str, str]:
@@ -222,11 +229,14 @@ def _members(case: Case) -> tuple[str, str]:
     if not isinstance(case, PlanetaryCase):
         return "pinion", "gear"
     operation = case.operation
-    (output,) = set(MEMBERS) - {operation.input, operation.fixed or operation.second_input}
+    (output,) = set(layout_of(case).members) - {
+        operation.input,
+        operation.fixed or operation.second_input,
+    }
     return operation.input, output
 
 
-def _attributes(plan: Plan, given: Mapping[str, str]) -> dict[str, str]:
+def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:
     reference, output = _members(plan.case)
     text = {
         "title": given["title"],

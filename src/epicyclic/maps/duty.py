@@ -8,7 +8,8 @@ the nodes they give the energy of every component at once.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.case.case import Case
 from epicyclic.case.wording import sentence, written
 from epicyclic.errors import InputError, Problem
-from epicyclic.maps.compute import AXES, loss_map
+from epicyclic.maps.compute import AXES, map_plan, to_map
 from epicyclic.maps.cycle import Cycle, open_cycle
 from epicyclic.maps.interpolation_error import (
     Deviation,
@@ -28,7 +29,7 @@ from epicyclic.maps.interpolation_error import (
     solve_sample,
 )
 from epicyclic.maps.lookup import Lookup, loss_power, make_lookup
-from epicyclic.sweeps.work import Progress
+from epicyclic.sweeps.runner import HERE, Progress, Runner
 from epicyclic.units import (
     CELSIUS,
     KILOJOULE,
@@ -65,6 +66,8 @@ def duty_cycle(
     clamp: bool = False,
     samples: int = SAMPLES,
     jobs: int | None = None,
+    dask: str | None = None,
+    journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Energy in, out and lost over a duty cycle, by component.
@@ -86,8 +89,10 @@ def duty_cycle(
         refused.
     samples : int
         Points of the cycle that are solved directly to measure the error of the interpolation.
-    jobs
+    jobs, dask
         As for `sweep`.
+    journal : str or Path, optional
+        Folder that keeps finished points, those of the map and of the check.
     progress
         As for `sweep`, for the map of a case.
 
@@ -106,13 +111,14 @@ def duty_cycle(
         With all problems of the cycle; for points outside of the map; for a map with gaps,
         further axes of several values, or two driven members.
     """
+    runner = Runner(jobs, dask, journal=journal)
     checked = open_cycle(cycle)
     celsius = parse_temperatures(checked, temperature)
     data = map_or_case
     if isinstance(data, Case):
-        data = cycle_map(data, checked, celsius, jobs=jobs, progress=progress)
+        data = cycle_map(data, checked, celsius, replace(runner, progress=progress))
     sums = add_up(data, checked, celsius, clamp=clamp, samples=samples)
-    return make_duty(data, checked, sums, jobs)
+    return make_duty(data, checked, sums, runner)
 
 
 def parse_temperatures(cycle: Cycle, temperature: Iterable[Any] | None) -> tuple[float, ...] | None:
@@ -142,9 +148,7 @@ def cycle_map(
     case: Case,
     cycle: Cycle,
     celsius: tuple[float, ...] | None,
-    *,
-    jobs: int | None = None,
-    progress: Progress | None = None,
+    runner: Runner = HERE,
 ) -> xr.Dataset:
     """A map of `case` that covers a cycle."""
     speeds = _crowded(*cycle.ranges["speed"], _SPEEDS)
@@ -153,14 +157,13 @@ def cycle_map(
     if "temperature" in cycle.ranges:
         low, high = cycle.ranges["temperature"]
         temperatures = tuple(np.unique(np.linspace(low, high, _TEMPERATURES)).tolist())
-    return loss_map(
+    plan = map_plan(
         case,
         _texts(speeds, RPM),
         _texts(torques, NEWTON_METRE),
         None if temperatures is None else _texts(temperatures, CELSIUS),
-        jobs=jobs,
-        progress=progress,
     )
+    return to_map(plan, runner.within(plan).run(plan))
 
 
 def _crowded(low: float, high: float, count: int) -> Array:
@@ -244,8 +247,7 @@ def make_duty(
     data: xr.Dataset,
     cycle: Cycle,
     sums: Sums,
-    jobs: int | None = None,
-    progress: Progress | None = None,
+    runner: Runner = HERE,
 ) -> xr.Dataset:
     """The result of `duty_cycle`, its error measured at the points that were drawn."""
     import xarray as xr
@@ -256,7 +258,7 @@ def make_duty(
         error = (
             leave_out(sums.lookup, totals.node_work.sum(axis=0))
             if case is None
-            else solve_sample(case, sample, jobs, progress)
+            else solve_sample(case, sample, runner)
         )
         results.append(_to_dataset(sums.lookup, totals, error))
     (result, *_) = results

@@ -25,8 +25,7 @@ from epicyclic.errors import InputError
 from epicyclic.maps.compute import AXES
 from epicyclic.maps.lookup import Lookup
 from epicyclic.sweeps.plan import PointList
-from epicyclic.sweeps.run import run_plan
-from epicyclic.sweeps.work import Progress
+from epicyclic.sweeps.runner import HERE, Runner
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -107,10 +106,8 @@ def _written(values: xr.DataArray) -> Any:
     return number if isinstance(number, str) or unit == "1" else f"{number!r} {unit}"
 
 
-def solve_sample(
-    case: Case, sample: Sample, jobs: int | None = None, progress: Progress | None = None
-) -> Deviation:
-    """The deviation by direct solution of the points of `sample`. Options as for `sweep`."""
+def solve_sample(case: Case, sample: Sample, runner: Runner = HERE) -> Deviation:
+    """The deviation by direct solution of the points of `sample`."""
     rows, chance = sample.drawn()
     points = tuple(
         {
@@ -121,8 +118,8 @@ def solve_sample(
         for speed, torque, celsius, *_ in rows.tolist()
     )
     exact = case.updated({"numerics.pocket_interpolation": 0})
-    solved = run_plan(PointList(exact, points), jobs=jobs, progress=progress)
-    direct = np.array([row.numbers.get("total", math.nan) for row in solved])
+    plan = PointList(exact, points)
+    direct = runner.within(plan).run(plan).numbers("total")
     found = np.isfinite(direct)
     method = f"{found.sum()} points of the cycle solved directly"
     if not found.all():

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.analysis.notes import NOT_INCLUDED
-from epicyclic.analysis.result import versions
+from epicyclic.builders.notes import NOT_INCLUDED
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem
 from epicyclic.losses.validity import OUT_OF_RANGE
@@ -28,7 +27,8 @@ from epicyclic.measurement.fit import Fit, fit_parameters
 from epicyclic.measurement.model import Computed, MeasuredPoints
 from epicyclic.measurement.parameters import make_parameters
 from epicyclic.measurement.table import Measurements, parse_measurements
-from epicyclic.sweeps.work import Progress
+from epicyclic.results.result import versions
+from epicyclic.sweeps.runner import Progress, Runner
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -138,6 +138,8 @@ def compare_measured(
     seed: int = 0,
     confidence: float = 0.95,
     jobs: int | None = None,
+    dask: str | None = None,
+    journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> MeasuredComparison:
     """Compare measured losses with those of a case, and fit uncertain inputs if asked to.
@@ -163,8 +165,10 @@ def compare_measured(
     seed : int, optional
     confidence : float, optional
         Of the intervals of fitted values. [1]
-    jobs, progress
+    jobs, dask, progress
         As for `sweep`; the progress starts again with every round of a fit.
+    journal : str or Path, optional
+        Folder that keeps finished points, those of each round in a file.
 
     Returns
     -------
@@ -179,6 +183,7 @@ def compare_measured(
     """
     import pandas as pd
 
+    runner = Runner(jobs, dask, journal=journal, progress=progress)
     grid = read_frame(measured) if isinstance(measured, pd.DataFrame) else read_grid(Path(measured))
     table = parse_measurements(grid, case, component)
     keys = tuple(dict.fromkeys(fit))
@@ -186,7 +191,7 @@ def compare_measured(
     _check_options(table, keys, group, hold_out, confidence)
     parameters = make_parameters(case, keys, varied)
     held_out = _held_out(table, hold_out, seed)
-    points = MeasuredPoints(case, table, jobs, progress)
+    points = MeasuredPoints(case, table, runner)
     (given,) = points.compute({})
     _check_any(given)
     found = calibrated = None

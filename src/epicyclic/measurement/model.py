@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,11 +11,9 @@ from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
 from epicyclic.measurement.table import Measurements
-from epicyclic.status import Status
-from epicyclic.sweeps.journal import Row
+from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.plan import PointList
-from epicyclic.sweeps.run import run_plan
-from epicyclic.sweeps.work import Progress
+from epicyclic.sweeps.runner import HERE, Runner
 
 __all__ = ["Computed", "MeasuredPoints"]
 
@@ -52,37 +49,29 @@ class MeasuredPoints:
     ----------
     case : PlanetaryCase or GearPairCase
     measured : Measurements
-    jobs : int or None
-        Worker processes, as for `sweep`.
-    progress : callable or None
-        Called with the number of finished points and of all points.
+    runner : Runner
+        With a folder as its journal; its progress starts again with every round.
     """
 
     case: Case
     measured: Measurements
-    jobs: int | None = None
-    progress: Progress | None = None
+    runner: Runner = HERE
 
     def compute(self, *settings: Mapping[str, Any]) -> list[Computed]:
         """The losses for each of several `settings` of keys, all of them in one go."""
         changes = self.measured.changes
         points = tuple({**_EXACT, **change, **keys} for keys in settings for change in changes)
-        rows = run_plan(PointList(self.case, points), jobs=self.jobs, progress=self.progress)
+        plan = PointList(self.case, points)
+        rows = self.runner.within(plan).run(plan)
         count = len(changes)
-        return [self._computed(rows[i : i + count]) for i in range(0, len(rows), count)]
+        return [self._computed(rows, i) for i in range(0, len(rows), count)]
 
-    def _computed(self, rows: Sequence[Row]) -> Computed:
+    def _computed(self, rows: Rows, first: int) -> Computed:
+        """The points of one of the settings, from number `first` on."""
+        component = self.measured.component
         losses = [
-            _sum(row, names) for row, names in zip(rows, self.measured.component, strict=True)
+            sum(float(rows.numbers(name.strip())[point]) for name in names.split("+"))
+            for point, names in enumerate(component, first)
         ]
-        return Computed(
-            np.array(losses),
-            tuple(row.message for row in rows),
-            tuple(row.warnings for row in rows),
-        )
-
-
-def _sum(row: Row, names: str) -> float:
-    if row.status == Status.FAILED:
-        return math.nan
-    return sum(row.numbers[name.strip()] for name in names.split("+"))
+        own = slice(first, first + len(component))
+        return Computed(np.array(losses), tuple(rows.message[own]), tuple(rows.warnings[own]))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.analysis.result import number_fields
+from epicyclic.builders.build import layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.fields import all_keys, find_field, is_array, quantity_of
 from epicyclic.case.nearest import did_you_mean, misspelt
@@ -20,6 +20,7 @@ from epicyclic.case.values import parse_value
 from epicyclic.case.wording import one_line, sentence
 from epicyclic.errors import InputError, Problem
 from epicyclic.measurement.files import Grid
+from epicyclic.results.result import number_fields
 from epicyclic.units import WATT, Quantity, format_number
 
 __all__ = ["CONDITIONS", "Measurements", "loss_names", "parse_measurements"]
@@ -77,9 +78,9 @@ class Measurements:
         return len(self.lines)
 
 
-def loss_names(kind: str) -> tuple[str, ...]:
-    """Losses of a `kind` of case that can be measured."""
-    fields = (item.key for item in number_fields(kind) if item.unit == WATT.display)
+def loss_names(case: Case) -> tuple[str, ...]:
+    """Losses of a case that can be measured."""
+    fields = (item.key for item in number_fields(layout_of(case)) if item.unit == WATT.display)
     return tuple(key for key in fields if key != "input_power")
 
 
@@ -288,7 +289,7 @@ def _uncertainty(
 def _components(
     column: _Column | None, given: str, case: Case, grid: Grid, problems: _Problems
 ) -> tuple[str, ...]:
-    names = loss_names(case.kind)
+    names = loss_names(case)
     remedy = f"Known are {', '.join(names)}; join several with +."
     if column is None:
         if not _is_sum_of(names, given):

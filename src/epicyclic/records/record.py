@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 from epicyclic.analysis.bearing_details import bearing_details
 from epicyclic.analysis.mesh_details import mesh_details
 from epicyclic.analysis.pocket_details import pocket_details
-from epicyclic.analysis.result import Result
 from epicyclic.analysis.shapes import gear_shapes, mesh_views
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.records.contents import ResultContents
+from epicyclic.results.result import Result
 
 if TYPE_CHECKING:
     import xarray as xr

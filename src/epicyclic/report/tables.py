@@ -12,9 +12,9 @@ from rich.table import Table
 from rich.text import Text
 
 from epicyclic.analysis.compare import FrictionComparison
-from epicyclic.analysis.figures import Figure, MeshFigures, figures
-from epicyclic.analysis.result import LOAD_DEPENDENT, LOAD_INDEPENDENT, LossTerm, Result
+from epicyclic.elements.figures import Figure, MeshFigures, figures
 from epicyclic.report.shown import MISSING, shown
+from epicyclic.results.result import LOAD_DEPENDENT, LOAD_INDEPENDENT, LossTerm, Result
 from epicyclic.units import DEGREE, NEWTON_METRE, RPM, unit_text
 
 __all__ = ["friction_table", "plain_table", "result_tables", "terminal"]

@@ -8,11 +8,12 @@ import math
 import platform
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import lru_cache, partial
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
-from epicyclic.analysis.figures import (
+from epicyclic.elements.base import LOAD_DEPENDENT, LOAD_INDEPENDENT
+from epicyclic.elements.figures import (
     BearingFigures,
     Figure,
     FluidFigures,
@@ -20,8 +21,6 @@ from epicyclic.analysis.figures import (
     displayed,
     figures,
 )
-from epicyclic.case.model_tables import GearPairLosses, PlanetaryLosses
-from epicyclic.kinematics import MEMBERS, PowerFlow
 from epicyclic.losses.validity import ValidityFlag, describe_flags
 from epicyclic.status import Status
 from epicyclic.units import DEGREE, NEWTON_METRE, RPM, WATT
@@ -29,12 +28,19 @@ from epicyclic.units import DEGREE, NEWTON_METRE, RPM, WATT
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = ["LossTerm", "NumberField", "Result", "number_fields", "versions"]
+__all__ = [
+    "Layout",
+    "LossTerm",
+    "MemberState",
+    "NumberField",
+    "PowerFlow",
+    "Result",
+    "Train",
+    "number_fields",
+    "versions",
+]
 
 _POWERS = ("losses", "load_dependent", "load_independent", "total", "input_power")
-
-LOAD_DEPENDENT = "load-dependent"
-LOAD_INDEPENDENT = "load-independent"
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +72,108 @@ class LossTerm:
     left_out: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class MemberState:
+    """One shaft.
+
+    Attributes
+    ----------
+    speed : float
+        [rad/s]
+    torque : float
+        From outside, losses accounted for. [N m]
+    """
+
+    speed: float
+    torque: float
+
+    @property
+    def power(self) -> float:
+        """Power that enters through this shaft. [W]"""
+        return self.torque * self.speed
+
+
+@dataclass(frozen=True, slots=True)
+class PowerFlow:
+    """Where power enters and leaves.
+
+    Speeds are positive in one common sense of rotation; a torque is the one that acts from outside,
+    so that torque times speed is the power that enters through that shaft.
+
+    Attributes
+    ----------
+    members : mapping of str to MemberState
+        The shafts; their powers sum to the loss.
+    input_power : float
+        Power that enters, at the members that would drive without losses. [W]
+    efficiency : float or None
+        Power that leaves over power that enters; 0 if the loss takes all of it; None if no power
+        is passed on. [1]
+    """
+
+    members: Mapping[str, MemberState]
+    input_power: float
+    efficiency: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """What the results of a case consist of, known before they are.
+
+    Attributes
+    ----------
+    losses, members, meshes, bearings : tuple of str
+        Keys of the loss terms, shafts, meshes of computed losses, and planet bearings.
+    shares : bool
+        True if there are planets that share a load.
+    rolling : tuple of str
+        Keys of the meshes of a train, whose rolling power is stated; empty for a single set.
+    parts : tuple
+        Keys of further elements with the type of their figures.
+    """
+
+    losses: tuple[str, ...]
+    members: tuple[str, ...]
+    meshes: tuple[str, ...]
+    bearings: tuple[str, ...] = ()
+    shares: bool = False
+    rolling: tuple[str, ...] = ()
+    parts: tuple[tuple[str, type[DataclassInstance]], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Train:
+    """What the result of a train states beside that of a single set.
+
+    Attributes
+    ----------
+    state : str
+        The state of brakes and clutches; empty if the train has none.
+    ratio : float or None
+        Speed of the input over that of the output, signed; None if the output stands still. [1]
+    power_ratio : float or None
+        Sum of the rolling powers of all meshes over the input power; None without power. [1]
+    rolling : mapping of str to float
+        Power that each mesh would pass with its carrier at rest. [W]
+    clutches : mapping of str to float
+        Torque through each closed clutch, ``"input+third"``, from its first to its second shaft.
+        [N m]
+    self_locking : bool
+        True if the output must be driven too.
+    input, output : str
+        Shafts.
+    """
+
+    state: str
+    ratio: float | None
+    power_ratio: float | None
+    rolling: Mapping[str, float]
+    clutches: Mapping[str, float]
+    self_locking: bool
+    input: str
+    output: str
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Result:
     """The losses of one case, where they arise, and how they were found.
@@ -74,13 +182,18 @@ class Result:
     ----------
     title : str
     kind : str
-        ``"planetary"`` or ``"gear_pair"``.
+        ``"planetary"``, ``"gear_pair"`` or ``"train"``.
+    layout : Layout
+        What the result consists of.
     terms : tuple of LossTerm
     flow : PowerFlow
         Speeds, torques, powers, efficiency.
     meshes : mapping of str to MeshFigures
-    bearing : BearingFigures or None
-    fluid : FluidFigures
+    bearings : mapping of str to BearingFigures
+        Of planets, by the first words of their losses.
+    parts : mapping of str to dataclass
+        Figures of further elements: bearings of shafts, seals.
+    fluid : FluidFigures or None
     models : mapping of str to str
         The models used, defaults resolved.
     flags : tuple of ValidityFlag
@@ -97,16 +210,20 @@ class Result:
         Positions of the planets; empty for a pair. [rad]
     planet_shares : tuple of float
         Share of the torque that each planet carries; their sum is 1. [1]
+    train : Train or None
+        None for a single set.
     status : Status
     """
 
     title: str
     kind: str
+    layout: Layout
     terms: tuple[LossTerm, ...]
     flow: PowerFlow
     meshes: Mapping[str, MeshFigures]
-    bearing: BearingFigures | None
-    fluid: FluidFigures
+    bearings: Mapping[str, BearingFigures]
+    parts: Mapping[str, DataclassInstance]
+    fluid: FluidFigures | None
     models: Mapping[str, str]
     flags: tuple[ValidityFlag, ...]
     notes: tuple[str, ...]
@@ -116,7 +233,13 @@ class Result:
     inputs: Mapping[str, Any]
     planet_angles: tuple[float, ...] = ()
     planet_shares: tuple[float, ...] = ()
+    train: Train | None = None
     status: Status = Status.CONVERGED
+
+    @property
+    def bearing(self) -> BearingFigures | None:
+        """The planet bearing of a single set; None if it has none."""
+        return self.bearings.get("planet_bearing")
 
     @property
     def losses(self) -> dict[str, float]:
@@ -163,7 +286,7 @@ class Result:
 
         The keys are those of every result of this kind; NaN stands where there is no such number.
         """
-        for field in number_fields(self.kind):
+        for field in number_fields(self.layout):
             value = field.read(self) + 0.0  # no -0.0
             yield Figure(field.key, field.label, value, field.unit)
 
@@ -194,16 +317,20 @@ class Result:
             },
             "models": dict(self.models),
             "validity": [dataclasses.asdict(flag) for flag in self.flags],
-            "members": {
-                name: {
-                    "speed": {"value": RPM.to_display(member.speed), "unit": "rpm"},
-                    "torque": {"value": member.torque, "unit": "N*m"},
-                    "power": {"value": member.power, "unit": "W"},
-                }
-                for name, member in self.flow.members.items()
-            },
+            "members": _members_dict(self.flow),
             "meshes": {name: _figures_dict(mesh) for name, mesh in self.meshes.items()},
-            "fluid": _figures_dict(self.fluid),
+            "fluid": None if self.fluid is None else _figures_dict(self.fluid),
+            **(self._planets() if self.train is None else self._train(self.train)),
+            "sources": list(self.sources),
+            "inputs": dict(self.inputs),
+            "versions": versions(),
+        }
+        clean: dict[str, Any] = _json_value(result)
+        return clean
+
+    def _planets(self) -> dict[str, Any]:
+        """What only a single set states."""
+        return {
             "planet_bearing": None if self.bearing is None else _figures_dict(self.bearing),
             "planet_angles": {
                 "value": [DEGREE.to_display(angle) for angle in self.planet_angles],
@@ -211,12 +338,41 @@ class Result:
             },
             "planet_shares": {"value": list(self.planet_shares), "unit": "1"},
             "mesh_load_factor": {"value": self.mesh_load_factor, "unit": "1"},
-            "sources": list(self.sources),
-            "inputs": dict(self.inputs),
-            "versions": versions(),
         }
-        clean: dict[str, Any] = _json_value(result)
-        return clean
+
+    def _train(self, train: Train) -> dict[str, Any]:
+        """What only a train states."""
+        return {
+            "state": train.state,
+            "input": train.input,
+            "output": train.output,
+            "ratio": train.ratio,
+            "power_ratio": train.power_ratio,
+            "self_locking": train.self_locking,
+            "shafts": _members_dict(self.flow),
+            "rolling_power": dict(train.rolling),
+            "clutches": dict(train.clutches),
+            "stages": self.stage_losses,
+            "kinds": self.kind_losses,
+            "bearings": {name: _figures_dict(item) for name, item in self.bearings.items()},
+            "parts": {name: _figures_dict(item) for name, item in self.parts.items()},
+        }
+
+    @property
+    def stage_losses(self) -> dict[str, float]:
+        """Losses of a train summed by set or part. [W]"""
+        return self._summed(lambda name: name.partition(".")[0])
+
+    @property
+    def kind_losses(self) -> dict[str, float]:
+        """Losses of a train summed by kind, ``"sun_mesh_sliding"``. [W]"""
+        return self._summed(lambda name: name.partition(".")[2] or name)
+
+    def _summed(self, group: Callable[[str], str]) -> dict[str, float]:
+        sums: dict[str, float] = {}
+        for term in self.terms:
+            sums[group(term.name)] = sums.get(group(term.name), 0.0) + term.watts
+        return sums
 
     def to_json(self) -> str:
         """`to_dict` as indented JSON text."""
@@ -227,6 +383,17 @@ def versions() -> dict[str, str]:
     """Versions of this package and of what its numbers depend on."""
     names = ("epicyclic", "numpy", "numba", "pint", "pydantic")
     return {"python": platform.python_version()} | {name: metadata.version(name) for name in names}
+
+
+def _members_dict(flow: PowerFlow) -> dict[str, Any]:
+    return {
+        name: {
+            "speed": {"value": RPM.to_display(member.speed), "unit": "rpm"},
+            "torque": {"value": member.torque, "unit": "N*m"},
+            "power": {"value": member.power, "unit": "W"},
+        }
+        for name, member in flow.members.items()
+    }
 
 
 def _figures_dict(source: DataclassInstance) -> dict[str, Any]:
@@ -265,38 +432,11 @@ class NumberField:
     read: Callable[[Result], float]
 
 
-@dataclass(frozen=True, slots=True)
-class _Layout:
-    """What the results of one kind consist of."""
-
-    losses: type[PlanetaryLosses] | type[GearPairLosses]
-    members: tuple[str, ...]
-    meshes: tuple[str, ...]
-    bearings: tuple[str, ...] = ()
-    more: tuple[NumberField, ...] = ()
-
-
-_LAYOUTS = {
-    "planetary": _Layout(
-        PlanetaryLosses,
-        MEMBERS,
-        ("sun_mesh", "ring_mesh"),
-        ("planet_bearing",),
-        (NumberField("mesh_load_factor", "mesh load factor", "1", lambda it: it.mesh_load_factor),),
-    ),
-    "gear_pair": _Layout(GearPairLosses, ("pinion", "gear"), ("mesh",)),
-}
-
-
-@cache
-def number_fields(kind: str) -> tuple[NumberField, ...]:
-    """The numbers that every result of `kind` has, ``"planetary"`` or ``"gear_pair"``."""
-    layout = _LAYOUTS[kind]
+@lru_cache(maxsize=16)
+def number_fields(layout: Layout) -> tuple[NumberField, ...]:
+    """The numbers that every result of a layout has."""
     watt = WATT.display
-    fields = [
-        NumberField(name, name.replace("_", " "), watt, partial(_loss, name))
-        for name in layout.losses.model_fields
-    ]
+    fields = [NumberField(name, _words(name), watt, partial(_loss, name)) for name in layout.losses]
     fields += [
         NumberField("load_dependent", "load-dependent loss", watt, lambda it: it.load_dependent),
         NumberField(
@@ -304,9 +444,14 @@ def number_fields(kind: str) -> tuple[NumberField, ...]:
         ),
         NumberField("total", "total loss", watt, lambda it: it.total),
         NumberField("input_power", "input power", watt, lambda it: it.input_power),
-        NumberField("efficiency", "efficiency", "1", _efficiency),
+        NumberField("efficiency", "efficiency", "1", lambda it: _or_nan(it.efficiency)),
     ]
-    fields += layout.more
+    if layout.shares:
+        fields.append(
+            NumberField("mesh_load_factor", "mesh load factor", "1", lambda it: it.mesh_load_factor)
+        )
+    if layout.rolling:
+        fields += _train_fields(layout)
     for name in layout.members:
         fields += [
             NumberField(
@@ -323,8 +468,28 @@ def number_fields(kind: str) -> tuple[NumberField, ...]:
     for name in layout.meshes:
         fields += _part_fields(name, MeshFigures, partial(_mesh, name))
     for name in layout.bearings:
-        fields += _part_fields(name, BearingFigures, lambda it: it.bearing)
+        fields += _part_fields(name, BearingFigures, partial(_bearing, name))
+    for name, kind in layout.parts:
+        fields += _part_fields(name, kind, partial(_part, name))
     return tuple(fields)
+
+
+def _train_fields(layout: Layout) -> Iterator[NumberField]:
+    yield NumberField("ratio", "speed of the input over that of the output", "1", _ratio)
+    yield NumberField(
+        "power_ratio", "sum of the rolling powers over the input power", "1", _power_ratio
+    )
+    for name in layout.rolling:
+        yield NumberField(
+            f"{name}_rolling_power",
+            f"{_words(name)}: rolling power",
+            WATT.display,
+            partial(_rolling, name),
+        )
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ").replace(".", ": ")
 
 
 def _part_fields(
@@ -355,8 +520,20 @@ def _loss(name: str, result: Result) -> float:
     return result.losses[name]
 
 
-def _efficiency(result: Result) -> float:
-    return math.nan if result.efficiency is None else result.efficiency
+def _or_nan(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def _ratio(result: Result) -> float:
+    return math.nan if result.train is None else _or_nan(result.train.ratio)
+
+
+def _power_ratio(result: Result) -> float:
+    return math.nan if result.train is None else _or_nan(result.train.power_ratio)
+
+
+def _rolling(name: str, result: Result) -> float:
+    return math.nan if result.train is None else result.train.rolling.get(name, math.nan)
 
 
 def _speed(name: str, result: Result) -> float:
@@ -367,5 +544,13 @@ def _torque(name: str, result: Result) -> float:
     return result.flow.members[name].torque
 
 
-def _mesh(name: str, result: Result) -> MeshFigures:
-    return result.meshes[name]
+def _mesh(name: str, result: Result) -> MeshFigures | None:
+    return result.meshes.get(name)
+
+
+def _bearing(name: str, result: Result) -> BearingFigures | None:
+    return result.bearings.get(name)
+
+
+def _part(name: str, result: Result) -> DataclassInstance | None:
+    return result.parts.get(name)

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from epicyclic.analysis.result import number_fields, versions
+from epicyclic.builders.build import layout_of
 from epicyclic.errors import InputError, Problem
-from epicyclic.sweeps.journal import Row
-from epicyclic.sweeps.plan import Plan
+from epicyclic.results.result import number_fields, versions
+from epicyclic.sweeps.journal import Rows
+from epicyclic.sweeps.plan import SweepPlan
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,9 +33,10 @@ __all__ = [
 ]
 
 FORMATS = (".nc", ".csv", ".parquet")
+_INTERPOLATION_ERROR = "pocket_interpolation_error"
 
 
-def to_dataset(plan: Plan, rows: Sequence[Row]) -> xr.Dataset:
+def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
     """The rows of all points of `plan` over its axes."""
     import xarray as xr
 
@@ -47,15 +48,15 @@ def to_dataset(plan: Plan, rows: Sequence[Row]) -> xr.Dataset:
     variables = {
         item.key: (
             dims,
-            np.array([row.numbers.get(item.key, math.nan) for row in rows]).reshape(plan.shape),
+            rows.numbers(item.key).reshape(plan.shape),
             _about(item.label, item.unit),
         )
-        for item in number_fields(plan.case.kind)
+        for item in number_fields(layout_of(plan.case))
     }
     texts = {
-        "status": ("how the point ended", [row.status for row in rows]),
-        "message": ("why the point failed", [row.message for row in rows]),
-        "warnings": ("warnings of the point", [row.warnings for row in rows]),
+        "status": ("how the point ended", rows.status),
+        "message": ("why the point failed", rows.message),
+        "warnings": ("warnings of the point", rows.warnings),
     }
     for key, (label, values) in texts.items():
         column = np.array(values, dtype=object).reshape(plan.shape)
@@ -68,7 +69,7 @@ def _about(label: str, unit: str) -> dict[str, str]:
     return {"long_name": label} | ({"units": unit} if unit else {})
 
 
-def _attributes(plan: Plan, rows: Sequence[Row]) -> dict[str, str]:
+def _attributes(plan: SweepPlan, rows: Rows) -> dict[str, str]:
     used = versions()
     return {
         "title": plan.case.title,
@@ -81,19 +82,14 @@ def _attributes(plan: Plan, rows: Sequence[Row]) -> dict[str, str]:
     }
 
 
-def _about_pocketing(rows: Sequence[Row]) -> str:
+def _about_pocketing(rows: Rows) -> str:
     """Whether the pocketing losses of some points were interpolated, and how well."""
-    errors = [
-        value
-        for row in rows
-        for key, value in row.numbers.items()
-        if key.endswith("pocket_interpolation_error") and not math.isnan(value)
-    ]
-    if not errors:
+    errors = [rows.numbers(name) for name in rows.names if name.endswith(_INTERPOLATION_ERROR)]
+    if np.isnan(errors).all():
         return "flow solved at every point"
     return (
         "flow interpolated over speed * sqrt(density / ambient pressure); largest error of the "
-        f"loss, measured at flows left out: {max(errors):.2%}"
+        f"loss, measured at flows left out: {np.nanmax(errors):.2%}"
     )
 
 

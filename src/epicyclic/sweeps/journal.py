@@ -1,30 +1,42 @@
-"""The journal of an unfinished sweep: one line for each finished point, written as it finishes.
+"""The journal of an unfinished study: one line for each finished point, written as it finishes.
 
-A sweep that is interrupted leaves its journal behind, and the same sweep goes on from there. Every
-line names the sweep it belongs to, and nothing is ever overwritten: a file that holds anything else
-is refused. Lines that cannot be read, such as one cut short, are computed again.
+A study that is interrupted leaves its journal behind, and the same study goes on from there. Every
+line names the study it belongs to, one of them says what it is, and nothing is ever overwritten: a
+file that holds anything else is refused. Lines that cannot be read, such as one cut short, are
+computed again. The file of a shard is the journal of its points.
 """
 
 from __future__ import annotations
 
+import json
+import sys
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from epicyclic.errors import InputError, Problem
+from epicyclic.status import Status
 
-__all__ = ["Journal", "Row"]
+__all__ = ["NOT_COMPUTED", "Journal", "Row", "Rows", "read_heading"]
 
-_LONGEST_LINE = 1_000_000
-"""A point takes some kilobytes; longer lines are something else. [bytes]"""
-_MOST_STRANGE_LINES = 100
-"""A file that begins with more lines which are no points of the sweep is something else."""
+NOT_COMPUTED = "not computed"
+"""Status of the points of other shards."""
+
+_LONGEST_LINE = 50_000_000
+"""A point takes some kilobytes, what a study is at most all values of a million points. [bytes]"""
+_MOST_STRANGE_LINES, _LONG = 100, 500_000
+"""A file that begins with more lines which are no points of the study is something else; one of
+more bytes counts as several."""
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One finished point of a sweep.
+    """One finished point of a study.
 
     Attributes
     ----------
@@ -40,6 +52,49 @@ class Row:
     numbers: dict[str, float] = field(default_factory=dict)
 
 
+class Rows:
+    """All points of a study, by number: columns, which take a tenth of the memory of rows.
+
+    Attributes
+    ----------
+    status, message, warnings : list of str
+        As of a `Row`; `NOT_COMPUTED` until it is there.
+    """
+
+    def __init__(self, size: int) -> None:
+        self.status = [NOT_COMPUTED] * size
+        self.message = [""] * size
+        self.warnings = [""] * size
+        self._numbers: dict[str, NDArray[np.float64]] = {}
+
+    def __len__(self) -> int:
+        return len(self.status)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the numbers that any point has."""
+        return tuple(self._numbers)
+
+    @property
+    def failures(self) -> list[str]:
+        """Why points failed, one text for each."""
+        pairs = zip(self.status, self.message, strict=True)
+        return [message for status, message in pairs if status == Status.FAILED]
+
+    def add(self, point: int, row: Row) -> None:
+        self.status[point] = sys.intern(row.status)
+        self.message[point] = sys.intern(row.message)
+        self.warnings[point] = sys.intern(row.warnings)  # neighbours often have the same
+        for name, value in row.numbers.items():
+            if name not in self._numbers:
+                self._numbers[name] = np.full(len(self), np.nan)
+            self._numbers[name][point] = value
+
+    def numbers(self, name: str) -> NDArray[np.float64]:
+        """One number of all points; NaN where there is none."""
+        return self._numbers.get(name, np.full(len(self), np.nan))
+
+
 @dataclass(frozen=True, slots=True)
 class _Record:
     __pydantic_config__ = ConfigDict(ser_json_inf_nan="constants")
@@ -49,7 +104,13 @@ class _Record:
     row: Row
 
 
-_RECORD = TypeAdapter(_Record)
+@dataclass(frozen=True, slots=True)
+class _Heading:
+    sweep: str
+    study: dict[str, Any]
+
+
+_RECORD, _HEADING = TypeAdapter(_Record), TypeAdapter(_Heading)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,26 +133,42 @@ class Journal:
         Raises
         ------
         InputError
-            If the file cannot be read or holds something else than points of this sweep.
+            If the file cannot be read or holds something else than points of this study.
         """
-        rows: dict[int, Row] = {}
-        strange = 0
+        return dict(self.points())
+
+    def points(self) -> Iterator[tuple[int, Row]]:
+        """The same one by one, so that they need not all be held."""
+        own = strange = 0
         try:
             with self.path.open("rb") as file:
                 while line := file.readline(_LONGEST_LINE):
                     record = _parse(line.rstrip(b"\n"))
                     if record is not None and record.sweep == self.fingerprint:
-                        rows[record.point] = record.row
-                    strange += not self._may_be_cut_short(line.rstrip(b"\n"))
-                    if not rows and strange > _MOST_STRANGE_LINES:
+                        own += 1
+                        yield record.point, record.row
+                    if not self._may_be_cut_short(line.rstrip(b"\n")):
+                        strange += 1 + len(line) // _LONG
+                    if not own and strange > _MOST_STRANGE_LINES:
                         break
         except FileNotFoundError:
-            return {}
+            return
         except OSError as error:
             raise self._error(f"cannot be read: {error.strerror}.") from None
-        if not rows and strange:
+        if not own and strange:
             raise self._error("holds something else than points of this sweep.")
-        return rows
+
+    def begin(self, content: Mapping[str, Any]) -> None:
+        """Say in the file what the study is, unless it does."""
+        heading = {"sweep": self.fingerprint, "study": content}
+        line = json.dumps(heading, separators=(",", ":")).encode()
+        try:
+            with self.path.open("rb") as file:
+                there = any(file.readline(_LONGEST_LINE).strip() == line for _ in range(2))
+        except FileNotFoundError:
+            there = False
+        if not there:
+            self._write(line)
 
     def append(self, point: int, row: Row) -> None:
         """Add a finished point; it outlives this process when this returns.
@@ -101,8 +178,14 @@ class Journal:
         InputError
             If it cannot be written; what was written before stays.
         """
-        # first the end of a line that may have been cut short
-        line = b"\n" + _RECORD.dump_json(_Record(self.fingerprint, point, row))
+        self._write(_RECORD.dump_json(_Record(self.fingerprint, point, row)))
+
+    def remove(self) -> None:
+        """Delete the journal of a finished study."""
+        self.path.unlink(missing_ok=True)
+
+    def _write(self, line: bytes) -> None:
+        line = b"\n" + line  # first the end of a line that may have been cut short
         try:
             with self.path.open("ab", buffering=0) as file:  # one write: workers share the file
                 whole = file.write(line) == len(line)
@@ -118,18 +201,32 @@ class Journal:
             )
             raise InputError([problem], "the sweep")
 
-    def remove(self) -> None:
-        """Delete the journal of a finished sweep."""
-        self.path.unlink(missing_ok=True)
-
     def _may_be_cut_short(self, line: bytes) -> bool:
-        """True for the start of a line of this sweep."""
+        """True for the start of a line of this study."""
         mark = b'{"sweep":"%s"' % self.fingerprint.encode()
         return line.startswith(mark) or mark.startswith(line)
 
     def _error(self, allowed: str) -> InputError:
-        remedy = "Move it away or delete it, and give the command again."
-        return InputError([Problem("journal", str(self.path), allowed, remedy)], "the sweep")
+        return _error(self.path, allowed)
+
+
+def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
+    """Fingerprint and content of the study of which a file holds points.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or does not say of which study it is.
+    """
+    try:
+        with path.open("rb") as file:
+            for _ in range(_MOST_STRANGE_LINES):
+                heading = _parse_heading(file.readline(_LONGEST_LINE))
+                if heading is not None:
+                    return heading.sweep, heading.study
+    except OSError as error:
+        raise _error(path, f"cannot be read: {error.strerror}.") from None
+    raise _error(path, "does not say of which study it holds points.")
 
 
 def _parse(line: bytes) -> _Record | None:
@@ -137,3 +234,15 @@ def _parse(line: bytes) -> _Record | None:
         return _RECORD.validate_json(line)
     except ValidationError:
         return None
+
+
+def _parse_heading(line: bytes) -> _Heading | None:
+    try:
+        return _HEADING.validate_json(line)
+    except ValidationError:
+        return None
+
+
+def _error(path: Path, allowed: str) -> InputError:
+    remedy = "Move it away or delete it, and give the command again."
+    return InputError([Problem("journal", str(path), allowed, remedy)], "the sweep")

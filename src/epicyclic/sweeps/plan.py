@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import math
 import re
+from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from importlib import metadata
+from dataclasses import asdict, dataclass, field, replace
 from numbers import Integral, Real
-from typing import Any, Protocol
+from pathlib import Path
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from pydantic_core import PydanticCustomError
 
-from epicyclic.case.case import Case
+from epicyclic.analysis.solve import solve
+from epicyclic.case.case import Case, build_case
 from epicyclic.case.fields import (
     all_keys,
     find_field,
@@ -26,12 +27,17 @@ from epicyclic.case.fields import (
     table_of,
 )
 from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.plain import plain
 from epicyclic.case.values import parse_value
 from epicyclic.case.wording import sentence, written
 from epicyclic.errors import InputError, Problem
+from epicyclic.pocketing.table import FlowTables
+from epicyclic.sweeps.journal import Row
+from epicyclic.sweeps.pockets import flow_tables
+from epicyclic.sweeps.runner import Plan, guarded
 from epicyclic.units import Quantity, format_number
 
-__all__ = ["Axis", "Plan", "PointList", "Points", "make_plan", "parse_vary"]
+__all__ = ["Axis", "CasePlan", "PointList", "SweepPlan", "make_plan", "parse_vary"]
 
 _RANGE = re.compile(
     r"\s*(?P<start>[^:,]+?)\s*:\s*(?P<stop>[^:,]+?)\s*:\s*(?P<count>\d+)\s*(?P<unit>[^:,\d][^:,]*)?"
@@ -52,24 +58,6 @@ _OPERATING_TABLES = (
     "contact_solver",
     "losses",
 )
-
-
-class Points(Protocol):
-    """Cases to be solved: one case, and what each point changes in it."""
-
-    @property
-    def case(self) -> Case:
-        """The case that is changed."""
-
-    @property
-    def size(self) -> int:
-        """Number of points."""
-
-    def changes(self, index: int) -> dict[str, Any]:
-        """The keys that point number `index` changes."""
-
-    def order(self) -> list[int]:
-        """Indices of all points, those that share geometry next to each other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,11 +83,71 @@ class Axis:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
-    """A sweep: a case and its axes."""
+class CasePlan(Plan):
+    """Cases to be solved: one case, and what each point changes in it.
+
+    Attributes
+    ----------
+    case : Case
+    flow_tables : mapping
+        Of flows through pockets that points share, see `prepared`.
+    """
 
     case: Case
-    axes: tuple[Axis, ...]
+    flow_tables: FlowTables = field(default_factory=dict, kw_only=True, repr=False)
+
+    @property
+    def source(self) -> str:
+        """The file of the case."""
+        return str(Path(self.case.source).absolute())
+
+    @abstractmethod
+    def changes(self, index: int) -> dict[str, Any]:
+        """The keys that point number `index` changes."""
+
+    def solve(self, index: int) -> Row:
+        """One case as a flat record."""
+        return guarded(lambda: self._solve(index))
+
+    def prepared(self, indices: Sequence[int], jobs: int | None) -> Self:
+        """With the tables of flows that the points `indices` read."""
+        return replace(self, flow_tables=flow_tables(self, indices, jobs))
+
+    def describe(self) -> dict[str, Any]:
+        """The case, and what is in the files that it names: it may change, their names do not."""
+        models = self.case.models
+        named = [file for file in (models.oil_model, models.pocketing_table) if file is not None]
+        contents = [(self.case.folder / file).read_bytes() for file in named]
+        return {
+            "case": self.case.given(),
+            "files": [hashlib.sha256(content).hexdigest() for content in contents],
+        }
+
+    def _solve(self, index: int) -> Row:
+        case = self.case.updated(self.changes(index))
+        result = solve(case, flow_tables=self.flow_tables)
+        return Row(
+            status=str(result.status),
+            warnings=" | ".join(result.warnings),
+            numbers={item.key: item.value for item in result.numbers()},
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class SweepPlan(CasePlan):
+    """A sweep: a case and its axes."""
+
+    kind: ClassVar[str] = "sweep"
+    axes: tuple[Axis, ...] = ()
+
+    @classmethod
+    def again(cls, content: Mapping[str, Any], source: str) -> Self:
+        """The plan that `describe` described."""
+        axes = [
+            Axis(axis["key"], tuple(axis["values"]), tuple(axis["coordinate"]), axis["unit"])
+            for axis in content["axes"]
+        ]
+        return cls(build_case(content["case"], {}, source), tuple(axes))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -123,31 +171,17 @@ class Plan:
         numbers = np.arange(self.size).reshape(self.shape)
         return [int(index) for index in numbers.transpose(by_cost).ravel()]
 
-    def fingerprint(self) -> str:
-        """Follows the case, the axes and the version: results of equal ones are equal."""
-        content = {
-            "case": self.case.inputs(),
-            "axes": [[axis.key, axis.coordinate] for axis in self.axes],
-            "version": metadata.version("epicyclic"),
-            "files": self._files(),
-        }
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
-
-    def _files(self) -> list[str]:
-        """Content of the files that the case names, which may change while their names do not."""
-        models = self.case.models
-        named = [file for file in (models.oil_model, models.pocketing_table) if file is not None]
-        return [
-            hashlib.sha256((self.case.folder / file).read_bytes()).hexdigest() for file in named
-        ]
+    def describe(self) -> dict[str, Any]:
+        """The case and the axes."""
+        return {**CasePlan.describe(self), "axes": [asdict(axis) for axis in self.axes]}
 
 
 @dataclass(frozen=True, slots=True)
-class PointList:
+class PointList(CasePlan):
     """Single points: a case and the keys that each point changes."""
 
-    case: Case
-    points: tuple[Mapping[str, Any], ...]
+    kind: ClassVar[str] = "points"
+    points: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def size(self) -> int:
@@ -162,6 +196,10 @@ class PointList:
         """Indices of all points, by geometry, then operation, then torque, as in a loss map."""
         return sorted(range(self.size), key=self._place)
 
+    def describe(self) -> dict[str, Any]:
+        """The case and the points."""
+        return {**CasePlan.describe(self), "points": plain(self.points)}
+
     def _place(self, index: int) -> tuple[list[str], list[str], str]:
         torque = "operation.torque"
         changes = {key: str(value) for key, value in sorted(self.points[index].items())}
@@ -173,7 +211,7 @@ class PointList:
         )
 
 
-def make_plan(case: Case, vary: Mapping[str, Iterable[Any]]) -> Plan:
+def make_plan(case: Case, vary: Mapping[str, Iterable[Any]]) -> SweepPlan:
     """Check what is to be varied.
 
     Parameters
@@ -201,7 +239,7 @@ def make_plan(case: Case, vary: Mapping[str, Iterable[Any]]) -> Plan:
         problems.append(_too_many("vary", size))
     if problems:
         raise InputError(problems, "the sweep")
-    return Plan(case, tuple(axes))
+    return SweepPlan(case, tuple(axes))
 
 
 def _listed(values: Any) -> list[Any]:
@@ -252,7 +290,7 @@ def _make_axis(case: Case, key: str, values: list[Any]) -> tuple[Axis | None, li
         unit = ""
     else:
         unit = "1" if quantity is None else quantity.display
-    return Axis(key, tuple(values), tuple(coordinate), unit), []
+    return Axis(key, tuple(map(plain, values)), tuple(coordinate), unit), []
 
 
 def _one_for_alike(problems: Sequence[Problem]) -> list[Problem]:

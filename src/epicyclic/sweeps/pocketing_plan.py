@@ -2,29 +2,37 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
+from pathlib import Path
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.analysis.parts import MeshDuty
 from epicyclic.analysis.pocket_details import mesh_duties
-from epicyclic.analysis.pocket_variants import PocketVariant, base_variant, teeth_for_module
-from epicyclic.analysis.result import versions
-from epicyclic.case.case import Case
+from epicyclic.analysis.pocket_variants import (
+    PocketVariant,
+    base_variant,
+    solve_variant,
+    teeth_for_module,
+)
+from epicyclic.case.case import Case, build_case
 from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.plain import plain
 from epicyclic.case.wording import sentence, written
+from epicyclic.elements.gear_mesh import MeshDuty
 from epicyclic.errors import InputError, Problem
-from epicyclic.units import NUMBER, Quantity
+from epicyclic.pocketing.fluid import PocketFlow
+from epicyclic.status import Status
+from epicyclic.sweeps.journal import Row
+from epicyclic.sweeps.runner import Plan, guarded
+from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT, Quantity
 
-__all__ = ["PARAMETERS", "STUDIES", "StudyAxis", "StudyPlan", "make_study"]
+__all__ = ["NUMBERS", "PARAMETERS", "STUDIES", "StudyAxis", "StudyPlan", "make_study"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +101,24 @@ LEVELS = ("speed", "helix-angle", "face-width")
 """Parameters that have curves or panels."""
 
 
+NUMBERS: dict[str, tuple[str, Quantity, Callable[[PocketFlow], float]]] = {
+    "pocketing_loss": ("pocketing loss of one mesh", WATT, lambda flow: flow.power),
+    "power_difference": ("energy balance over work, less 1", NUMBER, lambda flow: flow.difference),
+    "pressure_max": (
+        "highest pressure above ambient",
+        BAR,
+        lambda flow: float(flow.pressure.max()),
+    ),
+    "pressure_min": ("lowest pressure above ambient", BAR, lambda flow: float(flow.pressure.min())),
+    "speed_max": (
+        "fastest flow through any opening",
+        METRE_PER_SECOND,
+        lambda flow: flow.speed_max,
+    ),
+}
+"""What is kept of the flow of a point: label, unit, and how to read it."""
+
+
 @dataclass(frozen=True, slots=True)
 class StudyAxis:
     """Values of one parameter, in SI and as `PocketVariant` has them."""
@@ -113,7 +139,7 @@ class StudyAxis:
 
 
 @dataclass(frozen=True, slots=True)
-class StudyPlan:
+class StudyPlan(Plan):
     """All points of some studies of one mesh, each point once.
 
     Attributes
@@ -123,26 +149,49 @@ class StudyPlan:
     axes : dict of str to tuple of StudyAxis
         By study: panels, curves, and last the parameter itself.
     points : tuple of PocketVariant
+    given : dict
+        What was asked for, as `make_study` takes it.
     """
 
+    kind: ClassVar[str] = "study"
     case: Case
     duty: MeshDuty
     axes: dict[str, tuple[StudyAxis, ...]]
     points: tuple[PocketVariant, ...]
+    given: dict[str, Any]
 
-    def order(self) -> Sequence[int]:
+    @classmethod
+    def again(cls, content: Mapping[str, Any], source: str) -> StudyPlan:
+        """The plan that `describe` described."""
+        return make_study(build_case(content["case"], {}, source), **content["given"])
+
+    @property
+    def source(self) -> str:
+        """The file of the case."""
+        return str(Path(self.case.source).absolute())
+
+    @property
+    def size(self) -> int:
+        """Number of points."""
+        return len(self.points)
+
+    def order(self) -> list[int]:
         """Those of the same geometry next to each other."""
-        return sorted(range(len(self.points)), key=lambda index: _geometry(self.points[index]))
+        return sorted(range(self.size), key=lambda index: _geometry(self.points[index]))
 
-    def fingerprint(self) -> str:
-        """Follows the case, the points and the version."""
-        content = {
-            "case": self.case.inputs(),
-            "mesh": self.duty.key,
-            "points": [asdict(point) for point in self.points],
-            "versions": versions(),
-        }
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
+    def describe(self) -> dict[str, Any]:
+        """The case, and what was asked for."""
+        return {"case": self.case.given(), "given": self.given}
+
+    def solve(self, index: int) -> Row:
+        """One point as a flat record."""
+        return guarded(lambda: self._solve(index))
+
+    def _solve(self, index: int) -> Row:
+        flow = solve_variant(self.case, self.duty, self.points[index])
+        warning = "" if flow.periodic else "the flow does not repeat; the loss is a mean"
+        numbers = {name: value(flow) for name, (_, _, value) in NUMBERS.items()}
+        return Row(str(Status.CONVERGED), warnings=warning, numbers=numbers)
 
     def variants(self, name: str) -> Iterator[PocketVariant]:
         """All points of study `name`, its last axis fastest."""
@@ -158,8 +207,11 @@ def make_study(
     levels: Mapping[str, Iterable[Any]],
 ) -> StudyPlan:
     """Check what is to be studied. Parameters as for `pocketing_study`."""
-    duty = _duty(case, mesh)
     names = list(dict.fromkeys(what))
+    ranges = {name: tuple(values) for name, values in ranges.items()}
+    levels = {name: tuple(values) for name, values in levels.items()}
+    given = plain({"what": names, "mesh": mesh, "ranges": ranges, "levels": levels})
+    duty = _duty(case, mesh)
     given_ranges, range_problems = _parsed("range", ranges, names)
     given_levels, level_problems = _parsed("level", levels, list(LEVELS))
     problems = [*_unknown_studies(names), *range_problems, *level_problems]
@@ -176,7 +228,7 @@ def make_study(
         order = (*study.panels, study.curves, name)
         axes[name] = tuple(_axis(duty, parameter, values[parameter]) for parameter in order)
     points = dict.fromkeys(point for name in names for point in _variants(base, axes[name]))
-    return StudyPlan(case, duty, axes, tuple(points))
+    return StudyPlan(case, duty, axes, tuple(points), given)
 
 
 def _unknown_studies(names: Sequence[str]) -> list[Problem]:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,42 +11,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.analysis.datasets import variable
-from epicyclic.analysis.pocket_variants import solve_variant
-from epicyclic.analysis.result import versions
 from epicyclic.case.case import Case, PlanetaryCase
-from epicyclic.pocketing.fluid import PocketFlow
-from epicyclic.status import Status
-from epicyclic.sweeps.journal import Journal, Row
+from epicyclic.results.result import versions
+from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.pocketing_plan import (
+    NUMBERS,
     PARAMETERS,
     STUDIES,
     StudyAxis,
     StudyPlan,
     make_study,
 )
-from epicyclic.sweeps.work import Progress, guarded, run_work
-from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT, Quantity
+from epicyclic.sweeps.runner import Progress, Runner
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["pocketing_study", "run_study", "study_datasets"]
-
-_NUMBERS: dict[str, tuple[str, Quantity, Callable[[PocketFlow], float]]] = {
-    "pocketing_loss": ("pocketing loss of one mesh", WATT, lambda flow: flow.power),
-    "power_difference": ("energy balance over work, less 1", NUMBER, lambda flow: flow.difference),
-    "pressure_max": (
-        "highest pressure above ambient",
-        BAR,
-        lambda flow: float(flow.pressure.max()),
-    ),
-    "pressure_min": ("lowest pressure above ambient", BAR, lambda flow: float(flow.pressure.min())),
-    "speed_max": (
-        "fastest flow through any opening",
-        METRE_PER_SECOND,
-        lambda flow: flow.speed_max,
-    ),
-}
+__all__ = ["pocketing_study", "study_datasets"]
 
 
 def pocketing_study(
@@ -59,6 +38,8 @@ def pocketing_study(
     ranges: Mapping[str, Iterable[Any]] | None = None,
     levels: Mapping[str, Iterable[Any]] | None = None,
     jobs: int | None = None,
+    dask: str | None = None,
+    shard: tuple[int, int] | None = None,
     journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> dict[str, xr.Dataset]:
@@ -77,12 +58,8 @@ def pocketing_study(
         is a number. A module becomes the nearest one with whole teeth.
     levels : mapping, optional
         Parameters to the values that have curves and panels of their own in the other studies.
-    jobs : int, optional
-        Worker processes. Default: one for each core if the work is worth it, else none.
-    journal : str or Path, optional
-        File that keeps finished points.
-    progress : callable, optional
-        Called with the number of finished points and of all points.
+    jobs, dask, shard, journal, progress
+        As for `sweep`.
 
     Returns
     -------
@@ -95,59 +72,21 @@ def pocketing_study(
     InputError
         If a study, mesh or value cannot be, or the journal is that of another study.
     """
+    runner = Runner(jobs, dask, shard, journal, progress)
     plan = make_study(case, what, mesh=mesh, ranges=ranges or {}, levels=levels or {})
-    kept = None if journal is None else Journal(Path(journal).absolute(), plan.fingerprint())
-    return study_datasets(plan, run_study(plan, jobs=jobs, journal=kept, progress=progress))
+    return study_datasets(plan, runner.run(plan))
 
 
-@dataclass(frozen=True, slots=True)
-class _Variants:
-    """The points of a plan as work."""
-
-    plan: StudyPlan
-
-    def order(self) -> Sequence[int]:
-        """Those of the same geometry next to each other."""
-        return self.plan.order()
-
-    def solve(self, index: int) -> Row:
-        """One point as a flat record."""
-        return guarded(lambda: _solve_point(self.plan, index))
-
-
-def _solve_point(plan: StudyPlan, index: int) -> Row:
-    flow = solve_variant(plan.case, plan.duty, plan.points[index])
-    warning = "" if flow.periodic else "the flow does not repeat; the loss is a mean"
-    numbers = {name: value(flow) for name, (_, _, value) in _NUMBERS.items()}
-    return Row(str(Status.CONVERGED), warnings=warning, numbers=numbers)
-
-
-def run_study(
-    plan: StudyPlan,
-    *,
-    jobs: int | None = None,
-    journal: Journal | None = None,
-    progress: Progress | None = None,
-) -> list[Row]:
-    """Rows of all points of `plan`, in their order. Parameters as for `pocketing_study`."""
-    rows: dict[int, Row] = {}
-    for finished in run_work(_Variants(plan), jobs=jobs, journal=journal):
-        rows.update(finished)
-        if progress is not None:
-            progress(len(rows), len(plan.points))
-    return [rows[index] for index in range(len(plan.points))]
-
-
-def study_datasets(plan: StudyPlan, rows: Sequence[Row]) -> dict[str, xr.Dataset]:
+def study_datasets(plan: StudyPlan, rows: Rows) -> dict[str, xr.Dataset]:
     """The rows of all points over the axes of each study."""
-    found = dict(zip(plan.points, rows, strict=True))
+    place = {point: index for index, point in enumerate(plan.points)}
     return {
-        name: _dataset(plan, name, [found[point] for point in plan.variants(name)])
+        name: _dataset(plan, name, rows, [place[point] for point in plan.variants(name)])
         for name in plan.axes
     }
 
 
-def _dataset(plan: StudyPlan, name: str, rows: Sequence[Row]) -> xr.Dataset:
+def _dataset(plan: StudyPlan, name: str, rows: Rows, own: list[int]) -> xr.Dataset:
     import xarray as xr
 
     axes = plan.axes[name]
@@ -157,15 +96,15 @@ def _dataset(plan: StudyPlan, name: str, rows: Sequence[Row]) -> xr.Dataset:
     if "speed" in coordinates:
         coordinates["speed"][-1]["long_name"] = f"speed of the {_member(plan)}"
     variables: dict[str, Any] = {}
-    for key, (label, quantity, _) in _NUMBERS.items():
-        values = np.array([row.numbers.get(key, math.nan) for row in rows]).reshape(shape)
+    for key, (label, quantity, _) in NUMBERS.items():
+        values = rows.numbers(key)[own].reshape(shape)
         variables[key] = variable(dims, values, label, quantity)
     for key, label in (
         ("status", "how the point ended"),
         ("message", "why the point failed"),
         ("warnings", "warnings of the point"),
     ):
-        texts = np.array([getattr(row, key) for row in rows], dtype=object).reshape(shape)
+        texts = np.array(getattr(rows, key), dtype=object)[own].reshape(shape)
         variables[key] = (dims, texts, {"long_name": label})
     dataset = xr.Dataset(variables, coordinates, _attributes(plan, name))
     if name == "speed" and dataset.sizes["speed"] > 1:

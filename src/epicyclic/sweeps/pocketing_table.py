@@ -4,30 +4,40 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from epicyclic.analysis.parts import fluids_of
 from epicyclic.analysis.pocket_details import mesh_duties
-from epicyclic.analysis.pockets import POCKETING_SOURCE, flow_family, pocketing_method
-from epicyclic.analysis.result import versions
+from epicyclic.builders.build import build
 from epicyclic.case.case import Case
+from epicyclic.elements.pocket_flow import POCKETING_SOURCE, flow_family, pocketing_method
 from epicyclic.errors import InputError, Problem
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.similarity import FlowFamily, FlowFigures
 from epicyclic.pocketing.stored import ATTRIBUTE, store
 from epicyclic.pocketing.table import FlowTable, make_tables
-from epicyclic.sweeps.plan import make_plan
-from epicyclic.sweeps.work import Progress
+from epicyclic.results.result import versions
+from epicyclic.status import Status
+from epicyclic.sweeps.journal import Row, Rows
+from epicyclic.sweeps.plan import SweepPlan, make_plan
+from epicyclic.sweeps.runner import Plan, Progress, Runner, guarded
 from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["SPEED", "TEMPERATURE", "pocketing_table"]
+__all__ = [
+    "SPEED",
+    "TEMPERATURE",
+    "TablePlan",
+    "make_table_plan",
+    "pocketing_table",
+    "table_dataset",
+]
 
 SPEED = "operation.speed"
 TEMPERATURE = "operation.oil_inlet_temperature"
@@ -50,6 +60,10 @@ def pocketing_table(
     speeds: Iterable[Any],
     temperatures: Iterable[Any] | None = None,
     *,
+    jobs: int | None = None,
+    dask: str | None = None,
+    shard: tuple[int, int] | None = None,
+    journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Pocketing losses over speed and oil temperature, which cases can read again.
@@ -61,8 +75,8 @@ def pocketing_table(
         Of the input member (the pinion of a pair), as text with units.
     temperatures : iterable, optional
         Of the oil at the inlet. Default: that of the case.
-    progress : callable, optional
-        Called with the tables done and their number.
+    jobs, dask, shard, journal, progress
+        As for `sweep`; the points are the tables, one for each mesh and member that drives.
 
     Returns
     -------
@@ -82,30 +96,13 @@ def pocketing_table(
         For values that cannot be read, a set at rest, a mesh without pockets, and without
         interpolation.
     """
-    given = case.inputs()["operation"]["oil_inlet_temperature"]
-    axes = {SPEED: speeds, TEMPERATURE: [given] if temperatures is None else temperatures}
-    plan = make_plan(case, axes)
-    _check(case)
-    points = [
-        point
-        for index in range(plan.size)
-        for point in _points(case.updated(plan.changes(index)), index)
-    ]
-    tables = _make(case, points, progress)
-    speed, temperature = plan.axes
-    meshes = [duty.key for duty in mesh_duties(case)]
-    coordinates = {
-        "mesh": meshes,
-        "driver": ("driver", list(_DRIVERS), {"long_name": "member that drives"}),
-        "speed": _coordinate("speed", speed.coordinate, speed.unit),
-        "temperature": _coordinate("temperature", temperature.coordinate, temperature.unit),
-    }
-    shape = (len(meshes), len(_DRIVERS), *plan.shape)
-    return _dataset(case, points, tables, coordinates, shape)
+    runner = Runner(jobs, dask, shard, journal, progress)
+    plan = make_table_plan(case, speeds, temperatures)
+    return table_dataset(plan, runner.run(plan))
 
 
 @dataclass(frozen=True, slots=True)
-class _Point:
+class _Flow:
     """A flow through the pockets of a mesh, at a place in speed and temperature."""
 
     index: int
@@ -123,50 +120,131 @@ class _Point:
         return self.family.number(*self.request)
 
 
-def _points(case: Case, index: int) -> Iterator[_Point]:
+def _flows(case: Case, index: int) -> Iterator[_Flow]:
     """Every mesh, either member driving."""
-    mixture = fluids_of(case).mixture
-    for duty in mesh_duties(case):
-        family = flow_family(case, duty)
-        request = (abs(duty.speed1), mixture, case.surroundings.pressure)
+    built = build(case)
+    for duty in built.mean_duties().values():
+        family = flow_family(duty)
+        request = (abs(duty.speed1), built.fluids.mixture, built.fluids.pressure)
         for driver in _DRIVERS:
-            yield _Point(index, replace(family, drives1=driver == 1), request)
+            yield _Flow(index, replace(family, drives1=driver == 1), request)
 
 
-def _check(case: Case) -> None:
+@dataclass(frozen=True, slots=True)
+class TablePlan(Plan):
+    """Tables to be made: of every mesh, either member driving."""
+
+    kind: ClassVar[str] = "pockets-table"
+    places: SweepPlan
+    flows: tuple[_Flow, ...]
+
+    @classmethod
+    def again(cls, content: Mapping[str, Any], source: str) -> TablePlan:
+        """The plan that `describe` described."""
+        return _table_plan(SweepPlan.again(content, source))
+
+    @property
+    def case(self) -> Case:
+        """The case whose meshes they are of."""
+        return self.places.case
+
+    @property
+    def source(self) -> str:
+        """The file of the case."""
+        return self.places.source
+
+    @property
+    def batch(self) -> int:
+        """A table takes seconds."""
+        return 1
+
+    @property
+    def families(self) -> list[FlowFamily]:
+        """What the tables are of."""
+        return list(dict.fromkeys(flow.family for flow in self.flows))
+
+    @property
+    def size(self) -> int:
+        """Number of tables."""
+        return len(self.families)
+
+    def order(self) -> Sequence[int]:
+        """Numbers of all tables."""
+        return range(self.size)
+
+    def describe(self) -> dict[str, Any]:
+        """The case, its speeds and temperatures."""
+        return self.places.describe()
+
+    def solve(self, index: int) -> Row:
+        """One table."""
+        return guarded(lambda: _row(self._table(self.families[index])))
+
+    def _table(self, family: FlowFamily) -> FlowTable:
+        asked = {flow.number for flow in self.flows if flow.family == family and flow.turns}
+        low, high = min(asked), max(asked)
+        count = math.ceil(_PER_OCTAVE * math.log2(high / low)) + 1
+        wanted = asked.union(map(float, np.geomspace(low, high, count)))
+        return make_tables({family: wanted}, self.case.numerics.pocket_interpolation)[family]
+
+
+def make_table_plan(
+    case: Case, speeds: Iterable[Any], temperatures: Iterable[Any] | None = None
+) -> TablePlan:
+    """Check what is to be tabulated. Parameters as for `pocketing_table`."""
+    given = case.inputs()["operation"]["oil_inlet_temperature"]
+    axes = {SPEED: speeds, TEMPERATURE: [given] if temperatures is None else temperatures}
+    return _table_plan(make_plan(case, axes))
+
+
+def _table_plan(places: SweepPlan) -> TablePlan:
+    case = places.case
     if case.numerics.pocket_interpolation == 0:
         allowed = "must be more than 0: a table is interpolated."
         problem = Problem("numerics.pocket_interpolation", "0", allowed, "Take 0.002.")
         raise InputError([problem], case.source)
-
-
-def _make(
-    case: Case, points: list[_Point], progress: Progress | None
-) -> dict[FlowFamily, FlowTable]:
-    asked: dict[FlowFamily, set[float]] = {point.family: set() for point in points}
-    for point in points:
-        if point.turns:
-            asked[point.family].add(point.number)
-    tables: dict[FlowFamily, FlowTable] = {}
-    for family, numbers in asked.items():
-        if not numbers:
-            problem = Problem(
-                family.mesh.name, "", "stands still at all these speeds.", "Give other speeds."
-            )
-            raise InputError([problem], case.source)
-        low, high = min(numbers), max(numbers)
-        count = math.ceil(_PER_OCTAVE * math.log2(high / low)) + 1
-        wanted = numbers.union(map(float, np.geomspace(low, high, count)))
+    flows = tuple(
+        flow
+        for index in range(places.size)
+        for flow in _flows(case.updated(places.changes(index)), index)
+    )
+    plan = TablePlan(places, flows)
+    for family in plan.families:
+        if not any(flow.turns for flow in flows if flow.family == family):
+            name, allowed = family.mesh.name, "stands still at all these speeds."
+            raise InputError([Problem(name, "", allowed, "Give other speeds.")], case.source)
         try:
-            tables |= make_tables({family: wanted}, case.numerics.pocket_interpolation)
+            _ = family.geometry
         except ValueError as error:
             allowed = f"has no tooth outline: {error}."
             remedy = "Change the tooth (tip and root diameter, tool_tip_radius)."
             problem = Problem(family.mesh.name, "", allowed, remedy)
             raise InputError([problem], case.source) from None
-        if progress is not None:
-            progress(len(tables), len(asked))
-    return tables
+    return plan
+
+
+def _row(table: FlowTable) -> Row:
+    """A table as a flat record."""
+    numbers = {"error": table.error, "nodes": table.number.size}
+    numbers |= {f"number {i}": value for i, value in enumerate(table.number)}
+    numbers |= {f"scaled {i} {j}": value for (i, j), value in np.ndenumerate(table.scaled)}
+    numbers |= {f"readable {i}": value for i, value in enumerate(table.readable)}
+    return Row(str(Status.CONVERGED), numbers={name: float(x) for name, x in numbers.items()})
+
+
+def _table_of(rows: Rows, index: int) -> FlowTable:
+    """The table of a flat record."""
+
+    def read(name: str) -> float:
+        return float(rows.numbers(name)[index])
+
+    nodes = range(int(read("nodes")))
+    return FlowTable(
+        number=np.array([read(f"number {i}") for i in nodes]),
+        scaled=np.array([[read(f"scaled {i} {j}") for j in range(5)] for i in nodes]),
+        readable=np.array([read(f"readable {i}") for i in nodes[:-1]], dtype=np.bool_),
+        error=read("error"),
+    )
 
 
 def _coordinate(
@@ -176,30 +254,38 @@ def _coordinate(
     return name, list(values), {"long_name": labels[name], "units": unit}
 
 
-def _dataset(
-    case: Case,
-    points: list[_Point],
-    tables: dict[FlowFamily, FlowTable],
-    coordinates: dict[str, Any],
-    shape: tuple[int, ...],
-) -> xr.Dataset:
+def table_dataset(plan: TablePlan, rows: Rows) -> xr.Dataset:
+    """The tables, and what they say at the speeds and temperatures of the plan."""
     import xarray as xr
 
-    values = np.full((len(_FIGURES), *shape), math.nan)
-    meshes, drivers, *inner = shape
-    flat = values.reshape(len(_FIGURES), meshes * drivers, math.prod(inner))
-    families = list(tables)
-    for point in points:
-        figures = _figures(point, tables[point.family])
+    case, families = plan.case, plan.families
+    if rows.failures:
+        problem = Problem("", "", rows.failures[0], "Change the case.")
+        raise InputError([problem], case.source)
+    made = [i for i, status in enumerate(rows.status) if status == Status.CONVERGED]
+    tables = {families[i]: _table_of(rows, i) for i in made}
+    speed, temperature = plan.places.axes
+    meshes = [duty.key for duty in mesh_duties(case)]
+    coordinates = {
+        "mesh": meshes,
+        "driver": ("driver", list(_DRIVERS), {"long_name": "member that drives"}),
+        "speed": _coordinate("speed", speed.coordinate, speed.unit),
+        "temperature": _coordinate("temperature", temperature.coordinate, temperature.unit),
+    }
+    both = (len(meshes), len(_DRIVERS))
+    values = np.full((len(_FIGURES), *both, *plan.places.shape), math.nan)
+    flat = values.reshape(len(_FIGURES), len(families), plan.places.size)
+    for flow in plan.flows:
+        figures = _figures(flow, tables.get(flow.family))
         if figures is not None:
-            flat[:, families.index(point.family), point.index] = [
+            flat[:, families.index(flow.family), flow.index] = [
                 unit.to_display(getattr(figures, name)) for name, (_, unit) in _FIGURES.items()
             ]
     variables: dict[str, Any] = {
         name: (tuple(coordinates), array, {"long_name": label, "units": unit.display or "1"})
         for array, (name, (label, unit)) in zip(values, _FIGURES.items(), strict=True)
     }
-    errors = np.array([table.error for table in tables.values()]).reshape(meshes, drivers)
+    errors = rows.numbers("error").reshape(both)
     about = {"long_name": "largest error of the power, interpolated", "units": "1"}
     variables["interpolation_error"] = (("mesh", "driver"), errors, about)
     used = versions()
@@ -208,14 +294,14 @@ def _dataset(
         "source": f"epicyclic {used['epicyclic']}",
         "versions": json.dumps(used),
         "case": json.dumps(case.inputs()),
-        "method": f"{pocketing_method(case, None)}; {POCKETING_SOURCE}",
+        "method": f"{pocketing_method(case.models.pocketing, None)}; {POCKETING_SOURCE}",
         "conventions": "power in W of one mesh; member 1: sun, planet in the ring mesh, pinion",
         ATTRIBUTE: store(tables),
     }
     return xr.Dataset(variables, coordinates, attributes)
 
 
-def _figures(point: _Point, table: FlowTable) -> FlowFigures | None:
-    if not point.turns:
+def _figures(flow: _Flow, table: FlowTable | None) -> FlowFigures | None:
+    if not flow.turns:
         return FlowFigures(0.0, 0.0, 0.0, 0.0, 0.0)
-    return table.figures(*point.request)
+    return None if table is None else table.figures(*flow.request)

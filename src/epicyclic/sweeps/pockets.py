@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import Any
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from epicyclic.analysis.solve import pocket_flow_numbers
 from epicyclic.errors import InputError
 from epicyclic.pocketing.similarity import FlowFamily
 from epicyclic.pocketing.table import FlowTables, make_tables
-from epicyclic.sweeps.plan import Points
+
+if TYPE_CHECKING:
+    from epicyclic.sweeps.plan import CasePlan
 
 __all__ = ["flow_tables"]
 
@@ -26,30 +29,38 @@ _TORQUE = "operation.torque"
 """Only its sign matters to the pockets."""
 
 
-def flow_tables(points: Points, jobs: int | None = None) -> FlowTables:
-    """Tables for all of `points`, whichever of them are done; none where that does not pay."""
-    bound = points.case.numerics.pocket_interpolation
-    samples = _samples(points)
-    alike = {tuple(changes.get(key) for key in _LIKE_SPEED) for changes in samples}
+def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = None) -> FlowTables:
+    """Tables for the points `indices`; none where that does not pay.
+
+    A table is made for all points of `plan` that read it, so that it is the same whichever of them
+    are done, and where.
+    """
+    bound = plan.case.numerics.pocket_interpolation
+    samples = {_flow(changes): changes for changes in map(plan.changes, range(plan.size))}
+    alike = {tuple(changes.get(key) for key in _LIKE_SPEED) for changes in samples.values()}
     if bound == 0 or len(alike) < _FEWEST:
         return {}
+    wanted = set(map(_flow, map(plan.changes, indices)))
     asked: dict[FlowFamily, set[float]] = defaultdict(set)
-    for changes in samples:
+    read: set[FlowFamily] = set()
+    for flow, changes in samples.items():
         try:
-            for family, number in pocket_flow_numbers(points.case.updated(changes)):
-                asked[family].add(number)
+            numbers = pocket_flow_numbers(plan.case.updated(changes))
         except InputError:
             continue  # the point reports it
-    many = {family: numbers for family, numbers in asked.items() if len(numbers) >= _FEWEST}
-    return make_tables(many, bound, jobs)
+        for family, number in numbers:
+            asked[family].add(number)
+            if flow in wanted:
+                read.add(family)
+    many = {
+        family: numbers
+        for family, numbers in asked.items()
+        if family in read and len(numbers) >= _FEWEST
+    }
+    return make_tables(many, bound, threads)
 
 
-def _samples(points: Points) -> list[dict[str, Any]]:
-    """Changes of one point for each set of points that differ in the magnitude of torque only."""
-    samples = {}
-    for index in range(points.size):
-        changes = points.changes(index)
-        coasting = str(changes.get(_TORQUE, "")).lstrip().startswith("-")
-        others = (str(value) for key, value in changes.items() if key != _TORQUE)
-        samples[coasting, *others] = changes
-    return list(samples.values())
+def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:
+    """Equal for points that differ in the magnitude of torque only."""
+    coasting = str(changes.get(_TORQUE, "")).lstrip().startswith("-")
+    return (coasting, *(str(value) for key, value in changes.items() if key != _TORQUE))

@@ -12,16 +12,14 @@ from collections.abc import Callable, Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.analysis.pair import pair_duty
-from epicyclic.analysis.parts import elastic_loads, fluids_of
-from epicyclic.analysis.planet_bearing import roller_bearing
-from epicyclic.analysis.planet_load import planet_load
-from epicyclic.analysis.planetary import planetary_duties
-from epicyclic.analysis.result import Result
-from epicyclic.analysis.solve import solve
+from epicyclic.analysis.solve import loaded_meshes, solve
+from epicyclic.builders.build import build
+from epicyclic.builders.models import fluids_of
+from epicyclic.builders.planetary import roller_bearing
 from epicyclic.case.case import GearPairCase, PlanetaryCase, load_case
 from epicyclic.elasticity.loaded_mesh import LoadedMesh
 from epicyclic.losses.planet_bearing import roller_loads
+from epicyclic.results.result import Result
 
 __all__ = ["FIGURES"]
 
@@ -84,8 +82,8 @@ def _loaded_rollers(branch_torque: int, couple: bool) -> NDArray[np.bool_]:
     """Which rollers carry load in either row."""
     case = _case(operation__torque=f"{3 * branch_torque} N*m")
     assert case.planet_bearing is not None
-    bearing = roller_bearing(case.planet_bearing, case.numerics.bearing_slices)
-    load = planet_load(planetary_duties(case, 1 / case.planet.count), 0.0)
+    bearing = roller_bearing(case.planet_bearing, case.numerics)
+    load = build(case).planet_loads()["planet_bearing"]
     moments = (load.moment_x, load.moment_y) if couple else (0.0, 0.0)
     loads = roller_loads(bearing, load.force, 0.0, *moments)
     loaded: NDArray[np.bool_] = loads.intensity.sum(axis=(0, 2)) > 0
@@ -210,7 +208,7 @@ def _standard_mesh(teeth1: int, teeth2: int, internal: bool) -> LoadedMesh:
         }
     )
     assert isinstance(case, GearPairCase)
-    return elastic_loads(pair_duty(case), case.numerics)
+    return loaded_meshes(case)["mesh"]
 
 
 FIGURES: dict[str, Callable[..., float]] = {

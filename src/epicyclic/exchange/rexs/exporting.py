@@ -6,7 +6,6 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from epicyclic.analysis.result import Result
 from epicyclic.case.case import load_case
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError
@@ -16,6 +15,7 @@ from epicyclic.exchange.rexs.new_file import case_parts
 from epicyclic.exchange.rexs.results import check_match, write_results
 from epicyclic.exchange.rexs.sets import choose
 from epicyclic.exchange.rexs.vocabulary import versions
+from epicyclic.results.result import Result
 from epicyclic.sweeps.dataset import whole_file
 
 __all__ = ["rexs_bytes", "write_rexs"]

@@ -11,8 +11,7 @@ import math
 from collections.abc import Iterator
 from importlib.metadata import version
 
-from epicyclic.analysis.figures import MeshFigures
-from epicyclic.analysis.result import Result
+from epicyclic.elements.figures import MeshFigures
 from epicyclic.errors import InputError, Problem
 from epicyclic.exchange.rexs.content import Content
 from epicyclic.exchange.rexs.draft import DIGITS
@@ -20,6 +19,7 @@ from epicyclic.exchange.rexs.model import Attribute, Component, Model
 from epicyclic.exchange.rexs.planetary import planet_bearings
 from epicyclic.exchange.rexs.sets import Mesh, Pair, PlanetarySet
 from epicyclic.exchange.rexs.vocabulary import CUSTOM, id_in, rexs_unit, term, written
+from epicyclic.results.result import Result
 from epicyclic.units import format_number
 
 __all__ = ["check_match", "write_results"]

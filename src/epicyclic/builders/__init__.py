@@ -1,0 +1,1 @@
+"""From what the user states to a machine: planetary sets, gear pairs, trains of both."""

@@ -1,0 +1,191 @@
+"""From the solution of a machine to the result that the user sees."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from epicyclic.builders.built import Built, mesh_key
+from epicyclic.builders.models import resolve_models
+from epicyclic.builders.notes import case_notes, general_notes
+from epicyclic.builders.train import set_case
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.train import TrainCase
+from epicyclic.elements.base import Loss
+from epicyclic.elements.figures import BearingFigures, MeshFigures
+from epicyclic.elements.gear_set import GearSet, GearSetResult
+from epicyclic.elements.load_sharing import SHARING_METHODS
+from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
+from epicyclic.losses.validity import ValidityFlag
+from epicyclic.machine.solve import Solution
+from epicyclic.results.result import LossTerm, MemberState, PowerFlow, Result, Train
+
+__all__ = ["assemble"]
+
+Methods = dict[str, tuple[str, str]]
+
+
+def assemble(case: Case, built: Built, solution: Solution) -> Result:
+    """The result of a case from the solution of its machine."""
+    losses = dict(_losses(solution))
+    terms = tuple(_term(name, losses[name]) for name in built.layout.losses)
+    flow = PowerFlow(
+        {
+            name: MemberState(solution.speeds[name], solution.torques[name])
+            for name in built.layout.members
+        },
+        solution.input_power,
+        solution.efficiency,
+    )
+    figures = dict(_figures(solution))
+    methods = dict(_methods(built))
+    flags = () if built.fluids is None else built.fluids.flags
+    sharing = built.sets[""].sharing if "" in built.sets else None
+    return Result(
+        title=case.title,
+        kind=case.kind,
+        layout=built.layout,
+        terms=terms,
+        flow=flow,
+        meshes={key: item for key, item in figures.items() if isinstance(item, MeshFigures)},
+        bearings={key: item for key, item in figures.items() if isinstance(item, BearingFigures)},
+        parts={
+            key: item
+            for key, item in figures.items()
+            if not isinstance(item, MeshFigures | BearingFigures)
+        },
+        fluid=None if built.fluids is None else built.fluids.figures,
+        models=dict(_models(case, built)),
+        flags=flags + tuple(_flags(solution)),
+        notes=(
+            *general_notes(terms, flow.input_power, flow.efficiency),
+            *_train_notes(case, solution),
+            *_set_notes(case, built, solution),
+        ),
+        load_methods={key: title for key, (title, _) in methods.items()},
+        load_sources={key: source for key, (_, source) in methods.items()},
+        sources=_sources(terms, methods),
+        inputs=case.inputs(),
+        planet_angles=() if sharing is None else sharing.angles,
+        planet_shares=next(
+            (
+                item.shares
+                for key, item in solution.results.items()
+                if isinstance(item, GearSetResult) and not key
+            ),
+            (),
+        ),
+        train=_train(case, built, solution),
+    )
+
+
+def _losses(solution: Solution) -> Iterator[tuple[str, Loss]]:
+    yield from solution.given.items()
+    for key, result in solution.results.items():
+        for name, loss in result.losses.items():
+            yield mesh_key(key, name), loss
+
+
+def _term(name: str, loss: Loss) -> LossTerm:
+    return LossTerm(
+        name, loss.watts, loss.group, loss.method, loss.source, loss.factor, loss.left_out
+    )
+
+
+def _figures(solution: Solution) -> Iterator[tuple[str, Any]]:
+    for key, result in solution.results.items():
+        for name, item in result.figures.items():
+            yield mesh_key(key, name) if name else key, item
+
+
+def _flags(solution: Solution) -> Iterator[ValidityFlag]:
+    """Flags of all elements, those of a train with the name of their set."""
+    for key, result in solution.results.items():
+        for flag in result.flags:
+            where = f"{key}: {flag.use.where}" if key else flag.use.where
+            yield replace(flag, use=replace(flag.use, where=where))
+
+
+def _methods(built: Built) -> Iterator[tuple[str, tuple[str, str]]]:
+    """How the load along the teeth and between planets is found, for each set."""
+    for key, own in built.sets.items():
+        distribution = LOAD_DISTRIBUTIONS[own.meshes[0].models.load_distribution]
+        yield mesh_key(key, "load_distribution"), (distribution.title, distribution.source)
+        if own.sharing is not None:
+            yield mesh_key(key, "load_sharing"), SHARING_METHODS[own.sharing.method]
+
+
+def _sources(terms: Iterable[LossTerm], methods: Methods) -> tuple[str, ...]:
+    """Sources of the terms that are included and of the load, each once, in order."""
+    sources = [term.source for term in terms if not term.left_out]
+    sources += [source for _, source in methods.values()]
+    return tuple(dict.fromkeys(source for source in sources if source))
+
+
+def _models(case: Case, built: Built) -> Iterator[tuple[str, str]]:
+    for key, own in _set_cases(case, built.sets):
+        for name, model in resolve_models(own).items():
+            yield mesh_key(key, name), model
+
+
+def _set_cases(
+    case: Case, sets: Mapping[str, GearSet]
+) -> Iterator[tuple[str, PlanetaryCase | GearPairCase]]:
+    """The computed sets of a case, each as a case of its own."""
+    if not isinstance(case, TrainCase):
+        yield "", case
+        return
+    for key in sets:
+        yield key, set_case(case, key)
+
+
+def _set_notes(case: Case, built: Built, solution: Solution) -> Iterator[str]:
+    for key, own in _set_cases(case, built.sets):
+        found = solution.results[key]
+        assert isinstance(found, GearSetResult)
+        turns = False
+        if isinstance(own, PlanetaryCase):
+            ring = built.sets[key].discs["ring_drag"][0].body
+            turns = solution.speeds[ring] != 0
+        for note in case_notes(own, found, ring_turns=turns):
+            yield f"{key}: {note}" if key else note
+    for result in solution.results.values():
+        if not isinstance(result, GearSetResult):
+            yield from result.notes
+
+
+def _train_notes(case: Case, solution: Solution) -> Iterator[str]:
+    if not isinstance(case, TrainCase):
+        return
+    if solution.self_locking:
+        output = case.shape.shaft_of(case.operation.output) or ""
+        yield (
+            "Self-locking: no power passes from the input to the output; the output "
+            f"{case.operation.output} must be driven too, with "
+            f"{solution.torques[output]:.6g} N*m."
+        )
+    if not solution.unique:
+        yield (
+            "Some members share their load in more than one possible way (brakes, clutches or "
+            "meshes in parallel): of all torques in balance, the smallest are shown."
+        )
+
+
+def _train(case: Case, built: Built, solution: Solution) -> Train | None:
+    if not isinstance(case, TrainCase):
+        return None
+    ends = [
+        case.shape.shaft_of(name) or "" for name in (case.operation.input, case.operation.output)
+    ]
+    driven, output = (solution.speeds[shaft] for shaft in ends)
+    return Train(
+        state=case.operation.state or "",
+        ratio=driven / output if output else None,
+        power_ratio=solution.power_ratio,
+        rolling={key: solution.rolling[key] for key in built.layout.rolling},
+        clutches=solution.couplings,
+        self_locking=solution.self_locking,
+        input=ends[0],
+        output=ends[1],
+    )

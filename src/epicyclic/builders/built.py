@@ -1,0 +1,80 @@
+"""What the builders hand on: a machine, how it is driven, and the words about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from epicyclic.elements.base import State
+from epicyclic.elements.fluids import Fluids
+from epicyclic.elements.gear_mesh import MeshDuty
+from epicyclic.elements.gear_set import GearSet
+from epicyclic.elements.planet_load import PlanetLoad
+from epicyclic.machine.machine import Machine, Operation
+from epicyclic.machine.solve import Solution, lossless_state, solve_machine
+from epicyclic.results.result import Layout
+
+__all__ = ["Built", "mesh_key"]
+
+
+@dataclass(frozen=True, slots=True)
+class Built:
+    """A machine that can be solved.
+
+    Attributes
+    ----------
+    machine : Machine
+    operation : Operation
+    fluids : Fluids or None
+        None if every loss is given.
+    sets : mapping of str to GearSet
+        Those whose losses are computed; the key of a single set is empty.
+    layout : Layout
+        What its result consists of.
+    """
+
+    machine: Machine
+    operation: Operation
+    fluids: Fluids | None
+    sets: Mapping[str, GearSet]
+    layout: Layout
+
+    def solve(self) -> Solution:
+        """Torques and losses that agree."""
+        return solve_machine(self.machine, self.operation, self.fluids)
+
+    def state(self) -> State:
+        """Speeds, and torques as without losses."""
+        return lossless_state(self.machine, self.operation, self.fluids)
+
+    def loaded_duties(self) -> dict[str, MeshDuty]:
+        """The meshes of the planet that carries most, of every set, by their keys."""
+        state = self.state()
+        return {
+            mesh_key(name, duty.key): duty
+            for name, own in self.sets.items()
+            for duty in own.loaded_duties(state)
+        }
+
+    def mean_duties(self) -> dict[str, MeshDuty]:
+        """The meshes of a planet that carries its mean share, of every set, by their keys."""
+        state = self.state()
+        return {
+            mesh_key(name, duty.key): duty
+            for name, own in self.sets.items()
+            for duty in own.mean_duties(state)
+        }
+
+    def planet_loads(self) -> dict[str, PlanetLoad]:
+        """Load on the bearing of a planet that carries its mean share, of every set."""
+        state = self.state()
+        return {
+            mesh_key(name, key): load
+            for name, own in self.sets.items()
+            for key, load in own.mean_loads(state).items()
+        }
+
+
+def mesh_key(name: str, mesh: str) -> str:
+    """Key of a mesh in the results: that of its set before it, if the set has one."""
+    return f"{name}.{mesh}" if name else mesh

@@ -1,0 +1,49 @@
+"""From the tables of gears to meshes with their tools, flanks and elastic bodies."""
+
+from __future__ import annotations
+
+from epicyclic.case import flanks
+from epicyclic.case.gear_tables import GearTable
+from epicyclic.elements.gear_mesh import GearMesh, MeshModels
+from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.tools import Tool
+from epicyclic.kernels.line_contact import equivalent_modulus
+from epicyclic.losses.contact import Flanks
+
+__all__ = ["gear_mesh"]
+
+
+def gear_mesh(
+    key: str,
+    mesh: Mesh,
+    tables: tuple[GearTable, GearTable],
+    *,
+    bodies: tuple[str, str],
+    tools: tuple[Tool, Tool],
+    misalignment: float,
+    models: MeshModels,
+) -> GearMesh:
+    """The mesh of two gears as an element sees it."""
+    return GearMesh(
+        key=key,
+        mesh=mesh,
+        bodies=bodies,
+        tools=tools,
+        roundings=(tables[0].tool_tip_radius, tables[1].tool_tip_radius),
+        flanks=_flanks(tables),
+        solids=flanks.gear_bodies(mesh, tables),
+        deviations=flanks.flank_deviations(mesh, tables, misalignment),
+        models=models,
+    )
+
+
+def _flanks(tables: tuple[GearTable, GearTable]) -> Flanks:
+    """Roughness of both flanks and their equivalent modulus."""
+    one, two = tables
+    modulus = equivalent_modulus(
+        one.material.elastic_modulus,
+        one.material.poisson_ratio,
+        two.material.elastic_modulus,
+        two.material.poisson_ratio,
+    )
+    return Flanks(modulus, one.roughness, two.roughness)

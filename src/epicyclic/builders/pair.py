@@ -1,0 +1,98 @@
+"""A gear pair on parallel axes as a machine."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from epicyclic.builders.built import Built
+from epicyclic.builders.gears import gear_mesh
+from epicyclic.builders.models import fluids_of, loss_choices, mesh_models
+from epicyclic.case import build
+from epicyclic.case.case import GearPairCase
+from epicyclic.elements.base import HOUSING
+from epicyclic.elements.disc import Disc
+from epicyclic.elements.gear_set import GearSet, Reference
+from epicyclic.geometry.cutting import mated_tools
+from epicyclic.machine.machine import Machine, MeshRow, Operation
+from epicyclic.pocketing.table import FlowTables
+from epicyclic.results.result import Layout
+
+__all__ = ["PAIR_MEMBERS", "build_pair", "pair_element", "pair_rows"]
+
+PAIR_MEMBERS = ("pinion", "gear")
+
+
+def build_pair(case: GearPairCase, flow_tables: FlowTables) -> Built:
+    """A single gear pair, driven as the case says."""
+    bodies = {name: name for name in PAIR_MEMBERS}
+    element = pair_element("", case, bodies, "pinion", flow_tables)
+    return Built(
+        machine=Machine(PAIR_MEMBERS, pair_rows("", case, bodies), (element,)),
+        operation=Operation(
+            "pinion", "gear", case.operation.torque, {"pinion": case.operation.speed}
+        ),
+        fluids=fluids_of(case),
+        sets={"": element},
+        layout=Layout(tuple(element.choices), PAIR_MEMBERS, ("mesh",)),
+    )
+
+
+def pair_rows(key: str, case: GearPairCase, bodies: Mapping[str, str]) -> tuple[MeshRow, ...]:
+    """The constraint of a pair."""
+    teeth = (case.pinion.teeth, case.gear.teeth)
+    one, two = (bodies[name] for name in PAIR_MEMBERS)
+    return (MeshRow(f"{key}.mesh", one, two, HOUSING, teeth, case.gear.internal),)
+
+
+def pair_element(
+    key: str,
+    case: GearPairCase,
+    bodies: Mapping[str, str],
+    reference: str,
+    flow_tables: FlowTables,
+) -> GearSet:
+    """The losses of a pair.
+
+    Parameters
+    ----------
+    key : str
+        First part of the keys of its losses.
+    case : GearPairCase
+    bodies : mapping of str to str
+        Bodies of ``"pinion"`` and ``"gear"``.
+    reference : str
+        The gear whose torque states the load.
+    flow_tables : mapping
+        Of flows through pockets.
+    """
+    mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
+    tables = (case.pinion, case.gear)
+    other = "gear" if reference == "pinion" else "pinion"
+    sense = -1 if mesh.internal else 1
+    lever = 1.0 if reference == "pinion" else sense * case.pinion.teeth / case.gear.teeth
+    discs = tuple(
+        Disc(name, bodies[name], build.outside_radius(gear, table), gear.face_width)
+        for name, gear, table in zip(PAIR_MEMBERS, (mesh.gear1, mesh.gear2), tables, strict=True)
+    )
+    return GearSet(
+        key=key,
+        carrier=HOUSING,
+        meshes=(
+            gear_mesh(
+                "mesh",
+                mesh,
+                tables,
+                bodies=(bodies["pinion"], bodies["gear"]),
+                tools=mated_tools(mesh, (case.pinion.tool_tip_radius, case.gear.tool_tip_radius)),
+                misalignment=case.mesh.misalignment,
+                models=mesh_models(case, flow_tables)["mesh"],
+            ),
+        ),
+        planets=(),
+        sharing=None,
+        discs={"drag": discs},
+        missing={},
+        thrust=None,
+        choices=loss_choices(case),
+        reference=Reference(bodies[reference], {"mesh": lever}, (bodies[other], HOUSING)),
+    )

@@ -1,0 +1,281 @@
+"""A planetary set of sun, planets, ring and carrier as a machine."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from epicyclic.builders.built import Built
+from epicyclic.builders.gears import gear_mesh
+from epicyclic.builders.models import (
+    fitted_rolling,
+    fluids_of,
+    loss_choices,
+    mesh_models,
+    resolve_models,
+)
+from epicyclic.case import build
+from epicyclic.case.case import PlanetaryCase
+from epicyclic.case.model_tables import Numerics
+from epicyclic.case.part_tables import PlanetBearing as BearingTable
+from epicyclic.elements.base import HOUSING
+from epicyclic.elements.disc import Disc, ThrustBearing
+from epicyclic.elements.gear_mesh import GearMesh
+from epicyclic.elements.gear_set import GearSet, Planet, PlanetMesh, Reference
+from epicyclic.elements.load_sharing import LoadSharing
+from epicyclic.elements.planet_bearing import PlanetBearing
+from epicyclic.geometry.cutting import fitted_tool
+from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.tools import Tool
+from epicyclic.kernels.line_contact import equivalent_modulus
+from epicyclic.losses.fitted import FittedRolling
+from epicyclic.losses.planet_bearing import RollerBearing
+from epicyclic.machine.machine import Machine, MeshRow, Operation
+from epicyclic.pocketing.table import FlowTables
+from epicyclic.results.result import Layout
+
+__all__ = [
+    "MEMBERS",
+    "build_planetary",
+    "palmgren_coefficient",
+    "planetary_element",
+    "planetary_rows",
+    "roller_bearing",
+]
+
+MEMBERS = ("sun", "ring", "carrier")
+CAGED_PALMGREN = 0.0003
+"""f1 of a caged roller bearing, middle of 0.0002-0.0004. Talbot (2012), p. 56. [1]"""
+FULL_COMPLEMENT_PALMGREN = 0.00055
+"""f1 of a full-complement roller bearing. Talbot (2012), p. 56. [1]"""
+VISCOUS_FACTOR_PER_ROW = 3.0
+"""f0 of one row of caged cylindrical rollers, middle of 2.2-4.0. Talbot (2012), p. 130. [1]"""
+
+
+def build_planetary(case: PlanetaryCase, flow_tables: FlowTables) -> Built:
+    """A single planetary set, driven as the case says."""
+    operation = case.operation
+    bodies = {name: name for name in (*MEMBERS, "planet")}
+    held = operation.fixed or operation.second_input
+    assert held is not None
+    (output,) = set(MEMBERS) - {operation.input, held}
+    element = planetary_element("", case, bodies, (operation.input, output, held), flow_tables)
+    held_speed = 0.0 if operation.second_speed is None else operation.second_speed
+    return Built(
+        machine=Machine(tuple(bodies), planetary_rows("", case, bodies), (element,)),
+        operation=Operation(
+            operation.input,
+            output,
+            operation.torque,
+            {operation.input: operation.speed, held: held_speed},
+        ),
+        fluids=fluids_of(case),
+        sets={"": element},
+        layout=Layout(
+            tuple(element.choices),
+            MEMBERS,
+            ("sun_mesh", "ring_mesh"),
+            ("planet_bearing",),
+            shares=True,
+        ),
+    )
+
+
+def planetary_rows(key: str, case: PlanetaryCase, bodies: Mapping[str, str]) -> tuple[MeshRow, ...]:
+    """The constraints of both meshes. Theory (K1), (K2)."""
+    sun, planet, ring, carrier = (bodies[name] for name in ("sun", "planet", "ring", "carrier"))
+    planet_teeth = case.planet.teeth
+    return (
+        MeshRow(f"{key}.sun_mesh", sun, planet, carrier, (case.sun.teeth, planet_teeth)),
+        MeshRow(f"{key}.ring_mesh", planet, ring, carrier, (planet_teeth, case.ring.teeth), True),
+    )
+
+
+def planetary_element(
+    key: str,
+    case: PlanetaryCase,
+    bodies: Mapping[str, str],
+    order: tuple[str, str, str],
+    flow_tables: FlowTables,
+) -> GearSet:
+    """The losses of a planetary set.
+
+    Parameters
+    ----------
+    key : str
+        First part of the keys of its losses.
+    case : PlanetaryCase
+    bodies : mapping of str to str
+        Bodies of ``"sun"``, ``"ring"``, ``"carrier"`` and ``"planet"``.
+    order : tuple of str
+        The member whose torque states the load, and the two between which the losses act.
+    flow_tables : mapping
+        Of flows through pockets.
+    """
+    carrier = bodies["carrier"]
+    return GearSet(
+        key=key,
+        carrier=carrier,
+        meshes=_meshes(case, bodies, flow_tables),
+        planets=(_planet(case, bodies["planet"]),),
+        sharing=_sharing(case),
+        discs=_discs(case, bodies),
+        missing=_missing(case),
+        thrust=_thrust_bearing(case, bodies),
+        choices=loss_choices(case),
+        reference=Reference(
+            bodies[order[0]], _levers(case, order[0]), (bodies[order[1]], bodies[order[2]])
+        ),
+    )
+
+
+def _levers(case: PlanetaryCase, member: str) -> dict[str, float]:
+    """Torques at the first gears of both meshes over that of a member. Theory (K3), (K4)."""
+    sun, ring = case.sun.teeth, case.ring.teeth
+    factors = {"sun": sun, "ring": ring, "carrier": -(sun + ring)}
+    lever = sun / factors[member]
+    return {"sun_mesh": lever, "ring_mesh": -lever * case.planet.teeth / sun}
+
+
+def _meshes(
+    case: PlanetaryCase, bodies: Mapping[str, str], flow_tables: FlowTables
+) -> tuple[GearMesh, GearMesh]:
+    sun_mesh, ring_mesh = build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)
+    sun, planet, ring = _tools(case, sun_mesh, ring_mesh)
+    models = mesh_models(case, flow_tables)
+    return (
+        gear_mesh(
+            "sun_mesh",
+            sun_mesh,
+            (case.sun, case.planet),
+            bodies=(bodies["sun"], bodies["planet"]),
+            tools=(sun, planet),
+            misalignment=case.sun_mesh.misalignment,
+            models=models["sun_mesh"],
+        ),
+        gear_mesh(
+            "ring_mesh",
+            ring_mesh,
+            (case.planet, case.ring),
+            bodies=(bodies["planet"], bodies["ring"]),
+            tools=(planet, ring),
+            misalignment=case.ring_mesh.misalignment,
+            models=models["ring_mesh"],
+        ),
+    )
+
+
+def _tools(case: PlanetaryCase, sun_mesh: Mesh, ring_mesh: Mesh) -> tuple[Tool, Tool, Tool]:
+    """The tools of sun, planet and ring; the planet serves the mate that reaches deeper."""
+    planet = min(sun_mesh.radius2_at_end, ring_mesh.radius1_at_start)
+    return (
+        fitted_tool(sun_mesh.gear1, case.sun.tool_tip_radius, sun_mesh.radius1_at_start),
+        fitted_tool(sun_mesh.gear2, case.planet.tool_tip_radius, planet),
+        fitted_tool(ring_mesh.gear2, case.ring.tool_tip_radius, ring_mesh.radius2_at_end),
+    )
+
+
+def _planet(case: PlanetaryCase, body: str) -> Planet:
+    return Planet(
+        key="planet_bearing",
+        body=body,
+        pin_radius=case.gears.center_distance,
+        meshes=(
+            PlanetMesh("sun_mesh", 2, (0.0, 1.0)),
+            PlanetMesh("ring_mesh", 1, (0.0, -1.0)),
+        ),
+        mass=case.planet.mass,
+        bearing=_planet_bearing(case),
+        no_bearing="the case has no [planet_bearing]",
+        tilts=case.models.planet_tilt == "coupled",
+    )
+
+
+def _sharing(case: PlanetaryCase) -> LoadSharing:
+    table = case.load_sharing
+    return LoadSharing(
+        method=table.method,
+        mesh_load_factor=table.mesh_load_factor,
+        angles=build.planet_angles(case.sun, case.planet, case.ring),
+        position_errors=table.position_errors or (),
+        floating_member=table.floating_member,
+        support_stiffness=table.support_stiffness,
+        pin_stiffness=table.pin_stiffness,
+    )
+
+
+def _planet_bearing(case: PlanetaryCase) -> PlanetBearing | None:
+    table = case.planet_bearing
+    if table is None:
+        return None
+    name = resolve_models(case)["bearing"]
+    model: str | FittedRolling = name
+    if name == FittedRolling.name:
+        model = fitted_rolling(case, "bearing_rolling_loss")
+    factor = table.viscous_factor
+    return PlanetBearing(
+        bearing=roller_bearing(table, case.numerics),
+        model=model,
+        palmgren_coefficient=palmgren_coefficient(table),
+        viscous_factor=VISCOUS_FACTOR_PER_ROW * table.rows if factor is None else factor,
+    )
+
+
+def palmgren_coefficient(table: BearingTable) -> float:
+    """f1 of the case, or the published one of the bearing's kind. [1]"""
+    if table.palmgren_coefficient is not None:
+        return table.palmgren_coefficient
+    return CAGED_PALMGREN if table.cage == "caged" else FULL_COMPLEMENT_PALMGREN
+
+
+def roller_bearing(table: BearingTable, numerics: Numerics) -> RollerBearing:
+    """The bearing that `table` describes."""
+    modulus, poisson = table.material.elastic_modulus, table.material.poisson_ratio
+    return RollerBearing(
+        rows=table.rows,
+        rollers_per_row=table.rollers_per_row,
+        roller_diameter=table.roller_diameter,
+        roller_length=table.roller_length,
+        inner_diameter=table.pin_diameter,
+        diametral_clearance=table.diametral_clearance,
+        crown_drop=table.crown_drop,
+        crown_length_fraction=table.crown_length_fraction,
+        row_gap=table.row_gap,
+        roller_roughness=table.roller_roughness,
+        race_roughness=table.race_roughness,
+        equivalent_modulus=equivalent_modulus(modulus, poisson, modulus, poisson),
+        slices=numerics.bearing_slices,
+    )
+
+
+def _discs(case: PlanetaryCase, bodies: Mapping[str, str]) -> dict[str, tuple[Disc, ...]]:
+    sun = build.gear("sun", case.sun, case.gears)
+    ring = build.gear("ring", case.ring, case.gears)
+    sizes = {
+        "sun": (sun.tip_radius, sun.face_width),
+        "ring": (build.outside_radius(ring, case.ring), ring.face_width),
+    }
+    if case.carrier is not None:
+        sizes["carrier"] = (case.carrier.outer_diameter / 2, case.carrier.width)
+    return {f"{name}_drag": (Disc(name, bodies[name], *size),) for name, size in sizes.items()}
+
+
+def _missing(case: PlanetaryCase) -> dict[str, str]:
+    missing = {}
+    if case.carrier is None:
+        missing["carrier_drag"] = "the case has no [carrier]"
+    if case.thrust_bearing is None:
+        missing["thrust_bearing_viscous"] = "the case has no [thrust_bearing]"
+    return missing
+
+
+def _thrust_bearing(case: PlanetaryCase, bodies: Mapping[str, str]) -> ThrustBearing | None:
+    table = case.thrust_bearing
+    if table is None:
+        return None
+    one, two = table.between.split("-")
+    return ThrustBearing(
+        between=(bodies[one], bodies.get(two, HOUSING)),
+        mean_diameter=table.mean_diameter,
+        viscous_factor=table.viscous_factor,
+        count=table.count,
+    )

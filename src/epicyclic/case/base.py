@@ -1,0 +1,163 @@
+"""What all kinds of cases share: how they are made from tables, changed and compared."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Self
+
+from pydantic import PrivateAttr
+
+from epicyclic.case.checks import cross_check
+from epicyclic.case.fields import find_field, locate, to_inputs
+from epicyclic.case.plain import plain, value_at, with_value, without
+from epicyclic.case.schema import Table
+from epicyclic.case.translation import unknown_key
+from epicyclic.case.validation import tables_of, validate
+from epicyclic.case.wording import path_of, written
+from epicyclic.errors import InputError, Problem
+
+__all__ = ["CaseTable", "as_given", "with_changes"]
+
+
+class CaseTable(Table):
+    _tables: dict[str, Any] = PrivateAttr(default_factory=dict)
+    _source: str = PrivateAttr(default="")
+
+    @property
+    def source(self) -> str:
+        """The file or built-in case it was read from."""
+        return self._source
+
+    @property
+    def folder(self) -> Path:
+        """Where the files lie that it names: that of its file, or the current one."""
+        return Path(self._source).parent
+
+    def updated(self, changes: Mapping[str, Any]) -> Self:
+        """A copy of the case with some keys changed, validated afresh.
+
+        Parameters
+        ----------
+        changes : mapping of str to object
+            Dotted keys, ``"operation.torque"``, to values as a case file has them: text with a
+            unit or a pint quantity for dimensional ones. None removes a key.
+
+        Returns
+        -------
+        Case
+            Of the same kind.
+
+        Raises
+        ------
+        InputError
+            With every problem of the changed case.
+        """
+        tables, problems = with_changes(type(self), self.given(), changes)
+        return type(self).from_tables(tables, self._source, problems)
+
+    @classmethod
+    def from_tables(
+        cls, tables: dict[str, Any], source: str, problems: Sequence[Problem] = ()
+    ) -> Self:
+        """The case of `tables`, plain values, checked by themselves and against each other.
+
+        Parameters
+        ----------
+        tables : dict
+        source : str
+            The file or built-in case that they come from.
+        problems : sequence of Problem
+            Found before.
+
+        Raises
+        ------
+        InputError
+            With `problems` and every other one.
+        """
+        validation = validate(cls, tables)
+        known = {problem.key for problem in problems}
+        found = [
+            *problems,
+            *(problem for problem in validation.problems if problem.key not in known),
+            *(
+                as_given(problem, tables)
+                for problem in cross_check(validation.sections, tables, Path(source).parent)
+            ),
+        ]
+        return cls._made(validation.case, tables, source, found)
+
+    @classmethod
+    def _made(
+        cls, case: Self | None, tables: dict[str, Any], source: str, problems: list[Problem]
+    ) -> Self:
+        """The case with what it was made from; an error with all problems, if there are any."""
+        if case is None or problems:
+            ordered = sorted(problems, key=lambda problem: _position(cls, problem))
+            raise InputError(ordered, source)
+        case._tables = tables
+        case._source = source
+        return case
+
+    def given(self) -> dict[str, Any]:
+        """The case as nested tables of the keys that were given, without defaults."""
+        return self._tables or plain(self.inputs())
+
+    def inputs(self) -> dict[str, Any]:
+        """The case as nested tables of text and numbers, defaults included, as a file has them."""
+        return to_inputs(self)
+
+    def __eq__(self, other: object) -> bool:
+        """Equal if every key has the same value, wherever the cases were read."""
+        return type(self) is type(other) and self.__dict__ == other.__dict__
+
+    def __hash__(self) -> int:
+        return hash(tuple(self.__dict__.values()))
+
+
+def as_given(problem: Problem, tables: dict[str, Any]) -> Problem:
+    """The problem with the values of its keys as the user wrote them."""
+    values = [value_at(tables, path_of(key)) for key in problem.key.split(", ")]
+    if any(value is None or isinstance(value, dict) for value in values):
+        return problem
+    return replace(problem, value=", ".join(map(written, values)))
+
+
+def _position(kind: type[Table], problem: Problem) -> int:
+    """Where the table of a problem stands in a case; problems of the file come first."""
+    table = path_of(problem.key)[0] if problem.key else ""
+    tables = ["", *kind.model_fields]
+    return tables.index(table) if table in tables else len(tables)
+
+
+def with_changes(
+    kind: type[Table], tables: dict[str, Any], changes: Mapping[str, Any]
+) -> tuple[dict[str, Any], list[Problem]]:
+    """`tables` with some dotted keys changed, and the problems of those that cannot be."""
+    problems: list[Problem] = []
+    for key, value in changes.items():
+        try:
+            tables = _changed(kind, tables, str(key), plain(value))
+        except InputError as error:
+            problems += [replace(problem, key=str(key)) for problem in error.problems]
+    return tables, problems
+
+
+def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
+    """`tables` with dotted `key` set to `value`, or removed if that is None."""
+    path = key.split(".")
+    for depth in range(1, len(path)):
+        owner = value_at(tables, path[:depth])
+        if owner is not None and not isinstance(owner, dict):
+            name = ".".join(path[:depth])
+            allowed = f"{name} is {written(owner)}, which has no keys."
+            remedy = f"Change {name} to a table first."
+            raise InputError([Problem(key, written(value), allowed, remedy)])
+    if value is not None:
+        return with_value(tables, path, value)
+    if value_at(tables, path) is not None:
+        return without(tables, path)
+    if find_field(kind, key) is None:
+        raise InputError([unknown_key(locate(kind, path), None, tables_of(kind).items())])
+    return tables

@@ -1,0 +1,402 @@
+"""A train: gear sets joined by shafts, with brakes, clutches, bearings, seals and other drags."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, Self
+
+from pydantic import Field, PrivateAttr, create_model
+
+from epicyclic.case.base import CaseTable, as_given
+from epicyclic.case.checks import cross_check
+from epicyclic.case.element_kinds import ELEMENT_KINDS
+from epicyclic.case.model_tables import (
+    ContactSolver,
+    FrictionTable,
+    Numerics,
+    PlanetaryModels,
+)
+from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.operation_tables import Lubricant, Surroundings
+from epicyclic.case.schema import Table
+from epicyclic.case.train_checks import operation_problems
+from epicyclic.case.train_shape import SetShape, TrainShape, shape_of_set, shape_of_train
+from epicyclic.case.train_tables import (
+    GivenListedSet,
+    GivenPair,
+    GivenPlanetarySet,
+    ListedSet,
+    PairSet,
+    PlanetarySet,
+    Position,
+    SetTable,
+    SharedGears,
+    StateTable,
+    TrainOperation,
+)
+from epicyclic.case.validation import Validation, validate
+from epicyclic.case.wording import written
+from epicyclic.errors import InputError, Problem
+
+__all__ = ["TrainCase", "all_gears_to_members"]
+
+_SHARED = ("models", "numerics")
+"""Tables of a train that its computed sets take over where they have none of their own."""
+_GIVEN = ("efficiency", "mesh_efficiency")
+
+
+class _TrainTables(CaseTable):
+    """Gear sets joined by shafts."""
+
+    kind: Literal["train"]
+    title: str = ""
+    operation: TrainOperation
+    sets: dict[str, SetTable]
+    shafts: dict[str, tuple[str, ...]] = Field(default={})
+    states: dict[str, StateTable] = Field(default={})
+    positions: dict[str, Position] = Field(default={})
+    lubricant: Lubricant | None = None
+    surroundings: Surroundings = Surroundings()
+    friction_table: FrictionTable | None = None
+    models: PlanetaryModels = PlanetaryModels()
+    contact_solver: ContactSolver = ContactSolver()
+    numerics: Numerics = Numerics()
+
+    _shape: TrainShape = PrivateAttr()
+
+    @property
+    def shape(self) -> TrainShape:
+        """Its bodies, meshes and shafts."""
+        return self._shape
+
+    @property
+    def state(self) -> StateTable:
+        """The state in which it runs: what is braked and joined."""
+        name = self.operation.state
+        return StateTable() if name is None else self.states[name]
+
+    @property
+    def elements(self) -> Iterator[tuple[str, str, Table]]:
+        """Kind, name and table of every bearing, seal and other drag."""
+        for kind in ELEMENT_KINDS:
+            for name, table in getattr(self, kind).items():
+                yield kind, name, table
+
+    @property
+    def computed(self) -> bool:
+        """False if every loss is given."""
+        given = (GivenPlanetarySet, GivenPair, GivenListedSet)
+        sets = any(not isinstance(table, given) for table in self.sets.values())
+        return sets or any(True for _ in self.elements)
+
+    def inputs(self) -> dict[str, Any]:
+        """The case as nested tables of text and numbers, defaults included, as a file has them."""
+        inputs = super().inputs()
+        for table in inputs["sets"].values():
+            if "members" in table:
+                table["gears"] = table.get("gears", {}) | table.pop("members")
+        return inputs
+
+    def __hash__(self) -> int:
+        return hash(json.dumps(self.given(), sort_keys=True, default=str))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _read, (self.given(), self.source)
+
+    @classmethod
+    def from_tables(
+        cls, tables: dict[str, Any], source: str, problems: Sequence[Problem] = ()
+    ) -> Self:
+        """The train of `tables`; parameters and errors as of every case."""
+        folder = Path(source).parent
+        raw_sets = tables.get("sets")
+        named = tuple(raw_sets) if isinstance(raw_sets, dict) else ()
+        whole = validate(_top(cls), {k: v for k, v in tables.items() if k != "sets"})
+        found = [*problems]
+        known = {problem.key for problem in problems}
+        found += [problem for problem in whole.problems if problem.key not in known]
+        found += [
+            as_given(problem, tables)
+            for problem in cross_check(
+                {k: v for k, v in whole.sections.items() if k != "operation"}, tables, folder
+            )
+        ]
+        if not named:
+            found.append(_no_sets(raw_sets))
+        shared = {key: tables[key] for key in _SHARED if key in tables and key in whole.sections}
+        sets: dict[str, SetTable] = {}
+        shapes: dict[str, SetShape] = {}
+        joined = _joined_members(tables)
+        for name in named:
+            read = _read_set(raw_sets[name], shared, folder)
+            found += [_below(f"sets.{name}", problem) for problem in read.problems]
+            if "." in name:
+                allowed = "is no name for a set: a dot stands between set and member."
+                found.append(Problem(f"sets.{name}", "", allowed, "Choose another name."))
+            if read.table is not None:
+                sets[name] = read.table
+                shape, wrong = shape_of_set(read.table, joined.get(name, ()))
+                shapes[name] = shape
+                found += [_below(f"sets.{name}", problem) for problem in wrong]
+        case = whole.case
+        if case is None or len(sets) < len(named) or not named:
+            return cls._made(None, tables, source, found)
+        values = {key: getattr(case, key) for key in type(case).model_fields}
+        train = cls.model_construct(**values, sets=sets)
+        train._source = source
+        train._shape, wrong = shape_of_train(shapes, train.shafts)
+        found += wrong
+        found += _element_problems(train)
+        if not found:
+            found += operation_problems(train, train.shape)
+        return cls._made(train, tables, source, found)
+
+
+_ELEMENTS: dict[str, Any] = {
+    name: (dict[str, kind.table], {})  # type: ignore[name-defined]
+    for name, kind in ELEMENT_KINDS.items()
+}
+if TYPE_CHECKING:
+    TrainCase = _TrainTables
+else:
+    TrainCase = create_model(
+        "TrainCase", __base__=_TrainTables, __module__=__name__, __doc__="A train.", **_ELEMENTS
+    )
+
+
+def _read(tables: dict[str, Any], source: str) -> TrainCase:
+    return TrainCase.from_tables(tables, source)
+
+
+@lru_cache(maxsize=1)
+def _top(kind: type[Table]) -> type[Table]:
+    """The tables of a train without its sets, which are read one by one."""
+    fields: dict[str, Any] = {
+        name: (field.annotation, field)
+        for name, field in kind.model_fields.items()
+        if name != "sets"
+    }
+    return create_model("Train", __base__=Table, **fields)
+
+
+def _no_sets(given: Any) -> Problem:
+    shown = "" if given is None else written(given)
+    return Problem("sets", shown, "must hold at least one set.", "Add [sets.NAME] and its gears.")
+
+
+def _below(prefix: str, problem: Problem) -> Problem:
+    """A problem of a set or part as one of the train."""
+    keys = ", ".join(f"{prefix}.{key}" if key else prefix for key in problem.key.split(", "))
+    return replace(problem, key=keys)
+
+
+def _joined_members(tables: Mapping[str, Any]) -> dict[str, set[str]]:
+    """Members of each set that shafts, states, operation and drags name."""
+    found: dict[str, set[str]] = {}
+    for text in _texts([tables.get(key) for key in ("shafts", "states", "operation", "positions")]):
+        name, dot, member = text.partition(".")
+        if dot:
+            found.setdefault(name, set()).add(member)
+    return found
+
+
+def _texts(value: Any) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict):
+        for key, item in value.items():
+            yield str(key)
+            yield from _texts(item)
+    elif isinstance(value, list | tuple):
+        for item in value:
+            yield from _texts(item)
+
+
+# --- sets -----------------------------------------------------------------------------------------
+
+
+class _ReadSet:
+    """A set, or its problems."""
+
+    def __init__(self, table: SetTable | None, problems: list[Problem]) -> None:
+        self.table = table
+        self.problems = problems
+
+
+def _read_set(raw: Any, shared: Mapping[str, Any], folder: Path) -> _ReadSet:
+    if not isinstance(raw, dict):
+        remedy = "Write [sets.NAME] and its keys below it."
+        return _ReadSet(None, [Problem("", written(raw), "must be a table of keys.", remedy)])
+    text = json.dumps([raw, dict(shared), str(folder)], sort_keys=True, default=repr)
+    return _read_set_cached(_Given(raw, shared, folder, text))
+
+
+class _Given:
+    """What a set is read from, compared by its text."""
+
+    def __init__(self, raw: Any, shared: Mapping[str, Any], folder: Path, text: str) -> None:
+        self.raw, self.shared, self.folder, self.text = raw, shared, folder, text
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Given) and self.text == other.text
+
+    def __hash__(self) -> int:
+        return hash(self.text)
+
+
+@lru_cache(maxsize=64)
+def _read_set_cached(given: _Given) -> _ReadSet:
+    form, raw = _form_of(given.raw)
+    if form is None:
+        return _ReadSet(None, [_formless(raw)])
+    if not any(key in raw for key in _GIVEN):
+        raw = {key: value for key, value in given.shared.items() if key in form.model_fields} | raw
+    if "models" in raw and form is PairSet:
+        own = PairSet.model_fields["models"].annotation.model_fields
+        raw = raw | {"models": {k: v for k, v in raw["models"].items() if k in own}}
+    read: Validation[Any] = validate(form, raw)
+    problems = [_with_gears(problem) for problem in read.problems]
+    if issubclass(form, PlanetarySet | PairSet):
+        problems += [
+            as_given(problem, raw) for problem in cross_check(read.sections, raw, given.folder)
+        ]
+    if all(key in raw for key in _GIVEN):
+        problems.append(
+            Problem(
+                "efficiency",
+                written(raw["efficiency"]),
+                "conflicts with mesh_efficiency.",
+                "Give one of them: of the set from sun to ring, or of each of its meshes.",
+            )
+        )
+    return _ReadSet(None if problems else read.case, problems)
+
+
+def _form_of(raw: dict[str, Any]) -> tuple[type[Table] | None, dict[str, Any]]:
+    """The form of a set and its tables in that form."""
+    given = any(key in raw for key in _GIVEN)
+    gears = raw.get("gears")
+    listed = isinstance(gears, dict) and any(isinstance(item, dict) for item in gears.values())
+    if "meshes" in raw or listed:
+        return (GivenListedSet if given else ListedSet), all_gears_to_members(raw, given=given)
+    if "pinion" in raw or "gear" in raw:
+        return (GivenPair, _teeth_only(raw)) if given else (PairSet, raw)
+    if {"sun", "ring", "planet"} & raw.keys():
+        return (GivenPlanetarySet, _teeth_only(raw)) if given else (PlanetarySet, raw)
+    return None, raw
+
+
+def all_gears_to_members(raw: dict[str, Any], *, given: bool) -> dict[str, Any]:
+    """The tables of a listed set with those of its gears apart from what all gears share."""
+    gears = raw.get("gears", {})
+    if not isinstance(gears, dict):
+        return raw
+    shared = {key: item for key, item in gears.items() if key in SharedGears.model_fields}
+    members = {key: item for key, item in gears.items() if key not in shared}
+    split = {key: value for key, value in raw.items() if key != "gears"} | {"members": members}
+    if given:
+        known = GivenListedSet.model_fields.keys() | {"members"}
+        own = ("teeth", "internal", "body", "planet")
+        split["members"] = {
+            name: {key: item for key, item in gear.items() if key in own or not _is_gear_key(key)}
+            if isinstance(gear, dict)
+            else gear
+            for name, gear in members.items()
+        }
+        return {
+            key: value
+            for key, value in split.items()
+            if key in known or key not in ListedSet.model_fields
+        }
+    return split | {"gears": shared}
+
+
+def _is_gear_key(key: str) -> bool:
+    """True for keys of a gear whose losses are computed; of no effect with a given efficiency."""
+    return key in ListedSet.model_fields["members"].annotation.__args__[1].model_fields
+
+
+def _teeth_only(raw: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a set without those that do not matter with a given efficiency."""
+    computed = PlanetarySet.model_fields.keys() | PairSet.model_fields.keys()
+    own = {"sun", "ring", "planet", "pinion", "gear", *_GIVEN}
+    kept = {key: value for key, value in raw.items() if key in own or key not in computed}
+    form = GivenPair if "pinion" in raw or "gear" in raw else GivenPlanetarySet
+    for name in ("sun", "ring", "planet", "pinion", "gear"):
+        table = kept.get(name)
+        if isinstance(table, dict) and name in form.model_fields:
+            annotation = form.model_fields[name].annotation
+            assert annotation is not None
+            known = annotation.model_fields
+            kept[name] = {k: v for k, v in table.items() if k in known or not _is_gear_key(k)}
+    return kept
+
+
+def _formless(raw: Mapping[str, Any]) -> Problem:
+    remedy = "Give sun and ring, or pinion and gear, or gears and meshes."
+    names = ("sun", "ring", "planet", "pinion", "gear", "meshes", "gears")
+    near = [did_you_mean(key, names) for key in raw]
+    return Problem("", "", "has no gears.", next((text for text in near if text), remedy))
+
+
+def _with_gears(problem: Problem) -> Problem:
+    """A problem of a gear of a listed set with the key that the user wrote."""
+    return replace(problem, key=problem.key.replace("members", "gears", 1))
+
+
+# --- bearings, seals, drags -----------------------------------------------------------------------
+
+
+def _unbuilt(train: TrainCase, kind: str, name: str, table: Table) -> Sequence[Problem]:
+    """Why a part that is sound by itself cannot be in this train: unknown shafts, bad files."""
+    if train.lubricant is None:
+        return ()
+    try:
+        ELEMENT_KINDS[kind].build(
+            name,
+            table,
+            shafts=train.shape.names,
+            oil=train.lubricant.oil,
+            folder=train.folder,
+        )
+    except InputError as error:
+        return error.problems
+    return ()
+
+
+def _element_problems(train: TrainCase) -> list[Problem]:
+    problems = []
+    taken = dict.fromkeys(train.sets, "sets")
+    for kind, name, table in train.elements:
+        key = f"{kind}.{name}"
+        if "." in name:
+            allowed = "is no name for a part: a dot stands before the name of a loss."
+            problems.append(Problem(key, "", allowed, "Choose another name."))
+        if name in taken:
+            allowed = f"has the name of another part, {taken[name]}.{name}."
+            problems.append(Problem(key, "", allowed, "Choose another name: losses carry it."))
+        taken[name] = kind
+        found = ELEMENT_KINDS[kind].check(table)
+        problems += [
+            _below(key, problem) for problem in found or _unbuilt(train, kind, name, table)
+        ]
+    if not train.computed:
+        return problems
+    if train.lubricant is None:
+        remedy = "Add it; 'epicyclic oils' lists the built-in ones."
+        allowed = "the table [lubricant] is missing, which computed losses need."
+        problems.append(Problem("lubricant", "", allowed, remedy))
+    if train.operation.oil_inlet_temperature is None:
+        problems.append(
+            Problem(
+                "operation.oil_inlet_temperature",
+                "",
+                "is missing, and computed losses need it.",
+                'Add oil_inlet_temperature = "... degC" to [operation].',
+            )
+        )
+    return problems

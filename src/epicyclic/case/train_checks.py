@@ -1,0 +1,175 @@
+"""Can this train run as stated: shafts, states, freedom, and the assembly of listed sets?
+
+Every function returns the problems it finds; none stops at the first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.train_shape import TrainShape
+from epicyclic.case.train_tables import StateTable
+from epicyclic.case.wording import written
+from epicyclic.elements.base import HOUSING
+from epicyclic.errors import Problem
+from epicyclic.machine.kinematics import freedom
+
+if TYPE_CHECKING:
+    from epicyclic.case.train import TrainCase
+
+__all__ = ["operation_problems", "state_problems"]
+
+
+def operation_problems(train: TrainCase, shape: TrainShape) -> list[Problem]:
+    """What cannot be about the states and the operation of a train."""
+    problems: list[Problem] = []
+    for name, state in train.states.items():
+        problems += state_problems(f"states.{name}", state, shape)
+    problems += _state_choice(train)
+    operation = train.operation
+    for key in ("input", "output"):
+        problems += _shaft_problems(f"operation.{key}", getattr(operation, key), shape)
+    for key in ("speeds", "torques"):
+        for name in getattr(operation, key):
+            problems += _shaft_problems(f"operation.{key}.{name}", name, shape)
+    if problems:
+        return problems
+    problems += _ends_problems(train, shape)
+    return problems or _freedom_problems(train, shape)
+
+
+def state_problems(key: str, state: StateTable, shape: TrainShape) -> list[Problem]:
+    """Brakes and clutches on shafts that are not there, or on one shaft."""
+    problems = []
+    for number, name in enumerate(state.fixed):
+        problems += _shaft_problems(f"{key}.fixed[{number}]", name, shape)
+    for number, group in enumerate(state.joined):
+        where, shown = f"{key}.joined[{number}]", written(list(group))
+        found = [problem for name in group for problem in _shaft_problems(where, name, shape)]
+        problems += found
+        if len(group) < 2:
+            allowed = "must be two or more shafts."
+            problems.append(Problem(where, shown, allowed, "Name the shafts that a clutch joins."))
+        elif not found:
+            shafts = [shape.shaft_of(name) for name in group]
+            if len(set(shafts)) < len(shafts):
+                twice = next(one for one in shafts if shafts.count(one) > 1)
+                allowed = f"joins the shaft {twice} to itself."
+                problems.append(Problem(where, shown, allowed, "Name two different shafts."))
+    return problems
+
+
+def _shaft_problems(key: str, name: str, shape: TrainShape) -> list[Problem]:
+    if shape.shaft_of(name) is not None:
+        return []
+    known = [shaft for shaft in shape.shafts if shaft != HOUSING]
+    members = [member for names in shape.shafts.values() for member in names]
+    remedy = did_you_mean(name, dict.fromkeys([*known, *members]))
+    remedy = remedy or f"Known are: {', '.join(known)}."
+    return [Problem(key, written(name), "is no shaft and no member of a set.", remedy)]
+
+
+def _state_choice(train: TrainCase) -> list[Problem]:
+    name, known = train.operation.state, list(train.states)
+    key = "operation.state"
+    if name is None and known:
+        allowed = f"is missing; it must be one of {', '.join(known)}."
+        return [Problem(key, "", allowed, f'Write state = "{known[0]}".')]
+    if name is not None and name not in known:
+        if not known:
+            allowed = "is no state: the train has none."
+            return [Problem(key, written(name), allowed, "Leave it out, or add [states.NAME].")]
+        remedy = did_you_mean(name, known) or f"Known are: {', '.join(known)}."
+        return [Problem(key, written(name), "is no state of the train.", remedy)]
+    return []
+
+
+def _ends_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]:
+    """Input and output must be two shafts that can turn."""
+    operation = train.operation
+    ends = {key: shape.shaft_of(getattr(operation, key)) for key in ("input", "output")}
+    groups = [{shape.shaft_of(name) for name in group} for group in train.state.joined]
+    if ends["input"] == ends["output"]:
+        allowed = "is the input shaft too."
+        remedy = "Name another shaft; a train passes power from one shaft to another."
+        yield Problem("operation.output", written(operation.output), allowed, remedy)
+    held = shape.held(train.state)
+    for key, shaft in ends.items():
+        by_clutch = any(shaft in group and group & set(held) for group in groups)
+        if shaft == HOUSING or shaft in held or by_clutch:
+            allowed = "stands still, as the housing does."
+            if shaft != HOUSING:
+                allowed = f"is held by a brake in {_state_words(train)}."
+            yield Problem(
+                f"operation.{key}",
+                written(getattr(operation, key)),
+                allowed,
+                "Name a shaft that turns, or release it.",
+            )
+    given = {"speeds": operation.speeds, "torques": operation.torques}
+    for key, values in given.items():
+        for name in values:
+            shaft = shape.shaft_of(name)
+            taken = {ends["input"]: "the input", ends["output"]: "the output"}
+            if key == "speeds":
+                taken |= dict.fromkeys(held, "held") | {HOUSING: "held"}
+                taken.pop(ends["output"], None)
+            if shaft in taken:
+                allowed = f"cannot be given: this shaft is {taken[shaft]}."
+                yield Problem(f"operation.{key}.{name}", "", allowed, "Leave it out.")
+
+
+def _freedom_problems(train: TrainCase, shape: TrainShape) -> list[Problem]:
+    """The given speeds must determine all others, and the input must be able to turn."""
+    machine = shape.machine(train.state)
+    driven = shape.shaft_of(train.operation.input) or ""
+    held = shape.held(train.state)
+    others = [*held, *(shape.shaft_of(name) or "" for name in train.operation.speeds)]
+    found = freedom(machine, driven, others)
+    key = "operation.state" if train.states else "shafts"
+    shown = written(train.operation.state) if train.states else ""
+    problems = []
+    if found.blocked:
+        means = _means(train.state, held, train.operation.speeds)
+        problems.append(
+            Problem(
+                key,
+                shown,
+                f"blocks the train: the input shaft {driven} cannot turn"
+                + (f" with {means}." if means else "."),
+                "Release one of these." if means else "Check the shafts: they join too much.",
+            )
+        )
+    if found.loose:
+        names = ", ".join(found.loose)
+        freedoms = found.freedoms
+        word = "one" if freedoms == 1 else str(freedoms)
+        problems.append(
+            Problem(
+                key,
+                shown,
+                f"leaves {word} degree{'s' if freedoms > 1 else ''} of freedom open: the speed of "
+                f"{names} is not determined.",
+                f"Brake or couple {word} of these shafts more (fixed, joined), or give "
+                f"{word} of them a speed in [operation.speeds].",
+            )
+        )
+    return problems
+
+
+def _state_words(train: TrainCase) -> str:
+    name = train.operation.state
+    return "this train" if name is None else f"state {name}"
+
+
+def _means(state: StateTable, held: Sequence[str], speeds: Mapping[str, float]) -> str:
+    parts = []
+    if held:
+        parts.append(f"{', '.join(held)} held")
+    if state.joined:
+        parts.append(f"{', '.join('+'.join(group) for group in state.joined)} joined")
+    if speeds:
+        parts.append(f"the speed of {', '.join(speeds)} given")
+    return " and ".join(parts)

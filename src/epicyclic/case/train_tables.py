@@ -1,0 +1,294 @@
+"""Tables of a case file on trains: sets, shafts, states, operation."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from pydantic import BeforeValidator, Field
+
+from epicyclic.case.gear_tables import Gears, GearTable, MeshTable, PairGear, Planet, Ring
+from epicyclic.case.model_tables import (
+    GearPairLosses,
+    GearPairModels,
+    LoadSharing,
+    LossOption,
+    Numerics,
+    PlanetaryLosses,
+    PlanetaryModels,
+)
+from epicyclic.case.part_tables import Carrier, PlanetBearing, ThrustBearing
+from epicyclic.case.schema import Table
+from epicyclic.units import (
+    Angle,
+    HelixAngle,
+    Length,
+    Mass,
+    Number,
+    Quantity,
+    RotationalSpeed,
+    Temperature,
+    Torque,
+)
+
+__all__ = [
+    "GivenListedSet",
+    "GivenPair",
+    "GivenPlanetarySet",
+    "ListedGear",
+    "ListedSet",
+    "PairSet",
+    "PlanetarySet",
+    "Position",
+    "SetTable",
+    "SharedGears",
+    "StateTable",
+    "Teeth",
+    "TrainOperation",
+]
+
+Efficiency = Annotated[Number, Field(gt=0, le=1)]
+_Pressure = Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)]
+Position = Annotated[float, Quantity("a position", "m", "mm", low=-1e5, high=1e5)]
+
+
+class Teeth(Table):
+    """A gear of which only the number of teeth matters."""
+
+    teeth: int = Field(ge=5, le=2000, description="Number of teeth.")
+
+
+class GivenPlanet(Table):
+    """The planets of a set of given efficiency."""
+
+    teeth: int | None = Field(
+        default=None, ge=5, le=2000, description="Default: half the difference of ring and sun."
+    )
+    count: int = Field(default=3, ge=1, le=24, description="Number of planets.")
+
+
+class GivenGear(Teeth):
+    """A gear of a pair of given efficiency."""
+
+    internal: bool = Field(default=False, description="true: a ring gear around the pinion.")
+
+
+class GivenListedGear(GivenGear):
+    """A gear of a listed set of given efficiency."""
+
+    body: str | None = Field(
+        default=None, description="Gears with the same body turn together. Default: its own."
+    )
+    planet: bool | None = Field(
+        default=None,
+        description="true: it stands on the carrier. Default: as the meshes and shafts suggest.",
+    )
+
+
+class PlanetarySet(Table):
+    """A planetary set whose losses are computed: the tables of a planetary case."""
+
+    gears: Gears
+    sun: GearTable
+    planet: Planet
+    ring: Ring
+    sun_mesh: MeshTable = MeshTable()
+    ring_mesh: MeshTable = MeshTable()
+    planet_bearing: PlanetBearing | None = None
+    load_sharing: LoadSharing = LoadSharing()
+    carrier: Carrier | None = None
+    thrust_bearing: ThrustBearing | None = None
+    models: PlanetaryModels = PlanetaryModels()
+    numerics: Numerics = Numerics()
+    losses: PlanetaryLosses = PlanetaryLosses()
+
+
+class GivenPlanetarySet(Table):
+    """A planetary set of given efficiency."""
+
+    EXACTLY_ONE = (("efficiency", "mesh_efficiency"),)
+
+    sun: Teeth
+    ring: Teeth
+    planet: GivenPlanet = GivenPlanet()
+    efficiency: Efficiency | None = Field(
+        default=None, description="With the carrier at rest, sun to ring."
+    )
+    mesh_efficiency: Efficiency | None = Field(
+        default=None, description="Of each of the two meshes, with the carrier at rest."
+    )
+
+
+class PairSet(Table):
+    """A gear pair whose losses are computed: the tables of a case of a pair."""
+
+    gears: Gears
+    pinion: GearTable
+    gear: PairGear
+    mesh: MeshTable = MeshTable()
+    direction: Angle | None = Field(
+        default=None,
+        description="From the axis of the pinion to that of the gear, for the reactions of shaft "
+        "bearings. Default: 0 deg.",
+    )
+    models: GearPairModels = GearPairModels()
+    numerics: Numerics = Numerics()
+    losses: GearPairLosses = GearPairLosses()
+
+
+class GivenPair(Table):
+    """A gear pair of given efficiency."""
+
+    pinion: Teeth
+    gear: GivenGear
+    efficiency: Efficiency
+
+
+class ListedGear(PairGear):
+    """A gear of a listed set whose losses are computed."""
+
+    body: str | None = Field(
+        default=None, description="Gears with the same body turn together. Default: its own."
+    )
+    planet: bool | None = Field(
+        default=None,
+        description="true: it stands on the carrier. Default: as the meshes and shafts suggest.",
+    )
+    normal_module: Length | None = Field(default=None, description="Default: of [gears].")
+    transverse_module: Length | None = Field(default=None, description="Default: of [gears].")
+    normal_pressure_angle: _Pressure | None = Field(
+        default=None, description="Default: of [gears]."
+    )
+    helix_angle: HelixAngle | None = Field(default=None, description="Default: of [gears].")
+    hand: int | None = Field(
+        default=None,
+        ge=-1,
+        le=1,
+        description="Hand of the helix: 1 right, -1 left. Default: the first gear right, the "
+        "others as their mates and bodies demand.",
+    )
+    mass: Mass | None = Field(
+        default=None,
+        description="Of one planet with its rollers, at one of the gears of its body. If given, "
+        "its centrifugal force loads the planet bearing.",
+    )
+    axial_position: Position | None = Field(
+        default=None,
+        description="Of the middle of its face on its body. Default: gears of one body side by "
+        "side, in their order.",
+    )
+
+
+class SharedGears(Table):
+    """What all gears of a listed set share; below it the file has one table for each gear."""
+
+    normal_module: Length | None = Field(default=None, description="m_n.")
+    transverse_module: Length | None = Field(default=None, description="m_t = m_n/cos(beta).")
+    normal_pressure_angle: _Pressure | None = Field(
+        default=None, description="alpha_n at the reference circle."
+    )
+    transverse_pressure_angle: _Pressure | None = Field(
+        default=None, description="alpha_t at the reference circle."
+    )
+    helix_angle: HelixAngle | None = Field(
+        default=None, description="beta at the reference circle, magnitude."
+    )
+    center_distance: Length | None = Field(default=None, description="Of every mesh.")
+    addendum_coefficient: Number = Gears.model_fields["addendum_coefficient"]
+    dedendum_coefficient: Number = Gears.model_fields["dedendum_coefficient"]
+
+
+class ListedMesh(MeshTable):
+    """What belongs to one mesh of a listed set, ``[sets.NAME.mesh.GEAR-GEAR]``."""
+
+    center_distance: Length | None = Field(default=None, description="Default: of [gears].")
+
+
+class GivenMesh(Table):
+    """One mesh of a listed set of given efficiency, ``[sets.NAME.mesh.GEAR-GEAR]``."""
+
+    efficiency: Efficiency = Field(description="With the carrier at rest.")
+
+
+MeshPair = tuple[str, str]
+
+
+class ListedSet(Table):
+    """A set whose gears and meshes are listed, with computed losses."""
+
+    planets: int | None = Field(
+        default=None, ge=1, le=24, description="Number of planets of each kind; none: fixed axes."
+    )
+    meshes: tuple[MeshPair, ...] = Field(min_length=1, description="Pairs of gears.")
+    gears: SharedGears = SharedGears()
+    members: dict[str, ListedGear]
+    mesh: dict[str, ListedMesh] = Field(default={})
+    planet_bearing: PlanetBearing | None = Field(
+        default=None, description="Of every planet that planet_bearings does not name."
+    )
+    planet_bearings: dict[str, PlanetBearing] = Field(
+        default={}, description="By the body of the planet."
+    )
+    load_sharing: LoadSharing = LoadSharing()
+    carrier: Carrier | None = None
+    models: PlanetaryModels = PlanetaryModels()
+    numerics: Numerics = Numerics()
+    losses: dict[str, LossOption] = Field(default={})
+
+
+class GivenListedSet(Table):
+    """A set whose gears and meshes are listed, with given efficiencies."""
+
+    planets: int | None = Field(
+        default=None, ge=1, le=24, description="Number of planets of each kind; none: fixed axes."
+    )
+    meshes: tuple[MeshPair, ...] = Field(min_length=1, description="Pairs of gears.")
+    members: dict[str, GivenListedGear]
+    mesh_efficiency: Efficiency = Field(description="Of every mesh, with the carrier at rest.")
+    mesh: dict[str, GivenMesh] = Field(default={})
+
+
+SetTable = PlanetarySet | PairSet | ListedSet | GivenPlanetarySet | GivenPair | GivenListedSet
+
+
+class StateTable(Table):
+    """What brakes and clutches make of a train."""
+
+    fixed: tuple[str, ...] = Field(default=(), description="Shafts that brakes hold.")
+    joined: tuple[tuple[str, ...], ...] = Field(
+        default=(), description="Groups of shafts that clutches join."
+    )
+
+
+def _state_name(value: object) -> object:
+    """The name of a state, which may be a bare number."""
+    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+StateName = Annotated[str, BeforeValidator(_state_name)]
+
+
+class TrainOperation(Table):
+    """How the train runs."""
+
+    STAND_INS: ClassVar[dict[str, object]] = {
+        "torque": "0 N*m",
+        "speed": "0 rpm",
+        "oil_inlet_temperature": None,
+    }
+
+    state: StateName | None = Field(default=None, description="One of [states].")
+    input: str = Field(description="The shaft to which torque and speed belong.")
+    output: str = Field(description="The shaft whose torque balances.")
+    torque: Torque = Field(
+        description="On the input shaft; negative = coasting, power flows back through it."
+    )
+    speed: RotationalSpeed = Field(description="Of the input shaft.")
+    oil_inlet_temperature: Temperature | None = Field(
+        default=None, description="Oil temperature at all contacts; needed for computed losses."
+    )
+    speeds: dict[str, RotationalSpeed] = Field(
+        default={}, description="Of further driven shafts, if the train has more freedom."
+    )
+    torques: dict[str, Torque] = Field(
+        default={}, description="From outside on further shafts, such as a power take-off."
+    )

@@ -1,0 +1,137 @@
+"""What an element of a gearbox sees, and what it answers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol
+
+from epicyclic.elements.fluids import Fluids
+from epicyclic.losses.shaft_bearing import BearingLoad
+from epicyclic.losses.validity import ValidityFlag
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+__all__ = [
+    "HOUSING",
+    "LOAD_DEPENDENT",
+    "LOAD_INDEPENDENT",
+    "OIL",
+    "Element",
+    "ElementResult",
+    "Loss",
+    "State",
+]
+
+LOAD_DEPENDENT = "load-dependent"
+LOAD_INDEPENDENT = "load-independent"
+HOUSING = "housing"
+"""The body that stands still."""
+OIL = "oil"
+"""The thermal node of the oil around the gears."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """What an element sees of the machine.
+
+    Attributes
+    ----------
+    speeds : mapping of str to float
+        Of every body, positive in one common sense; that of `HOUSING` is 0. [rad/s]
+    torques : mapping of str to float
+        That each mesh takes up at its first gear, by the key of the mesh; all its planets together.
+        Torque times speed of that gear against the carrier is the rolling power. [N m]
+    forces : mapping of str to BearingLoad
+        On each bearing of a shaft, by the key of its element.
+    fluids : Fluids
+        Oil and mixture with air.
+    lossless : bool
+        True if no loss has been taken from the torques yet.
+    """
+
+    speeds: Mapping[str, float]
+    torques: Mapping[str, float]
+    forces: Mapping[str, BearingLoad]
+    fluids: Fluids
+    lossless: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """Power that an element loses, or why it loses none.
+
+    Attributes
+    ----------
+    group : str
+        `LOAD_DEPENDENT` or `LOAD_INDEPENDENT`.
+    watts : float
+        Never negative. [W]
+    method, source : str
+        The model and where it is printed.
+    left_out : str
+        Why there is no such loss; empty if there is.
+    between : tuple of str
+        The two bodies whose relative motion the loss brakes.
+    mesh : str
+        Key of the mesh whose power the loss is a share of; empty for friction between two bodies.
+    factor : float
+        The user's factor, which `watts` contain. [1]
+    node : str
+        Where the heat arises.
+    """
+
+    group: str
+    watts: float = 0.0
+    method: str = ""
+    source: str = ""
+    left_out: str = ""
+    between: tuple[str, str] = (HOUSING, HOUSING)
+    mesh: str = ""
+    factor: float = 1.0
+    node: str = OIL
+
+
+@dataclass(frozen=True, slots=True)
+class ElementResult:
+    """What an element answers to a state.
+
+    Attributes
+    ----------
+    losses : mapping of str to Loss
+        By the last part of their keys, ``"sun_mesh_sliding"``, ``"friction"``.
+    figures : mapping of str to dataclass
+        Labelled numbers for the user, by what they describe: ``"sun_mesh"``.
+    flags : tuple of ValidityFlag
+        Models used outside their ranges.
+    notes : tuple of str
+        What else the user must know.
+    """
+
+    losses: Mapping[str, Loss]
+    figures: Mapping[str, DataclassInstance] = field(default_factory=dict[str, Any])
+    flags: tuple[ValidityFlag, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+class Element(Protocol):
+    """Something that loses power."""
+
+    @property
+    def key(self) -> str:
+        """First part of the keys of its losses; empty for those of a single gear set."""
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """Names of its losses, in the order in which they are shown."""
+
+    @property
+    def figure_types(self) -> tuple[tuple[str, type[DataclassInstance]], ...]:
+        """Names and types of its figures."""
+
+    def loads(self, state: State) -> Mapping[str, float]:
+        """What of a state it depends on beside the speeds: loads in one unit, by their names."""
+
+    def evaluate(self, state: State) -> ElementResult:
+        """Losses, figures and flags in a state."""

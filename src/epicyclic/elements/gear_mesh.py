@@ -1,0 +1,313 @@
+"""Two gears in mesh: load along the contact lines, sliding, rolling and pocketing loss."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.elasticity.loaded_mesh import LoadedMesh, load_mesh_elastically
+from epicyclic.elasticity.mesh_compliance import GearBody
+from epicyclic.elements.base import LOAD_DEPENDENT, LOAD_INDEPENDENT, Loss
+from epicyclic.elements.figures import MeshFigures
+from epicyclic.elements.fluids import Fluids
+from epicyclic.elements.pocket_flow import (
+    POCKETING_SOURCE,
+    MeshFlow,
+    PocketSettings,
+    pocket_notes,
+    pocketing_method,
+    stored_note,
+)
+from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.micro_geometry import FlankDeviations
+from epicyclic.geometry.tools import Tool
+from epicyclic.losses.contact import Flanks, MeshContact, mesh_contact
+from epicyclic.losses.direct import EhlDirect
+from epicyclic.losses.friction import FrictionModel
+from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS, LineLoads, MeshLoad
+from epicyclic.losses.mesh import MeshLoss, local_loss, loss_factor_loss, ohlendorf_loss_factor
+from epicyclic.losses.rolling import RollingModel
+from epicyclic.losses.validity import ValidityFlag
+from epicyclic.lubricant.properties import OilState
+from epicyclic.pocketing.similarity import FlowFigures
+
+__all__ = [
+    "GearMesh",
+    "MeshDuty",
+    "MeshModels",
+    "MeshOutcome",
+    "contact_under",
+    "distribute_load",
+    "elastic_loads",
+    "load_mesh",
+    "solve_mesh",
+]
+
+FloatArray = NDArray[np.float64]
+
+PEAK_SHARE = 0.01
+"""Part of the contact that the largest line load and pressure of a mesh leave out. [1]"""
+OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
+
+
+@dataclass(frozen=True, slots=True)
+class MeshModels:
+    """How the losses of a mesh are computed.
+
+    Attributes
+    ----------
+    friction : FrictionModel
+    rolling : RollingModel
+    by_loss_factor : bool
+        True for mean friction times Ohlendorf's loss factor, without rolling loss.
+    load_distribution : str
+        A key of `LOAD_DISTRIBUTIONS`.
+    positions, segments : int
+        Resolution: mesh positions, segments of a contact line.
+    pockets : PocketSettings
+    """
+
+    friction: FrictionModel
+    rolling: RollingModel
+    by_loss_factor: bool
+    load_distribution: str
+    positions: int
+    segments: int
+    pockets: PocketSettings
+
+
+@dataclass(frozen=True, slots=True)
+class GearMesh:
+    """Two gears in mesh, each on a body, seen from a carrier.
+
+    Attributes
+    ----------
+    key : str
+        ``"sun_mesh"``: first word of its losses.
+    mesh : Mesh
+    bodies : tuple of str
+        The bodies of gear 1 and gear 2.
+    tools : tuple of Tool
+        The tools that cut both gears.
+    roundings : tuple of float or None
+        Tip rounding of both tools, where stated. [m]
+    flanks : Flanks
+        Roughness of both flanks, equivalent modulus.
+    solids : tuple of GearBody
+        What makes both gears yield.
+    deviations : FlankDeviations
+        Micro-geometry of both flanks, and misalignment.
+    models : MeshModels
+    """
+
+    key: str
+    mesh: Mesh
+    bodies: tuple[str, str]
+    tools: tuple[Tool, Tool]
+    roundings: tuple[float | None, float | None]
+    flanks: Flanks
+    solids: tuple[GearBody, GearBody]
+    deviations: FlankDeviations
+    models: MeshModels
+
+
+@dataclass(frozen=True, slots=True)
+class MeshDuty:
+    """A mesh and what it has to do, relative to the carrier, for one planet.
+
+    Attributes
+    ----------
+    gears : GearMesh
+    torque1 : float
+        That gear 1 brings into the mesh. [N m]
+    speed1 : float
+        Of gear 1 against the carrier. [rad/s]
+    drives1 : bool
+        True if power flows from gear 1 to gear 2 or no power flows.
+    """
+
+    gears: GearMesh
+    torque1: float
+    speed1: float
+    drives1: bool
+
+    @property
+    def key(self) -> str:
+        """First word of the losses of the mesh."""
+        return self.gears.key
+
+    @property
+    def mesh(self) -> Mesh:
+        """Its geometry."""
+        return self.gears.mesh
+
+    @property
+    def tools(self) -> tuple[Tool, Tool]:
+        """The tools that cut both gears."""
+        return self.gears.tools
+
+    @property
+    def models(self) -> MeshModels:
+        """How its losses are computed."""
+        return self.gears.models
+
+    @property
+    def misalignment(self) -> float:
+        """F_beta_x. [m]"""
+        return self.gears.deviations.misalignment
+
+    @property
+    def force(self) -> float:
+        """Along the transverse line of action. Theory (D1). [N]"""
+        return abs(self.torque1) / self.mesh.gear1.base_radius
+
+    def misaligned(self, by: float) -> MeshDuty:
+        """The same with a further misalignment in metres."""
+        deviations = self.gears.deviations
+        tilted = replace(deviations, misalignment=deviations.misalignment + by)
+        return replace(self, gears=replace(self.gears, deviations=tilted))
+
+
+@dataclass(frozen=True, slots=True)
+class MeshOutcome:
+    """Losses, figures and flags of one mesh."""
+
+    losses: dict[str, Loss]
+    figures: MeshFigures
+    flags: tuple[ValidityFlag, ...]
+    notes: tuple[str, ...]
+
+
+def distribute_load(duty: MeshDuty) -> LineLoads:
+    """Contact lines of a mesh and the load on them under the torque of its duty."""
+    models = duty.models
+    distribution = LOAD_DISTRIBUTIONS[models.load_distribution]
+    load = MeshLoad(duty.mesh, duty.force, duty.gears.solids, duty.gears.deviations)
+    return distribution.distribute(load, models.positions, models.segments)
+
+
+def elastic_loads(duty: MeshDuty) -> LoadedMesh:
+    """The mesh under the torque of its duty with elastic teeth, whatever distributes the load."""
+    return load_mesh_elastically(
+        duty.mesh,
+        *duty.gears.solids,
+        duty.models.positions,
+        duty.models.segments,
+        duty.force,
+        duty.gears.deviations,
+    )
+
+
+def load_mesh(duty: MeshDuty, oil: OilState) -> MeshContact | None:
+    """Conditions along the contact lines; None without load or motion."""
+    if duty.torque1 == 0 or duty.speed1 == 0:
+        return None
+    return contact_under(duty, distribute_load(duty), oil)
+
+
+def contact_under(duty: MeshDuty, loads: LineLoads, oil: OilState) -> MeshContact:
+    """Conditions along the contact lines under `loads`, at standstill too."""
+    return mesh_contact(
+        duty.mesh,
+        loads.lines,
+        loads.line_load,
+        force=duty.force,
+        speed1=abs(duty.speed1),
+        oil=oil,
+        flanks=duty.gears.flanks,
+    )
+
+
+def solve_mesh(duty: MeshDuty, fluids: Fluids, flow: MeshFlow, count: int) -> MeshOutcome:
+    """Losses and figures of one mesh, `count` of which work in parallel."""
+    friction, rolling = duty.models.friction, duty.models.rolling
+    loads = distribute_load(duty) if duty.torque1 != 0 and duty.speed1 != 0 else None
+    contact = None if loads is None else contact_under(duty, loads, fluids.oil)
+    if contact is None:
+        loss = MeshLoss(0.0, 0.0, math.nan)
+    elif duty.models.by_loss_factor:
+        loss = loss_factor_loss(contact, friction)
+    else:
+        loss = local_loss(contact, friction, rolling)
+    method, source = friction.title, friction.source
+    rolling_loss = Loss(LOAD_DEPENDENT, count * loss.rolling, rolling.title, rolling.source)
+    if duty.models.by_loss_factor:
+        method, source = f"{method} times the loss factor", f"{source}; {OHLENDORF_SOURCE}"
+        rolling_loss = Loss(LOAD_DEPENDENT, left_out="the loss-factor method has no rolling loss")
+    losses = {
+        f"{duty.key}_sliding": Loss(LOAD_DEPENDENT, count * loss.sliding, method, source),
+        f"{duty.key}_rolling": rolling_loss,
+        f"{duty.key}_pocketing": _pocketing(duty.models.pockets, flow, count),
+    }
+    elastic = None if loads is None else loads.elastic
+    figures = _mesh_figures(duty, contact, loss.mean_friction, elastic, flow.figures)
+    notes = pocket_notes(duty.mesh, flow.figures, fluids.pressure)
+    notes += stored_note(duty.models.pockets, duty.mesh, flow.figures)
+    if contact is not None and isinstance(friction, EhlDirect):
+        notes += friction.remarks(contact)
+    return MeshOutcome(losses, figures, loss.flags, notes)
+
+
+def _pocketing(settings: PocketSettings, flow: MeshFlow, count: int) -> Loss:
+    """Pocketing loss of `count` meshes."""
+    if flow.left_out:
+        return Loss(LOAD_INDEPENDENT, left_out=flow.left_out)
+    watts = 0.0 if flow.figures is None else count * flow.figures.power
+    return Loss(
+        LOAD_INDEPENDENT, watts, pocketing_method(settings.model, flow.figures), POCKETING_SOURCE
+    )
+
+
+def _largest(values: FloatArray, weight: FloatArray) -> float:
+    """The value that `PEAK_SHARE` of the contact exceeds. Theory (D5)."""
+    order = np.argsort(values)
+    below = np.cumsum(weight[order])
+    return float(values[order][np.searchsorted(below, (1 - PEAK_SHARE) * below[-1])])
+
+
+def _mesh_figures(
+    duty: MeshDuty,
+    contact: MeshContact | None,
+    friction_mean: float,
+    elastic: LoadedMesh | None,
+    flow: FlowFigures | None,
+) -> MeshFigures:
+    mesh = duty.mesh
+    speed1 = abs(duty.speed1)
+    sliding = max(
+        abs(speed1 * rho1 - speed1 / mesh.ratio * mesh.curvature2(rho1))
+        for rho1 in (mesh.path_start, mesh.path_end)
+    )
+    return MeshFigures(
+        pressure_angle=mesh.operating_pressure_angle,
+        transverse_contact_ratio=mesh.transverse_contact_ratio,
+        overlap_ratio=mesh.overlap_ratio,
+        backlash=mesh.backlash,
+        misalignment=duty.misalignment,
+        pitch_line_speed=speed1 * mesh.operating_radius1,
+        sliding_speed_max=sliding,
+        line_load_max=(
+            math.nan if contact is None else _largest(contact.line_load, contact.weight)
+        ),
+        hertz_pressure_max=(
+            math.nan if contact is None else _largest(contact.hertz_pressure, contact.weight)
+        ),
+        contact_share=(
+            math.nan if contact is None else float(contact.weight.sum()) / mesh.mean_contact_length
+        ),
+        film_ratio_min=math.nan if contact is None else float(contact.film_ratio.min()),
+        film_ratio_max=math.nan if contact is None else float(contact.film_ratio.max()),
+        friction_mean=friction_mean,
+        loss_factor=ohlendorf_loss_factor(mesh),
+        transmission_error_range=math.nan if elastic is None else elastic.transmission_error_range,
+        mesh_stiffness=math.nan if elastic is None else elastic.mean(elastic.tangent_stiffness),
+        pocket_pressure_max=math.nan if flow is None else flow.pressure_max,
+        pocket_pressure_min=math.nan if flow is None else flow.pressure_min,
+        pocket_speed_max=math.nan if flow is None else flow.speed_max,
+        pocket_power_difference=math.nan if flow is None else flow.difference,
+        pocket_interpolation_error=math.nan if flow is None else flow.error,
+        contact=contact,
+    )

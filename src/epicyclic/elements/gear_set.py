@@ -1,0 +1,399 @@
+"""A set of gears around one carrier, or a pair in the housing: meshes, planets, bearings, discs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from epicyclic.elements.base import HOUSING, LOAD_INDEPENDENT, ElementResult, Loss, State
+from epicyclic.elements.disc import Disc, ThrustBearing, disc_loss, thrust_loss
+from epicyclic.elements.figures import BearingFigures, MeshFigures
+from epicyclic.elements.gear_mesh import GearMesh, MeshDuty, solve_mesh
+from epicyclic.elements.load_sharing import LoadSharing, planet_shares
+from epicyclic.elements.planet_bearing import PlanetBearing, missing_bearing, solve_bearing
+from epicyclic.elements.planet_load import PlanetContact, PlanetLoad, planet_load, tilt_planet
+from epicyclic.elements.pocket_flow import MeshFlow, mesh_flows
+from epicyclic.losses.validity import ModelUse, ValidityFlag
+
+__all__ = ["GearSet", "GearSetResult", "LossChoice", "Planet", "PlanetMesh", "Reference"]
+
+ROUNDING = 1e-12
+"""Torques as small as this, relatively, are the rounding of a difference. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class LossChoice:
+    """What becomes of one loss.
+
+    Attributes
+    ----------
+    include : bool
+    factor : float
+        [1]
+    """
+
+    include: bool = True
+    factor: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """The body whose torque states the load of a set, without the losses of that set.
+
+    The losses inside the set act between two other bodies, so that the torque of this one and the
+    loads of the meshes stay in the ratio of the lossless set. Theory (K5).
+
+    Attributes
+    ----------
+    body : str
+    levers : mapping of str to float
+        Torque at the first gear of each mesh over the torque of the body. [1]
+    between : tuple of str
+        The bodies between which the losses act.
+    """
+
+    body: str
+    levers: Mapping[str, float]
+    between: tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetMesh:
+    """How a mesh stands to a planet. Attributes as of `PlanetContact`, the mesh by its key."""
+
+    mesh: str
+    member: int
+    outward: tuple[float, float]
+    hand: int = 1
+    position: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Planet:
+    """The planets of one kind: a body that turns on a pin of the carrier.
+
+    Attributes
+    ----------
+    key : str
+        First word of the losses of its bearing: ``"planet_bearing"``.
+    body : str
+    pin_radius : float
+        From the axis of the set to that of the planet. [m]
+    meshes : tuple of PlanetMesh
+    mass : float or None
+        Of one planet; None leaves its centrifugal force out. [kg]
+    bearing : PlanetBearing or None
+    no_bearing : str
+        Why there is none.
+    tilts : bool
+        True if the planet tilts in its bearing and misaligns its meshes.
+    """
+
+    key: str
+    body: str
+    pin_radius: float
+    meshes: tuple[PlanetMesh, ...]
+    mass: float | None = None
+    bearing: PlanetBearing | None = None
+    no_bearing: str = ""
+    tilts: bool = False
+
+    def load(
+        self, duties: Mapping[str, MeshDuty], carrier_speed: float
+    ) -> tuple[Sequence[MeshDuty], PlanetLoad]:
+        """Duties of its meshes, misaligned if the planet tilts, and the load on its bearing."""
+        contacts = self._contacts(duties)
+        # Theory (B3)
+        centrifugal = 0.0 if self.mass is None else self.mass * self.pin_radius * carrier_speed**2
+        if not self.tilts or self.bearing is None or contacts[0].duty.torque1 == 0:
+            load = planet_load(contacts, centrifugal)
+        else:
+            contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
+        return [contact.duty for contact in contacts], load
+
+    def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:
+        contacts = []
+        for own in self.meshes:
+            duty = duties[own.mesh]
+            # the mesh turns both of its external gears against the torque that gear 1 brings in
+            sense = -1 if duty.torque1 > 0 else 1
+            contacts.append(
+                PlanetContact(duty, own.member, own.outward, sense, own.hand, own.position)
+            )
+        if any(contact.position for contact in contacts):
+            return contacts
+        # one plane: turning t and y round changes nothing
+        first = contacts[0].sense
+        return [replace(contact, sense=first * contact.sense) for contact in contacts]
+
+
+@dataclass(frozen=True, slots=True)
+class GearSetResult(ElementResult):
+    """Losses, figures and flags of a set; figures of meshes and bearings of its most loaded planet.
+
+    Attributes
+    ----------
+    shares : tuple of float
+        Share of the load that each planet carries; empty without planets. [1]
+    """
+
+    shares: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Branch:
+    """Losses of all planets that carry one and the same share, and the figures of one of them."""
+
+    losses: dict[str, Loss]
+    figures: dict[str, Any]
+    flags: tuple[ValidityFlag, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class GearSet:
+    """Meshes seen from one carrier, with planets, their bearings, discs and thrust bearings.
+
+    Attributes
+    ----------
+    key : str
+        First part of its losses; empty for a single set.
+    carrier : str
+        Body from which the meshes are seen; `HOUSING` for a pair.
+    meshes : tuple of GearMesh
+    planets : tuple of Planet
+        Kinds of planets; empty for a pair.
+    sharing : LoadSharing or None
+        None without planets.
+    discs : mapping of str to tuple of Disc
+        By the name of their loss, ``"sun_drag"``.
+    missing : mapping of str to str
+        Losses that the set does not have, and why.
+    thrust : ThrustBearing or None
+    choices : mapping of str to LossChoice
+        Every loss of the set, in the order in which they are shown.
+    reference : Reference or None
+        None: each mesh carries what the losses leave, and its losses act on its own bodies.
+    """
+
+    key: str
+    carrier: str
+    meshes: tuple[GearMesh, ...]
+    planets: tuple[Planet, ...]
+    sharing: LoadSharing | None
+    discs: Mapping[str, tuple[Disc, ...]]
+    missing: Mapping[str, str]
+    thrust: ThrustBearing | None
+    choices: Mapping[str, LossChoice]
+    reference: Reference | None = None
+
+    def evaluate(self, state: State) -> GearSetResult:
+        """Losses, figures and flags in a state."""
+        drags, drag_flags = self._drags(state)
+        torques = self._torques(state, drags)
+        shares = self.shares(state, torques)
+        flows = mesh_flows(self.duties(state, torques, 1 / self.count), state.fluids)
+        branches = [
+            self._branch(state, torques, share, shares.count(share), flows)
+            for share in sorted(set(shares), reverse=True)
+        ]
+        found = drags | _summed(branches)
+        losses = {name: self._chosen(name, found[name], state) for name in self.choices}
+        first = branches[0]
+        return GearSetResult(
+            losses=losses,
+            figures=first.figures,
+            flags=_widest(branches) + drag_flags,
+            notes=first.notes,
+            shares=shares if self.planets else (),
+        )
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """Names of its losses, in the order in which they are shown."""
+        return tuple(self.choices)
+
+    @property
+    def figure_types(self) -> tuple[tuple[str, type[Any]], ...]:
+        """Names and types of the figures of its meshes and planet bearings."""
+        return (
+            *((mesh.key, MeshFigures) for mesh in self.meshes),
+            *((planet.key, BearingFigures) for planet in self.planets if planet.bearing),
+        )
+
+    def loads(self, state: State) -> Mapping[str, float]:
+        """Torque at the first gear of each mesh, all planets together. [N m]"""
+        return self._torques(state, self._drags(state)[0])
+
+    @property
+    def count(self) -> int:
+        """Number of planets of each kind, which work in parallel."""
+        return 1 if self.sharing is None else self.sharing.count
+
+    def loaded_duties(self, state: State) -> tuple[MeshDuty, ...]:
+        """The meshes of the planet that carries most, misaligned if it tilts."""
+        torques = self._torques(state, self._drags(state)[0])
+        share = max(self.shares(state, torques))
+        duties = {duty.key: duty for duty in self.duties(state, torques, share)}
+        for planet in self.planets:
+            tilted, _ = planet.load(duties, state.speeds[self.carrier])
+            duties |= {duty.key: duty for duty in tilted}
+        return tuple(duties.values())
+
+    def mean_duties(self, state: State) -> tuple[MeshDuty, ...]:
+        """The meshes of a planet that carries its mean share."""
+        torques = self._torques(state, self._drags(state)[0])
+        return self.duties(state, torques, 1 / self.count)
+
+    def mean_loads(self, state: State) -> dict[str, PlanetLoad]:
+        """Load on the bearing of a planet that carries its mean share and does not tilt."""
+        duties = {duty.key: duty for duty in self.mean_duties(state)}
+        speed = state.speeds[self.carrier]
+        return {
+            planet.key: replace(planet, tilts=False).load(duties, speed)[1]
+            for planet in self.planets
+        }
+
+    def duties(
+        self, state: State, torques: Mapping[str, float], share: float
+    ) -> tuple[MeshDuty, ...]:
+        """The meshes of a planet with `share` of the load. Theory (K4)."""
+        carrier = state.speeds[self.carrier]
+        duties = []
+        for mesh in self.meshes:
+            torque, speed = share * torques[mesh.key], state.speeds[mesh.bodies[0]] - carrier
+            duties.append(MeshDuty(mesh, torque, speed, torque * speed >= 0))
+        return tuple(duties)
+
+    def shares(self, state: State, torques: Mapping[str, float]) -> tuple[float, ...]:
+        """The share of the load that each planet carries."""
+        if self.sharing is None:
+            return (1.0,)
+        bearing = self.planets[0].bearing
+        duties = self.duties(state, torques, 1 / self.count)
+        return planet_shares(self.sharing, duties, None if bearing is None else bearing.bearing)
+
+    def _torques(self, state: State, drags: Mapping[str, Loss]) -> dict[str, float]:
+        """Torque at the first gear of each mesh, all planets together."""
+        passed = {mesh.key: state.torques[f"{self.key}.{mesh.key}"] for mesh in self.meshes}
+        if self.reference is None or state.lossless:
+            return passed
+        # the drag of the body itself does not take from the load that its torque states
+        body, speed = self.reference.body, state.speeds[self.reference.body]
+        drag = sum(loss.watts for loss in drags.values() if loss.between == (body, HOUSING))
+        own = drag / speed if speed else 0.0
+        torques = {}
+        for key, torque in passed.items():
+            added = own * self.reference.levers[key]
+            whole = torque + added
+            torques[key] = 0.0 if abs(whole) <= ROUNDING * abs(added) else whole
+        return torques
+
+    def _drags(self, state: State) -> tuple[dict[str, Loss], tuple[ValidityFlag, ...]]:
+        """Losses that do not depend on planets, as the user wants them, where they act."""
+        losses = {
+            name: Loss(LOAD_INDEPENDENT, left_out=reason) for name, reason in self.missing.items()
+        }
+        flags: tuple[ValidityFlag, ...] = ()
+        for name, discs in self.discs.items():
+            losses[name], found = disc_loss(discs, state)
+            flags += found
+        if self.thrust is not None:
+            losses["thrust_bearing_viscous"], found = thrust_loss(self.thrust, state)
+            flags += found
+        return {
+            name: self._placed(_with_choice(loss, self.choices[name]))
+            for name, loss in losses.items()
+        }, flags
+
+    def _branch(
+        self,
+        state: State,
+        torques: Mapping[str, float],
+        share: float,
+        planets: int,
+        flows: Mapping[str, MeshFlow],
+    ) -> _Branch:
+        duties = {duty.key: duty for duty in self.duties(state, torques, share)}
+        bearings = []
+        carrier = state.speeds[self.carrier]
+        for planet in self.planets:
+            tilted, load = planet.load(duties, carrier)
+            duties |= {duty.key: duty for duty in tilted}
+            if planet.bearing is None:
+                bearings.append(missing_bearing(planet.key, planet.no_bearing))
+            else:
+                speed = state.speeds[planet.body] - carrier
+                bearings.append(
+                    solve_bearing(
+                        planet.key, planet.bearing, load, planets, state.fluids.oil, speed
+                    )
+                )
+        meshes = [
+            solve_mesh(duty, state.fluids, flows[duty.key], planets) for duty in duties.values()
+        ]
+        branch = _Branch({}, {}, (), tuple(note for mesh in meshes for note in mesh.notes))
+        losses, figures, flags = branch.losses, branch.figures, branch.flags
+        for planet, bearing in zip(self.planets, bearings, strict=True):
+            losses |= bearing.losses
+            flags += bearing.flags
+            if bearing.figures is not None:
+                figures[planet.key] = bearing.figures
+        for duty, mesh in zip(duties.values(), meshes, strict=True):
+            losses |= mesh.losses
+            flags = mesh.flags + flags
+            figures[duty.key] = mesh.figures
+        return replace(branch, flags=flags)
+
+    def _chosen(self, name: str, loss: Loss, state: State) -> Loss:
+        """One loss with the user's choice, and where it acts."""
+        if name in self.discs or name in self.missing or name == "thrust_bearing_viscous":
+            return loss
+        chosen = _with_choice(loss, self.choices[name])
+        if self.reference is not None:
+            return replace(chosen, between=self.reference.between)
+        for planet in self.planets:
+            if name.startswith(f"{planet.key}_"):
+                return replace(chosen, between=(planet.body, self.carrier))
+        mesh = next(mesh for mesh in self.meshes if name.startswith(f"{mesh.key}_"))
+        if name == f"{mesh.key}_sliding":
+            return replace(chosen, mesh=f"{self.key}.{mesh.key}")
+        driven = mesh.bodies[1] if self._drives(mesh, state) else mesh.bodies[0]
+        return replace(chosen, between=(driven, self.carrier))
+
+    def _placed(self, loss: Loss) -> Loss:
+        """Friction inside the set acts where all its losses do, and so do both discs of a pair."""
+        own_shaft = HOUSING in loss.between and self.carrier != HOUSING
+        if self.reference is None or own_shaft:
+            return loss
+        return replace(loss, between=self.reference.between)
+
+    def _drives(self, mesh: GearMesh, state: State) -> bool:
+        speed = state.speeds[mesh.bodies[0]] - state.speeds[self.carrier]
+        return state.torques[f"{self.key}.{mesh.key}"] * speed >= 0
+
+
+def _with_choice(loss: Loss, choice: LossChoice) -> Loss:
+    """A loss with the user's choice. Theory (P4)."""
+    reason = loss.left_out or ("" if choice.include else "left out by the case")
+    if reason:
+        return Loss(loss.group, left_out=reason)
+    return replace(loss, watts=choice.factor * loss.watts, factor=choice.factor)
+
+
+def _summed(branches: Sequence[_Branch]) -> dict[str, Loss]:
+    """The losses of all planets together."""
+    return {
+        name: replace(loss, watts=sum(branch.losses[name].watts for branch in branches))
+        for name, loss in branches[0].losses.items()
+    }
+
+
+def _widest(branches: Sequence[_Branch]) -> tuple[ValidityFlag, ...]:
+    """For each model and quantity the flag of the most loaded planet that raises one."""
+    flags: dict[tuple[ModelUse, str, str], ValidityFlag] = {}
+    for branch in branches:
+        for flag in branch.flags:
+            flags.setdefault((flag.use, flag.quantity, flag.source), flag)
+    return tuple(flags.values())

@@ -1,0 +1,123 @@
+"""Speeds of all bodies from the constraints of meshes and clutches. Theory (T1), (T2).
+
+Speeds are positive in one common sense of rotation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.elements.base import HOUSING
+from epicyclic.machine.machine import Machine
+
+__all__ = ["Freedom", "freedom", "speeds_of"]
+
+FloatArray = NDArray[np.float64]
+
+SINGULAR = 1e-10
+"""Singular values below this share of the largest count as zero: rows are scaled to length 1."""
+TOGETHER = 1e-12
+"""Speeds that differ by less, relative to the fastest body, are one speed. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Freedom:
+    """What the constraints leave open.
+
+    Attributes
+    ----------
+    blocked : bool
+        True if the input cannot turn.
+    loose : tuple of str
+        Bodies whose speeds the given ones do not determine.
+    freedoms : int
+        Number of further speeds that would determine them. [1]
+    """
+
+    blocked: bool
+    loose: tuple[str, ...]
+    freedoms: int
+
+
+def freedom(machine: Machine, driven: str, given: Sequence[str]) -> Freedom:
+    """What stays open with the speed of `driven`, and of the bodies `given`, known.
+
+    Parameters
+    ----------
+    machine : Machine
+    driven : str
+        The input.
+    given : sequence of str
+        Further bodies of given speed, held ones among them.
+    """
+    bodies = machine.bodies
+    others = _matrix(machine, [body for body in given if body != driven])
+    whole = np.vstack([others, _unit(bodies, driven)])
+    free = _null_space(whole)
+    moves = _null_space(others)
+    blocked = bool(np.abs(moves[bodies.index(driven)]).max(initial=0.0) < SINGULAR)
+    loose = tuple(
+        body for body, row in zip(bodies, free, strict=True) if np.abs(row).max(initial=0.0) > 1e-8
+    )
+    return Freedom(blocked, loose, free.shape[1])
+
+
+def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
+    """Speeds of all bodies, `HOUSING` among them, from `given` ones that determine them. [rad/s]"""
+    bodies = machine.bodies
+    matrix = _matrix(machine, list(given))
+    known = np.zeros(len(matrix))
+    if given:
+        known[-len(given) :] = list(given.values())
+    found, *_ = np.linalg.lstsq(matrix, known, rcond=SINGULAR)
+    # once more on what rounding has left
+    correction, *_ = np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR)
+    speeds = dict(zip(bodies, map(float, found + correction), strict=True))
+    return _joined(speeds | dict(given))
+
+
+def _joined(speeds: Mapping[str, float]) -> dict[str, float]:
+    """`speeds` in which bodies that turn together do so exactly, and still ones stand still."""
+    limit = TOGETHER * max(map(abs, speeds.values()), default=0.0)
+    joined = {HOUSING: 0.0}
+    last = 0.0
+    for body, speed in sorted(speeds.items(), key=lambda item: abs(item[1])):
+        near = [known for known in (last, -last, 0.0) if abs(speed - known) <= limit]
+        joined[body] = near[0] if near else speed
+        last = joined[body]
+    return joined
+
+
+def _matrix(machine: Machine, given: Sequence[str]) -> FloatArray:
+    """Constraints, scaled to length 1, and below them one row for each given speed."""
+    place = {body: index for index, body in enumerate(machine.bodies)}
+    rows = []
+    for constraint in (*machine.rows, *machine.couplings):
+        row = np.zeros(len(place))
+        for body, coefficient in constraint.terms():
+            if body != HOUSING:
+                row[place[body]] += coefficient
+        length = np.linalg.norm(row)
+        rows.append(row / length if length else row)
+    rows += [_unit(machine.bodies, body) for body in given]
+    return np.array(rows).reshape(len(rows), len(place))
+
+
+def _unit(bodies: Sequence[str], body: str) -> FloatArray:
+    row = np.zeros(len(bodies))
+    row[bodies.index(body)] = 1.0
+    return row
+
+
+def _null_space(matrix: FloatArray) -> FloatArray:
+    """Columns that span what the rows of `matrix` leave open."""
+    from scipy.linalg import null_space
+
+    if not len(matrix):
+        return np.eye(matrix.shape[1])
+    space: FloatArray = null_space(matrix, rcond=SINGULAR)
+    return space

@@ -1,0 +1,107 @@
+"""What a machine consists of, and how it is driven."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from epicyclic.elements.base import Element
+from epicyclic.machine.forces import ShaftLayout
+
+__all__ = ["Coupling", "Machine", "MeshRow", "Operation"]
+
+
+@dataclass(frozen=True, slots=True)
+class MeshRow:
+    """Two gears in mesh, each on a body, seen from a carrier.
+
+    Attributes
+    ----------
+    key : str
+        ``"P1.sun_mesh"``.
+    first, second, carrier : str
+        Bodies of gear 1, gear 2 and the carrier; `HOUSING` for axes that stand still.
+    teeth : tuple of float
+        Of gear 1 and gear 2. [1]
+    internal : bool
+        True if gear 2 is a ring gear around gear 1.
+    efficiency : float
+        Given: power that leaves the mesh over power that enters, with the carrier at rest. Losses
+        of elements come on top. [1]
+    """
+
+    key: str
+    first: str
+    second: str
+    carrier: str
+    teeth: tuple[float, float]
+    internal: bool = False
+    efficiency: float = 1.0
+
+    def terms(self, first: float = 1.0, second: float = 1.0) -> tuple[tuple[str, float], ...]:
+        """Bodies with their coefficients in z1 (w1 - wc) + s z2 (w2 - wc) = 0. Theory (T1).
+
+        s = -1 for a ring gear, else 1; `first` and `second` multiply the coefficients of the gears.
+        """
+        one = first * self.teeth[0]
+        two = second * (-self.teeth[1] if self.internal else self.teeth[1])
+        return ((self.first, one), (self.second, two), (self.carrier, -(one + two)))
+
+
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """A closed clutch: two bodies that turn together."""
+
+    key: str
+    first: str
+    second: str
+
+    def terms(self) -> tuple[tuple[str, float], ...]:
+        """Bodies with their coefficients in w1 - w2 = 0."""
+        return ((self.first, 1.0), (self.second, -1.0))
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """How a machine is driven.
+
+    Attributes
+    ----------
+    input, output : str
+        The body of given torque, and the one whose torque balances.
+    torque : float
+        On the input, from outside. [N m]
+    speeds : mapping of str to float
+        Given speeds: of the input, of bodies that are held, of bodies that are driven as well.
+        [rad/s]
+    torques : mapping of str to float
+        Further torques from outside. [N m]
+    """
+
+    input: str
+    output: str
+    torque: float
+    speeds: Mapping[str, float]
+    torques: Mapping[str, float] = field(default_factory=dict[str, float])
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """Bodies, what couples their speeds, and what loses power.
+
+    Attributes
+    ----------
+    bodies : tuple of str
+        All that can turn, without `HOUSING`.
+    rows : tuple of MeshRow
+    couplings : tuple of Coupling
+    elements : tuple of Element
+    layouts : tuple of ShaftLayout
+        Gears and bearings along the shafts whose bearing forces are computed.
+    """
+
+    bodies: tuple[str, ...]
+    rows: tuple[MeshRow, ...]
+    elements: tuple[Element, ...]
+    couplings: tuple[Coupling, ...] = ()
+    layouts: tuple[ShaftLayout, ...] = ()

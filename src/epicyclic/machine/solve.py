@@ -1,0 +1,246 @@
+"""Losses and torques of a machine that agree with each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from epicyclic.elements.base import LOAD_DEPENDENT, ElementResult, Loss, State
+from epicyclic.elements.fluids import Fluids
+from epicyclic.errors import ConvergenceError
+from epicyclic.machine.balance import Balance, Friction, balance, drives_first
+from epicyclic.machine.forces import forces_of
+from epicyclic.machine.kinematics import speeds_of
+from epicyclic.machine.machine import Machine, Operation
+
+__all__ = ["Solution", "lossless_state", "solve_machine"]
+
+AGREEMENT = 1e-10
+"""Relative change of each load from one pass to the next at which torques and losses agree. [1]"""
+ROUNDING = 1e-14
+"""Change, relative to the largest load, that is rounding. [1]"""
+MOST_PASSES = 60
+MOST_BRANCHES = 8
+"""Directions of the rolling power that are tried, near self-locking."""
+MOST_OF_A_MESH = 0.5
+"""Share of the rolling power of a mesh up to which a loss is a share of it, else friction. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """A machine in balance.
+
+    Attributes
+    ----------
+    speeds, torques : mapping of str to float
+        Of every body; a torque is the one from outside. [rad/s], [N m]
+    couplings : mapping of str to float
+        Torque through each clutch. [N m]
+    rolling : mapping of str to float
+        Rolling power of each mesh, positive if its first gear drives. [W]
+    results : mapping of str to ElementResult
+        By the key of the element.
+    given : mapping of str to Loss
+        Losses of the meshes of given efficiency, by the key of the mesh.
+    drivers : tuple of str
+        Bodies that would bring power in without losses.
+    self_locking : bool
+        True if the output must be driven too.
+    unique : bool
+        False if meshes or clutches share a load in more than one possible way.
+    state : State
+        That the elements saw.
+    """
+
+    speeds: Mapping[str, float]
+    torques: Mapping[str, float]
+    couplings: Mapping[str, float]
+    rolling: Mapping[str, float]
+    results: Mapping[str, ElementResult]
+    given: Mapping[str, Loss]
+    drivers: tuple[str, ...]
+    self_locking: bool
+    unique: bool
+    state: State
+
+    @property
+    def loss(self) -> float:
+        """Of all elements and meshes together. [W]"""
+        return sum(loss.watts for loss in self._losses())
+
+    @property
+    def input_power(self) -> float:
+        """Power that enters at the bodies that would drive without losses. Theory (P5). [W]"""
+        return max(0.0, sum(self.torques[body] * self.speeds[body] for body in self.drivers))
+
+    @property
+    def efficiency(self) -> float | None:
+        """Power that leaves over power that enters. Theory (P6), (P7). [1]
+
+        0 if the losses take all of it; None if no power is passed on.
+        """
+        if not self.drivers:
+            return None
+        entering, loss = self.input_power, self.loss
+        return 1 - loss / entering if loss < entering and not self.self_locking else 0.0
+
+    @property
+    def power_ratio(self) -> float | None:
+        """Sum of the rolling powers of all meshes over the power that enters. Theory (T7). [1]"""
+        entering = self.input_power
+        return sum(map(abs, self.rolling.values())) / entering if entering else None
+
+    def _losses(self) -> Iterable[Loss]:
+        for result in self.results.values():
+            yield from result.losses.values()
+        yield from self.given.values()
+
+
+def lossless_state(machine: Machine, operation: Operation, fluids: Fluids) -> State:
+    """Speeds, and torques as without losses: what elements see first."""
+    speeds = speeds_of(machine, operation.speeds)
+    found = _lossless(machine, operation, speeds)
+    forces = forces_of(machine.layouts, found.meshes)
+    return State(speeds, found.meshes, forces, fluids, lossless=True)
+
+
+def _lossless(machine: Machine, operation: Operation, speeds: Mapping[str, float]) -> Balance:
+    ones = {row.key: 1.0 for row in machine.rows}
+    return balance(machine, operation, speeds, dict.fromkeys(ones, True), ones)
+
+
+def solve_machine(machine: Machine, operation: Operation, fluids: Fluids) -> Solution:
+    """Torques and losses that agree.
+
+    Theory (T5), (T6). It starts from the directions of the rolling powers without losses. Near
+    self-locking, losses may turn one of them round: then of the solutions that agree with
+    themselves the one counts whose output torque has the sign of the lossless one. Without such a
+    solution the machine is self-locking: the output must be driven too.
+
+    Raises
+    ------
+    ConvergenceError
+        If losses and torques do not agree after `MOST_PASSES`.
+    """
+    speeds = speeds_of(machine, operation.speeds)
+    lossless = _lossless(machine, operation, speeds)
+    drives = drives_first(lossless.powers, dict.fromkeys(lossless.powers, True))
+    wanted = lossless.torques[operation.output]
+    tried: list[dict[str, bool]] = []
+    agreeing: list[_Pass] = []
+    while drives not in tried and len(tried) < MOST_BRANCHES:
+        tried.append(drives)
+        last = _converged(machine, operation, lossless, speeds, drives, fluids)
+        found = drives_first(last.balance.powers, drives)
+        if found == drives:
+            agreeing.append(last)
+            if last.balance.torques[operation.output] * wanted >= 0:
+                break
+        drives = found
+    chosen = agreeing[-1] if agreeing else last
+    locking = (
+        not agreeing or chosen.balance.torques[operation.output] * wanted < 0
+    ) and lossless.torques[operation.input] * speeds[operation.input] != 0
+    return Solution(
+        speeds=speeds,
+        torques=chosen.balance.torques,
+        couplings=chosen.balance.couplings,
+        rolling=chosen.balance.powers,
+        results=chosen.results,
+        given=_given_losses(machine, chosen.balance),
+        drivers=_drivers(lossless, speeds),
+        self_locking=locking,
+        unique=chosen.balance.unique,
+        state=chosen.state,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Pass:
+    """Torques, and what the elements answer to them."""
+
+    balance: Balance
+    state: State
+    results: Mapping[str, ElementResult]
+
+
+def _converged(
+    machine: Machine,
+    operation: Operation,
+    lossless: Balance,
+    speeds: Mapping[str, float],
+    drives: Mapping[str, bool],
+    fluids: Fluids,
+) -> _Pass:
+    """Torques and losses that agree, with these directions of the rolling powers."""
+    found = balance(
+        machine, operation, speeds, drives, {row.key: row.efficiency for row in machine.rows}
+    )
+    answered: dict[str, Mapping[str, float]] = {}
+    results: dict[str, ElementResult] = {}
+    for number in range(MOST_PASSES):
+        forces = forces_of(machine.layouts, found.meshes)
+        state = State(speeds, found.meshes, forces, fluids, lossless=number == 0)
+        for element in machine.elements:
+            loads = element.loads(state)
+            if element.key not in answered or not _agrees(answered[element.key], loads):
+                results[element.key] = element.evaluate(state)
+                answered[element.key] = loads
+        efficiencies, frictions = _effects(machine, found, results.values())
+        new = balance(machine, operation, speeds, drives, efficiencies, frictions)
+        if _agrees(found.meshes, new.meshes):
+            return _Pass(new, state, results)
+        found = new
+    raise ConvergenceError(
+        f"losses and torques do not agree after {MOST_PASSES} passes: the losses grow with the "
+        "torques that they cause. Choose smaller losses, or give efficiencies."
+    )
+
+
+def _agrees(old: Mapping[str, float], new: Mapping[str, float]) -> bool:
+    largest = max(map(abs, new.values()), default=0.0)
+    return all(
+        abs(load - old[key]) <= AGREEMENT * abs(load) + ROUNDING * largest
+        for key, load in new.items()
+    )
+
+
+def _effects(
+    machine: Machine, found: Balance, results: Iterable[ElementResult]
+) -> tuple[dict[str, float], list[Friction]]:
+    """Efficiencies of the meshes, and friction between bodies, that the losses stand for."""
+    efficiencies = {row.key: row.efficiency for row in machine.rows}
+    frictions = []
+    rows = {row.key: row for row in machine.rows}
+    for result in results:
+        for loss in result.losses.values():
+            power = abs(found.powers.get(loss.mesh, 0.0))
+            if loss.mesh and loss.watts < MOST_OF_A_MESH * power:
+                efficiencies[loss.mesh] -= loss.watts / power
+            elif loss.mesh:
+                row = rows[loss.mesh]
+                frictions.append(Friction((row.second, row.carrier), loss.watts))
+            elif loss.watts:
+                frictions.append(Friction(loss.between, loss.watts))
+    return efficiencies, frictions
+
+
+def _given_losses(machine: Machine, found: Balance) -> dict[str, Loss]:
+    """Losses of the meshes of given efficiency."""
+    return {
+        row.key: Loss(
+            LOAD_DEPENDENT,
+            (1 - row.efficiency) * abs(found.powers[row.key]),
+            "efficiency given by the case",
+            mesh=row.key,
+        )
+        for row in machine.rows
+        if row.efficiency < 1
+    }
+
+
+def _drivers(lossless: Balance, speeds: Mapping[str, float]) -> tuple[str, ...]:
+    """Bodies that would bring power in without losses."""
+    powers = {body: torque * speeds[body] for body, torque in lossless.torques.items()}
+    limit = 1e-12 * max(map(abs, powers.values()), default=0.0)
+    return tuple(body for body, power in powers.items() if power > limit)

@@ -1,0 +1,324 @@
+"""One study in workers, on a cluster and in shards: the same file."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import epicyclic as ep
+from epicyclic.cli.main import main
+from epicyclic.sweeps.journal import Rows
+from epicyclic.sweeps.plan import make_plan
+from epicyclic.sweeps.runner import Runner, share_of
+
+PAIR = (
+    "talbot-2012-pair", "--set", "numerics.pocket_slices=4", "--set", "numerics.pocket_steps=8",
+)  # fmt: skip
+SPEEDS = ("--speed", "0:9000:10 rpm")
+COMMANDS = {
+    "sweep.csv": (
+        "sweep", *PAIR, "--vary", "operation.speed=1000:9000:9 rpm",
+        "--vary", "pinion.teeth=25,26", "--vary", "operation.torque=-20,50 N*m",
+    ),
+    "sweep.nc": (
+        "sweep", *PAIR, "--vary", "operation.speed=1000:4000:4 rpm",
+        "--vary", "lubricant.oil=atf-talbot-2012,iso-vg-100-mineral",
+    ),
+    "map.nc": ("map", *PAIR, *SPEEDS, "--torque=-50:50:3 N*m", "--temperature", "40,90 degC"),
+    "map.vtlm": ("map", *PAIR, *SPEEDS, "--torque=-50:50:3 N*m", "--format", "vecto"),
+    "table.nc": ("pockets-table", *PAIR, "--speed", "9000:11000:3 rpm"),
+    "study": (
+        "study", *PAIR, "--what", "helix-angle,backlash", "--range", "helix-angle=0:20:2 deg",
+        "--range", "backlash=50 um,6 mm", "--level", "face-width=15 mm",
+        "--level", "helix-angle=0 deg", "--level", "speed=5000 rpm", "--picture", "svg",
+    ),
+    "oil": (
+        "oil", "characterise", "atf-talbot-2012", "--size", "16", "--set", "numerics.nodes=128",
+        "--range", "radius=5:6 mm", "--range", "roughness1=0.1:0.2 um",
+        "--range", "roughness2=0.1:0.2 um", "--range", "hertz_pressure=1:2 GPa",
+        "--range", "rolling_speed=8:20 m/s", "--range", "temperature=25:60 degC",
+        "--range", "slide_to_roll_ratio=0.3:1",
+    ),
+}  # fmt: skip
+"""A command of each kind by its output, with points that fail and tables that points share."""
+FOLDERS = {"study": "study", "oil": "simulations"}
+FAILS = ("sweep.csv", "study")
+
+
+@pytest.fixture
+def call(monkeypatch, capsys):
+    """A command in this process: its exit code, and what it printed."""
+
+    def run(*arguments):
+        monkeypatch.setattr("sys.argv", ["epicyclic", *map(str, arguments)])
+        code = 0
+        try:
+            main()
+        except SystemExit as ended:
+            code = ended.code
+        shown = capsys.readouterr()
+        return code, shown.out, shown.err
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """A Dask cluster of two workers in this process."""
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=False, dashboard_address=":0"
+    ) as local:
+        yield local.scheduler_address
+
+
+def content(path):
+    """The bytes of a file, or of all files in a folder, less what names the moment."""
+    if path.is_dir():
+        return {file.name: content(file) for file in path.iterdir() if file.suffix != ".svg"}
+    return path.read_bytes()
+
+
+def files_of(folder, output):
+    beside = folder / output / FOLDERS[output] if output in FOLDERS else folder / output
+    return sorted(beside.parent.glob(f"{beside.name}.shard-*"))
+
+
+@pytest.mark.parametrize("output", COMMANDS)
+def test_workers_a_cluster_and_shards_give_the_same_file(call, cluster, tmp_path, output):
+    command, wanted = COMMANDS[output], 4 if output in FAILS else 0
+    folders = {name: tmp_path / name for name in ("one", "two", "dask", "shards")}
+    for folder in folders.values():
+        folder.mkdir()
+    options = {"one": ("--jobs", "1"), "two": ("--jobs", "2"), "dask": ("--dask", cluster)}
+    for name, how in options.items():
+        code, _, errors = call(*command, *how, "-o", folders[name] / output)
+        assert code == wanted, errors
+    for number in (3, 1, 2):
+        code, printed, errors = call(
+            *command, "--shard", f"{number}/3", "--jobs", "1", "-o", folders["shards"] / output
+        )
+        assert code == 0, errors
+        assert f"shard-{number}-of-3" in printed
+    shards = files_of(folders["shards"], output)
+    assert len(shards) == 3
+    code, _, errors = call("merge", *shards, "-o", folders["shards"] / output)
+    assert code == wanted, errors
+    for path in shards:
+        path.unlink()
+    one = content(folders["one"] / output)
+    for name in ("two", "dask", "shards"):
+        assert content(folders[name] / output) == one, name
+
+
+@pytest.fixture
+def shards(call, tmp_path):
+    """The files of both shards of a sweep."""
+    command = ("sweep", *PAIR, "--vary", "pinion.face_width=10:20:6 mm", "-o", tmp_path / "s.csv")
+    for number in (1, 2):
+        assert call(*command, "--shard", f"{number}/2", "--jobs", "1")[0] == 0
+    return files_of(tmp_path, "s.csv")
+
+
+def test_missing_shards_and_points_are_told(call, tmp_path, shards):
+    code, _, errors = call("merge", shards[0], "-o", tmp_path / "s.csv")
+    assert code == 2
+    assert "3 of 6 points are of shards that are not named" in errors
+    lines = shards[1].read_bytes().splitlines(keepends=True)
+    shards[1].write_bytes(b"".join(lines[:-1]) + lines[-1][:50])  # killed while it wrote
+    code, _, errors = call("merge", *shards, "-o", tmp_path / "s.csv")
+    assert code == 2
+    assert f'FILE = "{shards[1]}"' in errors or str(shards[1]) in errors
+    assert "lacks 1 of its 3 points" in errors
+    assert not (tmp_path / "s.csv").exists()
+
+
+def test_shards_of_another_plan_are_refused(call, tmp_path, shards):
+    other = ("sweep", *PAIR, "--vary", "pinion.face_width=10:21:6 mm", "-o", tmp_path / "o.csv")
+    assert call(*other, "--shard", "2/2", "--jobs", "1")[0] == 0
+    (file,) = files_of(tmp_path, "o.csv")
+    code, _, errors = call("merge", shards[0], file, "-o", tmp_path / "s.csv")
+    assert code == 2
+    assert "holds points of another study" in errors
+    # nor does a shard of another plan write to the same file
+    file.replace(shards[1])
+    again = ("sweep", *PAIR, "--vary", "pinion.face_width=10:20:6 mm", "-o", tmp_path / "s.csv")
+    code, _, errors = call(*again, "--shard", "2/2")
+    assert code == 2
+    assert "something else than points of this sweep" in errors
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (lambda text: "", "does not say of which study"),
+        (lambda text: "my notes\n" * 3, "does not say of which study"),
+        (lambda text: text.replace('"version":"', '"version":"0.0.0-'), "was made by version"),
+        (lambda text: text.replace('"pinion.face_width"', '"pinion.face"'), "is damaged"),
+        (lambda text: text.replace('"kind":"sweep"', '"kind":"swept"'), "is damaged"),
+        (lambda text: text.replace('"teeth":', '"tooth":'), "is damaged"),
+    ],
+    ids=["empty", "notes", "version", "axis", "kind", "case"],
+)
+def test_files_that_are_no_shards_are_refused(call, tmp_path, shards, change, told):
+    shards[0].write_text(change(shards[0].read_text()))
+    code, _, errors = call("merge", *shards, "-o", tmp_path / "s.csv")
+    assert code == 2
+    assert told in errors
+    assert not (tmp_path / "s.csv").exists()
+
+
+@pytest.mark.parametrize("shard", ["0/4", "5/4", "x", "1", "1/0", "-1/4", "1/4/2"])
+def test_a_shard_that_cannot_be_is_one_error(call, tmp_path, shard):
+    code, _, errors = call(*COMMANDS["sweep.nc"], f"--shard={shard}", "-o", tmp_path / "s.nc")
+    assert code == 2
+    assert errors.count("must be I/N") == 1
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+def test_a_killed_shard_goes_on(call, tmp_path):
+    case = ("talbot-2012-pair", "--vary", "operation.torque=1:100:400 N*m")
+    command = ("sweep", *case, "-o", tmp_path / "s.csv", "--jobs", "1")
+    shard = [sys.executable, "-m", "epicyclic", *map(str, command), "--shard", "2/2"]
+    running = subprocess.Popen(shard, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 120
+    while not (files := files_of(tmp_path, "s.csv")) or files[0].read_bytes().count(b"\n") < 20:
+        assert running.poll() is None, "it ended before it could be killed"
+        assert time.monotonic() < deadline, "it kept no points"
+        time.sleep(0.01)
+    running.send_signal(signal.SIGKILL)
+    running.wait()
+    code, printed, errors = call(*command, "--shard", "2/2")
+    assert code == 0, errors
+    assert "Going on from" in errors
+    assert "200 of 400 points are in" in printed
+    assert call(*command, "--shard", "1/2")[0] == 0
+    assert call("merge", *files_of(tmp_path, "s.csv"), "-o", tmp_path / "s.csv")[0] == 0
+    assert call(*command[:-4], "-o", tmp_path / "whole.csv", "--jobs", "1")[0] == 0
+    assert (tmp_path / "s.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+
+
+def test_shards_follow_each_other_in_the_order_of_all():
+    case = ep.load_case("talbot-2012-pair")
+    plan = make_plan(case, {"operation.torque": [f"{i} N*m" for i in range(1, 12)]})
+    for count in (1, 2, 3, 11, 20):
+        shares = [share_of(plan, (number, count)) for number in range(1, count + 1)]
+        assert [point for share in shares for point in share] == plan.order()
+        assert max(map(len, shares)) - min(map(len, shares)) <= 1
+
+
+def test_tables_of_flows_do_not_depend_on_which_points_read_them(coarse_talbot):
+    vary = {
+        "operation.speed": [f"{speed} rpm" for speed in range(1000, 4000, 300)],
+        "planet.count": [3, 4],
+        "operation.torque": ["-100 N*m", "500 N*m"],
+    }
+    plan = make_plan(coarse_talbot, vary)
+    whole = plan.prepared(plan.order(), None).flow_tables
+    assert len(whole) >= 4  # two meshes, driving and coasting
+    last = plan.prepared(share_of(plan, (4, 4))[-1:], None).flow_tables
+    assert 0 < len(last) < len(whole)
+    for family, table in last.items():
+        assert np.array_equal(table.number, whole[family].number)
+        assert np.array_equal(table.scaled, whole[family].scaled)
+        assert np.array_equal(table.readable, whole[family].readable)
+        assert table.error == whole[family].error
+
+
+def test_a_shard_in_python_is_a_journal_to_merge(call, coarse_talbot, tmp_path):
+    vary = {"planet.count": [3, 4, 12]}
+    whole = ep.sweep(coarse_talbot, vary, jobs=1)
+    for number in (1, 2):
+        part = ep.sweep(coarse_talbot, vary, shard=(number, 2), journal=tmp_path / f"{number}")
+        own = part["status"] != "not computed"
+        assert own.sum() == number
+        assert part.where(own, drop=True).equals(whole.where(own, drop=True))
+        assert np.isnan(part["total"][~own]).all()
+    code, _, errors = call("merge", tmp_path / "1", tmp_path / "2", "-o", tmp_path / "s.nc")
+    assert code == 4
+    assert "overlap" in errors
+    with xr.open_dataset(tmp_path / "s.nc") as merged:
+        assert merged.identical(whole)
+    with pytest.raises(ep.InputError, match="must be I/N"):
+        ep.sweep(coarse_talbot, vary, shard=(3, 2))
+
+
+def test_a_calibration_and_a_duty_cycle_go_on(call, cluster, tmp_path):
+    case = ep.load_case("talbot-2012-pair").updated({"losses.mesh_pocketing.include": False})
+    lines = ["speed [rpm],torque [N*m],temperature [degC],loss [W]"]
+    for speed, torque in ((1000, 50), (3000, 100), (6000, 100)):
+        point = case.updated(
+            {"operation.speed": f"{speed} rpm", "operation.torque": f"{torque} N*m"}
+        )
+        loss = 1.1 * ep.solve(point).total
+        lines.append(f"{speed},{torque},90,{loss}")
+    measured = tmp_path / "measured.csv"
+    measured.write_text("\n".join(lines))
+    off = ("--set", "losses.mesh_pocketing.include=false")
+    command = ("compare", "talbot-2012-pair", measured, *off, "--fit", "pinion.roughness")
+    cycle = tmp_path / "cycle.csv"
+    cycle.write_text("time [s],speed [rpm],torque [N*m]\n0,1000,20\n5,3000,-10\n9,4000,30\n")
+    duty = ("duty", "talbot-2012-pair", cycle, *off)
+    for arguments in (command, duty):
+        plain = call(*arguments, "--jobs", "1", "--json", "-")
+        assert plain[0] == 0, plain[2]
+        folder = tmp_path / arguments[0]
+        kept = call(*arguments, "--dask", cluster, "--journal", folder, "--json", "-")
+        assert json.loads(kept[1]) == json.loads(plain[1])
+        files = sorted(folder.iterdir())
+        assert len(files) >= 2
+        before = [file.read_bytes() for file in files]
+        again = call(*arguments, "--jobs", "1", "--journal", folder, "--json", "-")
+        assert again[1] == plain[1]
+        assert [file.read_bytes() for file in files] == before  # nothing was computed again
+
+
+def test_a_cluster_of_another_version_is_refused(cluster, monkeypatch):
+    from epicyclic.sweeps import runner
+
+    version = runner.metadata.version("epicyclic")
+    told = iter([version, "0.0.0"])  # here, then in the worker, which is in this process
+    monkeypatch.setattr(runner.metadata, "version", lambda name: next(told, "0.0.0"))
+    case = ep.load_case("talbot-2012-pair")
+    with pytest.raises(ep.InputError, match=r"have version 0\.0\.0"):
+        Runner(dask=cluster).run(make_plan(case, {"operation.torque": ["1 N*m"]}))
+
+
+def test_an_interruption_cancels_what_the_cluster_has_left(cluster, tmp_path):
+    import distributed
+
+    def stop(done, total):
+        if done:
+            raise KeyboardInterrupt
+
+    case = ep.load_case("talbot-2012-pair")
+    vary = {"operation.torque": [f"{i} N*m" for i in range(1, 300)]}
+    with pytest.raises(KeyboardInterrupt):
+        ep.sweep(case, vary, dask=cluster, journal=tmp_path / "points", progress=stop)
+    kept = (tmp_path / "points").read_bytes().count(b'"point":')
+    assert 0 < kept < 299
+    with distributed.Client(cluster) as client:
+        deadline = time.monotonic() + 30
+        while client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks)):
+            assert time.monotonic() < deadline, "tasks are left"
+            time.sleep(0.1)
+
+
+def test_columns_hold_what_was_added():
+    from epicyclic.sweeps.journal import Row
+
+    rows = Rows(3)
+    rows.add(2, Row("converged", numbers={"total": 1.5}))
+    rows.add(0, Row("failed", "no reason"))
+    assert rows.status == ["failed", "not computed", "converged"]
+    assert rows.failures == ["no reason"]
+    assert np.array_equal(rows.numbers("total"), [np.nan, np.nan, 1.5], equal_nan=True)
+    assert np.isnan(rows.numbers("efficiency")).all()

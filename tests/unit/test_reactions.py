@@ -1,0 +1,263 @@
+"""Forces of gear meshes on their shafts, and the reactions of the bearings."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from epicyclic.elements.reactions import (
+    ShaftLoad,
+    Support,
+    bearing_reactions,
+    mesh_force,
+    mesh_load,
+)
+
+ROUNDING = 1e-12
+"""Relative; sums and products of a few dozen numbers of like size."""
+Z = np.array([0.0, 0.0, 1.0])
+
+
+# --- bearing reactions ----------------------------------------------------------------------------
+
+
+def moments_about(position, loads, supports, reactions):
+    """Sum of all moments about a point of the axis, by cross products."""
+    total = np.zeros(3)
+    for load in loads:
+        total += np.cross([0, 0, load.position - position], load.force)
+        total += [*load.moment, 0.0]
+    for support, reaction in zip(supports, reactions, strict=True):
+        force = [reaction.x, reaction.y, reaction.z]
+        total += np.cross([0, 0, support.position - position], force)
+    return total
+
+
+def random_loads(rng, count):
+    return [
+        ShaftLoad(rng.uniform(-1, 1), tuple(rng.normal(size=3) * 1e4), tuple(rng.normal(size=2)))
+        for _ in range(count)
+    ]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_reactions_balance_random_loads(seed):
+    rng = np.random.default_rng(seed)
+    loads = random_loads(rng, rng.integers(1, 6))
+    supports = [Support(rng.uniform(-1, -0.1)), Support(rng.uniform(0.1, 1), "both")]
+    if seed % 2:
+        supports.reverse()
+    reactions = bearing_reactions(supports, loads)
+    largest = sum(np.abs(load.force).sum() + np.abs(load.moment).sum() for load in loads)
+    scale = largest * 10  # the shortest span is a tenth of the longest arm
+    forces = sum(np.array(load.force) for load in loads)
+    forces = forces + sum(np.array([r.x, r.y, r.z]) for r in reactions)
+    assert np.abs(forces).max() < ROUNDING * scale
+    for position in (-3.0, 0.0, 0.7):
+        left = moments_about(position, loads, supports, reactions)
+        assert np.abs(left[:2]).max() < ROUNDING * scale
+    (locating,) = (number for number, s in enumerate(supports) if s.axial == "both")
+    assert reactions[1 - locating].z == 0.0
+
+
+def test_beam_by_hand():
+    # 900 N down at a third of the span, and 300 N m about y: 600 and 300 N, and a couple of 100 N
+    supports = [Support(0.0), Support(3.0)]
+    first, second = bearing_reactions(supports, [ShaftLoad(1.0, (0.0, -900.0, 0.0))])
+    assert (first.y, second.y) == pytest.approx((600.0, 300.0))
+    assert first.force.radial == pytest.approx(600.0)
+    first, second = bearing_reactions(supports, [ShaftLoad(1.0, (0.0, 0.0, 0.0), (0.0, 300.0))])
+    # R_2x at 3 m turns about +y like F_x z, so it is negative against a positive moment
+    assert (first.x, second.x) == pytest.approx((100.0, -100.0))
+    first, second = bearing_reactions(supports, [ShaftLoad(1.0, (0.0, 0.0, 0.0), (300.0, 0.0))])
+    assert (first.y, second.y) == pytest.approx((-100.0, 100.0))
+
+
+def test_overhung_load():
+    first, second = bearing_reactions(
+        [Support(0.0), Support(1.0)], [ShaftLoad(2.0, (100.0, 0.0, 0.0))]
+    )
+    assert (first.x, second.x) == pytest.approx((100.0, -200.0))
+
+
+@pytest.mark.parametrize(
+    ("axial", "thrust", "expected"),
+    [
+        (("none", "none"), 10.0, (-10.0, 0.0)),
+        (("none", "both"), 10.0, (0.0, -10.0)),
+        (("both", "both"), 10.0, (-10.0, 0.0)),
+        (("negative", "positive"), 10.0, (0.0, -10.0)),
+        (("negative", "positive"), -10.0, (10.0, 0.0)),
+        (("positive", "none"), 0.0, (0.0, 0.0)),
+    ],
+)
+def test_axial_force_goes_to_the_locating_bearing(axial, thrust, expected):
+    supports = [Support(0.0, axial[0]), Support(1.0, axial[1])]
+    found = bearing_reactions(supports, [ShaftLoad(0.3, (0.0, 0.0, thrust))])
+    assert tuple(reaction.z for reaction in found) == expected
+    assert max(reaction.force.axial for reaction in found) == abs(thrust)
+
+
+def test_one_bearing_carries_what_does_not_tilt_it():
+    (found,) = bearing_reactions(
+        [Support(0.5)],
+        [ShaftLoad(0.2, (100.0, 7.0, 30.0)), ShaftLoad(0.8, (100.0, 7.0, 0.0))],
+    )
+    assert (found.x, found.y, found.z) == pytest.approx((-200.0, -14.0, -30.0))
+    (idle,) = bearing_reactions([Support(0.5)], [])
+    assert (idle.x, idle.y, idle.z) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("supports", "loads", "words"),
+    [
+        ([], [], "no bearing"),
+        ([Support(0.0), Support(1.0), Support(2.0)], [], "give radial_force yourself"),
+        ([Support(1.0), Support(1.0)], [], "same position"),
+        ([Support(0.0)], [ShaftLoad(0.1, (100.0, 0.0, 0.0))], "moment of 10 N m is left"),
+        ([Support(0.0)], [ShaftLoad(0.0, (1.0, 0.0, 0.0), (0.0, 2.0))], "moment of 2 N m"),
+        (
+            [Support(0.0, "positive"), Support(1.0)],
+            [ShaftLoad(0.1, (0.0, 0.0, -5.0))],
+            "5 N in the negative sense",
+        ),
+    ],
+)
+def test_what_statics_cannot_give_is_refused(supports, loads, words):
+    with pytest.raises(ValueError, match=words):
+        bearing_reactions(supports, loads)
+
+
+# --- forces of a mesh -----------------------------------------------------------------------------
+
+CASES = [
+    (torque, hand, direction, internal)
+    for torque in (250.0, -250.0)
+    for hand in (1, -1)
+    for direction in (0.0, 1.1, -2.5)
+    for internal in (False, True)
+]
+RADIUS, ALPHA, TAN_BETA = 0.05, math.radians(22), math.tan(math.radians(17))
+
+
+def flank_normal(radius, alpha, tan_beta, hand, direction, unwinding):
+    """Normal of an explicit involute helicoid at the pitch point in `direction`.
+
+    ``x + i y = r_b exp(i phi) (1 - i xi)`` with ``phi = phi_0 + xi + h z tan(beta_b)/r_b``. The
+    sign of xi, `unwinding`, tells the two flanks apart.
+    """
+    base, tan_base = radius * math.cos(alpha), tan_beta * math.cos(alpha)
+    xi = unwinding * math.tan(alpha)
+    phi = direction + math.atan(xi)
+    turn = np.exp(1j * phi)
+    point = base * turn * (1 - 1j * xi)
+    assert abs(point) == pytest.approx(radius)
+    assert math.remainder(np.angle(point) - direction, math.tau) == pytest.approx(0, abs=1e-12)
+    # d/dxi at constant z, and d/dz at constant xi
+    along_profile = base * turn * xi
+    along_lead = 1j * point * hand * tan_base / base
+    first = np.array([along_profile.real, along_profile.imag, 0.0])
+    second = np.array([along_lead.real, along_lead.imag, 1.0])
+    return np.cross(first, second)
+
+
+def test_the_helicoid_of_these_tests_is_one():
+    # its two tangents against differences of its points
+    def point(xi, z, hand=1):
+        base, tan_base = RADIUS * math.cos(ALPHA), TAN_BETA * math.cos(ALPHA)
+        turn = np.exp(1j * (xi + hand * z * tan_base / base))
+        plane = base * turn * (1 - 1j * xi)
+        return np.array([plane.real, plane.imag, z])
+
+    xi, step = math.tan(ALPHA), 1e-6
+    first = (point(xi + step, 0.0) - point(xi - step, 0.0)) / (2 * step)
+    second = (point(xi, step) - point(xi, -step)) / (2 * step)
+    start = point(xi, 0.0)
+    direction = math.atan2(start[1], start[0])
+    normal = flank_normal(RADIUS, ALPHA, TAN_BETA, 1, direction, 1)
+    # central differences: step^2 over the square of the size, and rounding over the step
+    assert np.cross(first, second) == pytest.approx(normal, rel=1e-6)
+
+
+@pytest.mark.parametrize(("torque", "hand", "direction", "internal"), CASES)
+def test_force_is_normal_to_the_flank(torque, hand, direction, internal):
+    force = mesh_force(torque, RADIUS, ALPHA, TAN_BETA, hand, direction, internal=internal)
+    # teeth that are pushed along +t have their material there: with external teeth behind the
+    # involute that leans towards +t, in a ring behind the other one
+    unwinding = (1 if torque > 0 else -1) * (-1 if internal else 1)
+    normal = flank_normal(RADIUS, ALPHA, TAN_BETA, hand, direction, unwinding)
+    sine = np.linalg.norm(np.cross(force, normal)) / (
+        np.linalg.norm(force) * np.linalg.norm(normal)
+    )
+    assert sine < ROUNDING
+    wrong = flank_normal(RADIUS, ALPHA, TAN_BETA, -hand, direction, unwinding)
+    assert np.linalg.norm(np.cross(force, wrong)) > 0.1 * np.linalg.norm(force) * np.linalg.norm(
+        wrong
+    )
+
+
+@pytest.mark.parametrize(("torque", "hand", "direction", "internal"), CASES)
+def test_force_has_the_torque_and_presses_on_the_teeth(torque, hand, direction, internal):
+    force = mesh_force(torque, RADIUS, ALPHA, TAN_BETA, hand, direction, internal=internal)
+    outward = np.array([math.cos(direction), math.sin(direction), 0.0])
+    found = np.cross(RADIUS * outward, force)
+    assert found[2] == pytest.approx(torque, rel=ROUNDING)
+    assert (force @ outward > 0) == internal
+    assert force @ outward == pytest.approx(
+        (1 if internal else -1) * abs(torque) / RADIUS * math.tan(ALPHA), rel=ROUNDING
+    )
+
+
+@pytest.mark.parametrize("ring", [False, True])
+@pytest.mark.parametrize("torque", [80.0, -80.0])
+def test_action_is_reaction(ring, torque):
+    # gear 1 has external teeth; the axis of a ring lies on its other side
+    direction, radius2 = 0.4, 0.13
+    one = mesh_force(torque, RADIUS, ALPHA, TAN_BETA, 1, direction)
+    if ring:  # torques of opposite sense, the same hand and direction to the pitch point
+        other = mesh_force(
+            -torque * radius2 / RADIUS, radius2, ALPHA, TAN_BETA, 1, direction, internal=True
+        )
+    else:
+        other = mesh_force(
+            torque * radius2 / RADIUS, radius2, ALPHA, TAN_BETA, -1, direction + math.pi
+        )
+    assert one + other == pytest.approx(np.zeros(3), abs=ROUNDING * np.linalg.norm(one) * 10)
+
+
+def test_spur_gears_have_no_axial_force():
+    force = mesh_force(100.0, 0.05, math.radians(20), 0.0, 1, 0.0)
+    # e = x, t = y: 2000 N along y, 2000 tan 20 deg against x
+    assert force == pytest.approx([-727.94, 2000.0, 0.0], abs=0.005)  # given to two decimals
+
+
+def test_right_hand_gear_that_is_driven_forward_is_pushed_back():
+    # like a right-handed screw turned by a nut at rest: the torque and the thrust are opposite
+    assert mesh_force(100.0, 0.05, ALPHA, TAN_BETA, 1, 0.0)[2] < 0
+    assert mesh_force(100.0, 0.05, ALPHA, TAN_BETA, -1, 0.0)[2] > 0
+
+
+@pytest.mark.parametrize(("torque", "hand", "direction", "internal"), CASES)
+def test_load_of_a_mesh_acts_at_its_pitch_point(torque, hand, direction, internal):
+    at = (RADIUS, ALPHA, TAN_BETA, hand, direction)
+    load = mesh_load(0.2, torque, *at, internal=internal)
+    force = mesh_force(torque, *at, internal=internal)
+    pitch_point = RADIUS * np.array([math.cos(direction), math.sin(direction), 0.0])
+    moment = np.cross(pitch_point, force)
+    assert load.position == 0.2
+    assert load.force == tuple(force)
+    assert load.moment == pytest.approx(moment[:2], rel=ROUNDING)
+
+
+def test_torque_does_not_load_the_bearings_of_a_symmetric_planet_ring():
+    # three equal meshes a third of a turn apart: only the axial forces are left
+    loads = [
+        mesh_load(0.3, 50.0, RADIUS, ALPHA, TAN_BETA, 1, turn * math.tau / 3) for turn in range(3)
+    ]
+    found = bearing_reactions([Support(0.0, "both"), Support(1.0)], loads)
+    one = np.linalg.norm(loads[0].force)
+    for reaction in found:
+        assert reaction.force.radial < 10 * ROUNDING * one
+    assert found[0].z == pytest.approx(3 * 50.0 / RADIUS * TAN_BETA, rel=ROUNDING)

@@ -1,0 +1,604 @@
+"""Shaft bearings: Palmgren, Harris and SKF, the element, and its table of keys."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import replace
+from importlib import resources
+
+import numpy as np
+import pytest
+
+from epicyclic import library
+from epicyclic.case.element_kinds import ELEMENT_KINDS, bearing_problems
+from epicyclic.case.element_tables import ShaftBearingTable
+from epicyclic.elements.base import HOUSING, LOAD_DEPENDENT, LOAD_INDEPENDENT, State
+from epicyclic.elements.figures import figures
+from epicyclic.elements.fluids import fluids_at
+from epicyclic.elements.shaft_bearing import ShaftBearing
+from epicyclic.losses.loss_table import LossTable
+from epicyclic.losses.shaft_bearing import (
+    BearingLoad,
+    CatalogueBearing,
+    PalmgrenModel,
+    TableModel,
+    bearing_types,
+    friction_load,
+    harris_coefficient,
+    load_moment,
+    minimum_load,
+    static_load,
+)
+from epicyclic.losses.skf_bearing import (
+    STARVATION,
+    ContactSeal,
+    SkfModel,
+    drag_variable,
+    full_film_friction,
+    skf_constants,
+    skf_drag_moment,
+    skf_load_variables,
+    skf_moments,
+    skf_reduction_factors,
+    skf_series,
+)
+from epicyclic.losses.viscous import bearing_viscous_loss
+from epicyclic.lubricant.oil import Oil
+from problems import only, problems_of
+
+RPM = math.pi / 30
+BALL = CatalogueBearing("deep-groove", 40e-3, 80e-3, 18e-3, static_load_rating=19e3)
+"""The size of a 6208."""
+ROLLER = CatalogueBearing("cylindrical", 40e-3, 80e-3, 18e-3)
+TAPER = CatalogueBearing("tapered", 40e-3, 80e-3, 18e-3, axial_factor=1.6)
+NEEDLE = CatalogueBearing("needle", 40e-3, 55e-3, 20e-3, dynamic_load_rating=30e3)
+SERIES = {"deep-groove": "62", "cylindrical": "2", "tapered": "302"}
+PRINTED = 1e-6
+"""Relative; the expected values were worked out separately and are given to seven digits."""
+
+
+def skf(bearing, **changes):
+    constants = skf_constants(bearing.type, SERIES[bearing.type], bearing.cage)
+    return SkfModel(constants, full_film_friction(bearing.type, "mineral"), **changes)
+
+
+@pytest.fixture(scope="module")
+def oil():
+    return Oil.model_validate(library.oil_table("iso-vg-100-mineral"))
+
+
+@pytest.fixture(scope="module")
+def state(oil):
+    fluids = fluids_at(oil, 333.15, oil_air_ratio=0.05, pressure=101325.0)
+
+    def make(rpm, force=None, outer=0.0):
+        forces = {} if force is None else {"input.front": force}
+        return State({"input": rpm * RPM, "outer": outer * RPM, HOUSING: 0.0}, {}, forces, fluids)
+
+    return make
+
+
+# --- Palmgren and Harris --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("bearing", "radial", "axial", "friction", "static"),
+    [
+        (BALL, 1000, 0, 1000, 1000),
+        (BALL, 1000, 300, 1000, 1000),
+        (BALL, 1000, 2000, 5900, 1600),
+        (ROLLER, 1000, 400, 1000, 1000),
+        (TAPER, 1000, 100, 1000, 1000),
+        (TAPER, 1000, 1000, 3200, 1380),
+        (NEEDLE, 1000, 0, 1000, 1000),
+    ],
+)
+def test_equivalent_loads(bearing, radial, axial, friction, static):
+    load = BearingLoad(radial, axial)
+    assert friction_load(bearing, load) == pytest.approx(friction, rel=1e-12)  # rounding
+    assert static_load(bearing, load) == pytest.approx(static, rel=1e-12)
+
+
+def test_coefficient_of_harris():
+    load = BearingLoad(1900.0, 0.0)  # a tenth of the static rating
+    assert harris_coefficient(BALL, load) == pytest.approx(2.5365446e-4, rel=PRINTED)
+    full = replace(ROLLER, cage="full-complement")
+    # the published ratio of full complement to caged rollers, 0.00055/0.0003
+    ratio = harris_coefficient(full, load) / harris_coefficient(ROLLER, load)
+    assert ratio == pytest.approx(1.8333, rel=1e-4)  # printed to five digits
+    with pytest.raises(ValueError, match="needle"):
+        harris_coefficient(NEEDLE, load)
+
+
+def test_moment_of_palmgren_with_flange_friction():
+    # f1 P1 d_m + f_f F_a d_m = (0.0003 5000 + 0.002 1000) 0.06; balls have no flange
+    load = BearingLoad(5000.0, 1000.0)
+    assert load_moment(ROLLER, load, 0.0003, 0.002) == pytest.approx(0.21, rel=1e-12)  # rounding
+    assert load_moment(BALL, load, 0.0003, 0.002) == pytest.approx(0.09, rel=1e-12)
+
+
+def test_palmgren_adds_the_viscous_loss(state):
+    oil = state(0).fluids.oil
+    model = PalmgrenModel(2.0, 0.0003)
+    parts = {p.key: p for p in model.parts(BALL, BearingLoad(1000.0, 0.0), 3000 * RPM, oil)}
+    assert parts["mechanical"].watts == pytest.approx(0.018 * 3000 * RPM, rel=1e-12)  # rounding
+    viscous = bearing_viscous_loss(2.0, oil.kinematic_viscosity, 3000 * RPM, 60e-3)
+    assert parts["viscous"].watts == viscous > 0
+    assert parts["mechanical"].by_load
+    assert not parts["viscous"].by_load
+
+
+# --- SKF ------------------------------------------------------------------------------------------
+
+
+def test_reduction_factors_at_published_conditions():
+    # bearing 61900 at 30,000 rpm in oil of 1 mm^2/s, starved as with grease; worked out separately
+    bearing = CatalogueBearing("deep-groove", 10e-3, 22e-3, static_load_rating=1270.0)
+    constants = skf_constants("deep-groove", "619")
+    hot, dry = skf_reduction_factors(bearing, constants, STARVATION["grease"], 30_000 * RPM, 1e-6)
+    assert hot == pytest.approx(0.96672563, rel=PRINTED)
+    assert dry == pytest.approx(0.97951150, rel=PRINTED)
+    model = SkfModel(constants, 0.05)
+    moments = skf_moments(model, bearing, BearingLoad(500.0, 0.0), 30_000 * RPM, 1e-6)
+    _, sliding = skf_load_variables(constants, bearing, BearingLoad(500.0, 0.0))
+    share = (moments.sliding * 1e3 / sliding - 0.05) / (0.12 - 0.05)
+    assert share == pytest.approx(0.46254314, rel=PRINTED)
+
+
+@pytest.mark.parametrize(
+    ("bearing", "radial", "axial", "rolling", "sliding"),
+    [
+        (BALL, 2000, 0, 0.07224325, 353.67133),
+        (BALL, 2000, 500, 0.13950637, 599.44721),
+        (ROLLER, 5000, 300, 0.29474857, 2362.3940),
+        (TAPER, 5000, 1000, 0.67039340, 4002.6425),
+    ],
+)
+def test_load_variables(bearing, radial, axial, rolling, sliding):
+    constants = skf_constants(bearing.type, SERIES[bearing.type])
+    found = skf_load_variables(constants, bearing, BearingLoad(radial, axial))
+    assert found == pytest.approx((rolling, sliding), rel=PRINTED)
+
+
+def test_moments_of_a_ball_bearing():
+    moments = skf_moments(skf(BALL), BALL, BearingLoad(2000.0, 0.0), 3000 * RPM, 20e-6)
+    assert moments.rolling * 1e3 == pytest.approx(47.771999, rel=PRINTED)
+    assert moments.sliding * 1e3 == pytest.approx(17.695588, rel=PRINTED)
+    assert moments.seal == moments.drag == 0.0
+
+
+def test_all_moments_become_losses(state):
+    oil, load, speed = state(0).fluids.oil, BearingLoad(2000.0, 300.0), 3000 * RPM
+    model = MODELS["skf-2018"]
+    moments = skf_moments(model, BALL, load, speed, oil.kinematic_viscosity)
+    assert min(moments.rolling, moments.sliding, moments.seal, moments.drag) > 0
+    watts = {part.key: part.watts for part in model.parts(BALL, load, speed, oil)}
+    by_load, others = moments.rolling + moments.sliding, moments.seal + moments.drag
+    assert watts == pytest.approx({"mechanical": by_load * speed, "drag": others * speed})
+
+
+def test_sliding_of_balls_jumps_with_the_first_axial_force():
+    # the two printed branches differ by d_m^(0.26 - 0.145) where they should meet
+    constants = skf_constants("deep-groove", "62")
+    _, alone = skf_load_variables(constants, BALL, BearingLoad(2000.0, 0.0))
+    _, loaded = skf_load_variables(constants, BALL, BearingLoad(2000.0, 1e-9))
+    assert loaded / alone == pytest.approx(60**0.115, rel=1e-9)  # F_a adds less than rounding
+
+
+@pytest.mark.parametrize(
+    ("bearing", "moment"), [(BALL, 12.800758), (ROLLER, 26.064672)], ids=["ball", "roller"]
+)
+def test_drag_in_an_oil_bath(bearing, moment):
+    model = skf(bearing, oil_level=18e-3, drag_variable=0.0004)
+    found = skf_drag_moment(model, bearing, 3000 * RPM, 20e-6)
+    assert found * 1e3 == pytest.approx(moment, rel=PRINTED)
+
+
+@pytest.mark.parametrize("bearing", [BALL, ROLLER, TAPER], ids=lambda b: b.type)
+def test_drag_over_the_oil_level(bearing):
+    levels = [0.0, 1e-6, 5e-3, 20e-3, 40e-3, 60e-3, 72e-3]
+    drags = [skf_drag_moment(skf(bearing, oil_level=h), bearing, 3000 * RPM, 20e-6) for h in levels]
+    assert drags[0] == 0.0
+    assert drags[1] < 1e-4 * drags[-1]
+    assert np.all(np.diff(drags) > 0)
+    deeper = skf_drag_moment(skf(bearing, oil_level=1.0), bearing, 3000 * RPM, 20e-6)
+    assert deeper == drags[-1]
+
+
+def test_estimate_of_the_drag_variable():
+    assert drag_variable(BALL, 0.0) == 0.0
+    # half of 1.2 d_m, and all of it; rounding
+    assert drag_variable(BALL, 36e-3) == pytest.approx(0.0006, rel=1e-12)
+    assert drag_variable(BALL, 72e-3) == pytest.approx(0.0012, rel=1e-12)
+
+
+def test_submerged_bearing_does_not_starve():
+    load = BearingLoad(2000.0, 0.0)
+    deep, dry = (
+        skf_moments(skf(BALL, oil_level=level), BALL, load, 3000 * RPM, 20e-6).rolling
+        for level in (72.1e-3, 0.0)
+    )
+    _, factor = skf_reduction_factors(
+        BALL, skf(BALL).constants, STARVATION["jet"], 3000 * RPM, 20e-6
+    )
+    assert factor < 0.97
+    assert dry / deep == pytest.approx(factor, rel=1e-12)  # rounding
+
+
+def test_moment_of_contact_seals():
+    # 0.028 45^2 N mm + 2 N mm
+    seal = ContactSeal(45e-3, 0.028, 2.0, 2e-3)
+    assert seal.moment * 1e3 == pytest.approx(58.7, rel=1e-12)  # rounding
+    model = skf(BALL, seal=seal)
+    assert skf_moments(model, BALL, BearingLoad(0.0, 0.0), 10.0, 20e-6).seal == seal.moment
+
+
+@pytest.mark.parametrize("bearing", [BALL, ROLLER, TAPER], ids=lambda b: b.type)
+def test_no_load_no_load_dependent_friction(bearing):
+    moments = skf_moments(skf(bearing), bearing, BearingLoad(0.0, 0.0), 3000 * RPM, 20e-6)
+    assert moments.rolling == moments.sliding == 0.0
+
+
+@pytest.mark.parametrize("bearing", [BALL, ROLLER, TAPER], ids=lambda b: b.type)
+@pytest.mark.parametrize("axial", [0.0, 500.0])
+def test_friction_grows_with_the_load(bearing, axial):
+    found = [
+        skf_moments(skf(bearing), bearing, BearingLoad(force, axial), 3000 * RPM, 20e-6)
+        for force in (100.0, 1000.0, 5000.0, 20_000.0)
+    ]
+    assert np.all(np.diff([moments.rolling for moments in found]) > 0)
+    assert np.all(np.diff([moments.sliding for moments in found]) > 0)
+
+
+def test_every_row_of_the_table_names_its_grade_and_source():
+    text = resources.files("epicyclic.library").joinpath("bearings", "skf-2018.toml").read_text()
+    table = tomllib.loads(text)
+    for row in table["rows"]:
+        assert row["grade"] in ("read", "second hand")
+        assert row["source"]
+        for series in row["series"]:
+            cage = "full-complement" if series == "full-complement" else "caged"
+            constants = skf_constants(row["type"], series, cage)
+            assert constants.rolling_1 == row["rolling_1"]
+            assert constants.is_read == (row["grade"] == "read")
+    seen = [(row["type"], series) for row in table["rows"] for series in row["series"]]
+    assert len(seen) == len(set(seen))
+
+
+def test_constants_of_the_published_table():
+    # a sample of each type: R1, R2, S1, S2, K_Z, K_L
+    def row(*key):
+        c = skf_constants(*key)
+        return (
+            c.rolling_1,
+            c.rolling_2,
+            c.sliding_1,
+            c.sliding_2,
+            c.bearing_factor,
+            c.roller_length_factor,
+        )
+
+    assert row("deep-groove", "623") == (3.7e-7, 1.7, 2.84e-3, 92.8, 3.1, 0.0)
+    assert row("cylindrical", "23") == (1.48e-6, 0.0, 0.16, 0.0015, 5.1, 0.65)
+    assert row("cylindrical", "2", "full-complement") == (2.13e-6, 0.0, 0.16, 0.0015, 6.2, 0.7)
+    assert row("tapered", "320X") == (2.38e-6, 10.9, 0.014, 2.0, 6.0, 0.7)
+    assert skf_constants("deep-groove", "42").ball_rows == 2
+    with pytest.raises(KeyError):
+        skf_constants("cylindrical", "99")
+
+
+def test_needle_rollers_have_no_row():
+    assert skf_series("needle") == ()
+    assert "needle" not in bearing_types("skf-2018")
+    assert "needle" not in bearing_types("harris")
+    assert "needle" in bearing_types("palmgren")
+    with pytest.raises(ValueError, match="needle"):
+        skf_load_variables(skf(BALL).constants, NEEDLE, BearingLoad(1000.0, 0.0))
+
+
+def test_full_film_friction_by_oil():
+    kinds = ("mineral", "pao", "atf")
+    assert [full_film_friction("deep-groove", kind) for kind in kinds] == [0.05, 0.04, 0.10]
+    assert full_film_friction("cylindrical", "atf") == 0.02
+    assert full_film_friction("tapered", "pao") == 0.002
+
+
+# --- minimum load ---------------------------------------------------------------------------------
+
+
+def test_minimum_loads():
+    # k_r (nu n/1000)^(2/3) (d_m/100)^2 and k_r (6 + 4 n/n_r) (d_m/100)^2 kN; 0.02 C
+    ball = minimum_load(BALL, 3000 * RPM, 20e-6)
+    assert ball == pytest.approx(137.93570, rel=PRINTED)
+    roller = minimum_load(ROLLER, 3000 * RPM, 20e-6, reference_speed=9000 * RPM)
+    assert roller == pytest.approx(396.0, rel=PRINTED)
+    assert minimum_load(ROLLER, 3000 * RPM, 20e-6, 0.3) == pytest.approx(648.0, rel=PRINTED)
+    assert minimum_load(NEEDLE, 3000 * RPM, 20e-6) == pytest.approx(600.0, rel=PRINTED)
+    assert math.isnan(minimum_load(TAPER, 3000 * RPM, 20e-6))
+
+
+# --- the element ----------------------------------------------------------------------------------
+
+MODELS = {
+    "palmgren": PalmgrenModel(2.0, 0.0003),
+    "harris": PalmgrenModel(2.0, None),
+    "skf-2018": skf(BALL, oil_level=20e-3, seal=ContactSeal(45e-3, 0.028, 2.0, 2e-3)),
+    "table": TableModel(
+        LossTable("torque", {"speed": np.array([0.0, 1000.0])}, np.array([0.1, 0.3]))
+    ),
+}
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_bearing_loses_power_in_both_senses_and_none_at_rest(state, name):
+    bearing = ShaftBearing("input.front", ("input", HOUSING), BALL, MODELS[name])
+    force = BearingLoad(2000.0, 300.0)
+    forward, backward, rest = (bearing.evaluate(state(n, force)) for n in (3000, -3000, 0))
+    for key, loss in forward.losses.items():
+        assert loss.watts > 0
+        assert backward.losses[key].watts == loss.watts
+        assert rest.losses[key].watts == 0
+        assert loss.between == ("input", HOUSING)
+        assert loss.method
+        assert loss.source
+    assert rest.flags == ()
+    assert math.isnan(rest.figures["bearing"].friction_torque)
+    total = sum(loss.watts for loss in forward.losses.values())
+    torque = forward.figures["bearing"].friction_torque
+    assert torque * 3000 * RPM == pytest.approx(total, rel=1e-12)  # rounding
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_losses_vanish_with_the_speed(state, name):
+    bearing = ShaftBearing("input.front", ("input", HOUSING), BALL, MODELS[name])
+    slow = bearing.evaluate(state(1e-9, BearingLoad(2000.0, 300.0)))
+    # moments of some N m at most, at 1e-10 rad/s
+    assert sum(loss.watts for loss in slow.losses.values()) < 1e-8
+
+
+def test_the_rings_may_both_turn(state):
+    bearing = ShaftBearing("input.front", ("input", "outer"), BALL, MODELS["skf-2018"])
+    force = BearingLoad(2000.0, 0.0)
+    together = bearing.evaluate(state(3000, force, outer=3000))
+    apart = bearing.evaluate(state(2000, force, outer=-1000))
+    alone = bearing.evaluate(state(3000, force))
+    assert all(loss.watts == 0 for loss in together.losses.values())
+    found = [sum(loss.watts for loss in result.losses.values()) for result in (apart, alone)]
+    assert found[0] == pytest.approx(found[1], rel=1e-12)  # rounding of the speed difference
+
+
+def test_groups_and_keys(state):
+    found = {}
+    for name, model in MODELS.items():
+        bearing = ShaftBearing("input.front", ("input", HOUSING), BALL, model)
+        losses = bearing.evaluate(state(3000, BearingLoad(2000.0, 0.0))).losses
+        found[name] = {key: loss.group for key, loss in losses.items()}
+    both = {"mechanical": LOAD_DEPENDENT, "viscous": LOAD_INDEPENDENT}
+    assert found["palmgren"] == found["harris"] == both
+    assert found["skf-2018"] == {"mechanical": LOAD_DEPENDENT, "drag": LOAD_INDEPENDENT}
+    assert found["table"] == {"friction": LOAD_INDEPENDENT}
+
+
+def test_the_force_comes_from_the_state_unless_it_is_given(state):
+    bearing = ShaftBearing("input.front", ("input", HOUSING), BALL, MODELS["palmgren"])
+    now = state(3000, BearingLoad(2000.0, 300.0))
+    assert bearing.loads(now) == {"radial": 2000.0, "axial": 300.0}
+    fixed = replace(bearing, force=BearingLoad(500.0, 0.0))
+    assert fixed.loads(now) == {}
+    assert fixed.evaluate(now).figures["bearing"].radial_force == 500.0
+    assert bearing.evaluate(now).figures["bearing"].radial_force == 2000.0
+    assert replace(bearing, model=MODELS["table"]).loads(now) == {}
+
+
+def test_the_heat_arises_where_it_is_said(state):
+    bearing = ShaftBearing("input.front", ("input", HOUSING), BALL, MODELS["palmgren"])
+    now = state(3000, BearingLoad(2000.0, 0.0))
+    assert {loss.node for loss in bearing.evaluate(now).losses.values()} == {"oil"}
+    elsewhere = replace(bearing, node="front bearing").evaluate(now)
+    assert {loss.node for loss in elsewhere.losses.values()} == {"front bearing"}
+
+
+def test_load_below_the_minimum_is_named(state):
+    bearing = ShaftBearing("input.front", ("input", HOUSING), BALL, MODELS["palmgren"])
+    low = bearing.evaluate(state(3000, BearingLoad(20.0, 0.0)))
+    (note,) = low.notes
+    least = low.figures["bearing"].minimum_load
+    assert "20 N" in note
+    assert f"{least:.3g} N" in note
+    assert bearing.evaluate(state(3000, BearingLoad(2 * least, 0.0))).notes == ()
+    # balls are held to their races by an axial force too, cylindrical rollers are not
+    assert bearing.evaluate(state(3000, BearingLoad(0.0, 2 * least))).notes == ()
+    rollers = replace(bearing, bearing=ROLLER)
+    assert "0 N is below" in only(rollers.evaluate(state(3000, BearingLoad(0.0, 1e4))).notes)
+    assert bearing.evaluate(state(0, BearingLoad(0.0, 0.0))).notes == ()
+
+
+def test_estimated_drag_is_named(state):
+    load = BearingLoad(2000.0, 0.0)
+    bearing = ShaftBearing("input.front", ("input", HOUSING), BALL, MODELS["skf-2018"])
+    assert "estimate" in only(bearing.evaluate(state(3000, load)).notes)
+    known = replace(bearing, model=skf(BALL, oil_level=20e-3, drag_variable=4e-4))
+    assert known.evaluate(state(3000, load)).notes == ()
+
+
+def test_flags(state):
+    def quantities(bearing, model, rpm, force):
+        element = ShaftBearing("input.front", ("input", HOUSING), bearing, model)
+        return [flag.quantity for flag in element.evaluate(state(rpm, force)).flags]
+
+    assert quantities(BALL, MODELS["palmgren"], 3000, BearingLoad(2000.0, 0.0)) == []
+    fast = quantities(BALL, MODELS["skf-2018"], 20_000, BearingLoad(2000.0, 0.0))
+    assert fast == ["speed times pitch diameter, rpm mm"]
+    heavy = quantities(BALL, MODELS["harris"], 3000, BearingLoad(20_000.0, 0.0))
+    assert heavy == ["equivalent static load over static load rating"]
+    for model in (MODELS["palmgren"], skf(ROLLER)):
+        pushed = quantities(ROLLER, model, 3000, BearingLoad(1000.0, 600.0))
+        assert pushed == ["axial over radial force of a cylindrical roller bearing"]
+    assert quantities(ROLLER, skf(ROLLER), 3000, BearingLoad(0.0, 600.0)) != []
+    assert quantities(BALL, MODELS["table"], 20_000, BearingLoad(0.0, 0.0)) == ["speed difference"]
+
+
+def test_figures_are_labelled(state):
+    bearing = ShaftBearing("input.front", ("input", HOUSING), BALL, MODELS["harris"])
+    result = bearing.evaluate(state(3000, BearingLoad(1900.0, 0.0)))
+    shown = {figure.key: figure for figure in figures(result.figures["bearing"])}
+    assert shown["speed"].value == pytest.approx(3000)
+    assert shown["speed"].unit == "rpm"
+    assert shown["coefficient"].value == pytest.approx(2.5365446e-4, rel=PRINTED)
+
+
+# --- table of keys --------------------------------------------------------------------------------
+
+KEYS = {
+    "shaft": "input",
+    "type": "deep-groove",
+    "bore": "40 mm",
+    "outside_diameter": "80 mm",
+    "static_load_rating": "19000 N",
+}
+
+
+def bearing_table(**changes):
+    given = {key: value for key, value in (KEYS | changes).items() if value is not None}
+    return ShaftBearingTable.model_validate(given)
+
+
+def build(table, oil, tmp_path, shafts={"input": "input", "output": "output"}):
+    kind = ELEMENT_KINDS["bearings"]
+    assert kind.check(table) == []
+    return kind.build("input.front", table, shafts=shafts, oil=oil, folder=tmp_path)
+
+
+def test_defaults_of_the_keys(oil, tmp_path):
+    bearing = build(bearing_table(), oil, tmp_path)
+    assert bearing.key == "input.front"
+    assert bearing.between == ("input", HOUSING)
+    assert bearing.model == PalmgrenModel(2.0, 0.0003, 0.002)
+    assert bearing.force is None
+
+
+def test_keys_reach_the_element(oil, tmp_path):
+    table = bearing_table(
+        type="tapered",
+        model="skf-2018",
+        series="322",
+        contact_angle="14 deg",
+        width="23 mm",
+        radial_force="3000 N",
+        oil_level="5 mm",
+        lubrication="oil-air",
+        drag_variable=0.0003,
+        sliding_friction=0.003,
+        against="output",
+        minimum_load_factor=0.2,
+        reference_speed="9000 rpm",
+        dynamic_load_rating="80000 N",
+        seal={"counterface_diameter": "45 mm", "factor": 0.03, "exponent": 2.1},
+    )
+    bearing = build(table, oil, tmp_path)
+    assert bearing.between == ("input", "output")
+    assert bearing.force == BearingLoad(3000.0, 0.0)
+    assert bearing.bearing == CatalogueBearing(
+        "tapered", 0.04, 0.08, 0.023, "caged", 80e3, 19e3, 0.4 / math.tan(math.radians(14))
+    )
+    assert bearing.model == SkfModel(
+        skf_constants("tapered", "322"),
+        0.003,
+        6e-8,
+        0.005,
+        0.0003,
+        ContactSeal(0.045, 0.03, 2.1, 0.0),
+    )
+    assert bearing.minimum_load_factor == 0.2
+    assert bearing.reference_speed == pytest.approx(9000 * RPM)
+
+
+def test_coefficients_of_the_user(oil, tmp_path):
+    table = bearing_table(
+        type="cylindrical",
+        palmgren_coefficient=0.0002,
+        viscous_factor=0.0,
+        flange_coefficient=0.006,
+        radial_force="10 N",
+        axial_force="3 N",
+    )
+    bearing = build(table, oil, tmp_path)
+    assert bearing.model == PalmgrenModel(0.0, 0.0002, 0.006)
+    assert bearing.force == BearingLoad(10.0, 3.0)
+    full = bearing_table(type="cylindrical", cage="full-complement", model="harris")
+    assert build(full, oil, tmp_path).model == PalmgrenModel(7.5, None, 0.003)
+
+
+def test_oil_sets_the_full_film_friction(oil, tmp_path):
+    table = bearing_table(model="skf-2018", series="62")
+    assert build(table, oil, tmp_path).model.full_film_friction == 0.05
+    atf = Oil.model_validate(library.oil_table("atf-dexron-vi"))
+    assert build(table, atf, tmp_path).model.full_film_friction == 0.10
+
+
+def test_table_over_the_load(oil, tmp_path, state):
+    given = {
+        "radial_force": ["0 N", "1000 N"],
+        "speed": ["0 rpm", "3000 rpm"],
+        "torque": [["0.1 N*m", "0.3 N*m"], ["0.2 N*m", "0.5 N*m"]],
+    }
+    given["torque"] = [list(row) for row in zip(*given["torque"], strict=True)]  # rows: speeds
+    bearing = build(bearing_table(model="table", table=given), oil, tmp_path)
+    result = bearing.evaluate(state(3000, BearingLoad(500.0, 0.0)))
+    # at the last speed, half way between 0.3 and 0.5 N m; rounding
+    assert result.losses["friction"].watts == pytest.approx(0.4 * 3000 * RPM, rel=1e-12)
+    assert result.losses["friction"].group == LOAD_DEPENDENT
+    assert bearing.loads(state(3000, BearingLoad(500.0, 0.0))) != {}
+
+
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"bore": "80 mm"}, "bore"),
+        ({"cage": "full-complement"}, "cage"),
+        ({"type": "needle", "model": "skf-2018", "series": "62"}, "model"),
+        ({"type": "needle", "model": "harris"}, "model"),
+        ({"type": "needle", "locating": True}, "locating"),
+        ({"type": "needle", "radial_force": "1 N", "axial_force": "1 N"}, "axial_force"),
+        ({"model": "skf-2018"}, "series"),
+        ({"model": "skf-2018", "series": "302"}, "series"),
+        ({"model": "skf-2018", "series": "62", "static_load_rating": None}, "static_load_rating"),
+        ({"model": "harris", "static_load_rating": None}, "static_load_rating"),
+        (
+            {"type": "cylindrical", "model": "skf-2018", "series": "2", "oil_level": "3 mm"},
+            "width",
+        ),
+        ({"type": "tapered"}, "axial_factor"),
+        ({"type": "tapered", "axial_factor": 1.6, "contact_angle": "14 deg"}, "axial_factor"),
+        ({"axial_factor": 1.6}, "axial_factor"),
+        ({"axial_force": "100 N"}, "radial_force"),
+        ({"against": "input"}, "against"),
+        ({"model": "table"}, "model"),
+        ({"table": {"file": "torque.csv"}}, "table"),
+        ({"model": "table", "table": {"torque": ["1 N*m"]}}, "table.torque"),
+    ],
+)
+def test_contradictions_are_found(changes, key):
+    problem = only(tuple(bearing_problems(bearing_table(**changes))))
+    assert problem.key == key
+    assert problem.allowed.endswith(".")
+    assert problem.remedy
+
+
+def test_full_complement_rollers_need_no_series():
+    table = bearing_table(type="cylindrical", cage="full-complement", model="skf-2018")
+    assert bearing_problems(table) == []
+
+
+def test_unknown_shafts_are_found(oil, tmp_path):
+    kind = ELEMENT_KINDS["bearings"]
+    table = bearing_table(shaft="inptu", against="somewhere else")
+
+    def action():
+        kind.build("b", table, shafts={"input": "input", "output": "output"}, oil=oil, folder=tmp_path)
+
+    first, second = problems_of(action)
+    assert first.key == "shaft"
+    assert "'input'" in first.remedy
+    assert second.key == "against"
