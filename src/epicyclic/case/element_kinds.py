@@ -15,6 +15,7 @@ import numpy as np
 from epicyclic.case.element_tables import (
     DragTable,
     LossTableTable,
+    SealTable,
     ShaftBearingTable,
 )
 from epicyclic.case.nearest import did_you_mean
@@ -22,6 +23,7 @@ from epicyclic.case.schema import Table
 from epicyclic.case.wording import millimetres, written
 from epicyclic.elements.base import HOUSING, Element
 from epicyclic.elements.loss_table import TableLoss
+from epicyclic.elements.seal import Seal, SealFormula
 from epicyclic.elements.shaft_bearing import ShaftBearing
 from epicyclic.errors import InputError, Problem
 from epicyclic.losses.loss_table import LossQuantity, LossTable, read_loss_table, table_problems
@@ -45,6 +47,7 @@ from epicyclic.losses.skf_bearing import (
     skf_series,
 )
 from epicyclic.lubricant.oil import Oil
+from epicyclic.lubricant.properties import oil_state
 
 __all__ = [
     "ELEMENT_KINDS",
@@ -52,8 +55,10 @@ __all__ = [
     "bearing_problems",
     "build_bearing",
     "build_drag",
+    "build_seal",
     "drag_problems",
     "loss_table_problems",
+    "seal_problems",
 ]
 
 _FORTY_CELSIUS = 313.15
@@ -238,6 +243,30 @@ def _skf_problems(table: ShaftBearingTable) -> list[Problem]:
     return problems
 
 
+# --- seals ----------------------------------------------------------------------------------------
+
+
+def build_seal(
+    name: str, table: SealTable, *, shafts: Mapping[str, str], oil: Oil, folder: Path
+) -> Seal:
+    """A seal from its table, which `seal_problems` found sound."""
+    between = _between({"shaft": table.shaft, "against": table.against}, shafts)
+    model: SealFormula | LossTable
+    if table.model == "table":
+        assert table.table is not None
+        model = _loss_table(table.table, folder, "table.", ("speed", "temperature"))
+    else:
+        model = table.model
+    viscosity = oil_state(oil, _FORTY_CELSIUS).kinematic_viscosity
+    return Seal(name, between, table.diameter, model, viscosity)
+
+
+def seal_problems(table: SealTable) -> list[Problem]:
+    """What contradicts itself, or is missing, in the table of a seal."""
+    bodies = {"shaft": table.shaft, "against": table.against}
+    return _same_body_problems(bodies) + _own_table_problems(table, ("speed", "temperature"))
+
+
 # --- other drags ----------------------------------------------------------------------------------
 
 
@@ -288,7 +317,7 @@ def _same_body_problems(bodies: Mapping[str, str]) -> list[Problem]:
 
 
 def _own_table_problems(
-    table: ShaftBearingTable, axes: Collection[str]
+    table: ShaftBearingTable | SealTable, axes: Collection[str]
 ) -> list[Problem]:
     """Problems of the loss table of an element, and of one that is missing or idle."""
     if table.model != "table":
@@ -356,6 +385,7 @@ def _loss_table(
 
 ELEMENT_KINDS: Mapping[str, ElementKind] = {
     "bearings": ElementKind(ShaftBearingTable, build_bearing, bearing_problems),
+    "seals": ElementKind(SealTable, build_seal, seal_problems),
     "drags": ElementKind(DragTable, build_drag, drag_problems),
 }
 """By the name of the tables in a case: ``[bearings.NAME]``, ``[seals.NAME]``, ``[drags.NAME]``."""

@@ -19,6 +19,7 @@ __all__ = [
     "BearingSealTable",
     "DragTable",
     "LossTableTable",
+    "SealTable",
     "ShaftBearingTable",
 ]
 
@@ -225,5 +226,20 @@ class ShaftBearingTable(Table):
     )
     reference_speed: ReferenceSpeed | None = Field(
         default=None, description="Of cylindrical rollers, for the minimum load."
+    )
+    table: LossTableTable | None = Field(default=None, description="For model = table.")
+
+
+class SealTable(Table):
+    """A radial lip seal on a shaft."""
+
+    shaft: str = Field(description="The shaft under the lip.")
+    against: str = Field(default="housing", description="The body that holds the seal.")
+    diameter: Length = Field(description="Of the shaft under the lip.")
+    model: Literal["iso-14179-1-viton", "iso-14179-1-buna-n", "iso-14179-2", "linke", "table"] = (
+        Field(
+            default="iso-14179-2",
+            description="The formulas differ by a factor of 2 and more; the figures show all.",
+        )
     )
     table: LossTableTable | None = Field(default=None, description="For model = table.")
