@@ -11,6 +11,7 @@ from epicyclic.builders.listed_set import listed_element
 from epicyclic.builders.models import fluids_of
 from epicyclic.builders.pair import PAIR_MEMBERS, pair_element
 from epicyclic.builders.planetary import MEMBERS, planetary_element
+from epicyclic.builders.shafts import shaft_layouts
 from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.train import TrainCase
@@ -28,11 +29,16 @@ def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:
     """A train in the state and at the operating point of the case."""
     shape = case.shape
     elements = [*_sets(case, flow_tables), *_parts(case)]
+    sets = {element.key: element for element in elements if isinstance(element, GearSet)}
     return Built(
-        machine=replace(shape.machine(case.state), elements=tuple(elements)),
+        machine=replace(
+            shape.machine(case.state),
+            elements=tuple(elements),
+            layouts=tuple(shaft_layouts(case, sets)),
+        ),
         operation=_operation(case),
         fluids=fluids_of(case) if case.computed else None,
-        sets={element.key: element for element in elements if isinstance(element, GearSet)},
+        sets=sets,
         layout=train_layout(case),
     )
 
@@ -105,7 +111,7 @@ def set_case(case: TrainCase, name: str) -> PlanetaryCase | GearPairCase:
         "friction_table": case.friction_table,
         "contact_solver": case.contact_solver,
     }
-    own = {key: getattr(table, key) for key in type(table).model_fields if key != "direction"}
+    own = {key: getattr(table, key) for key in type(table).model_fields if key in kind.model_fields}
     made = kind.model_construct(**shared, **own)
     made._source = case.source
     return made

@@ -23,6 +23,7 @@ from epicyclic.case.model_tables import (
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.operation_tables import Lubricant, Surroundings
 from epicyclic.case.schema import Table
+from epicyclic.case.train_bearings import bearing_force_problems
 from epicyclic.case.train_checks import operation_problems
 from epicyclic.case.train_shape import SetShape, TrainShape, shape_of_set, shape_of_train
 from epicyclic.case.train_tables import (
@@ -93,6 +94,33 @@ class _TrainTables(CaseTable):
         sets = any(not isinstance(table, given) for table in self.sets.values())
         return sets or any(True for _ in self.elements)
 
+    def position_of(self, gear: str) -> float | None:
+        """Position of a gear along its shaft, by its name or that of its body. [m]"""
+        name, _, member = gear.partition(".")
+        body = self.shape.sets[name].bodies.get(member, member)
+        return self.positions.get(gear, self.positions.get(f"{name}.{body}"))
+
+    @property
+    def directions(self) -> dict[tuple[str, str], float]:
+        """Angle from the axis of the first to that of the second gear of the meshes of pairs."""
+        return {
+            (name, "mesh"): table.direction
+            for name, table in self.sets.items()
+            if isinstance(table, PairSet)
+        }
+
+    @property
+    def hands(self) -> dict[tuple[str, str], int]:
+        """Hands of the helix of the first gears of meshes, +1 for right."""
+        hands = {}
+        for name, table in self.sets.items():
+            if isinstance(table, PairSet):
+                hands[name, "pinion"] = 1 if table.hand == "right" else -1
+            elif isinstance(table, PlanetarySet):
+                hands[name, "sun"] = 1 if table.hand == "right" else -1
+                hands[name, "planet"] = -hands[name, "sun"]
+        return hands
+
     def inputs(self) -> dict[str, Any]:
         """The case as nested tables of text and numbers, defaults included, as a file has them."""
         inputs = super().inputs()
@@ -153,6 +181,7 @@ class _TrainTables(CaseTable):
         found += _element_problems(train)
         if not found:
             found += operation_problems(train, train.shape)
+            found += bearing_force_problems(train)
         return cls._made(train, tables, source, found)
 
 

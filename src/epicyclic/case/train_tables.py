@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -28,6 +28,7 @@ from epicyclic.units import (
     RotationalSpeed,
     Temperature,
     Torque,
+    as_stated,
 )
 
 __all__ = [
@@ -97,6 +98,9 @@ class PlanetarySet(Table):
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None
+    hand: Literal["right", "left"] = Field(
+        default="right", description="Of the helix of the sun, for the forces on shaft bearings."
+    )
     models: PlanetaryModels = PlanetaryModels()
     numerics: Numerics = Numerics()
     losses: PlanetaryLosses = PlanetaryLosses()
@@ -125,10 +129,13 @@ class PairSet(Table):
     pinion: GearTable
     gear: PairGear
     mesh: MeshTable = MeshTable()
-    direction: Angle | None = Field(
-        default=None,
-        description="From the axis of the pinion to that of the gear, for the reactions of shaft "
-        "bearings. Default: 0 deg.",
+    direction: Angle = Field(
+        default=as_stated("0 deg"),
+        description="From the axis of the pinion to that of the gear, for the forces on shaft "
+        "bearings.",
+    )
+    hand: Literal["right", "left"] = Field(
+        default="right", description="Of the helix of the pinion, for the same."
     )
     models: GearPairModels = GearPairModels()
     numerics: Numerics = Numerics()

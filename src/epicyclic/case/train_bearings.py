@@ -1,0 +1,111 @@
+"""Can the forces on the shaft bearings of a train be found from what is given?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from epicyclic.case.element_tables import ShaftBearingTable
+from epicyclic.case.train_tables import GivenListedSet, GivenPair, GivenPlanetarySet
+from epicyclic.case.wording import millimetres
+from epicyclic.elements.base import HOUSING
+from epicyclic.errors import Problem
+
+if TYPE_CHECKING:
+    from epicyclic.case.train import TrainCase
+
+__all__ = ["bearing_force_problems", "needs_force"]
+
+GIVE_FORCE = "Or give radial_force (and axial_force) of the bearings of this shaft."
+
+
+def needs_force(table: ShaftBearingTable) -> bool:
+    """True if the force on a bearing is to be found from those of the gears."""
+    by_load = table.table is None or table.table.radial_force is not None
+    return table.radial_force is None and (table.model != "table" or by_load)
+
+
+def bearing_force_problems(train: TrainCase) -> Iterator[Problem]:
+    """What is missing for the forces on shaft bearings, shaft by shaft."""
+    bearings: dict[str, dict[str, ShaftBearingTable]] = {}
+    for kind, name, table in train.elements:
+        if kind == "bearings" and isinstance(table, ShaftBearingTable) and needs_force(table):
+            shaft = train.shape.names.get(table.shaft)
+            if shaft is not None:
+                bearings.setdefault(shaft, {})[name] = table
+    for shaft, own in bearings.items():
+        yield from _of_shaft(train, shaft, own)
+
+
+def _of_shaft(
+    train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]
+) -> Iterator[Problem]:
+    for name, table in own.items():
+        if table.position is None:
+            yield Problem(
+                f"bearings.{name}.position",
+                "",
+                f"is missing: the force on the bearing follows from its place along {shaft}.",
+                f'Add position = "... mm". {GIVE_FORCE}',
+            )
+    names = ", ".join(own)
+    if len(own) > 2:
+        yield Problem(
+            "bearings",
+            names,
+            f"are {len(own)} bearings on {shaft}; statics gives the forces of two.",
+            "Give radial_force of all but two.",
+        )
+    places = [table.position for table in own.values() if table.position is not None]
+    if len(own) == 2 and len(places) == 2 and places[0] == places[1]:
+        yield Problem(
+            f"bearings.{next(iter(own))}.position",
+            millimetres(places[0]),
+            f"is that of the other bearing of {shaft} too.",
+            "Give both their own positions.",
+        )
+    if len(own) == 1 and any(True for _ in _gears(train, shaft)):
+        yield Problem(
+            f"bearings.{names}",
+            "",
+            f"is the only bearing of {shaft}, whose gears would tilt it.",
+            f"Add a second bearing. {GIVE_FORCE}",
+        )
+    for gear in _gears(train, shaft):
+        if train.position_of(gear) is None:
+            yield Problem(
+                f'positions."{gear}"',
+                "",
+                f"is missing: the forces on the bearings {names} follow from it.",
+                f'Add "{gear}" = "... mm" to [positions]. {GIVE_FORCE}',
+            )
+    for name, table in train.sets.items():
+        if not isinstance(table, GivenPlanetarySet | GivenPair | GivenListedSet):
+            continue
+        if shaft in train.shape.bodies_of(name).values():
+            yield Problem(
+                f"bearings.{next(iter(own))}.radial_force",
+                "",
+                f"is missing: the forces of {name}, whose efficiency is given, are not known.",
+                f"Give it for {names}.",
+            )
+
+
+def _gears(train: TrainCase, shaft: str) -> Iterator[str]:
+    """The gears on a shaft that push it aside: without planets all around them."""
+    for name, shape in train.shape.sets.items():
+        table = train.sets[name]
+        if isinstance(table, GivenPlanetarySet | GivenPair | GivenListedSet):
+            continue
+        if shape.planets and _count(table) > 1:
+            continue
+        bodies = train.shape.bodies_of(name)
+        for gear, body in shape.bodies.items():
+            if body not in shape.planets and bodies[body] == shaft and shaft != HOUSING:
+                yield f"{name}.{gear}"
+
+
+def _count(table: object) -> int:
+    """Number of planets of a computed set."""
+    planet = getattr(table, "planet", None)
+    return planet.count if planet is not None else getattr(table, "planets", None) or 1
