@@ -12,12 +12,13 @@ from epicyclic.builders.notes import case_notes, general_notes
 from epicyclic.builders.train import set_case
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.train import TrainCase
-from epicyclic.elements.base import Loss
+from epicyclic.elements.base import HOUSING, Loss
 from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_set import GearSet, GearSetResult
 from epicyclic.elements.load_sharing import SHARING_METHODS
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.validity import ValidityFlag
+from epicyclic.machine.flow import stage_torques
 from epicyclic.machine.solve import Solution
 from epicyclic.results.result import LossTerm, MemberState, PowerFlow, Result, Train
 
@@ -158,7 +159,12 @@ def _set_notes(case: Case, built: Built, solution: Solution) -> Iterator[str]:
 def _train_notes(case: Case, solution: Solution) -> Iterator[str]:
     if not isinstance(case, TrainCase):
         return
-    if solution.self_locking:
+    if solution.jammed:
+        yield (
+            "Self-locking: whatever the torque on the output, friction in the meshes does not let "
+            "the train turn under this torque on the input; it stands still, and nothing is lost."
+        )
+    elif solution.self_locking:
         output = case.shape.shaft_of(case.operation.output) or ""
         yield (
             "Self-locking: no power passes from the input to the output; the output "
@@ -178,13 +184,17 @@ def _train(case: Case, built: Built, solution: Solution) -> Train | None:
     ends = [
         case.shape.shaft_of(name) or "" for name in (case.operation.input, case.operation.output)
     ]
-    driven, output = (solution.speeds[shaft] for shaft in ends)
+    shafts = {*built.layout.members, HOUSING}
     return Train(
         state=case.operation.state or "",
-        ratio=driven / output if output else None,
+        ratio=solution.ratio,
         power_ratio=solution.power_ratio,
         rolling={key: solution.rolling[key] for key in built.layout.rolling},
         clutches=solution.couplings,
+        stages={
+            name: {body: torque for body, torque in taken.items() if body in shafts}
+            for name, taken in stage_torques(built.machine, solution).items()
+        },
         self_locking=solution.self_locking,
         input=ends[0],
         output=ends[1],

@@ -149,4 +149,5 @@ def _layout(case: TrainCase, elements: list[Element]) -> Layout:
         bearings=tuple(bearings),
         rolling=tuple(row.key for own in rows.values() for row in own),
         parts=tuple(parts),
+        fluid=case.computed,
     )

@@ -14,7 +14,8 @@ from epicyclic.case.train_tables import StateTable
 from epicyclic.case.wording import written
 from epicyclic.elements.base import HOUSING
 from epicyclic.errors import Problem
-from epicyclic.machine.kinematics import freedom
+from epicyclic.machine.kinematics import freedom, speeds_of
+from epicyclic.machine.machine import Machine
 
 if TYPE_CHECKING:
     from epicyclic.case.train import TrainCase
@@ -156,7 +157,28 @@ def _freedom_problems(train: TrainCase, shape: TrainShape) -> list[Problem]:
                 f"{word} of them a speed in [operation.speeds].",
             )
         )
-    return problems
+    return problems or _standing_output(train, shape, machine, driven, others)
+
+
+def _standing_output(
+    train: TrainCase,
+    shape: TrainShape,
+    machine: Machine,
+    driven: str,
+    others: Sequence[str],
+) -> list[Problem]:
+    """An output that the input does not turn can balance no torque of it."""
+    output = train.operation.output
+    speeds = speeds_of(machine, dict.fromkeys(others, 0.0) | {driven: 1.0})
+    if speeds[shape.shaft_of(output) or ""] != 0:
+        return []
+    allowed = f"stands still whatever the input shaft {driven} does in {_state_words(train)}, so "
+    allowed += "that no power reaches it."
+    turning = [shaft for shaft in shape.shafts if speeds[shaft] != 0 and shaft != driven]
+    remedy = f"Name a shaft that turns with the input: {', '.join(turning)}."
+    if not turning:
+        remedy = "Join it to the input."
+    return [Problem("operation.output", written(output), allowed, remedy)]
 
 
 def _state_words(train: TrainCase) -> str:

@@ -127,7 +127,7 @@ def balance(
         torques=outside,
         meshes=meshes,
         couplings={
-            coupling.key: float(lambdas[len(machine.rows) + number])
+            coupling.key: -float(lambdas[len(machine.rows) + number])
             for number, coupling in enumerate(machine.couplings)
         },
         powers={

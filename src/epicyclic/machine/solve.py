@@ -9,11 +9,12 @@ from epicyclic.elements.base import LOAD_DEPENDENT, ElementResult, Loss, State
 from epicyclic.elements.fluids import Fluids
 from epicyclic.errors import ConvergenceError
 from epicyclic.machine.balance import Balance, Friction, balance, drives_first
+from epicyclic.machine.directions import find_directions
 from epicyclic.machine.forces import forces_of
 from epicyclic.machine.kinematics import speeds_of
 from epicyclic.machine.machine import Machine, Operation
 
-__all__ = ["Solution", "lossless_state", "solve_machine"]
+__all__ = ["Solution", "effects_of", "lossless_state", "solve_machine"]
 
 AGREEMENT = 1e-10
 """Relative change of each load from one pass to the next at which torques and losses agree. [1]"""
@@ -21,7 +22,7 @@ ROUNDING = 1e-14
 """Change, relative to the largest load, that is rounding. [1]"""
 MOST_PASSES = 60
 MOST_BRANCHES = 8
-"""Directions of the rolling power that are tried, near self-locking."""
+"""Directions of the rolling powers that are tried with the losses of elements."""
 MOST_OF_A_MESH = 0.5
 """Share of the rolling power of a mesh up to which a loss is a share of it, else friction. [1]"""
 
@@ -36,6 +37,10 @@ class Solution:
         Of every body; a torque is the one from outside. [rad/s], [N m]
     couplings : mapping of str to float
         Torque through each clutch. [N m]
+    meshes : mapping of str to float
+        Torque that each mesh takes up at its first gear, at the load of its driving gear. [N m]
+    drives : mapping of str to bool
+        For each mesh, True if its first gear drives it.
     rolling : mapping of str to float
         Rolling power of each mesh, positive if its first gear drives. [W]
     results : mapping of str to ElementResult
@@ -44,8 +49,12 @@ class Solution:
         Losses of the meshes of given efficiency, by the key of the mesh.
     drivers : tuple of str
         Bodies that would bring power in without losses.
+    ratio : float or None
+        Speed of the input over that of the output; None if that stands still. [1]
     self_locking : bool
         True if the output must be driven too.
+    jammed : bool
+        True if the machine stands still, whatever the torque on the output.
     unique : bool
         False if meshes or clutches share a load in more than one possible way.
     state : State
@@ -55,11 +64,15 @@ class Solution:
     speeds: Mapping[str, float]
     torques: Mapping[str, float]
     couplings: Mapping[str, float]
+    meshes: Mapping[str, float]
+    drives: Mapping[str, bool]
     rolling: Mapping[str, float]
     results: Mapping[str, ElementResult]
     given: Mapping[str, Loss]
     drivers: tuple[str, ...]
+    ratio: float | None
     self_locking: bool
+    jammed: bool
     unique: bool
     state: State
 
@@ -80,7 +93,7 @@ class Solution:
         0 if the losses take all of it; None if no power is passed on.
         """
         if not self.drivers:
-            return None
+            return 0.0 if self.jammed else None
         entering, loss = self.input_power, self.loss
         return 1 - loss / entering if loss < entering and not self.self_locking else 0.0
 
@@ -109,13 +122,10 @@ def _lossless(machine: Machine, operation: Operation, speeds: Mapping[str, float
     return balance(machine, operation, speeds, dict.fromkeys(ones, True), ones)
 
 
-def solve_machine(machine: Machine, operation: Operation, fluids: Fluids) -> Solution:
+def solve_machine(machine: Machine, operation: Operation, fluids: Fluids | None) -> Solution:
     """Torques and losses that agree.
 
-    Theory (T5), (T6). It starts from the directions of the rolling powers without losses. Near
-    self-locking, losses may turn one of them round: then of the solutions that agree with
-    themselves the one counts whose output torque has the sign of the lossless one. Without such a
-    solution the machine is self-locking: the output must be driven too.
+    Theory (T5), (T6).
 
     Raises
     ------
@@ -124,34 +134,34 @@ def solve_machine(machine: Machine, operation: Operation, fluids: Fluids) -> Sol
     """
     speeds = speeds_of(machine, operation.speeds)
     lossless = _lossless(machine, operation, speeds)
-    drives = drives_first(lossless.powers, dict.fromkeys(lossless.powers, True))
-    wanted = lossless.torques[operation.output]
-    tried: list[dict[str, bool]] = []
-    agreeing: list[_Pass] = []
+    efficiencies: Mapping[str, float] = {row.key: row.efficiency for row in machine.rows}
+    directions = find_directions(machine, operation, speeds, lossless, efficiencies)
+    ratio = _ratio(operation, speeds)
+    if directions.jammed:  # it stands still, whatever the speeds were meant to be
+        speeds = dict.fromkeys(speeds, 0.0)
+    drives = directions.drives
+    tried: list[Mapping[str, bool]] = []
     while drives not in tried and len(tried) < MOST_BRANCHES:
         tried.append(drives)
-        last = _converged(machine, operation, lossless, speeds, drives, fluids)
-        found = drives_first(last.balance.powers, drives)
-        if found == drives:
-            agreeing.append(last)
-            if last.balance.torques[operation.output] * wanted >= 0:
-                break
-        drives = found
-    chosen = agreeing[-1] if agreeing else last
-    locking = (
-        not agreeing or chosen.balance.torques[operation.output] * wanted < 0
-    ) and lossless.torques[operation.input] * speeds[operation.input] != 0
+        last = _converged(machine, operation, speeds, drives, fluids)
+        drives = drives_first(last.balance.powers, drives)
+    if last.efficiencies != efficiencies and not directions.jammed:
+        directions = find_directions(machine, operation, speeds, lossless, last.efficiencies)
     return Solution(
         speeds=speeds,
-        torques=chosen.balance.torques,
-        couplings=chosen.balance.couplings,
-        rolling=chosen.balance.powers,
-        results=chosen.results,
-        given=_given_losses(machine, chosen.balance),
+        torques=last.balance.torques,
+        couplings=last.balance.couplings,
+        meshes=last.balance.meshes,
+        drives=last.drives,
+        rolling=last.balance.powers,
+        results=last.results,
+        given=_given_losses(machine, last.balance),
         drivers=_drivers(lossless, speeds),
-        self_locking=locking,
-        unique=chosen.balance.unique,
-        state=chosen.state,
+        ratio=ratio,
+        self_locking=directions.locking,
+        jammed=directions.jammed,
+        unique=last.balance.unique,
+        state=last.state,
     )
 
 
@@ -160,6 +170,8 @@ class _Pass:
     """Torques, and what the elements answer to them."""
 
     balance: Balance
+    drives: Mapping[str, bool]
+    efficiencies: Mapping[str, float]
     state: State
     results: Mapping[str, ElementResult]
 
@@ -167,10 +179,9 @@ class _Pass:
 def _converged(
     machine: Machine,
     operation: Operation,
-    lossless: Balance,
     speeds: Mapping[str, float],
     drives: Mapping[str, bool],
-    fluids: Fluids,
+    fluids: Fluids | None,
 ) -> _Pass:
     """Torques and losses that agree, with these directions of the rolling powers."""
     found = balance(
@@ -186,15 +197,20 @@ def _converged(
             if element.key not in answered or not _agrees(answered[element.key], loads):
                 results[element.key] = element.evaluate(state)
                 answered[element.key] = loads
-        efficiencies, frictions = _effects(machine, found, results.values())
+        efficiencies, frictions = effects_of(machine, found.powers, results.values())
         new = balance(machine, operation, speeds, drives, efficiencies, frictions)
         if _agrees(found.meshes, new.meshes):
-            return _Pass(new, state, results)
+            return _Pass(new, drives, efficiencies, state, results)
         found = new
     raise ConvergenceError(
         f"losses and torques do not agree after {MOST_PASSES} passes: the losses grow with the "
         "torques that they cause. Choose smaller losses, or give efficiencies."
     )
+
+
+def _ratio(operation: Operation, speeds: Mapping[str, float]) -> float | None:
+    output = speeds[operation.output]
+    return speeds[operation.input] / output if output else None
 
 
 def _agrees(old: Mapping[str, float], new: Mapping[str, float]) -> bool:
@@ -205,16 +221,24 @@ def _agrees(old: Mapping[str, float], new: Mapping[str, float]) -> bool:
     )
 
 
-def _effects(
-    machine: Machine, found: Balance, results: Iterable[ElementResult]
+def effects_of(
+    machine: Machine, powers: Mapping[str, float], results: Iterable[ElementResult]
 ) -> tuple[dict[str, float], list[Friction]]:
-    """Efficiencies of the meshes, and friction between bodies, that the losses stand for."""
+    """Efficiencies of the meshes, and friction between bodies, that the losses stand for.
+
+    Parameters
+    ----------
+    machine : Machine
+    powers : mapping of str to float
+        Rolling power of each mesh. [W]
+    results : iterable of ElementResult
+    """
     efficiencies = {row.key: row.efficiency for row in machine.rows}
     frictions = []
     rows = {row.key: row for row in machine.rows}
     for result in results:
         for loss in result.losses.values():
-            power = abs(found.powers.get(loss.mesh, 0.0))
+            power = abs(powers.get(loss.mesh, 0.0))
             if loss.mesh and loss.watts < MOST_OF_A_MESH * power:
                 efficiencies[loss.mesh] -= loss.watts / power
             elif loss.mesh:

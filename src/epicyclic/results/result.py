@@ -130,6 +130,8 @@ class Layout:
         Keys of the meshes of a train, whose rolling power is stated; empty for a single set.
     parts : tuple
         Keys of further elements with the type of their figures.
+    fluid : bool
+        False if nothing is computed that needs an oil.
     """
 
     losses: tuple[str, ...]
@@ -139,6 +141,7 @@ class Layout:
     shares: bool = False
     rolling: tuple[str, ...] = ()
     parts: tuple[tuple[str, type[DataclassInstance]], ...] = ()
+    fluid: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +161,9 @@ class Train:
     clutches : mapping of str to float
         Torque through each closed clutch, ``"input+third"``, from its first to its second shaft.
         [N m]
+    stages : mapping of str to mapping of str to float
+        Torque that each set and part takes from each shaft and from the housing: times the speed of
+        the shaft it is the power that enters there. [N m]
     self_locking : bool
         True if the output must be driven too.
     input, output : str
@@ -169,6 +175,7 @@ class Train:
     power_ratio: float | None
     rolling: Mapping[str, float]
     clutches: Mapping[str, float]
+    stages: Mapping[str, Mapping[str, float]]
     self_locking: bool
     input: str
     output: str
@@ -352,6 +359,7 @@ class Result:
             "shafts": _members_dict(self.flow),
             "rolling_power": dict(train.rolling),
             "clutches": dict(train.clutches),
+            "stage_torques": {name: dict(taken) for name, taken in train.stages.items()},
             "stages": self.stage_losses,
             "kinds": self.kind_losses,
             "bearings": {name: _figures_dict(item) for name, item in self.bearings.items()},
@@ -464,7 +472,8 @@ def number_fields(layout: Layout) -> tuple[NumberField, ...]:
                 partial(_torque, name),
             ),
         ]
-    fields += _part_fields("fluid", FluidFigures, lambda it: it.fluid)
+    if layout.fluid:
+        fields += _part_fields("fluid", FluidFigures, lambda it: it.fluid)
     for name in layout.meshes:
         fields += _part_fields(name, MeshFigures, partial(_mesh, name))
     for name in layout.bearings:
@@ -501,7 +510,7 @@ def _part_fields(
         if "label" in field.metadata:
             yield NumberField(
                 f"{name}_{field.name}",
-                f"{name.replace('_', ' ')}: {field.metadata['label']}",
+                f"{name.replace('_', ' ').replace('.', ', ')}: {field.metadata['label']}",
                 field.metadata["unit"].display or "1",
                 partial(_part_number, part, field),
             )

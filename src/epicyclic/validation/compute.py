@@ -7,7 +7,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
+from importlib import resources
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -211,11 +215,41 @@ def _standard_mesh(teeth1: int, teeth2: int, internal: bool) -> LoadedMesh:
     return loaded_meshes(case)["mesh"]
 
 
+@cache
+def _trains() -> dict[str, Any]:
+    """The trains of `trains.toml`, as tables of cases."""
+    file = resources.files("epicyclic.validation").joinpath("trains.toml")
+    return tomllib.loads(file.read_text(encoding="utf-8"))
+
+
+def _train(train: str, changes: Mapping[str, Any]) -> Result:
+    tables = _trains().get(train)
+    case = load_case(train if tables is None else tables)
+    return solve(case.updated(changes))
+
+
+def train_ratio(train: str, **changes: Any) -> float:
+    """Speed of the input over that of the output, signed. [1]"""
+    result = _train(train, changes).train
+    assert result is not None
+    assert result.ratio is not None
+    return result.ratio
+
+
+def train_efficiency(train: str, **changes: Any) -> float:
+    """Power out over power in; 0 if the train is self-locking. [1]"""
+    efficiency = _train(train, changes).efficiency
+    assert efficiency is not None
+    return efficiency
+
+
 FIGURES: dict[str, Callable[..., float]] = {
     function.__name__: function
     for function in (
         planet_bearing_loss,
         planet_bearing_ratio,
+        train_efficiency,
+        train_ratio,
         azimuth_of_gained_rollers,
         mixture_density,
         mixture_viscosity,
