@@ -20,6 +20,7 @@ extensions = [
     "sphinx.ext.mathjax",
     "case_keys",
     "figure_labels",
+    "module_table",
 ]
 exclude_patterns = ["_build", "_ext"]
 html_theme = "furo"

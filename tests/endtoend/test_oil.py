@@ -74,7 +74,7 @@ def finished(tmp_path_factory):
 
 def kept(folder):
     journal = folder / "simulations.partial"
-    return journal.read_bytes().count(b'"point":') if journal.exists() else 0
+    return journal.read_bytes().count(b'"row":') if journal.exists() else 0
 
 
 def disturbed(folder, kills, seed):

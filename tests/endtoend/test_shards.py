@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
+import re
 import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +21,7 @@ from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.plan import make_plan
 from epicyclic.sweeps.runner import Runner, share_of
 
+DOCS = Path(__file__).parents[2] / "docs"
 PAIR = (
     "talbot-2012-pair", "--set", "numerics.pocket_slices=4", "--set", "numerics.pocket_steps=8",
 )  # fmt: skip
@@ -190,7 +194,7 @@ def test_a_killed_shard_goes_on(call, tmp_path):
     shard = [sys.executable, "-m", "epicyclic", *map(str, command), "--shard", "2/2"]
     running = subprocess.Popen(shard, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     deadline = time.monotonic() + 120
-    while not (files := files_of(tmp_path, "s.csv")) or files[0].read_bytes().count(b"\n") < 20:
+    while not (files := files_of(tmp_path, "s.csv")) or files[0].read_bytes().count(b'"row":') < 20:
         assert running.poll() is None, "it ended before it could be killed"
         assert time.monotonic() < deadline, "it kept no points"
         time.sleep(0.01)
@@ -204,6 +208,41 @@ def test_a_killed_shard_goes_on(call, tmp_path):
     assert call("merge", *files_of(tmp_path, "s.csv"), "-o", tmp_path / "s.csv")[0] == 0
     assert call(*command[:-4], "-o", tmp_path / "whole.csv", "--jobs", "1")[0] == 0
     assert (tmp_path / "s.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+
+
+SBATCH = """#!/bin/bash
+# stands in for the scheduler: runs the jobs one after the other
+if [ "$1" = --parsable ]; then
+    last=$(sed -n 's/^#SBATCH --array=1-//p' "$2")
+    for task in $(seq "$last"); do SLURM_ARRAY_TASK_ID=$task bash "$2" >&2 || exit 1; done
+    echo 17
+else
+    [ "$1" = --dependency=afterok:17 ] && [ "$2" = --wrap ] && bash -c "$3"
+fi
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a shell")
+def test_the_scripts_for_slurm_do_what_they_say(call, tmp_path):
+    page = (DOCS / "how-to" / "run-on-a-cluster.md").read_text(encoding="utf-8")
+    for name in ("losses.sh", "submit.sh"):
+        (script,) = re.findall(rf":caption: {name}\n\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
+        (tmp_path / name).write_text(script)
+    programs = tmp_path / "bin"
+    programs.mkdir()
+    command = f'#!/bin/bash\nexec "{sys.executable}" -m epicyclic "$@"\n'
+    for name, text in (("sbatch", SBATCH), ("epicyclic", command)):
+        (programs / name).write_text(text)
+        (programs / name).chmod(0o755)
+    done = subprocess.run(
+        ["bash", "-e", "submit.sh"], cwd=tmp_path, capture_output=True, text=True, check=False,
+        env=os.environ | {"PATH": f"{programs}:{os.environ['PATH']}"},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "Wrote 16 points to losses.nc." in done.stdout
+    whole = ("--vary", "operation.speed=1000:4000:4 rpm", "--vary", "planet.count=3,4,5,6")
+    assert call("sweep", "talbot-2012", *whole, "-o", tmp_path / "whole.nc")[0] == 0
+    assert (tmp_path / "losses.nc").read_bytes() == (tmp_path / "whole.nc").read_bytes()
 
 
 def test_shards_follow_each_other_in_the_order_of_all():
@@ -281,6 +320,15 @@ def test_a_calibration_and_a_duty_cycle_go_on(call, cluster, tmp_path):
         assert [file.read_bytes() for file in files] == before  # nothing was computed again
 
 
+def test_a_journal_in_a_file_is_refused_where_it_is_a_folder(call, tmp_path):
+    (tmp_path / "file").touch()
+    (tmp_path / "cycle.csv").write_text("time [s],speed [rpm],torque [N*m]\n0,1000,20\n5,3000,10\n")
+    duty = ("duty", "talbot-2012-pair", tmp_path / "cycle.csv", "--journal", tmp_path / "file")
+    code, _, errors = call(*duty)
+    assert code == 2
+    assert "is no place for a folder" in errors
+
+
 def test_a_cluster_of_another_version_is_refused(cluster, monkeypatch):
     from epicyclic.sweeps import runner
 
@@ -303,7 +351,7 @@ def test_an_interruption_cancels_what_the_cluster_has_left(cluster, tmp_path):
     vary = {"operation.torque": [f"{i} N*m" for i in range(1, 300)]}
     with pytest.raises(KeyboardInterrupt):
         ep.sweep(case, vary, dask=cluster, journal=tmp_path / "points", progress=stop)
-    kept = (tmp_path / "points").read_bytes().count(b'"point":')
+    kept = (tmp_path / "points").read_bytes().count(b'"row":')
     assert 0 < kept < 299
     with distributed.Client(cluster) as client:
         deadline = time.monotonic() + 30

@@ -30,6 +30,9 @@ class Brake:
     def __init__(self, *losses):
         self.losses = losses
 
+    def idle(self, state):
+        return None
+
     def loads(self, state):
         return {}
 

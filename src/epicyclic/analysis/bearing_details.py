@@ -7,11 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from epicyclic.analysis.datasets import variable
-from epicyclic.builders.planetary import roller_bearing
-from epicyclic.case.model_tables import Numerics
-from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.kernels.line_contact import hertz_pressure
-from epicyclic.losses.planet_bearing import RollerLoads
+from epicyclic.losses.planet_bearing import RollerBearing, RollerLoads
 from epicyclic.units import DEGREE, GIGAPASCAL, MILLIMETRE, NEWTON, NEWTON_PER_MM
 
 if TYPE_CHECKING:
@@ -20,16 +17,14 @@ if TYPE_CHECKING:
 __all__ = ["bearing_details"]
 
 
-def bearing_details(table: PlanetBearing, numerics: Numerics, loads: RollerLoads) -> xr.Dataset:
+def bearing_details(bearing: RollerBearing, loads: RollerLoads) -> xr.Dataset:
     """Roller loads of a bearing with units, rows, rollers and slices counted from 1.
 
     Parameters
     ----------
-    table : PlanetBearing
-        Of the case.
-    numerics : Numerics
+    bearing : RollerBearing
     loads : RollerLoads
-        Of the result, ``result.bearing.loads``.
+        Of the result, ``result.bearing.loads``, of a train ``result.bearings[...].loads``.
 
     Returns
     -------
@@ -40,7 +35,6 @@ def bearing_details(table: PlanetBearing, numerics: Numerics, loads: RollerLoads
     """
     import xarray as xr
 
-    bearing = roller_bearing(table, numerics)
     modulus = bearing.equivalent_modulus
     pressure = hertz_pressure(
         loads.intensity, np.full_like(loads.intensity, bearing.inner_radius), modulus

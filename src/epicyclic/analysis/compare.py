@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+from epicyclic.analysis.sets_of import build_computed, set_cases
 from epicyclic.analysis.solve import solve
 from epicyclic.builders.models import friction_of, friction_settings, resolve_models
-from epicyclic.case.case import Case
+from epicyclic.case.case import Case, TrainCase
 from epicyclic.elements.base import LOAD_DEPENDENT
 from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.results.result import Result
@@ -48,24 +50,33 @@ class FrictionComparison:
 def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
     """Every friction model on `case`, by the local and by the quick method.
 
+    In a train all sets get the same model; none is chosen if the case chooses several.
+
     The model ``table`` takes part if the case has a friction table, ``fitted`` and ``ehl-direct``
     if the case chooses them.
+
+    Raises
+    ------
+    InputError
+        If the case is a train of given efficiencies.
     """
-    chosen = resolve_models(case)["friction"]
-    settings = friction_settings(case)
+    built = build_computed(case)
+    owners = [own for _, own in set_cases(case, built.sets)]
+    chosen = {resolve_models(own)["friction"] for own in owners}
     rows = []
-    for name in dict.fromkeys([*FRICTION_MODELS, chosen]):
-        if name == "table" and settings.table is None:
+    for name in dict.fromkeys([*FRICTION_MODELS, *sorted(chosen)]):
+        if name == "table" and friction_settings(owners[0]).table is None:
             continue
-        local = solve(case.updated({"models.friction": name, "models.mesh": "local"}))
-        quick = solve(case.updated({"models.friction": name, "models.mesh": "loss-factor"}))
-        model = friction_of(case.updated({"models.friction": name}))
+        local = solve(_with(case, {"friction": name, "mesh": "local"}))
+        quick_case = _with(case, {"friction": name, "mesh": "loss-factor"})
+        quick = solve(quick_case)
+        model = friction_of(next(own for _, own in set_cases(quick_case, built.sets)))
         rows.append(
             FrictionComparison(
                 name=name,
                 title=model.title,
                 source=model.source,
-                chosen=name == chosen,
+                chosen=chosen == {name},
                 mean_friction={key: mesh.friction_mean for key, mesh in local.meshes.items()},
                 sliding=_sliding(local),
                 quick=_sliding(quick),
@@ -75,6 +86,19 @@ def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
             )
         )
     return tuple(rows)
+
+
+def _with(case: Case, models: Mapping[str, str]) -> Case:
+    """The case with other models, in a train also of the sets that choose their own."""
+    changes = {f"models.{key}": model for key, model in models.items()}
+    if isinstance(case, TrainCase):
+        changes |= {
+            f"sets.{name}.models.{key}": model
+            for name, tables in case.given()["sets"].items()
+            if "models" in tables
+            for key, model in models.items()
+        }
+    return case.updated(changes)
 
 
 def _sliding(result: Result) -> float:

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.analysis.datasets import Variable, variable
-from epicyclic.builders.build import build
+from epicyclic.analysis.sets_of import build_computed, set_cases
+from epicyclic.builders.built import mesh_key
 from epicyclic.builders.notes import load_notes
 from epicyclic.case.case import Case
 from epicyclic.elements.gear_mesh import MeshDuty, contact_under, distribute_load
@@ -43,24 +44,26 @@ _DIMENSIONS = ("mesh_position", "contact_line", "segment")
 def mesh_details(case: Case) -> dict[str, xr.Dataset]:
     """Load, pressure, sliding and friction at every point of every loaded mesh of a case.
 
-    Of a planetary set both meshes of the most loaded planet.
+    Of a planetary set both meshes of the most loaded planet; of a train every set whose losses are
+    computed, but for those without load.
 
     Parameters
     ----------
-    case : PlanetaryCase or GearPairCase
+    case : PlanetaryCase, GearPairCase or TrainCase
 
     Returns
     -------
     dict of str to xarray.Dataset
-        By mesh, ``"sun_mesh"``. Dimensions ``mesh_position`` over one base pitch,
-        ``contact_line`` (line k touches k base pitches after line 0) and ``segment`` along a line.
+        By mesh, ``"sun_mesh"``, of a train with its set, ``"P1.sun_mesh"``. Dimensions
+        ``mesh_position`` over one base pitch, ``contact_line`` (line k touches k base pitches after
+        line 0) and ``segment`` along a line.
         NaN where no tooth touches or, without motion, for what depends on it. Each variable has its
         unit in ``attrs["units"]``.
 
     Raises
     ------
     InputError
-        If the case has no torque.
+        If the case has no torque, or is a train of given efficiencies.
     ConvergenceError
         If the load on the teeth is not found.
     """
@@ -72,14 +75,21 @@ def mesh_details(case: Case) -> dict[str, xr.Dataset]:
             "Give a torque other than zero.",
         )
         raise InputError([problem], case.source)
-    built = build(case)
+    built = build_computed(case)
+    notes = {name: load_notes(own) for name, own in set_cases(case, built.sets)}
+    state = built.state()
     return {
-        key: _details(case.title, duty, built.fluids.oil, load_notes(case))
-        for key, duty in built.loaded_duties().items()
+        key: _details(case.title, key, duty, built.fluids.oil, notes[name])
+        for name, own in built.sets.items()
+        for duty in own.loaded_duties(state)
+        for key in (mesh_key(name, duty.key),)
+        if not name or duty.torque1 != 0
     }
 
 
-def _details(title: str, duty: MeshDuty, oil: OilState, notes: tuple[str, ...]) -> xr.Dataset:
+def _details(
+    title: str, key: str, duty: MeshDuty, oil: OilState, notes: tuple[str, ...]
+) -> xr.Dataset:
     import xarray as xr
 
     mesh = duty.mesh
@@ -105,13 +115,20 @@ def _details(title: str, duty: MeshDuty, oil: OilState, notes: tuple[str, ...]) 
         "contact_line": np.arange(lines.length.shape[1]),
     }
     attributes = {
-        "title": f"{duty.key.replace('_', ' ').capitalize()} of {title or 'the case'}",
+        "title": f"{_words(key)} of {title or 'the case'}",
         "notes": "\n".join(notes),
         "load_distribution": duty.models.load_distribution,
         "force_N": duty.force,
         "pitch_angle_deg": DEGREE.to_display(pitch_angle),
     }
     return xr.Dataset(variables, coordinates, attributes)
+
+
+def _words(key: str) -> str:
+    """A mesh in words, that of a train with its set: ``"P1: sun mesh"``."""
+    name, dot, mesh = key.rpartition(".")
+    words = mesh.replace("_", " ")
+    return f"{name}: {words}" if dot else words.capitalize()
 
 
 _points = partial(variable, _DIMENSIONS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
 from epicyclic.analysis.datasets import Variable, variable
+from epicyclic.analysis.sets_of import build_computed
 from epicyclic.builders.build import build
 from epicyclic.builders.built import mesh_key
 from epicyclic.case.case import Case
@@ -56,12 +58,14 @@ _LIFE = ("tooth", "roll")
 _AXIS = "axis"
 
 
-def pocket_details(case: Case) -> dict[str, xr.Dataset]:
+def pocket_details(case: Case, meshes: Collection[str] | None = None) -> dict[str, xr.Dataset]:
     """Shape, pressure, flow and power of the pockets of every mesh of a case.
 
     Parameters
     ----------
-    case : PlanetaryCase or GearPairCase
+    case : PlanetaryCase, GearPairCase or TrainCase
+    meshes : collection of str, optional
+        The meshes, ``"sun_mesh"``, of a train ``"P1.sun_mesh"``; default: all.
 
     Returns
     -------
@@ -78,15 +82,18 @@ def pocket_details(case: Case) -> dict[str, xr.Dataset]:
     Raises
     ------
     InputError
-        If the gears do not turn against each other, or have no tooth outline.
+        If the gears do not turn against each other or have no tooth outline, or if the case is a
+        train of given efficiencies.
     ConvergenceError
         If the flow is not found.
     """
-    built = build(case)
+    built = build_computed(case)
     found = {}
     for name, own in built.sets.items():
         for duty in own.mean_duties(built.state()):
             key = mesh_key(name, duty.key)
+            if meshes is not None and key not in meshes:
+                continue
             try:
                 flow = solve_pockets(duty, built.fluids)
             except ValueError as error:

@@ -7,15 +7,19 @@ along y, and the places at which the gear stands, each with the direction of its
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from epicyclic.analysis.datasets import variable
-from epicyclic.analysis.pocket_details import mesh_duties
+from epicyclic.analysis.sets_of import set_cases
+from epicyclic.builders.build import build as build_machine
+from epicyclic.builders.built import mesh_key
 from epicyclic.case import build
-from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable
+from epicyclic.elements.gear_mesh import MeshDuty
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import tooth_outline
@@ -39,26 +43,25 @@ HALF = 0.5
 def gear_shapes(case: Case) -> dict[str, xr.Dataset]:
     """Outline and places of every gear of a case, about the axis of the set or of the wheel.
 
+    Of a train the gears of the sets whose losses are computed, but for those that are listed.
+
     Parameters
     ----------
-    case : PlanetaryCase or GearPairCase
+    case : PlanetaryCase, GearPairCase or TrainCase
 
     Returns
     -------
     dict of str to xarray.Dataset
-        By gear, ``"sun"``. ``x``, ``y`` over ``point``: one tooth from the middle of a space to
-        the middle of the next; absent if the tooth has no outline. ``center_x``, ``center_y``,
-        ``direction`` over ``place``. Diameters without dimension. Units in ``attrs["units"]``.
+        By gear, ``"sun"``, of a train ``"P1.sun"``. ``x``, ``y`` over ``point``: one tooth from the
+        middle of a space to the middle of the next; absent if the tooth has no outline.
+        ``center_x``, ``center_y``, ``direction`` over ``place``. Diameters without dimension. Units
+        in ``attrs["units"]``.
     """
-    tables: dict[str, GearTable]
-    if isinstance(case, PlanetaryCase):
-        tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
-        places = _planetary_places(case)
-    else:
-        tables = {"pinion": case.pinion, "gear": case.gear}
-        places = _pair_places(case.gears.center_distance, *_duties_gears(case)[0])
-    gears = {gear.name: (gear, tool) for pair in _duties_gears(case) for gear, tool in pair}
-    return {name: _shape(*gears[name], table, places[name]) for name, table in tables.items()}
+    return {
+        mesh_key(prefix, name): shape
+        for prefix, own, duties in _drawn_sets(case)
+        for name, shape in _set_shapes(own, duties).items()
+    }
 
 
 def mesh_views(case: Case) -> dict[str, xr.Dataset]:
@@ -69,18 +72,43 @@ def mesh_views(case: Case) -> dict[str, xr.Dataset]:
     Returns
     -------
     dict of str to xarray.Dataset
-        By mesh, ``"sun_mesh"``. ``center_x``, ``center_y``, ``direction``, ``operating_radius``
-        over ``gear``; ``path_x``, ``path_y`` over ``end``, where contact begins and ends;
-        ``pressure_angle`` of the line of action.
+        By mesh, ``"sun_mesh"``, of a train ``"P1.sun_mesh"``. ``center_x``, ``center_y``,
+        ``direction``, ``operating_radius`` over ``gear``; ``path_x``, ``path_y`` over ``end``,
+        where contact begins and ends; ``pressure_angle`` of the line of action.
     """
-    return {duty.key: _view(duty.mesh) for duty in mesh_duties(case)}
+    return {
+        mesh_key(prefix, duty.key): _view(duty.mesh)
+        for prefix, _, duties in _drawn_sets(case)
+        for duty in duties
+    }
 
 
-def _duties_gears(case: Case) -> list[tuple[tuple[Gear, Tool], tuple[Gear, Tool]]]:
-    return [
-        ((duty.mesh.gear1, duty.tools[0]), (duty.mesh.gear2, duty.tools[1]))
-        for duty in mesh_duties(case)
+def _drawn_sets(
+    case: Case,
+) -> Iterator[tuple[str, PlanetaryCase | GearPairCase, tuple[MeshDuty, ...]]]:
+    """Name, case and meshes of every set that is drawn: not those whose gears are listed."""
+    built = build_machine(case)
+    state = built.state()
+    for name, own in set_cases(case, built.sets):
+        if isinstance(own, PlanetaryCase | GearPairCase):
+            yield name, own, built.sets[name].mean_duties(state)
+
+
+def _set_shapes(
+    case: PlanetaryCase | GearPairCase, duties: tuple[MeshDuty, ...]
+) -> dict[str, xr.Dataset]:
+    tables: dict[str, GearTable]
+    pairs = [
+        ((duty.mesh.gear1, duty.tools[0]), (duty.mesh.gear2, duty.tools[1])) for duty in duties
     ]
+    if isinstance(case, PlanetaryCase):
+        tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
+        places = _planetary_places(case)
+    else:
+        tables = {"pinion": case.pinion, "gear": case.gear}
+        places = _pair_places(case.gears.center_distance, *pairs[0])
+    gears = {gear.name: (gear, tool) for pair in pairs for gear, tool in pair}
+    return {name: _shape(*gears[name], table, places[name]) for name, table in tables.items()}
 
 
 # --- where gears stand ----------------------------------------------------------------------------

@@ -11,6 +11,7 @@ from epicyclic.builders.models import resolve_models
 from epicyclic.builders.notes import case_notes, general_notes
 from epicyclic.builders.train import set_case
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.train import TrainCase
 from epicyclic.elements.base import HOUSING, Loss
 from epicyclic.elements.figures import BearingFigures, MeshFigures
@@ -103,9 +104,11 @@ def _figures(solution: Solution) -> Iterator[tuple[str, Any]]:
 def _flags(solution: Solution) -> Iterator[ValidityFlag]:
     """Flags of all elements, those of a train with the name of their set."""
     for key, result in solution.results.items():
+        if not key:
+            yield from result.flags
+            continue
         for flag in result.flags:
-            where = f"{key}: {flag.use.where}" if key else flag.use.where
-            yield replace(flag, use=replace(flag.use, where=where))
+            yield replace(flag, use=replace(flag.use, where=f"{key}: {flag.use.where}"))
 
 
 def _methods(built: Built) -> Iterator[tuple[str, tuple[str, str]]]:
@@ -132,7 +135,7 @@ def _models(case: Case, built: Built) -> Iterator[tuple[str, str]]:
 
 def _set_cases(
     case: Case, sets: Mapping[str, GearSet]
-) -> Iterator[tuple[str, PlanetaryCase | GearPairCase]]:
+) -> Iterator[tuple[str, PlanetaryCase | GearPairCase | ListedCase]]:
     """The computed sets of a case, each as a case of its own."""
     if not isinstance(case, TrainCase):
         yield "", case
@@ -145,11 +148,12 @@ def _set_notes(case: Case, built: Built, solution: Solution) -> Iterator[str]:
     for key, own in _set_cases(case, built.sets):
         found = solution.results[key]
         assert isinstance(found, GearSetResult)
-        turns = False
-        if isinstance(own, PlanetaryCase):
-            ring = built.sets[key].discs["ring_drag"][0].body
-            turns = solution.speeds[ring] != 0
-        for note in case_notes(own, found, ring_turns=turns):
+        turning = {
+            name.removesuffix("_drag")
+            for name, discs in built.sets[key].discs.items()
+            if solution.speeds[discs[0].body] != 0
+        }
+        for note in case_notes(own, found, turning):
             yield f"{key}: {note}" if key else note
     for result in solution.results.values():
         if not isinstance(result, GearSetResult):

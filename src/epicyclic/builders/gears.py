@@ -22,8 +22,9 @@ def gear_mesh(
     tools: tuple[Tool, Tool],
     misalignment: float,
     models: MeshModels,
+    planets: int = 1,
 ) -> GearMesh:
-    """The mesh of two gears as an element sees it."""
+    """The mesh of two gears, one of `planets` alike, as an element sees it."""
     return GearMesh(
         key=key,
         mesh=mesh,
@@ -31,7 +32,7 @@ def gear_mesh(
         tools=tools,
         roundings=(tables[0].tool_tip_radius, tables[1].tool_tip_radius),
         flanks=_flanks(tables),
-        solids=flanks.gear_bodies(mesh, tables),
+        solids=flanks.gear_bodies(mesh, tables, planets),
         deviations=flanks.flank_deviations(mesh, tables, misalignment),
         models=models,
     )

@@ -2,14 +2,181 @@
 
 from __future__ import annotations
 
-from epicyclic.case.train import TrainCase
-from epicyclic.case.train_tables import ListedSet
-from epicyclic.elements.gear_set import GearSet
+from collections.abc import Iterator, Mapping
+
+from epicyclic.builders.gears import gear_mesh
+from epicyclic.builders.models import loss_choices, mesh_models
+from epicyclic.builders.planetary import planet_bearing
+from epicyclic.case import build
+from epicyclic.case.listed_set import (
+    ListedCase,
+    arrangement_of,
+    bearing_of,
+    gear_of,
+    hands_of,
+    meshes_of,
+    outward_of,
+    pins_of,
+    positions_of,
+)
+from epicyclic.case.train_shape import CARRIER
+from epicyclic.elements.base import HOUSING
+from epicyclic.elements.disc import Disc
+from epicyclic.elements.gear_mesh import GearMesh
+from epicyclic.elements.gear_set import GearSet, Planet, PlanetMesh
+from epicyclic.elements.load_sharing import LoadSharing
+from epicyclic.geometry.cutting import fitted_tool
+from epicyclic.geometry.mesh import Mesh
+from epicyclic.geometry.tools import Tool
 from epicyclic.pocketing.table import FlowTables
 
 __all__ = ["listed_element"]
 
 
-def listed_element(key: str, table: ListedSet, case: TrainCase, flow_tables: FlowTables) -> GearSet:
-    """The losses of a listed set."""
-    raise AssertionError
+def listed_element(
+    key: str, case: ListedCase, bodies: Mapping[str, str], flow_tables: FlowTables
+) -> GearSet:
+    """The losses of a listed set.
+
+    Each of its meshes carries what the losses leave, which a set of several ways of power cannot
+    state from one of its torques.
+
+    Parameters
+    ----------
+    key : str
+        First part of the keys of its losses.
+    case : ListedCase
+    bodies : mapping of str to str
+        The body in the machine of every body of the set, and of its carrier.
+    flow_tables : mapping
+        Of flows through pockets.
+    """
+    planets = bool(case.shape.planets)
+    missing = (
+        {} if case.table.carrier or not planets else {"carrier_drag": "the case has no [carrier]"}
+    )
+    return GearSet(
+        key=key,
+        carrier=bodies[CARRIER] if planets else HOUSING,
+        meshes=tuple(_meshes(case, bodies, flow_tables)),
+        planets=tuple(_planets(case, bodies)),
+        sharing=_sharing(case),
+        discs=dict(_discs(case, bodies)),
+        missing=missing,
+        thrust=None,
+        choices=loss_choices(case),
+    )
+
+
+def _meshes(
+    case: ListedCase, bodies: Mapping[str, str], flow_tables: FlowTables
+) -> Iterator[GearMesh]:
+    shape, tables = case.shape, case.table.members
+    models = mesh_models(case, flow_tables)
+    found = list(meshes_of(case.table, shape))
+    tools = _tools(case, [mesh for _, mesh, _ in found])
+    for drawn, mesh, table in found:
+        gears = (drawn.first, drawn.second)
+        one, two = gears
+        yield gear_mesh(
+            drawn.key,
+            mesh,
+            (tables[one], tables[two]),
+            bodies=(bodies[shape.bodies[one]], bodies[shape.bodies[two]]),
+            tools=(tools[one], tools[two]),
+            misalignment=table.misalignment,
+            models=models[drawn.key],
+            planets=case.table.planets or 1,
+        )
+
+
+def _tools(case: ListedCase, meshes: list[Mesh]) -> dict[str, Tool]:
+    """The tool of each gear, which serves the mate that reaches deepest."""
+    needed: dict[str, float] = {}
+    for mesh in meshes:
+        ends = ((mesh.gear1, mesh.radius1_at_start), (mesh.gear2, mesh.radius2_at_end))
+        for gear, radius in ends:
+            deeper = max if gear.internal else min
+            needed[gear.name] = deeper(radius, needed.get(gear.name, radius))
+    return {
+        name: fitted_tool(gear_of(case.table, name), table.tool_tip_radius, needed[name])
+        for name, table in case.table.members.items()
+    }
+
+
+def _planets(case: ListedCase, bodies: Mapping[str, str]) -> Iterator[Planet]:
+    table, shape = case.table, case.shape
+    pins = pins_of(table, shape)
+    for body in shape.planets:
+        masses = [
+            gear.mass
+            for name, gear in table.members.items()
+            if shape.bodies[name] == body and gear.mass is not None
+        ]
+        bearing = bearing_of(table, body)
+        yield Planet(
+            key=f"{body}_bearing",
+            body=bodies[body],
+            pin_radius=pins[body].radius,
+            meshes=tuple(_planet_meshes(case, body)),
+            mass=sum(masses) if masses else None,
+            bearing=planet_bearing(case, bearing),
+            no_bearing=f"the case has no bearing of {body}",
+            tilts=case.models.planet_tilt == "coupled",
+        )
+
+
+def _planet_meshes(case: ListedCase, body: str) -> Iterator[PlanetMesh]:
+    """How the meshes of a planet stand to it: their directions, hands and places on its axis."""
+    table, shape = case.table, case.shape
+    pins, hands, places = (
+        pins_of(table, shape),
+        hands_of(table, shape),
+        positions_of(table, shape),
+    )
+    for mesh in shape.meshes:
+        for member, (gear, mate) in enumerate(
+            ((mesh.first, mesh.second), (mesh.second, mesh.first)), start=1
+        ):
+            if shape.bodies[gear] != body:
+                continue
+            other = shape.bodies[mate]
+            outward = outward_of(pins, body, other if other in shape.planets else None)
+            yield PlanetMesh(
+                mesh=mesh.key,
+                member=member,
+                outward=(0.0, -1.0) if mesh.internal else outward,
+                # a torque from t to r pushes a right-handed gear against y. Theory (J19)
+                hand=-hands[gear],
+                position=places[gear],
+            )
+
+
+def _sharing(case: ListedCase) -> LoadSharing | None:
+    if not case.shape.planets:
+        return None
+    assert case.table.planets is not None
+    table = case.table.load_sharing
+    return LoadSharing(
+        method=table.method,
+        mesh_load_factor=table.mesh_load_factor,
+        angles=arrangement_of(case.shape, case.table.planets).angles,
+        position_errors=(),
+        floating_member="none",
+        support_stiffness=0.0,
+        pin_stiffness=None,
+    )
+
+
+def _discs(case: ListedCase, bodies: Mapping[str, str]) -> Iterator[tuple[str, tuple[Disc, ...]]]:
+    """Every central gear turns in the mixture, and the carrier."""
+    for name, table in case.table.members.items():
+        body = case.shape.bodies[name]
+        if body not in case.shape.planets:
+            gear = gear_of(case.table, name)
+            radius = build.outside_radius(gear, table)
+            yield f"{name}_drag", (Disc(name, bodies[body], radius, gear.face_width),)
+    carrier = case.table.carrier
+    if carrier is not None:
+        disc = Disc("carrier", bodies[CARRIER], carrier.outer_diameter / 2, carrier.width)
+        yield "carrier_drag", (disc,)

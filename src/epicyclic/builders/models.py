@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 import numpy as np
 
-from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.model_tables import LossOption
 from epicyclic.case.oil_laws import oil_laws
+from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.ehl.heating import effusivity
 from epicyclic.ehl.rough import AsperityContact
 from epicyclic.elements.fluids import Fluids, fluids_at
@@ -23,11 +28,14 @@ from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.table import FlowTables
 
 __all__ = [
+    "SetCase",
+    "bearing_model",
     "fitted_oil_model",
     "fitted_rolling",
     "fluids_of",
     "friction_of",
     "friction_settings",
+    "gear_tables",
     "loss_choices",
     "mesh_models",
     "resolve_models",
@@ -35,25 +43,53 @@ __all__ = [
 ]
 
 
-def resolve_models(case: Case) -> dict[str, str]:
+SetCase = PlanetaryCase | GearPairCase | ListedCase
+"""A set or pair with its oil and surroundings."""
+
+
+def resolve_models(case: SetCase) -> dict[str, str]:
     """The models of a case by key, ``auto`` replaced by what it stands for."""
-    own = case.lubricant.oil.friction_regression == TALBOT_FLUID.key
-    models = case.models
+    own = _is_own_fluid(case)
     automatic = {
         "friction": "mixed-ehl" if own else "schlenk",
         "rolling": "mixed-ehl" if own else "goksem-hargreaves",
     }
     keys = ["friction", "rolling", "load_distribution", "mesh", "pocketing", "drag"]
+    chosen = {key: str(getattr(case.models, key)) for key in keys}
+    found = {key: automatic[key] if choice == "auto" else choice for key, choice in chosen.items()}
+    if isinstance(case, GearPairCase):
+        return found
+    bearings = case.planet_bearings if isinstance(case, ListedCase) else (case.planet_bearing,)
+    if bearings:
+        models = dict.fromkeys(bearing_model(case, bearing) for bearing in bearings)
+        found["bearing"] = ", ".join(models)
+        found["bearing_viscous"] = case.models.bearing_viscous
+    return found
+
+
+def bearing_model(case: PlanetaryCase | ListedCase, bearing: PlanetBearing | None) -> str:
+    """The model of the loss of a planet bearing, ``auto`` replaced by what it stands for."""
+    if case.models.bearing != "auto":
+        return case.models.bearing
+    caged = bearing is None or bearing.cage == "caged"
+    return "mixed-ehl" if _is_own_fluid(case) and caged else "palmgren"
+
+
+def _is_own_fluid(case: SetCase) -> bool:
+    """True for the oil for which the regressions of mixed EHL were made."""
+    return case.lubricant.oil.friction_regression == TALBOT_FLUID.key
+
+
+def gear_tables(case: SetCase) -> tuple[GearTable, ...]:
+    """The tables of all gears of a set."""
+    if isinstance(case, ListedCase):
+        return tuple(case.table.members.values())
     if isinstance(case, PlanetaryCase):
-        bearing = case.planet_bearing
-        caged = bearing is None or bearing.cage == "caged"
-        automatic["bearing"] = "mixed-ehl" if own and caged else "palmgren"
-        keys += ["bearing", "bearing_viscous"]
-    chosen = {key: str(getattr(models, key)) for key in keys}
-    return {key: automatic[key] if choice == "auto" else choice for key, choice in chosen.items()}
+        return case.sun, case.planet, case.ring
+    return case.pinion, case.gear
 
 
-def friction_settings(case: Case) -> FrictionSettings:
+def friction_settings(case: SetCase) -> FrictionSettings:
     """The numbers that friction models take from the case."""
     table = case.friction_table
     return FrictionSettings(
@@ -64,7 +100,7 @@ def friction_settings(case: Case) -> FrictionSettings:
     )
 
 
-def friction_of(case: Case) -> FrictionModel:
+def friction_of(case: SetCase) -> FrictionModel:
     """The friction model of a case."""
     name = resolve_models(case)["friction"]
     if name == FittedFriction.name:
@@ -74,16 +110,11 @@ def friction_of(case: Case) -> FrictionModel:
     return friction_model(name, friction_settings(case))
 
 
-def _direct_settings(case: Case) -> DirectSettings:
+def _direct_settings(case: SetCase) -> DirectSettings:
     solver = case.contact_solver
     carried = None
     if solver.heating != "isothermal":
-        gears = (
-            (case.sun, case.planet, case.ring)
-            if isinstance(case, PlanetaryCase)
-            else (case.pinion, case.gear)
-        )
-        density = float(np.mean([gear.material.density for gear in gears]))
+        density = float(np.mean([gear.material.density for gear in gear_tables(case)]))
         carried = effusivity(solver.solid_conductivity, solver.solid_heat_capacity, density)
     return DirectSettings(
         laws=oil_laws(solver),
@@ -96,7 +127,7 @@ def _direct_settings(case: Case) -> DirectSettings:
     )
 
 
-def rolling_of(case: Case) -> RollingModel:
+def rolling_of(case: SetCase) -> RollingModel:
     """The rolling-loss model of a case."""
     name = resolve_models(case)["rolling"]
     if name == FittedRolling.name:
@@ -104,19 +135,21 @@ def rolling_of(case: Case) -> RollingModel:
     return ROLLING_MODELS[name]
 
 
-def fitted_rolling(case: Case, quantity: str) -> FittedRolling:
+def fitted_rolling(case: SetCase, quantity: str) -> FittedRolling:
     """The fitted rolling loss of the teeth or of the bearings of a case."""
     return FittedRolling(fitted_oil_model(case), case.models.fitted_form, quantity)
 
 
-def fitted_oil_model(case: Case) -> OilModel:
+def fitted_oil_model(case: SetCase) -> OilModel:
     """The file of fitted models that the case names, and was checked to have."""
     assert case.models.oil_model is not None
     return read_oil_model(case.folder / case.models.oil_model)
 
 
 def fluids_of(case: Case) -> Fluids:
-    """Oil and mixture at the oil inlet temperature."""
+    """Oil and mixture at the oil inlet temperature, which only given losses can do without."""
+    assert case.lubricant is not None
+    assert case.operation.oil_inlet_temperature is not None
     return fluids_at(
         case.lubricant.oil,
         case.operation.oil_inlet_temperature,
@@ -126,16 +159,17 @@ def fluids_of(case: Case) -> Fluids:
     )
 
 
-def loss_choices(case: Case) -> dict[str, LossChoice]:
+def loss_choices(case: SetCase) -> dict[str, LossChoice]:
     """What becomes of each loss of a case, in the order in which they are shown."""
-    options = case.losses
-    found: dict[str, LossOption] = {
-        name: getattr(options, name) for name in type(options).model_fields
-    }
+    found: dict[str, LossOption]
+    if isinstance(case, ListedCase):
+        found = case.loss_options
+    else:
+        found = {name: getattr(case.losses, name) for name in type(case.losses).model_fields}
     return {name: LossChoice(option.include, option.factor) for name, option in found.items()}
 
 
-def mesh_models(case: Case, flow_tables: FlowTables) -> dict[str, MeshModels]:
+def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]:
     """How the losses of each mesh of a case are computed, by the key of the mesh."""
     choices, friction, rolling = loss_choices(case), friction_of(case), rolling_of(case)
     file = case.models.pocketing_table
@@ -158,5 +192,10 @@ def mesh_models(case: Case, flow_tables: FlowTables) -> dict[str, MeshModels]:
                 tables=flow_tables,
             ),
         )
-        for key in (name.removesuffix("_pocketing") for name in choices if "_pocketing" in name)
+        for key in _before("_pocketing", choices)
     }
+
+
+def _before(ending: str, names: Iterable[str]) -> Iterator[str]:
+    """What stands before an `ending`, of all names that have it."""
+    return (name.removesuffix(ending) for name in names if name.endswith(ending))

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
-from epicyclic.builders.models import fitted_oil_model, friction_of, resolve_models, rolling_of
+from epicyclic.builders.models import (
+    SetCase,
+    fitted_oil_model,
+    friction_of,
+    gear_tables,
+    resolve_models,
+    rolling_of,
+)
 from epicyclic.case import build, flanks
-from epicyclic.case.case import Case, PlanetaryCase
-from epicyclic.case.gear_tables import GearTable, MeshTable
+from epicyclic.case.case import PlanetaryCase
+from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.listed_set import ListedCase, arrangement_of, gear_of
 from epicyclic.case.model_tables import LoadSharing
 from epicyclic.elements.figures import MeshFigures
 from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.geometry.assembly import are_evenly_spaced
+from epicyclic.geometry.gear import Gear
 from epicyclic.losses.fitted import FittedFriction
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
@@ -26,32 +35,43 @@ LEAST_CONTACT = 0.75
 """Share of the contact lines that carries below which a result says so. [1]"""
 
 
-def case_notes(case: Case, found: GearSetResult, *, ring_turns: bool) -> tuple[str, ...]:
-    """What a user must know about a set: its oil, its load, its flows, its planets."""
+def case_notes(case: SetCase, found: GearSetResult, turning: Collection[str]) -> tuple[str, ...]:
+    """What a user must know about a set: its oil, its load, its flows, its planets.
+
+    Parameters
+    ----------
+    case : PlanetaryCase, GearPairCase or ListedCase
+    found : GearSetResult
+    turning : collection of str
+        Central gears that turn.
+    """
     meshes = {key: item for key, item in found.figures.items() if isinstance(item, MeshFigures)}
     notes = (*fluid_notes(case), *load_notes(case), *contact_notes(meshes), *found.notes)
-    if not isinstance(case, PlanetaryCase):
-        return notes
-    return (
-        *notes,
-        *_planet_notes(case),
-        *_share_notes(case.load_sharing, found.shares),
-        *(_ring_notes(case) if ring_turns else ()),
-    )
+    if isinstance(case, PlanetaryCase):
+        return (
+            *notes,
+            *_planet_notes(case),
+            *_share_notes(case.load_sharing, found.shares),
+            *_ring_notes(case, turning),
+        )
+    if isinstance(case, ListedCase):
+        sharing = _share_notes(case.table.load_sharing, found.shares) if found.shares else ()
+        return (*notes, *_arrangement_notes(case), *sharing, *_ring_notes(case, turning))
+    return notes
 
 
-def fluid_notes(case: Case) -> tuple[str, ...]:
+def fluid_notes(case: SetCase) -> tuple[str, ...]:
     """What was made for another oil than that of the case, and what the case changes in it."""
     oil, models = case.lubricant.oil, resolve_models(case)
+    bearing = "mixed-ehl" in models.get("bearing", "")
     fluids = {
-        "friction": friction_of(case).made_for,
-        "rolling": rolling_of(case).made_for,
-        "bearing": TALBOT_FLUID if models.get("bearing") == "mixed-ehl" else None,
+        "friction": (models["friction"], friction_of(case).made_for),
+        "rolling": (models["rolling"], rolling_of(case).made_for),
+        "bearing": ("mixed-ehl", TALBOT_FLUID if bearing else None),
     }
     notes = [
-        f"models.{key}: the regression {models[key]} was made for {fluid.title}, not for "
-        f"{oil.name}."
-        for key, fluid in fluids.items()
+        f"models.{key}: the regression {model} was made for {fluid.title}, not for {oil.name}."
+        for key, (model, fluid) in fluids.items()
         if fluid is not None and fluid.key != oil.friction_regression
     ]
     if FittedFriction.name in models.values() and fitted_oil_model(case).oil != oil:
@@ -74,7 +94,7 @@ def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:
     )
 
 
-def load_notes(case: Case) -> tuple[str, ...]:
+def load_notes(case: SetCase) -> tuple[str, ...]:
     """Notes on deviations that the load distribution ignores, and on the rim of a ring gear."""
     notes = []
     model = case.models.load_distribution
@@ -86,38 +106,58 @@ def load_notes(case: Case) -> tuple[str, ...]:
     return (*notes, *_rim_notes(case))
 
 
-def _rim_notes(case: Case) -> Iterator[str]:
+def _rim_notes(case: SetCase) -> Iterator[str]:
     """Where a rim leaves the assumptions of its formula."""
-    name = "ring" if isinstance(case, PlanetaryCase) else "gear"
-    table = case.ring if isinstance(case, PlanetaryCase) else case.gear
-    thickness = build.rim_thickness(table)
-    if thickness is None:
-        return
-    ring = build.gear(name, table, case.gears)
-    height = ring.root_radius - ring.tip_radius
-    if thickness < height:
-        yield (
-            f"{name}.rim_thickness is less than the height of the teeth, {1e3 * height:.4g} mm: "
-            "the deflection of so thin a rim is outside what the compliance is made for."
-        )
-    if not isinstance(case, PlanetaryCase):
-        return
-    even = are_evenly_spaced(build.planet_angles(case.sun, case.planet, case.ring))
-    if not even or case.load_sharing.method != "equal":
-        yield (
-            "ring.rim_thickness: the rim bends as under evenly spaced and equally loaded planets, "
-            f"but these are {'not equally loaded' if even else 'not evenly spaced'}."
-        )
+    for name, table, ring in _rings(case):
+        thickness = build.rim_thickness(table)
+        if thickness is None:
+            continue
+        height = ring.root_radius - ring.tip_radius
+        if thickness < height:
+            yield (
+                f"{name}.rim_thickness is less than the height of the teeth, "
+                f"{1e3 * height:.4g} mm: the deflection of so thin a rim is outside what the "
+                "compliance is made for."
+            )
+        angles, sharing = _planets(case)
+        even = are_evenly_spaced(angles)
+        if not even or sharing != "equal":
+            yield (
+                f"{name}.rim_thickness: the rim bends as under evenly spaced and equally loaded "
+                f"planets, but these are {'not equally loaded' if even else 'not evenly spaced'}."
+            )
 
 
-def _states_deviations(case: Case) -> bool:
-    gears: tuple[GearTable, ...]
+def _rings(case: SetCase) -> Iterator[tuple[str, GearTable, Gear]]:
+    """Key, table and geometry of every ring gear."""
+    if isinstance(case, ListedCase):
+        for name, table in case.table.members.items():
+            if table.internal:
+                yield f"gears.{name}", table, gear_of(case.table, name)
+    elif isinstance(case, PlanetaryCase):
+        yield "ring", case.ring, build.gear("ring", case.ring, case.gears)
+    elif case.gear.internal:
+        yield "gear", case.gear, build.gear("gear", case.gear, case.gears)
+
+
+def _planets(case: SetCase) -> tuple[tuple[float, ...], str]:
+    """Where the planets stand, and how they share the load; one place without planets."""
     if isinstance(case, PlanetaryCase):
-        gears = (case.sun, case.planet, case.ring)
-        meshes: tuple[MeshTable, ...] = (case.sun_mesh, case.ring_mesh)
+        angles = build.planet_angles(case.sun, case.planet, case.ring)
+        return angles, case.load_sharing.method
+    if isinstance(case, ListedCase) and case.table.planets is not None:
+        return arrangement_of(case.shape, case.table.planets).angles, case.table.load_sharing.method
+    return (0.0,), "equal"
+
+
+def _states_deviations(case: SetCase) -> bool:
+    if isinstance(case, PlanetaryCase):
+        misaligned = case.sun_mesh.misalignment or case.ring_mesh.misalignment
+    elif isinstance(case, ListedCase):
+        misaligned = any(mesh.misalignment for mesh in case.table.mesh.values())
     else:
-        gears, meshes = (case.pinion, case.gear), (case.mesh,)
-    return any(mesh.misalignment for mesh in meshes) or any(map(flanks.micro_geometries, gears))
+        misaligned = case.mesh.misalignment
+    return bool(misaligned) or any(map(flanks.micro_geometries, gear_tables(case)))
 
 
 def general_notes(
@@ -165,10 +205,33 @@ def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, 
     return tuple(notes)
 
 
-def _ring_notes(case: PlanetaryCase) -> tuple[str, ...]:
-    if case.ring.rim_thickness is not None:
-        return ()
-    return (
-        "ring.rim_thickness is not given: the drag of the turning ring is that of a rim of "
-        f"{build.DEFAULT_RIM_THICKNESS:g} normal modules.",
-    )
+def _arrangement_notes(case: ListedCase) -> Iterator[str]:
+    """What the planets of a listed set need to be assembled."""
+    planets = case.table.planets
+    if planets is None:
+        return
+    found = arrangement_of(case.shape, planets)
+    if found.individual:
+        bodies = list(case.shape.bodies.values())
+        stepped = ", ".join(body for body in case.shape.planets if bodies.count(body) > 1)
+        fitting = [str(n) for n in range(1, planets + 1) if found.number % n == 0]
+        yield (
+            f"{planets} equally spaced planets cannot be alike: on each {stepped} the gears must "
+            f"be turned against each other in its own way, because {found.number}/{planets} is no "
+            f"integer. Up to {fitting[-1]} alike ones fit, at multiples of 360/{found.number} deg."
+        )
+    elif not are_evenly_spaced(found.angles):
+        placed = ", ".join(f"{math.degrees(angle):.4f}" for angle in found.angles)
+        yield (
+            f"{planets} planets cannot be equally spaced, because {found.number}/{planets} is no "
+            f"integer; they stand at {placed} deg."
+        )
+
+
+def _ring_notes(case: SetCase, turning: Collection[str]) -> Iterator[str]:
+    for name, table, _ in _rings(case):
+        if name.removeprefix("gears.") in turning and build.rim_thickness(table) is None:
+            yield (
+                f"{name}.rim_thickness is not given: the drag of the turning ring is that of a "
+                f"rim of {build.DEFAULT_RIM_THICKNESS:g} normal modules."
+            )

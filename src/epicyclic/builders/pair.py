@@ -38,7 +38,7 @@ def build_pair(case: GearPairCase, flow_tables: FlowTables) -> Built:
 
 
 def pair_rows(key: str, case: GearPairCase, bodies: Mapping[str, str]) -> tuple[MeshRow, ...]:
-    """The constraint of a pair."""
+    """The constraint of a pair. Theory (K6)."""
     teeth = (case.pinion.teeth, case.gear.teeth)
     one, two = (bodies[name] for name in PAIR_MEMBERS)
     return (MeshRow(f"{key}.mesh", one, two, HOUSING, teeth, case.gear.internal),)

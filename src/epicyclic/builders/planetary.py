@@ -7,14 +7,15 @@ from collections.abc import Mapping
 from epicyclic.builders.built import Built
 from epicyclic.builders.gears import gear_mesh
 from epicyclic.builders.models import (
+    bearing_model,
     fitted_rolling,
     fluids_of,
     loss_choices,
     mesh_models,
-    resolve_models,
 )
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
+from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.model_tables import Numerics
 from epicyclic.case.part_tables import PlanetBearing as BearingTable
 from epicyclic.elements.base import HOUSING
@@ -37,6 +38,7 @@ __all__ = [
     "MEMBERS",
     "build_planetary",
     "palmgren_coefficient",
+    "planet_bearing",
     "planetary_element",
     "planetary_rows",
     "roller_bearing",
@@ -160,6 +162,7 @@ def _meshes(
             tools=(planet, ring),
             misalignment=case.ring_mesh.misalignment,
             models=models["ring_mesh"],
+            planets=case.planet.count,
         ),
     )
 
@@ -184,7 +187,7 @@ def _planet(case: PlanetaryCase, body: str) -> Planet:
             PlanetMesh("ring_mesh", 1, (0.0, -1.0)),
         ),
         mass=case.planet.mass,
-        bearing=_planet_bearing(case),
+        bearing=planet_bearing(case, case.planet_bearing),
         no_bearing="the case has no [planet_bearing]",
         tilts=case.models.planet_tilt == "coupled",
     )
@@ -203,13 +206,14 @@ def _sharing(case: PlanetaryCase) -> LoadSharing:
     )
 
 
-def _planet_bearing(case: PlanetaryCase) -> PlanetBearing | None:
-    table = case.planet_bearing
+def planet_bearing(
+    case: PlanetaryCase | ListedCase, table: BearingTable | None
+) -> PlanetBearing | None:
+    """The planet bearing that `table` describes, with the models of the case."""
     if table is None:
         return None
-    name = resolve_models(case)["bearing"]
-    model: str | FittedRolling = name
-    if name == FittedRolling.name:
+    model: str | FittedRolling = bearing_model(case, table)
+    if model == FittedRolling.name:
         model = fitted_rolling(case, "bearing_rolling_loss")
     factor = table.viscous_factor
     return PlanetBearing(

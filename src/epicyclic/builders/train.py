@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 from epicyclic.builders.built import Built
 from epicyclic.builders.listed_set import listed_element
@@ -14,6 +15,7 @@ from epicyclic.builders.planetary import MEMBERS, planetary_element
 from epicyclic.builders.shafts import shaft_layouts
 from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.element_kinds import ELEMENT_KINDS
+from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet
 from epicyclic.elements.base import HOUSING, Element
@@ -77,7 +79,9 @@ def _sets(case: TrainCase, flow_tables: FlowTables) -> Iterator[GearSet]:
             assert isinstance(pair, GearPairCase)
             yield pair_element(name, pair, bodies, order[0], flow_tables)
         elif isinstance(table, ListedSet):
-            yield listed_element(name, table, case, flow_tables)
+            listed = set_case(case, name)
+            assert isinstance(listed, ListedCase)
+            yield listed_element(name, listed, bodies, flow_tables)
 
 
 def _distances(case: TrainCase) -> dict[str, int]:
@@ -98,12 +102,23 @@ def _distances(case: TrainCase) -> dict[str, int]:
     return found
 
 
-def set_case(case: TrainCase, name: str) -> PlanetaryCase | GearPairCase:
+def set_case(case: TrainCase, name: str) -> PlanetaryCase | GearPairCase | ListedCase:
     """A set or pair of a train as a case of its own, with the oil and surroundings of the train."""
     table = case.sets[name]
+    if isinstance(table, ListedSet):
+        assert case.lubricant is not None
+        return ListedCase(
+            table,
+            case.shape.sets[name],
+            case.lubricant,
+            case.surroundings,
+            case.friction_table,
+            case.contact_solver,
+            case.folder,
+        )
     assert isinstance(table, PlanetarySet | PairSet)
     kind = PlanetaryCase if isinstance(table, PlanetarySet) else GearPairCase
-    shared = {
+    shared: dict[str, Any] = {
         "kind": "planetary" if kind is PlanetaryCase else "gear_pair",
         "title": name,
         "lubricant": case.lubricant,

@@ -15,7 +15,7 @@ from epicyclic.case.plain import plain, value_at, with_value, without
 from epicyclic.case.schema import Table
 from epicyclic.case.translation import unknown_key
 from epicyclic.case.validation import tables_of, validate
-from epicyclic.case.wording import path_of, written
+from epicyclic.case.wording import key_parts, path_of, written
 from epicyclic.errors import InputError, Problem
 
 __all__ = ["CaseTable", "as_given", "with_changes"]
@@ -146,7 +146,7 @@ def with_changes(
 
 def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
     """`tables` with dotted `key` set to `value`, or removed if that is None."""
-    path = key.split(".")
+    path = key_parts(key)
     for depth in range(1, len(path)):
         owner = value_at(tables, path[:depth])
         if owner is not None and not isinstance(owner, dict):

@@ -32,7 +32,7 @@ from epicyclic.geometry.assembly import are_evenly_spaced
 from epicyclic.oilmodel.model import read_oil_model
 from epicyclic.pocketing.stored import read_stored
 
-__all__ = ["cross_check"]
+__all__ = ["check_bore", "check_cage", "check_rollers", "cross_check"]
 
 MOST_COEFFICIENTS = 5_000_000
 """Largest number of influence coefficients for each contact line: 40 MB, for three lines 120 MB."""
@@ -84,14 +84,15 @@ def _check_operation(operation: PlanetaryOperation | GearPairOperation) -> list[
     ]
 
 
-def _check_bearing(bearing: PlanetBearing) -> list[Problem]:
+def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> list[Problem]:
+    """The rollers of the bearing at `key` must fit around its pin."""
     pitch_diameter = bearing.pin_diameter + bearing.roller_diameter + bearing.diametral_clearance
     room = math.pi / math.asin(min(1.0, bearing.roller_diameter / pitch_diameter))
     if bearing.rollers_per_row <= room:
         return []
     return [
         Problem(
-            "planet_bearing.rollers_per_row",
+            f"{key}.rollers_per_row",
             str(bearing.rollers_per_row),
             f"only {math.floor(room)} rollers of {millimetres(bearing.roller_diameter)} fit around "
             f"the pin of {millimetres(bearing.pin_diameter)}.",
@@ -105,21 +106,29 @@ def _check_bearing_room(gears: Gears, planet: Planet, bearing: PlanetBearing) ->
         root = build.gear("planet", planet, gears).root_radius
     except ValueError:
         return []  # reported with the gears
+    return check_bore(bearing, root)
+
+
+def check_bore(
+    bearing: PlanetBearing, root_radius: float, key: str = "planet_bearing"
+) -> list[Problem]:
+    """The bearing at `key` must fit into the root circle of its planet."""
     bore = bearing.pin_diameter + 2 * bearing.roller_diameter + bearing.diametral_clearance
-    if bore < 2 * root:
+    if bore < 2 * root_radius:
         return []
     return [
         Problem(
-            "planet_bearing.pin_diameter",
+            f"{key}.pin_diameter",
             millimetres(bearing.pin_diameter),
             f"the planet's bore of {millimetres(bore)} reaches its root circle of "
-            f"{millimetres(2 * root)}.",
+            f"{millimetres(2 * root_radius)}.",
             "Take a thinner pin or thinner rollers.",
         )
     ]
 
 
-def _check_bearing_model(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]:
+def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]:
+    """The model of the bearing loss must be for bearings of this kind."""
     if bearing.cage == "caged" or models.bearing != "mixed-ehl":
         return []
     return [
@@ -315,9 +324,9 @@ _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_operation, ("operation",)),
     (check_planetary, ("gears", "sun", "planet", "ring")),
     (check_pair, ("gears", "pinion", "gear")),
-    (_check_bearing, ("planet_bearing",)),
+    (check_rollers, ("planet_bearing",)),
     (_check_bearing_room, ("gears", "planet", "planet_bearing")),
-    (_check_bearing_model, ("planet_bearing", "models")),
+    (check_cage, ("planet_bearing", "models")),
     (_check_load_sharing, ("load_sharing", "sun", "planet", "ring")),
     (_check_friction_table, ("friction_table",)),
     (_check_resolution, ("models", "numerics")),

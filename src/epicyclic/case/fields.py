@@ -6,6 +6,7 @@ import types
 import typing
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from annotated_types import Ge, Gt, Le
@@ -13,6 +14,7 @@ from pydantic import BaseModel, GetJsonSchemaHandler, Tag
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema
 
+from epicyclic.case.wording import key_parts
 from epicyclic.units import Quantity, describe_range
 
 __all__ = [
@@ -27,6 +29,7 @@ __all__ = [
     "find_field",
     "is_array",
     "is_named",
+    "is_text",
     "is_whole_number",
     "locate",
     "quantity_of",
@@ -121,6 +124,12 @@ def is_whole_number(annotation: Any) -> bool:
     return annotation is int
 
 
+def is_text(annotation: Any) -> bool:
+    """True for keys that hold any text, such as a name that the user chose."""
+    members = [_without_metadata(member) for member in _members(annotation)]
+    return str in members and set(members) <= {str, type(None)}
+
+
 def is_array(annotation: Any) -> bool:
     """True for keys that hold several values."""
     members = map(_without_metadata, _members(annotation))
@@ -169,7 +178,7 @@ def _describe_number(noun: str, bounds: tuple[Ge | Gt | None, Le | None]) -> str
 
 def find_field(table: type[BaseModel], key: str) -> tuple[Any, tuple[Any, ...]] | None:
     """Annotation and metadata of the field at dotted `key`; None if there is no such key."""
-    place = locate(table, key.split("."))
+    place = locate(table, key_parts(key))
     return None if place.annotation is None else (place.annotation, place.metadata)
 
 
@@ -294,13 +303,20 @@ def to_inputs(table: BaseModel) -> dict[str, Any]:
     Keys that were not given appear with their defaults; keys without a value are left out.
     """
     inputs: dict[str, Any] = {}
-    for name, field in type(table).model_fields.items():
+    for name, quantity in _quantities(type(table)).items():
         value = getattr(table, name)
-        if value is None:
-            continue
-        quantity = quantity_of(field.annotation, tuple(field.metadata))
-        inputs[name] = _to_input(value, quantity)
+        if value is not None:
+            inputs[name] = _to_input(value, quantity)
     return inputs
+
+
+@cache
+def _quantities(table: type[BaseModel]) -> dict[str, Quantity | None]:
+    """The quantity of every field of a table."""
+    return {
+        name: quantity_of(field.annotation, tuple(field.metadata))
+        for name, field in table.model_fields.items()
+    }
 
 
 def _to_input(value: Any, quantity: Quantity | None) -> Any:

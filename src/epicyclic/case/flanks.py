@@ -33,10 +33,9 @@ Tables = tuple[GearTable, GearTable]
 
 
 @lru_cache(maxsize=256)
-def gear_bodies(mesh: Mesh, tables: Tables) -> tuple[GearBody, GearBody]:
-    """Materials, root fillets and rims of both members of a mesh."""
+def gear_bodies(mesh: Mesh, tables: Tables, planets: int = 1) -> tuple[GearBody, GearBody]:
+    """Materials, root fillets and rims of both members of a mesh, `planets` of which are alike."""
     one, two = tables
-    planets = one.count if isinstance(one, Planet) else 1
     return _body(mesh.gear1, one, 1), _body(mesh.gear2, two, planets)
 
 

@@ -19,7 +19,7 @@ from epicyclic.geometry.cutting import longest_involute
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = ["check_pair", "check_planetary"]
+__all__ = ["check_gears", "check_mesh", "check_pair", "check_planetary"]
 
 ANGLE_TOLERANCE = math.radians(0.01)
 """Given planet positions may differ by this from an admissible one: drawing precision. [rad]"""
@@ -39,10 +39,10 @@ Tables = Mapping[str, GearTable]
 def check_planetary(gears: Gears, sun: GearTable, planet: Planet, ring: Ring) -> list[Problem]:
     """Problems of the gears of a planetary set, of its two meshes and of its assembly."""
     tables: Tables = {"sun": sun, "planet": planet, "ring": ring}
-    sound, problems = _check_gears(gears, tables)
+    sound, problems = check_gears(gears, tables)
     for name, one, two in (("sun mesh", "sun", "planet"), ("ring mesh", "planet", "ring")):
         if one in sound and two in sound:
-            problems += _check_mesh(
+            problems += check_mesh(
                 Mesh(name, sound[one], sound[two], gears.center_distance), tables
             )
     if "planet" in sound:
@@ -53,14 +53,14 @@ def check_planetary(gears: Gears, sun: GearTable, planet: Planet, ring: Ring) ->
 def check_pair(gears: Gears, pinion: GearTable, gear: PairGear) -> list[Problem]:
     """Problems of the gears of a pair and of their mesh."""
     tables: Tables = {"pinion": pinion, "gear": gear}
-    sound, problems = _check_gears(gears, tables)
+    sound, problems = check_gears(gears, tables)
     if len(sound) == 2:
-        problems += _check_mesh(build.pair_mesh(gears, pinion, gear), tables)
+        problems += check_mesh(build.pair_mesh(gears, pinion, gear), tables)
     return problems
 
 
-def _check_gears(gears: Gears, tables: Tables) -> tuple[dict[str, Gear], list[Problem]]:
-    """The gears that are sound, and the problems of the others."""
+def check_gears(gears: Gears, tables: Tables) -> tuple[dict[str, Gear], list[Problem]]:
+    """The gears of `tables` that are sound, by name, and the problems of the others."""
     sound: dict[str, Gear] = {}
     problems = []
     for name, table in tables.items():
@@ -187,7 +187,19 @@ def _thickness_key(name: str, table: GearTable) -> str:
     return f"{name}.{'profile_shift_coefficient' if is_shift else 'tooth_thickness'}"
 
 
-def _check_mesh(mesh: Mesh, tables: Tables) -> list[Problem]:
+def check_mesh(
+    mesh: Mesh, tables: Tables, distance_key: str = "gears.center_distance"
+) -> list[Problem]:
+    """Problems of a mesh of two sound gears.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    tables : mapping of str to GearTable
+        Of both gears, by their names.
+    distance_key : str
+        Where its centre distance is stated.
+    """
     one, two = mesh.gear1, mesh.gear2
     if mesh.internal and two.teeth <= one.teeth:
         return [
@@ -202,14 +214,14 @@ def _check_mesh(mesh: Mesh, tables: Tables) -> list[Problem]:
     if bases >= mesh.center_distance:
         return [
             Problem(
-                "gears.center_distance",
+                distance_key,
                 millimetres(mesh.center_distance),
                 f"must exceed {millimetres(bases)}, the {'difference' if mesh.internal else 'sum'} "
                 f"of the base radii of {one.name} and {two.name}.",
                 f"{_reference_distance(mesh)} Check tooth numbers and module too.",
             )
         ]
-    problems = _check_backlash(mesh, tables)
+    problems = _check_backlash(mesh, tables, distance_key)
     ends: list[Problem] = []
     for tip, root, clearance in (
         (two, one, mesh.tip_clearance2),
@@ -226,7 +238,7 @@ def _check_mesh(mesh: Mesh, tables: Tables) -> list[Problem]:
                 ends.append(_no_tool(root, tables[root.name], str(error)))
     problems += [
         *ends,
-        *_check_contact_ratio(mesh, tables),
+        *_check_contact_ratio(mesh, tables, distance_key),
         *_check_tip_passage(mesh, tables),
     ]
     # where the teeth do not mesh the limits of the active profile mean nothing
@@ -238,7 +250,7 @@ def _reference_distance(mesh: Mesh) -> str:
     return f"Without profile shift it is {millimetres(distance)}."
 
 
-def _check_backlash(mesh: Mesh, tables: Tables) -> list[Problem]:
+def _check_backlash(mesh: Mesh, tables: Tables, distance_key: str) -> list[Problem]:
     if mesh.backlash >= -ROUNDING:
         return []
     keys = [_thickness_key(name, tables[name]) for name in (mesh.gear1.name, mesh.gear2.name)]
@@ -249,7 +261,7 @@ def _check_backlash(mesh: Mesh, tables: Tables) -> list[Problem]:
             "",
             f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
             f"centre distance of {millimetres(mesh.center_distance)} (negative backlash).",
-            f"Make them thinner, or {sense} gears.center_distance.",
+            f"Make them thinner, or {sense} {distance_key}.",
         )
     ]
 
@@ -282,7 +294,7 @@ def _tip_limit(gear: Gear, limit: float) -> str:
     return f"Make {gear.name}.tip_diameter {bound} {step(2e6 * limit) / 1e3:.3f} mm, "
 
 
-def _check_contact_ratio(mesh: Mesh, tables: Tables) -> list[Problem]:
+def _check_contact_ratio(mesh: Mesh, tables: Tables, distance_key: str) -> list[Problem]:
     one, two = mesh.gear1, mesh.gear2
     transverse, overlap = mesh.transverse_contact_ratio, mesh.overlap_ratio
     if transverse <= 0:
@@ -300,8 +312,7 @@ def _check_contact_ratio(mesh: Mesh, tables: Tables) -> list[Problem]:
             f"{one.name}.tip_diameter, {two.name}.tip_diameter",
             _tip_diameters(mesh, tables),
             f"{fault}: motion is not passed on.",
-            f"Lengthen the teeth{chamfers} or correct gears.center_distance. "
-            f"{_reference_distance(mesh)}",
+            f"Lengthen the teeth{chamfers} or correct {distance_key}. {_reference_distance(mesh)}",
         )
     ]
 

@@ -14,7 +14,7 @@ from epicyclic import library
 from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.fields import choices_of, entry_of, quantity_of, table_of
 
-__all__ = ["case_template", "case_text"]
+__all__ = ["COMMENT_COLUMN", "TableWriter", "case_template", "case_text", "toml_key", "toml_value"]
 
 _EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {
     "planetary": ("talbot-2012", PlanetaryCase),
@@ -53,8 +53,8 @@ def case_text(
     kind = tables["kind"]
     _, schema = _EXAMPLES[kind]
     lines = [*(f"# {line}" for line in head), f'kind = "{kind}"']
-    lines.append(f"title = {_toml(tables.get('title', ''))}")
-    writer = _Writer(about or {})
+    lines.append(f"title = {toml_value(tables.get('title', ''))}")
+    writer = TableWriter(about or {})
     left_out = []
     for key, field in schema.model_fields.items():
         table = table_of(field.annotation)
@@ -70,7 +70,7 @@ def case_text(
     return "\n".join(lines) + "\n"
 
 
-class _Writer:
+class TableWriter:
     """Writes the lines of tables; `about` has comments of single keys."""
 
     def __init__(self, about: Mapping[str, str]) -> None:
@@ -99,13 +99,13 @@ class _Writer:
         about = self.about.get(f"{key}.{full}", _about(field))
         given = values.get(name)
         if given is not None and not (isinstance(given, Mapping) and name in _SPELT_OUT):
-            return [_line(f"{full} = {_toml(given)}", about)]
+            return [_line(f"{full} = {toml_value(given)}", about)]
         if subtable is None:
             return [_line(f"# {full} = {_default(field)}", about)]
         if key == "losses":
             return [_line(f"# {name} = {{ include = true, factor = 1.0 }}", "")]
         if isinstance(field.default, str):
-            return [_line(f"# {full} = {_toml(field.default)}", about)]
+            return [_line(f"# {full} = {toml_value(field.default)}", about)]
         is_short = bool(self.about) and given is None and not self.tells_of(f"{key}.{full}.")
         if (is_short or name not in _SPELT_OUT) and field.default in (None, PydanticUndefined):
             return [_line(f"# {full} = {{ ... }}", about)]
@@ -131,7 +131,7 @@ def _about(field: FieldInfo) -> str:
 
 def _default(field: FieldInfo) -> str:
     if field.default is not None and not field.is_required():
-        return _toml(field.default)
+        return toml_value(field.default)
     quantity = quantity_of(field.annotation, tuple(field.metadata))
     value = f'"... {quantity.display}"' if quantity is not None else "..."
     return _nested(field.annotation, value)
@@ -143,10 +143,17 @@ def _nested(annotation: Any, value: str) -> str:
     return value if entry is None else f"[{_nested(entry, value)}, ...]"
 
 
-def _toml(value: Any) -> str:
+def toml_key(name: str) -> str:
+    """A key as TOML writes it, in quotes if it needs them."""
+    bare = name.isascii() and name.replace("-", "").replace("_", "").isalnum()
+    return name if bare else json.dumps(name, ensure_ascii=False)
+
+
+def toml_value(value: Any) -> str:
     """`value` as TOML writes it on one line; text, numbers and booleans are those of JSON."""
     if isinstance(value, Mapping):
-        return f"{{ {', '.join(f'{key} = {_toml(item)}' for key, item in value.items())} }}"
+        entries = [f"{toml_key(key)} = {toml_value(item)}" for key, item in value.items()]
+        return f"{{ {', '.join(entries)} }}" if entries else "{}"
     if isinstance(value, list | tuple):
-        return f"[{', '.join(map(_toml, value))}]"
+        return f"[{', '.join(map(toml_value, value))}]"
     return json.dumps(value, ensure_ascii=False)

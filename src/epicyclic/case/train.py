@@ -14,6 +14,8 @@ from pydantic import Field, PrivateAttr, create_model
 from epicyclic.case.base import CaseTable, as_given
 from epicyclic.case.checks import cross_check
 from epicyclic.case.element_kinds import ELEMENT_KINDS
+from epicyclic.case.listed_checks import listed_set_problems
+from epicyclic.case.listed_set import directions_of, hands_of
 from epicyclic.case.model_tables import (
     ContactSolver,
     FrictionTable,
@@ -45,7 +47,7 @@ from epicyclic.errors import InputError, Problem
 
 __all__ = ["TrainCase", "all_gears_to_members"]
 
-_SHARED = ("models", "numerics")
+_SHARED = ("models", "numerics", "friction_table")
 """Tables of a train that its computed sets take over where they have none of their own."""
 _GIVEN = ("efficiency", "mesh_efficiency")
 
@@ -102,12 +104,15 @@ class _TrainTables(CaseTable):
 
     @property
     def directions(self) -> dict[tuple[str, str], float]:
-        """Angle from the axis of the first to that of the second gear of the meshes of pairs."""
-        return {
-            (name, "mesh"): table.direction
-            for name, table in self.sets.items()
-            if isinstance(table, PairSet)
-        }
+        """Angle from the axis of the first to that of the second gear of meshes, where known."""
+        directions = {}
+        for name, table in self.sets.items():
+            if isinstance(table, PairSet):
+                directions[name, "mesh"] = table.direction
+            elif isinstance(table, ListedSet):
+                found = directions_of(table, self.shape.sets[name])
+                directions |= {(name, mesh): angle for mesh, angle in found.items()}
+        return directions
 
     @property
     def hands(self) -> dict[tuple[str, str], int]:
@@ -119,6 +124,9 @@ class _TrainTables(CaseTable):
             elif isinstance(table, PlanetarySet):
                 hands[name, "sun"] = 1 if table.hand == "right" else -1
                 hands[name, "planet"] = -hands[name, "sun"]
+            elif isinstance(table, ListedSet):
+                found = hands_of(table, self.shape.sets[name])
+                hands |= {(name, gear): hand for gear, hand in found.items()}
         return hands
 
     def inputs(self) -> dict[str, Any]:
@@ -150,7 +158,9 @@ class _TrainTables(CaseTable):
         found += [
             as_given(problem, tables)
             for problem in cross_check(
-                {k: v for k, v in whole.sections.items() if k != "operation"}, tables, folder
+                {k: v for k, v in whole.sections.items() if k != "operation"},
+                {*tables, "planet_bearing"},  # whether the sets have one is checked with them
+                folder,
             )
         ]
         if not named:
@@ -170,6 +180,11 @@ class _TrainTables(CaseTable):
                 shape, wrong = shape_of_set(read.table, joined.get(name, ()))
                 shapes[name] = shape
                 found += [_below(f"sets.{name}", problem) for problem in wrong]
+                if isinstance(read.table, ListedSet) and not wrong:
+                    found += [
+                        as_given(_below(f"sets.{name}", problem), tables)
+                        for problem in listed_set_problems(read.table, shape)
+                    ]
         case = whole.case
         if case is None or len(sets) < len(named) or not named:
             return cls._made(None, tables, source, found)
@@ -289,9 +304,12 @@ def _read_set_cached(given: _Given) -> _ReadSet:
         raw = raw | {"models": {k: v for k, v in raw["models"].items() if k in own}}
     read: Validation[Any] = validate(form, raw)
     problems = [_with_gears(problem) for problem in read.problems]
-    if issubclass(form, PlanetarySet | PairSet):
+    if issubclass(form, PlanetarySet | PairSet | ListedSet):
+        tables = {*raw, *given.shared}
+        if "planet_bearings" in raw:
+            tables.add("planet_bearing")
         problems += [
-            as_given(problem, raw) for problem in cross_check(read.sections, raw, given.folder)
+            as_given(problem, raw) for problem in cross_check(read.sections, tables, given.folder)
         ]
     if all(key in raw for key in _GIVEN):
         problems.append(
@@ -374,7 +392,8 @@ def _formless(raw: Mapping[str, Any]) -> Problem:
 
 def _with_gears(problem: Problem) -> Problem:
     """A problem of a gear of a listed set with the key that the user wrote."""
-    return replace(problem, key=problem.key.replace("members", "gears", 1))
+    key, remedy = (text.replace("members", "gears", 1) for text in (problem.key, problem.remedy))
+    return replace(problem, key=key, remedy=remedy)
 
 
 # --- bearings, seals, drags -----------------------------------------------------------------------

@@ -165,13 +165,14 @@ class ListedGear(PairGear):
     normal_pressure_angle: _Pressure | None = Field(
         default=None, description="Default: of [gears]."
     )
+    transverse_pressure_angle: _Pressure | None = Field(
+        default=None, description="Default: of [gears]."
+    )
     helix_angle: HelixAngle | None = Field(default=None, description="Default: of [gears].")
-    hand: int | None = Field(
+    hand: Literal["right", "left"] | None = Field(
         default=None,
-        ge=-1,
-        le=1,
-        description="Hand of the helix: 1 right, -1 left. Default: the first gear right, the "
-        "others as their mates and bodies demand.",
+        description="Of the helix. Default: the first gear right, the others as their mates "
+        "demand, gears of one body alike.",
     )
     mass: Mass | None = Field(
         default=None,
@@ -180,8 +181,8 @@ class ListedGear(PairGear):
     )
     axial_position: Position | None = Field(
         default=None,
-        description="Of the middle of its face on its body. Default: gears of one body side by "
-        "side, in their order.",
+        description="Of the middle of its face from the middle of the planet bearing. Default: "
+        "gears of one body side by side, in their order.",
     )
 
 
@@ -207,7 +208,16 @@ class SharedGears(Table):
 class ListedMesh(MeshTable):
     """What belongs to one mesh of a listed set, ``[sets.NAME.mesh.GEAR-GEAR]``."""
 
-    center_distance: Length | None = Field(default=None, description="Default: of [gears].")
+    center_distance: Length | None = Field(
+        default=None,
+        description="Default: of [gears], or that of another mesh of the same planet with a "
+        "central gear.",
+    )
+    direction: Angle = Field(
+        default=as_stated("0 deg"),
+        description="Of fixed axes, from that of the first gear of the pair to that of the second, "
+        "for the forces on shaft bearings.",
+    )
 
 
 class GivenMesh(Table):

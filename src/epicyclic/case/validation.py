@@ -11,7 +11,7 @@ from typing import Any, Generic, TypeVar
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from epicyclic.case.fields import Place, locate, table_of
+from epicyclic.case.fields import Place, dict_value, locate, table_of
 from epicyclic.case.nearest import misspelt
 from epicyclic.case.plain import changed_at, value_at
 from epicyclic.case.schema import Table
@@ -130,11 +130,19 @@ def _check_alternatives(kind: type[Table], raw: dict[str, Any]) -> list[Problem]
     """Exactly one of each group of alternatives must be given, and that one whole."""
     problems = []
     for name, table in tables_of(kind).items():
-        given = raw.get(name)
-        if isinstance(given, dict):
-            for group in table.EXACTLY_ONE:
-                problems += _check_group(name, [keys.split("+") for keys in group], given)
+        given = {name: raw.get(name)}
+        if _holds_names(kind, name) and isinstance(raw.get(name), dict):
+            given = {f"{name}.{key}": item for key, item in raw[name].items()}
+        for key, item in given.items():
+            if isinstance(item, dict):
+                for group in table.EXACTLY_ONE:
+                    problems += _check_group(key, [keys.split("+") for keys in group], item)
     return problems
+
+
+def _holds_names(kind: type[Table], name: str) -> bool:
+    """True if the tables stand below names of the user's, ``[states.NAME]``."""
+    return dict_value(kind.model_fields[name].annotation) is not None
 
 
 def _check_group(
@@ -182,6 +190,8 @@ def _sound_sections(
     """The tables that are sound, or can be made so by stand-ins for their `bad` keys."""
     sound: dict[str, Table] = {}
     for name, table in tables_of(kind).items():
+        if _holds_names(kind, name):
+            continue
         if name not in raw:
             default = kind.model_fields[name].default
             if isinstance(default, Table):

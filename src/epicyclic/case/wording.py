@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-__all__ = ["dotted", "one_line", "path_of", "sentence", "written"]
+__all__ = ["dotted", "key_parts", "one_line", "path_of", "sentence", "written"]
 
 _LONGEST_SHOWN = 60
 """Text that users wrote is cut to this many characters in messages."""
@@ -25,9 +25,16 @@ def dotted(path: Sequence[str | int]) -> str:
 
 
 def path_of(key: str) -> tuple[str | int, ...]:
-    """The path of a key as `dotted` writes it, of names without dots."""
-    parts = re.findall(r"[^.\[\]]+", key)
-    return tuple(int(part) if part.isdecimal() else part for part in parts)
+    """The path of a key as `dotted` writes it."""
+    parts = re.findall(r'"[^"]*"|[^.\[\]]+', key)
+    return tuple(int(part) if part.isdecimal() else part.strip('"') for part in parts)
+
+
+def key_parts(key: str) -> list[str]:
+    """The names of a dotted key; one in quotes may have dots: ``positions."S1.pinion"``."""
+    if '"' not in key:
+        return key.split(".")
+    return [part.strip('"') for part in re.findall(r'"[^"]*"|[^.]+', key)]
 
 
 def written(value: Any) -> str:

@@ -1,0 +1,1 @@
+"""The command `epicyclic`: options, calls, printed output."""

@@ -41,7 +41,7 @@ def oils(name: str | None) -> None:
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path), default=Path("case.toml"))
-@click.option("--kind", type=click.Choice(["planetary", "gear_pair"]), default="planetary")
+@click.option("--kind", type=click.Choice(["planetary", "gear_pair", "train"]), default="planetary")
 def init(file: Path, kind: str) -> None:
     """Write a commented case FILE (default case.toml) to start from."""
     from epicyclic.case.template import case_template

@@ -106,6 +106,9 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
 )
 @temperature_option
 @click.option(
+    "--states", metavar="NAMES", help='Of a train, as in "1,2,R"; default: all in which it can run.'
+)
+@click.option(
     "--vary", metavar="KEY=VALUES", multiple=True, help='Further keys, as in "planet.count=3,4".'
 )
 @click.option(
@@ -117,6 +120,7 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
 def loss_map(
     case: str,
     changes: tuple[str, ...],
+    states: str | None,
     vary: tuple[str, ...],
     output: Path,
     name: str | None,
@@ -125,18 +129,21 @@ def loss_map(
 ) -> None:
     """Compute a loss map: torque loss, losses and efficiency over speed and torque.
 
-    VALUES are a,b,c or start:stop:count with a unit. The torque loss is that at the input member;
+    A train has a map of each of its states. VALUES are a,b,c or start:stop:count with a unit. The torque loss is that at the input member;
     the file states the signs. An interrupted map goes on where it stopped, as a sweep does.
     """
-    from epicyclic.maps.compute import AXES, map_plan
+    from epicyclic.maps.compute import AXES, map_plan, states_left_out
     from epicyclic.sweeps.plan import parse_vary
 
     loaded = load_with(case, changes)
     check_values(values)
+    chosen = None if states is None else [name.strip() for name in states.split(",")]
     axes = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]
     given, further = parse_vary(loaded, axes), parse_vary(loaded, vary)
     speed, torque = given[AXES["speed"]], given[AXES["torque"]]
-    plan = map_plan(loaded, speed, torque, given.get(AXES["temperature"]), further)
+    plan = map_plan(loaded, speed, torque, given.get(AXES["temperature"]), further, chosen)
+    for state, reason in ({} if chosen else states_left_out(loaded)).items():
+        click.echo(f"State {state} is left out: it {reason}", err=True)
     compute(plan, output, runner, map_writer(plan, output, name), format=name)
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["rexs"]
 
 component_option = click.option(
-    "--component", type=int, metavar="ID", help="The stage, if the file has several."
+    "--component", type=int, metavar="ID", help="One stage of several, by its id."
 )
 
 
@@ -48,6 +48,8 @@ def import_(
     changes: tuple[str, ...],
 ) -> None:
     """Write a commented case file from a REXS FILE, and say what the file lacks.
+
+    Several stages become one train, unless --component names one of them.
 
     Every value stands beside the REXS attribute that it comes from. If the case needs more than
     the file has, it is written all the same, with these keys marked NEEDED, and the command ends
@@ -119,10 +121,17 @@ def export(
 
 
 def _is_key(found: RexsImport, key: str) -> bool:
-    from epicyclic.case.case import GearPairCase, PlanetaryCase
+    from pydantic import BaseModel
+
+    from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase
     from epicyclic.case.fields import find_field
 
-    return find_field(PlanetaryCase if found.kind == "planetary" else GearPairCase, key) is not None
+    kinds: dict[str, type[BaseModel]] = {
+        "planetary": PlanetaryCase,
+        "gear_pair": GearPairCase,
+        "train": TrainCase,
+    }
+    return find_field(kinds[found.kind], key) is not None
 
 
 def _state(

@@ -61,9 +61,14 @@ def telling_contacts(case: Case) -> Iterator[None]:
 @case_argument
 @set_option
 def check(case: str, changes: tuple[str, ...]) -> None:
-    """Check a case without computing anything."""
+    """Check a case without computing losses; of a train also show the ratio of every state."""
     loaded = load_with(case, changes)
     click.echo(f"{case}: a sound {loaded.kind} case.")
+    if loaded.kind == "train":
+        from epicyclic.report.tables import terminal
+        from epicyclic.report.train_tables import state_tables
+
+        terminal().print(state_tables(loaded))
 
 
 @click.command()

@@ -49,6 +49,8 @@ class State:
         Oil and mixture with air.
     lossless : bool
         True if no loss has been taken from the torques yet.
+    idle : mapping of str to object
+        What each element has found out about itself from the speeds alone, by its key.
     """
 
     speeds: Mapping[str, float]
@@ -56,6 +58,7 @@ class State:
     forces: Mapping[str, BearingLoad]
     fluids: Fluids
     lossless: bool = False
+    idle: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +132,9 @@ class Element(Protocol):
     @property
     def figure_types(self) -> tuple[tuple[str, type[DataclassInstance]], ...]:
         """Names and types of its figures."""
+
+    def idle(self, state: State) -> object:
+        """What follows from the speeds alone; `State.idle` has it from then on."""
 
     def loads(self, state: State) -> Mapping[str, float]:
         """What of a state it depends on beside the speeds: loads in one unit, by their names."""

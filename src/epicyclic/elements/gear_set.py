@@ -18,6 +18,8 @@ from epicyclic.losses.validity import ModelUse, ValidityFlag
 
 __all__ = ["GearSet", "GearSetResult", "LossChoice", "Planet", "PlanetMesh", "Reference"]
 
+_Drags = tuple[dict[str, Loss], tuple[ValidityFlag, ...]]
+
 ROUNDING = 1e-12
 """Torques as small as this, relatively, are the rounding of a difference. [1]"""
 
@@ -102,11 +104,14 @@ class Planet:
     def load(
         self, duties: Mapping[str, MeshDuty], carrier_speed: float
     ) -> tuple[Sequence[MeshDuty], PlanetLoad]:
-        """Duties of its meshes, misaligned if the planet tilts, and the load on its bearing."""
+        """Duties of its meshes, misaligned if the planet tilts, and the load on its bearing.
+
+        Theory (B3).
+        """
         contacts = self._contacts(duties)
-        # Theory (B3)
         centrifugal = 0.0 if self.mass is None else self.mass * self.pin_radius * carrier_speed**2
-        if not self.tilts or self.bearing is None or contacts[0].duty.torque1 == 0:
+        idle = all(contact.duty.torque1 == 0 for contact in contacts)
+        if not self.tilts or self.bearing is None or idle:
             load = planet_load(contacts, centrifugal)
         else:
             contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
@@ -121,11 +126,8 @@ class Planet:
             contacts.append(
                 PlanetContact(duty, own.member, own.outward, sense, own.hand, own.position)
             )
-        if any(contact.position for contact in contacts):
-            return contacts
-        # one plane: turning t and y round changes nothing
         first = contacts[0].sense
-        return [replace(contact, sense=first * contact.sense) for contact in contacts]
+        return contacts if first > 0 else [contact.turned_round() for contact in contacts]
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +192,7 @@ class GearSet:
 
     def evaluate(self, state: State) -> GearSetResult:
         """Losses, figures and flags in a state."""
-        drags, drag_flags = self._drags(state)
+        drags, drag_flags = self._known_drags(state)
         torques = self._torques(state, drags)
         shares = self.shares(state, torques)
         flows = mesh_flows(self.duties(state, torques, 1 / self.count), state.fluids)
@@ -198,11 +200,12 @@ class GearSet:
             self._branch(state, torques, share, shares.count(share), flows)
             for share in sorted(set(shares), reverse=True)
         ]
-        found = drags | _summed(branches)
-        losses = {name: self._chosen(name, found[name], state) for name in self.choices}
+        found = drags | {
+            name: _with_choice(loss, self.choices[name]) for name, loss in _summed(branches).items()
+        }
         first = branches[0]
         return GearSetResult(
-            losses=losses,
+            losses={name: found[name] for name in self.choices},
             figures=first.figures,
             flags=_widest(branches) + drag_flags,
             notes=first.notes,
@@ -222,9 +225,13 @@ class GearSet:
             *((planet.key, BearingFigures) for planet in self.planets if planet.bearing),
         )
 
+    def idle(self, state: State) -> _Drags:
+        """Losses that depend on the speeds only, and their flags."""
+        return self._drags(state)
+
     def loads(self, state: State) -> Mapping[str, float]:
         """Torque at the first gear of each mesh, all planets together. [N m]"""
-        return self._torques(state, self._drags(state)[0])
+        return self._torques(state, self._known_drags(state)[0])
 
     @property
     def count(self) -> int:
@@ -233,7 +240,7 @@ class GearSet:
 
     def loaded_duties(self, state: State) -> tuple[MeshDuty, ...]:
         """The meshes of the planet that carries most, misaligned if it tilts."""
-        torques = self._torques(state, self._drags(state)[0])
+        torques = self._torques(state, self._known_drags(state)[0])
         share = max(self.shares(state, torques))
         duties = {duty.key: duty for duty in self.duties(state, torques, share)}
         for planet in self.planets:
@@ -243,7 +250,7 @@ class GearSet:
 
     def mean_duties(self, state: State) -> tuple[MeshDuty, ...]:
         """The meshes of a planet that carries its mean share."""
-        torques = self._torques(state, self._drags(state)[0])
+        torques = self._torques(state, self._known_drags(state)[0])
         return self.duties(state, torques, 1 / self.count)
 
     def mean_loads(self, state: State) -> dict[str, PlanetLoad]:
@@ -290,7 +297,11 @@ class GearSet:
             torques[key] = 0.0 if abs(whole) <= ROUNDING * abs(added) else whole
         return torques
 
-    def _drags(self, state: State) -> tuple[dict[str, Loss], tuple[ValidityFlag, ...]]:
+    def _known_drags(self, state: State) -> _Drags:
+        found: _Drags | None = state.idle.get(self.key)
+        return self._drags(state) if found is None else found
+
+    def _drags(self, state: State) -> _Drags:
         """Losses that do not depend on planets, as the user wants them, where they act."""
         losses = {
             name: Loss(LOAD_INDEPENDENT, left_out=reason) for name, reason in self.missing.items()
@@ -336,38 +347,42 @@ class GearSet:
         branch = _Branch({}, {}, (), tuple(note for mesh in meshes for note in mesh.notes))
         losses, figures, flags = branch.losses, branch.figures, branch.flags
         for planet, bearing in zip(self.planets, bearings, strict=True):
-            losses |= bearing.losses
+            losses |= {
+                name: self._inside(replace(loss, between=(planet.body, self.carrier)))
+                for name, loss in bearing.losses.items()
+            }
             flags += bearing.flags
             if bearing.figures is not None:
                 figures[planet.key] = bearing.figures
         for duty, mesh in zip(duties.values(), meshes, strict=True):
-            losses |= mesh.losses
+            losses |= self._of_mesh(duty, mesh.losses, state)
             flags = mesh.flags + flags
             figures[duty.key] = mesh.figures
         return replace(branch, flags=flags)
 
-    def _chosen(self, name: str, loss: Loss, state: State) -> Loss:
-        """One loss with the user's choice, and where it acts."""
-        if name in self.discs or name in self.missing or name == "thrust_bearing_viscous":
-            return loss
-        chosen = _with_choice(loss, self.choices[name])
-        if self.reference is not None:
-            return replace(chosen, between=self.reference.between)
-        for planet in self.planets:
-            if name.startswith(f"{planet.key}_"):
-                return replace(chosen, between=(planet.body, self.carrier))
-        mesh = next(mesh for mesh in self.meshes if name.startswith(f"{mesh.key}_"))
-        if name == f"{mesh.key}_sliding":
-            return replace(chosen, mesh=f"{self.key}.{mesh.key}")
+    def _of_mesh(self, duty: MeshDuty, losses: Mapping[str, Loss], state: State) -> dict[str, Loss]:
+        """Losses of a mesh where they act: sliding is a share of its power, the rest brakes the
+        driven gear against the carrier.
+        """
+        mesh = duty.gears
         driven = mesh.bodies[1] if self._drives(mesh, state) else mesh.bodies[0]
-        return replace(chosen, between=(driven, self.carrier))
+        placed = {
+            name: replace(loss, between=(driven, self.carrier)) for name, loss in losses.items()
+        }
+        sliding = f"{mesh.key}_sliding"
+        placed[sliding] = replace(losses[sliding], mesh=f"{self.key}.{mesh.key}")
+        return {name: self._inside(loss) for name, loss in placed.items()}
+
+    def _inside(self, loss: Loss) -> Loss:
+        """A loss between moving parts of the set where the set has all of them act."""
+        if self.reference is None:
+            return loss
+        return replace(loss, between=self.reference.between, mesh="")
 
     def _placed(self, loss: Loss) -> Loss:
         """Friction inside the set acts where all its losses do, and so do both discs of a pair."""
         own_shaft = HOUSING in loss.between and self.carrier != HOUSING
-        if self.reference is None or own_shaft:
-            return loss
-        return replace(loss, between=self.reference.between)
+        return loss if own_shaft else self._inside(loss)
 
     def _drives(self, mesh: GearMesh, state: State) -> bool:
         speed = state.speeds[mesh.bodies[0]] - state.speeds[self.carrier]
@@ -379,11 +394,15 @@ def _with_choice(loss: Loss, choice: LossChoice) -> Loss:
     reason = loss.left_out or ("" if choice.include else "left out by the case")
     if reason:
         return Loss(loss.group, left_out=reason)
+    if choice.factor == 1:
+        return loss
     return replace(loss, watts=choice.factor * loss.watts, factor=choice.factor)
 
 
 def _summed(branches: Sequence[_Branch]) -> dict[str, Loss]:
     """The losses of all planets together."""
+    if len(branches) == 1:
+        return branches[0].losses
     return {
         name: replace(loss, watts=sum(branch.losses[name].watts for branch in branches))
         for name, loss in branches[0].losses.items()

@@ -48,6 +48,9 @@ class TableLoss:
     terms: ClassVar = ("drag",)
     figure_types: ClassVar = (("drag", TableLossFigures),)
 
+    def idle(self, state: State) -> None:
+        """Nothing that would be worth keeping."""
+
     def loads(self, state: State) -> Mapping[str, float]:
         """Nothing: torques and forces do not matter."""
         return {}

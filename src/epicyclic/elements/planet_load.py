@@ -1,8 +1,8 @@
 """The load of a planet on its bearing, and how the planet tilts under it.
 
-Axes: t along the circle of the planets; r outward from the centre of the set; y along the planet's
-axis, from the middle of the bearing. In a set whose gears lie in one plane, t points in the sense
-in which the first mesh pushes the planet, and y towards the end of the face where contact ends.
+Axes, right-handed: t along the circle of the planets; r outward from the centre of the set; y along
+the planet's axis, from the middle of the bearing. They are turned about r so that the first mesh
+turns the planet from t to r: for a sun, t is then the sense in which it pushes the planet.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class PlanetLoad:
 
 @dataclass(frozen=True, slots=True)
 class PlanetContact:
-    """A mesh that loads a planet.
+    """A mesh that loads a planet. Theory (A1).
 
     Attributes
     ----------
@@ -71,6 +71,21 @@ class PlanetContact:
     sense: int
     hand: int = 1
     position: float = 0.0
+
+    def turned_round(self) -> PlanetContact:
+        """The same in axes turned about r by half a turn."""
+        t, r = self.outward
+        # not -0.0, which prints oddly
+        outward = (0.0 - t, r)
+        return replace(self, outward=outward, sense=-self.sense, position=0.0 - self.position)
+
+    @property
+    def face_sense(self) -> int:
+        """+1 if y points to the end of the face where contact ends, else -1. Theory (A3).
+
+        That end is the one towards which the mesh pushes its second gear.
+        """
+        return self.hand * self.sense * (1 if self.member == 2 else -1)
 
     @property
     def planet_radius(self) -> float:
@@ -103,7 +118,7 @@ def planet_load(
 ) -> PlanetLoad:
     """Load on the bearing of a planet from all its meshes and the centrifugal force.
 
-    Theory (B1), (B2), (B17).
+    Theory (A2), (B1), (B2), (B17).
 
     Talbot (2012), Eq. 3.7 and 3.8, for any number of meshes and any pressure angles: the transverse
     forces add as vectors, the axial ones form couples in the planes of the axes, and a force beside
@@ -185,7 +200,7 @@ def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
         replace(
             contact,
             duty=contact.duty.misaligned(
-                contact.duty.mesh.face_width * float(tilt @ contact.direction)
+                contact.face_sense * contact.duty.mesh.face_width * float(tilt @ contact.direction)
             ),
         )
         for contact in contacts
@@ -194,7 +209,9 @@ def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
 
 def _load_at(tilt: FloatArray, contacts: Contacts, centrifugal: float) -> PlanetLoad:
     """Load of a planet tilted by `tilt`."""
-    moments = [_mesh_moment(contact.duty) for contact in _misaligned(contacts, tilt)]
+    moments = [
+        contact.face_sense * _mesh_moment(contact.duty) for contact in _misaligned(contacts, tilt)
+    ]
     return planet_load(contacts, centrifugal, moments)
 
 

@@ -190,6 +190,9 @@ class Seal:
     terms: ClassVar = ("friction",)
     figure_types: ClassVar = (("seal", SealFigures),)
 
+    def idle(self, state: State) -> None:
+        """Nothing that would be worth keeping."""
+
     def loads(self, state: State) -> Mapping[str, float]:
         """Nothing: torques and forces do not matter."""
         return {}

@@ -81,6 +81,9 @@ class ShaftBearing:
         """Names of its losses."""
         return self.model.terms
 
+    def idle(self, state: State) -> None:
+        """Nothing that would be worth keeping."""
+
     def loads(self, state: State) -> Mapping[str, float]:
         """The forces on it; nothing if the user gives them, or the model needs none. [N]"""
         if self.force is not None or not self.model.depends_on_load:

@@ -1,0 +1,1 @@
+"""Gears, meshes and contact lines as plain numbers."""

@@ -7,13 +7,16 @@ another one (Lynwander, Gear Drive Systems, 1983, chapter 8; Mueller, Epicyclic 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 __all__ = [
     "admissible_angles",
     "are_evenly_spaced",
+    "closing_number",
     "nearest_admissible_angle",
+    "nearest_places",
+    "pin_angle",
     "smallest_planet_gap",
 ]
 
@@ -57,3 +60,56 @@ def smallest_planet_gap(
     steps.append(2 * math.pi - ordered[-1] + ordered[0])
     chord = min(2 * center_distance * math.sin(step / 2) for step in steps)
     return chord - 2 * tip_radius
+
+
+def closing_number(meshes: Sequence[tuple[Mapping[str, int], int]]) -> int:
+    """N: alike planets can stand at multiples of 1/N of a turn from another one. Theory (A6).
+
+    0 if they can stand anywhere.
+
+    Parameters
+    ----------
+    meshes : sequence of tuple
+        For each mesh the teeth of its gears on planets, by their bodies, and those of its central
+        gear: negative for a ring gear, 0 between two planets.
+    """
+    bodies = dict.fromkeys(body for teeth, _ in meshes for body in teeth)
+    rows = [[*(teeth.get(body, 0) for body in bodies), central] for teeth, central in meshes]
+    for column in range(len(bodies)):
+        held = [row for row in rows if row[column]]
+        rows = [row for row in rows if not row[column]]
+        while len(held) > 1:
+            # Euclid's algorithm with whole rows
+            held.sort(key=lambda row: abs(row[column]))
+            least = held[0]
+            for row in held[1:]:
+                times = row[column] // least[column]
+                row[:] = [a - times * b for a, b in zip(row, least, strict=True)]
+            rows += [row for row in held if not row[column]]
+            held = [row for row in held if row[column]]
+    return math.gcd(*(row[-1] for row in rows))
+
+
+def nearest_places(count: int, number: int) -> tuple[float, ...]:
+    """Angles of `count` planets, multiples of 1/`number` of a turn, nearest to equal spacing. [rad]
+
+    Equally spaced if `number` is 0.
+    """
+    if number % count == 0:
+        return tuple(2 * math.pi * planet / count for planet in range(count))
+    step = 2 * math.pi / number
+    return tuple(step * round(number * planet / count) for planet in range(count))
+
+
+def pin_angle(radius1: float, radius2: float, distance: float) -> float:
+    """Angle at the axis of the set between two pins at a distance from each other. Theory (A4).
+
+    Raises
+    ------
+    ValueError
+        If no triangle has these sides.
+    """
+    cosine = (radius1**2 + radius2**2 - distance**2) / (2 * radius1 * radius2)
+    if abs(cosine) > 1:
+        raise ValueError("no triangle has these sides")
+    return math.acos(cosine)

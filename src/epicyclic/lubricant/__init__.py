@@ -1,0 +1,1 @@
+"""Oils as data, and their properties at temperature."""

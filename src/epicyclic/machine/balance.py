@@ -1,4 +1,4 @@
-"""Torques of all bodies and loads of all meshes in balance. Theory (T3) to (T6).
+"""Torques of all bodies and loads of all meshes in balance.
 
 A torque is the one that acts on a body from outside, so that torque times speed is the power that
 enters there.
@@ -21,6 +21,10 @@ FloatArray = NDArray[np.float64]
 
 UNBALANCED = 1e-9
 """Torque left over, relative to the largest one, beyond which there is no balance. [1]"""
+SINGULAR = 1e-13
+"""Singular values below this share of the largest count as zero."""
+LARGEST_FACTOR = 1e6
+"""Of torques over the given ones beyond which the system is looked at for its rank. [1]"""
 ROUNDING = 1e-14
 """Torque, relative to the largest one, that is left over from rounding. [1]"""
 NO_POWER = 1e-12
@@ -110,9 +114,7 @@ def balance(
     for number, body in enumerate(unknown, len(scale)):
         columns[place[body], number] = 1.0
     known = _known_torques(machine, operation, speeds, frictions)
-    found, _, rank, _ = np.linalg.lstsq(columns, -known, rcond=1e-13)
-    left = columns @ found + known
-    found += np.linalg.lstsq(columns, -left, rcond=1e-13)[0]
+    found, unique = _least(columns, -known)
     size = max(float(np.abs(known).max(initial=0.0)), float(np.abs(found).max(initial=0.0)))
     found[np.abs(found) <= ROUNDING * size] = 0.0
     left = columns @ found + known
@@ -135,8 +137,25 @@ def balance(
             for row in machine.rows
         },
         residual=float(np.abs(left).max(initial=0.0)) / size if size else 0.0,
-        unique=int(rank) == columns.shape[1],
+        unique=unique,
     )
+
+
+def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
+    """The smallest solution of a linear system, and whether it is the only one."""
+    if matrix.shape[0] == matrix.shape[1]:
+        try:
+            found: FloatArray = np.linalg.solve(matrix, known)
+        except np.linalg.LinAlgError:
+            pass
+        else:
+            found += np.linalg.solve(matrix, known - matrix @ found)
+            size = float(np.abs(known).max(initial=0.0))
+            if float(np.abs(found).max(initial=0.0)) <= LARGEST_FACTOR * size:
+                return found, True
+    found, _, rank, _ = np.linalg.lstsq(matrix, known, rcond=SINGULAR)
+    found += np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR)[0]
+    return found, int(rank) == matrix.shape[1]
 
 
 def drives_first(powers: Mapping[str, float], before: Mapping[str, bool]) -> dict[str, bool]:

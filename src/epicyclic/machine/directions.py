@@ -71,7 +71,8 @@ def find_directions(
     """
     start = drives_first(lossless.powers, dict.fromkeys(lossless.powers, True))
     wanted = lossless.torques[operation.output]
-    if not any(lossless.powers.values()):
+    passes = any(lossless.powers.values())
+    if not passes or all(efficiency == 1 for efficiency in efficiencies.values()):
         return Directions(start, locking=False)
     agreeing: Drives | None = None
     drives: Drives = start

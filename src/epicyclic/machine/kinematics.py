@@ -1,4 +1,4 @@
-"""Speeds of all bodies from the constraints of meshes and clutches. Theory (T1), (T2).
+"""Speeds of all bodies from the constraints of meshes and clutches.
 
 Speeds are positive in one common sense of rotation.
 """
@@ -67,16 +67,22 @@ def freedom(machine: Machine, driven: str, given: Sequence[str]) -> Freedom:
 
 
 def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
-    """Speeds of all bodies, `HOUSING` among them, from `given` ones that determine them. [rad/s]"""
+    """Speeds of all bodies, `HOUSING` among them, from `given` ones that determine them. [rad/s]
+
+    Theory (T2).
+    """
     bodies = machine.bodies
     matrix = _matrix(machine, list(given))
     known = np.zeros(len(matrix))
     if given:
         known[-len(given) :] = list(given.values())
-    found, *_ = np.linalg.lstsq(matrix, known, rcond=SINGULAR)
-    # once more on what rounding has left
-    correction, *_ = np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR)
-    speeds = dict(zip(bodies, map(float, found + correction), strict=True))
+    if matrix.shape[0] == matrix.shape[1]:  # they determine all: the checks of the case say so
+        found = np.linalg.solve(matrix, known)
+        found += np.linalg.solve(matrix, known - matrix @ found)
+    else:
+        found, *_ = np.linalg.lstsq(matrix, known, rcond=SINGULAR)
+        found += np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR)[0]
+    speeds = dict(zip(bodies, map(float, found), strict=True))
     return _joined(speeds | dict(given))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from epicyclic.elements.base import LOAD_DEPENDENT, ElementResult, Loss, State
 from epicyclic.elements.fluids import Fluids
@@ -184,20 +185,26 @@ def _converged(
     fluids: Fluids | None,
 ) -> _Pass:
     """Torques and losses that agree, with these directions of the rolling powers."""
-    found = balance(
-        machine, operation, speeds, drives, {row.key: row.efficiency for row in machine.rows}
-    )
+    rows = {row.key: row.efficiency for row in machine.rows}
+    found = balance(machine, operation, speeds, drives, rows)
     answered: dict[str, Mapping[str, float]] = {}
     results: dict[str, ElementResult] = {}
+    idle: dict[str, Any] = {}
     for number in range(MOST_PASSES):
         forces = forces_of(machine.layouts, found.meshes)
-        state = State(speeds, found.meshes, forces, fluids, lossless=number == 0)
+        state = State(speeds, found.meshes, forces, fluids, lossless=number == 0, idle=idle)
+        if not number:
+            idle |= {element.key: element.idle(state) for element in machine.elements}
+        changed = False
         for element in machine.elements:
             loads = element.loads(state)
             if element.key not in answered or not _agrees(answered[element.key], loads):
                 results[element.key] = element.evaluate(state)
                 answered[element.key] = loads
+                changed = True
         efficiencies, frictions = effects_of(machine, found.powers, results.values())
+        if not changed and efficiencies == rows:  # friction alone: the balance has all of it
+            return _Pass(found, drives, efficiencies, state, results)
         new = balance(machine, operation, speeds, drives, efficiencies, frictions)
         if _agrees(found.meshes, new.meshes):
             return _Pass(new, drives, efficiencies, state, results)

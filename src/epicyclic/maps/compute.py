@@ -1,6 +1,7 @@
 """Loss maps: losses, torque loss and efficiency over speed, torque and oil temperature.
 
-The torque loss refers to the input member, `reference_shaft` in the attributes: the power loss over
+A train has its states of brakes and clutches as a further dimension; one whose losses are all given
+has no oil, and no temperature. The torque loss refers to the input member, `reference_shaft` in the attributes: the power loss over
 the magnitude of the speed of that shaft. With it the torque that the shaft passes on is the torque
 on it less the torque loss times the sign of its speed, driving and coasting.
 """
@@ -15,9 +16,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from epicyclic.builders.build import layout_of
-from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.case.case import Case, PlanetaryCase, TrainCase
+from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.wording import written
+from epicyclic.elements.base import HOUSING
 from epicyclic.errors import InputError, Problem
-from epicyclic.results.result import number_fields
+from epicyclic.results.result import Layout, number_fields
 from epicyclic.sweeps.dataset import to_dataset
 from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.plan import Axis, SweepPlan, make_plan
@@ -29,12 +33,14 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AXES",
+    "STATE",
     "MapPlan",
     "axis_name",
     "coordinates",
     "held_shaft",
     "loss_map",
     "map_plan",
+    "states_left_out",
     "to_map",
 ]
 
@@ -43,9 +49,26 @@ AXES = {
     "torque": "operation.torque",
     "temperature": "operation.oil_inlet_temperature",
 }
-"""Dimensions that every map has, and their keys."""
-_SHAFT_KEYS = ("operation.input", "operation.fixed", "operation.second_input")
+"""Dimensions that every map has, and their keys; without an oil the last one is missing."""
+STATE = "state"
+"""Dimension of the states of a train that has any."""
+_OWN_AXES = {**AXES, STATE: "operation.state"}
+_SHAFT_KEYS = (
+    "operation.input",
+    "operation.output",
+    "operation.fixed",
+    "operation.second_input",
+)
 """Keys that decide which shaft is the reference, and which the output."""
+_SUMS = (
+    "load_dependent",
+    "load_independent",
+    "total",
+    "input_power",
+    "efficiency",
+    "ratio",
+    "power_ratio",
+)
 _CREEP = 1e-9
 """Speed that stands for slow motion; losses over speed have reached their limit by then. [rpm]"""
 
@@ -69,6 +92,7 @@ def loss_map(
     temperature: Iterable[Any] | None = None,
     vary: Mapping[str, Iterable[Any]] | None = None,
     *,
+    states: Iterable[Any] | None = None,
     jobs: int | None = None,
     dask: str | None = None,
     shard: tuple[int, int] | None = None,
@@ -79,24 +103,29 @@ def loss_map(
 
     Parameters
     ----------
-    case : PlanetaryCase or GearPairCase
+    case : PlanetaryCase, GearPairCase or TrainCase
     speed, torque : iterable
-        Of the input member (the pinion of a pair), as text with units. A torque against the speed
-        is coasting.
+        Of the input member (the pinion of a pair, the input shaft of a train), as text with units.
+        A torque against the speed is coasting.
     temperature : iterable, optional
         Oil inlet temperatures. Default: that of the case.
     vary : mapping of str to iterable, optional
         Further keys and their values, as for `sweep`.
+    states : iterable, optional
+        States of a train. Default: all in which it can run; the attribute ``states_left_out``
+        names the others.
     jobs, dask, shard, journal, progress
         As for `sweep`.
 
     Returns
     -------
     xarray.Dataset
-        Dimensions ``speed`` [rpm], ``torque`` [N m], ``temperature`` [degC], rising, and one for
-        each further key, its dots replaced by underscores. ``torque_loss`` [N m] is the power loss
+        Dimensions ``speed`` [rpm], ``torque`` [N m], ``temperature`` [degC], rising, ``state`` of
+        a train with states, and one for each further key, its dots replaced by underscores. A train
+        whose losses are all given has no temperature. ``torque_loss`` [N m] is the power loss
         over the magnitude of the input speed; the losses of the components and their sums [W],
-        ``efficiency`` [1], and speeds and torques of all members stand beside it. At zero speed
+        ``efficiency`` [1], and speeds and torques of all members stand beside it; of a train also
+        ``power_ratio`` and, over the state, ``ratio``. At zero speed
         powers are zero, and torques, torque loss and efficiency are the limits of slow motion in
         positive direction; but the torque loss is NaN there if a second member is driven. The
         efficiency is NaN where no power is passed on. Points that failed are NaN, with status
@@ -105,10 +134,11 @@ def loss_map(
     Raises
     ------
     InputError
-        As for `sweep`, and for keys that decide which shaft is which.
+        As for `sweep`, for keys that decide which shaft is which, and for states that are not there
+        or in which the train cannot run.
     """
     runner = Runner(jobs, dask, shard, journal, progress)
-    plan = map_plan(case, speed, torque, temperature, vary)
+    plan = map_plan(case, speed, torque, temperature, vary, states)
     return to_map(plan, runner.run(plan))
 
 
@@ -118,25 +148,37 @@ def map_plan(
     torque: Iterable[Any],
     temperature: Iterable[Any] | None = None,
     vary: Mapping[str, Iterable[Any]] | None = None,
+    states: Iterable[Any] | None = None,
 ) -> MapPlan:
     """The points of a map. Parameters as for `loss_map`."""
     further = dict(vary or {})
-    problems = [_own_option(key) for key in further if key in AXES.values()]
+    problems = [_own_option(key) for key in further if key in _OWN_AXES.values()]
     problems += [_shaft_key(key) for key in further if key in _SHAFT_KEYS]
+    chosen, found = _states(case, states)
+    problems += found
+    if temperature is not None and not _has_oil(case):
+        allowed = "has no effect: every loss of the train is given."
+        problems.append(Problem("temperature", "", allowed, "Leave it out."))
     if problems:
         raise InputError(problems, "the map")
-    if temperature is None:
-        temperature = [case.inputs()["operation"]["oil_inlet_temperature"]]
+    given: dict[str, Iterable[Any]] = {}
+    if chosen:
+        given[_OWN_AXES[STATE]] = chosen
+    if _has_oil(case):
+        if temperature is None:
+            temperature = [case.inputs()["operation"]["oil_inlet_temperature"]]
+        given[AXES["temperature"]] = temperature
     # torque innermost: flows through pockets, which cost most, do not depend on its magnitude
-    given = {AXES["temperature"]: temperature, AXES["speed"]: speed, AXES["torque"]: torque}
+    given |= {AXES["speed"]: speed, AXES["torque"]: torque}
     plan = make_plan(case, {**further, **given})
-    turns_alone = not _has_second_input(case)
+    turns_alone = not _drives_others(case)
     return MapPlan(case, tuple(_prepared(axis, turns_alone) for axis in plan.axes))
 
 
 def _own_option(key: str) -> Problem:
-    (name,) = (name for name, own in AXES.items() if own == key)
-    return Problem(key, "", f"is varied by {name}.", f"Give its values there, as --{name}.")
+    (name,) = (name for name, own in _OWN_AXES.items() if own == key)
+    option = "states" if name == STATE else name
+    return Problem(key, "", f"is varied by {option}.", f"Give its values there, as --{option}.")
 
 
 def _shaft_key(key: str) -> Problem:
@@ -144,13 +186,73 @@ def _shaft_key(key: str) -> Problem:
     return Problem(key, "", allowed, "Make a map of each.")
 
 
+def _states(case: Case, chosen: Iterable[Any] | None) -> tuple[list[str], list[Problem]]:
+    """The states of a map, and what is wrong with those that were chosen."""
+    known = list(case.states) if isinstance(case, TrainCase) else []
+    if not known:
+        if chosen is None:
+            return [], []
+        allowed = "cannot be chosen: the case has none."
+        return [], [Problem("states", "", allowed, "Leave them out.")]
+    if chosen is None:
+        left_out = states_left_out(case)
+        able = [name for name in known if name not in left_out]
+        return able, [] if able else [_unable(*item) for item in left_out.items()]
+    names = [str(name) for name in ([chosen] if isinstance(chosen, str) else chosen)]
+    problems = [
+        Problem(
+            "states",
+            written(name),
+            "is no state of the train.",
+            did_you_mean(name, known) or f"Known are: {', '.join(known)}.",
+        )
+        for name in dict.fromkeys(names)
+        if name not in known
+    ]
+    left_out = states_left_out(case, [name for name in names if name in known])
+    problems += [_unable(*item) for item in left_out.items()]
+    return names, problems
+
+
+def _unable(name: str, reason: str) -> Problem:
+    return Problem("states", written(name), reason, "Leave this state out.")
+
+
+def states_left_out(case: Case, names: Iterable[str] | None = None) -> dict[str, str]:
+    """Those of the states `names`, by default all, in which a train cannot run, and why."""
+    if not isinstance(case, TrainCase):
+        return {}
+    left_out = {}
+    for name in case.states if names is None else names:
+        try:
+            case.updated({_OWN_AXES[STATE]: name})
+        except InputError as error:
+            left_out[name] = error.problems[0].allowed
+    return left_out
+
+
 def held_shaft(case: Case) -> str:
-    """The member that stands still, or the housing of a pair; empty if all shafts turn."""
-    return (case.operation.fixed or "") if isinstance(case, PlanetaryCase) else "housing"
+    """What takes up the difference of the torques of input and output.
+
+    The member that stands still, or the housing of a pair or train; empty if a further shaft is
+    driven.
+    """
+    if isinstance(case, PlanetaryCase):
+        return case.operation.fixed or ""
+    if isinstance(case, TrainCase) and (case.operation.speeds or case.operation.torques):
+        return ""
+    return HOUSING
 
 
-def _has_second_input(case: Case) -> bool:
+def _drives_others(case: Case) -> bool:
+    """True if a further shaft turns while the reference shaft stands still."""
+    if isinstance(case, TrainCase):
+        return bool(case.operation.speeds)
     return isinstance(case, PlanetaryCase) and case.operation.second_input is not None
+
+
+def _has_oil(case: Case) -> bool:
+    return not isinstance(case, TrainCase) or case.computed
 
 
 def _prepared(axis: Axis, turns_alone: bool) -> Axis:
@@ -175,37 +277,46 @@ def coordinates(plan: MapPlan) -> dict[str, tuple[float | str, ...]]:
 
 def axis_name(key: str) -> str:
     """Name of the dimension of a key: ``"planet_count"`` for ``"planet.count"``."""
-    names = {own: name for name, own in AXES.items()}
+    names = {own: name for name, own in _OWN_AXES.items()}
     return names.get(key, key.replace(".", "_"))
 
 
 def to_map(plan: MapPlan, rows: Rows) -> xr.Dataset:
     """The map of `plan` from the rows of all its points."""
-    data = to_dataset(plan, rows)[[*_kept_variables(plan.case), "status", "message", "warnings"]]
+    layout = layout_of(plan.case)
+    data = to_dataset(plan, rows)[[*_kept_variables(layout), "status", "message", "warnings"]]
     data = data.rename({axis.key: axis_name(axis.key) for axis in plan.axes})
-    data = data.transpose(*AXES, ...)
+    data = data.transpose(*(name for name in (*AXES, STATE) if name in data.dims), ...)
     to_rpm, _ = RPM.scale_and_offset()
     torque_loss = data["total"] / (abs(data["speed"]) / to_rpm).where(data["speed"] != 0)
     torque_loss.attrs = {
-        "long_name": f"torque loss at the {_members(plan.case)[0]}",
+        "long_name": f"torque loss at the {_ends(plan.case)[0]}",
         "units": NEWTON_METRE.display,
     }
     data = data.assign(torque_loss=torque_loss.transpose(*data["total"].dims))
     data = _at_rest(data)
+    if "ratio" in data and not _drives_others(plan.case):
+        data["ratio"] = _one_ratio(data["ratio"])
     for axis in plan.axes:
         data[axis_name(axis.key)].attrs["case_key"] = axis.key
     data.attrs = _attributes(plan, data.attrs)
     return data[["torque_loss", *(name for name in data.data_vars if name != "torque_loss")]]
 
 
-def _kept_variables(case: Case) -> list[str]:
-    """Losses, their sums, efficiency, and speeds and torques of the members."""
-    shafts = [f"{name}_{what}" for name in _all_members(case) for what in ("speed", "torque")]
-    return [
-        item.key
-        for item in number_fields(layout_of(case))
-        if item.unit == WATT.display or item.key == "efficiency" or item.key in shafts
-    ]
+def _one_ratio(ratio: xr.DataArray) -> xr.DataArray:
+    """The ratio without the axes that it does not depend on."""
+    operating = [name for name in AXES if name in ratio.dims]
+    points = ratio.stack(point=operating).transpose("point", ...)
+    known = points.notnull().argmax("point")  # the first point that did not fail
+    found = points.isel(point=known).drop_vars(["point", *operating], errors="ignore")
+    return found.assign_attrs(ratio.attrs)
+
+
+def _kept_variables(layout: Layout) -> list[str]:
+    """Losses, their sums, efficiency, ratios, and speeds and torques of the members."""
+    kept = {*layout.losses, *_SUMS}
+    kept |= {f"{name}_{what}" for name in layout.members for what in ("speed", "torque")}
+    return [item.key for item in number_fields(layout) if item.key in kept]
 
 
 def _at_rest(data: xr.Dataset) -> xr.Dataset:
@@ -220,12 +331,12 @@ def _at_rest(data: xr.Dataset) -> xr.Dataset:
     return data.assign_coords(speed=rest)
 
 
-def _all_members(case: Case) -> tuple[str, ...]:
-    return layout_of(case).members
-
-
-def _members(case: Case) -> tuple[str, str]:
+def _ends(case: Case) -> tuple[str, str]:
     """The reference shaft and the output shaft."""
+    if isinstance(case, TrainCase):
+        ends = (case.operation.input, case.operation.output)
+        reference, output = (case.shape.shaft_of(name) or "" for name in ends)
+        return reference, output
     if not isinstance(case, PlanetaryCase):
         return "pinion", "gear"
     operation = case.operation
@@ -237,7 +348,7 @@ def _members(case: Case) -> tuple[str, str]:
 
 
 def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:
-    reference, output = _members(plan.case)
+    reference, output = _ends(plan.case)
     text = {
         "title": given["title"],
         "source": given["source"],
@@ -259,7 +370,12 @@ def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:
         "versions": given["versions"],
         "case": given["case"],
     }
-    if _has_second_input(plan.case):
+    if _drives_others(plan.case):
         text["zero_speed"] = f"no torque loss: a second member is driven while the {reference} "
         text["zero_speed"] += "stands still"
+    chosen = {axis_name(axis.key): axis.coordinate for axis in plan.axes}.get(STATE, ())
+    left_out = states_left_out(plan.case).items()
+    reasons = [f"{name}: {reason}" for name, reason in left_out if name not in chosen]
+    if reasons:
+        text["states_left_out"] = " ".join(reasons)
     return text

@@ -25,9 +25,10 @@ from epicyclic.plots.mesh import (
     plot_transmission_error,
 )
 from epicyclic.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
+from epicyclic.plots.power_flow import SLIDE, plot_power_flow
 from epicyclic.plots.style import PANEL, styled_figure
 from epicyclic.records.maps import map_case
-from epicyclic.records.record import ResultRecord
+from epicyclic.records.record import ResultRecord, set_of, sets_of
 
 __all__ = ["PLOTS", "Panel", "Plot", "available", "figure_of", "panels_of"]
 
@@ -62,11 +63,19 @@ class Plot:
         The panels that a stored result or map has; none if it lacks what the plot shows.
     projection : str or None
         Of its Axes.
+    size : tuple of float
+        Width and height of one of its Axes. [inch]
     """
 
     question: str
     panels: Callable[[Stored], list[Panel]]
     projection: str | None = None
+    size: tuple[float, float] = PANEL
+
+    @property
+    def is_slide(self) -> bool:
+        """True if it fills a page."""
+        return self.size == SLIDE
 
 
 def _of_result(draw: Callable[..., Axes]) -> Callable[[Stored], list[Panel]]:
@@ -86,11 +95,16 @@ def _of_group(
             return []
         found = stored.group(group)
         return [
-            Panel(name.replace("_", " ") if len(found) > 1 else "", partial(draw, data, *more))
+            Panel(_words(name) if len(found) > 1 else "", partial(draw, data, *more))
             for name, data in found.items()
         ]
 
     return panels
+
+
+def _words(name: str) -> str:
+    """A mesh or bearing in words, that of a train with its set: ``"planets: sun mesh"``."""
+    return name.replace("_", " ").replace(".", ": ")
 
 
 def _gears_of(stored: Stored) -> Mapping[str, xr.Dataset]:
@@ -102,14 +116,22 @@ def _gears_of(stored: Stored) -> Mapping[str, xr.Dataset]:
 
 
 def _gear_set(stored: Stored) -> list[Panel]:
-    gears = _gears_of(stored)
-    return [Panel("", partial(plot_gear_set, gears))] if gears else []
+    """The gears of a set, or of every set of a train."""
+    return [
+        Panel(_words(name), partial(plot_gear_set, gears))
+        for name, gears in sets_of(_gears_of(stored)).items()
+    ]
 
 
 def _teeth(stored: Stored) -> list[Panel]:
     if not isinstance(stored, ResultRecord):
         return []
-    return _of_group("views", plot_teeth, stored.group("gears"))(stored)
+    gears, views = sets_of(stored.group("gears")), stored.group("views")
+    return [
+        Panel(_words(key) if len(views) > 1 else "", partial(plot_teeth, view, gears[name]))
+        for key, view in views.items()
+        for name in (set_of(key),)
+    ]
 
 
 def _of_map(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], list[Panel]]:
@@ -131,13 +153,18 @@ def _pocket_pressure(stored: Stored) -> list[Panel]:
     if not isinstance(stored, ResultRecord):
         return []
     return [
-        Panel(f"{name.replace('_', ' ')}", partial(plot_life_with_scale, data, "pressure", kind))
+        Panel(_words(name), partial(plot_life_with_scale, data, "pressure", kind))
         for name, data in stored.group("pockets").items()
         for kind in range(data.sizes["tooth"])
     ]
 
 
 PLOTS: dict[str, Plot] = {
+    "power-flow": Plot(
+        "Where does the power flow, what circulates, what is lost?",
+        _of_result(plot_power_flow),
+        size=SLIDE,
+    ),
     "gear-set": Plot("What does the gear set look like, to scale?", _gear_set),
     "teeth": Plot("How do the teeth touch, and where is the path of contact?", _teeth),
     "losses": Plot("Where do the watts go?", _of_result(plot_losses)),
@@ -246,7 +273,7 @@ def figure_of(stored: Stored, name: str) -> Figure:
     rows = math.ceil(len(panels) / columns)
     title = stored.title if isinstance(stored, ResultRecord) else str(stored.attrs.get("title", ""))
     plot = PLOTS[name]
-    with styled_figure(rows, columns, title, panel=PANEL, projection=plot.projection) as (
+    with styled_figure(rows, columns, title, panel=plot.size, projection=plot.projection) as (
         figure,
         axes,
     ):

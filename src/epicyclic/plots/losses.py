@@ -19,12 +19,21 @@ ROOM = 1.32
 
 
 def plot_losses(result: ResultContents, ax: Axes) -> Axes:
-    """Every component of the loss, its power and share."""
-    names = [name for name in result.losses if name not in result.not_included]
-    watts = [result.losses[name] for name in names]
-    colours = [GROUP_COLOURS[result.groups[name]] for name in names]
-    ax.barh(_words(names), watts, color=colours, edgecolor="black", linewidth=0.5)
-    for row, value in enumerate(watts):
+    """Every component of the loss, its power and share; of a train every set and part."""
+    rows = _rows(result)
+    labels = list(dict.fromkeys(label for label, *_ in rows))
+    sums = dict.fromkeys(labels, 0.0)
+    for label, group, watts in rows:
+        ax.barh(
+            label,
+            watts,
+            left=sums[label],
+            color=GROUP_COLOURS[group],
+            edgecolor="black",
+            linewidth=0.5,
+        )
+        sums[label] += watts
+    for row, value in enumerate(sums.values()):
         share = f" ({value / result.total:.1%})" if result.total else ""
         ax.annotate(
             f"{value:.1f}{share}",
@@ -34,7 +43,7 @@ def plot_losses(result: ResultContents, ax: Axes) -> Axes:
             va="center",
             fontsize="small",
         )
-    _finish(ax, watts)
+    _finish(ax, sums.values())
     ax.set(title="Losses by component", xlabel="power loss, W")
     return ax
 
@@ -43,21 +52,29 @@ def plot_loss_sum(result: ResultContents, ax: Axes) -> Axes:
     """How the components add up to the total loss, the largest of each group first."""
     start = 0.0
     labels: list[str] = []
+    rows = _rows(result)
     for group, colour in GROUP_COLOURS.items():
-        terms = [
-            (watts, name)
-            for name, watts in result.losses.items()
-            if result.groups[name] == group and name not in result.not_included and watts
-        ]
-        for watts, name in sorted(terms, reverse=True):
+        terms = [(watts, label) for label, own, watts in rows if own == group and watts]
+        for watts, label in sorted(terms, reverse=True):
             _step(ax, len(labels), start, watts, colour)
-            labels += _words([name])
+            labels.append(label)
             start += watts
     _step(ax, len(labels), 0.0, result.total, SUM_COLOUR)
     ax.set_yticks(range(len(labels) + 1), [*labels, "total"])
     _finish(ax, [result.total])
     ax.set(title="How the losses add up", xlabel="power loss, W")
     return ax
+
+
+def _rows(result: ResultContents) -> list[tuple[str, str, float]]:
+    """Label, group and watts of every bar; a train would have too many, so its sets are summed."""
+    sums: dict[tuple[str, str], float] = {}
+    for name, watts in result.losses.items():
+        if name not in result.not_included:
+            what = name.partition(".")[0] if result.kind == "train" else name
+            key = what.replace("_", " "), result.groups[name]
+            sums[key] = sums.get(key, 0.0) + watts
+    return [(label, group, watts) for (label, group), watts in sums.items()]
 
 
 def _step(ax: Axes, row: int, start: float, watts: float, colour: str) -> None:
@@ -70,10 +87,6 @@ def _step(ax: Axes, row: int, start: float, watts: float, colour: str) -> None:
         va="center",
         fontsize="small",
     )
-
-
-def _words(names: Iterable[str]) -> list[str]:
-    return [name.replace("_", " ") for name in names]
 
 
 def _finish(ax: Axes, watts: Iterable[float]) -> None:

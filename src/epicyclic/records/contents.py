@@ -8,6 +8,8 @@ from typing import Annotated, Any, Literal, Self, get_args
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, model_validator
 from pydantic_core import from_json
 
+from epicyclic.elements.base import HOUSING
+
 __all__ = ["MapContents", "Measure", "Member", "RecordContents", "ResultContents", "Validity"]
 
 
@@ -41,10 +43,11 @@ def _with_operation(inputs: dict[str, Any]) -> dict[str, Any]:
     if inputs.get("kind") not in get_args(Kind):
         raise ValueError("must name the kind of the case")
     operation = inputs.get("operation")
+    needed = _OPERATION_OF_TRAIN if inputs["kind"] == "train" else _OPERATION
     if not isinstance(operation, dict) or not all(
-        isinstance(operation.get(key), str) for key in _OPERATION
+        isinstance(operation.get(key), str) for key in needed
     ):
-        raise ValueError(f"must state operation with {', '.join(_OPERATION)}")
+        raise ValueError(f"must state operation with {', '.join(needed)}")
     return inputs
 
 
@@ -54,11 +57,12 @@ def _with_own(versions: dict[str, str]) -> dict[str, str]:
     return versions
 
 
-Kind = Literal["planetary", "gear_pair"]
+Kind = Literal["planetary", "gear_pair", "train"]
 Group = Literal["load-dependent", "load-independent"]
 Inputs = Annotated[dict[str, Any], AfterValidator(_with_operation)]
 Versions = Annotated[dict[str, str], AfterValidator(_with_own)]
 _OPERATION = ("speed", "torque", "oil_inlet_temperature")
+_OPERATION_OF_TRAIN = ("speed", "torque", "input", "output")
 
 
 class Member(_Part):
@@ -92,7 +96,10 @@ class Validity(_Part):
 
 
 class ResultContents(_Part):
-    """The JSON form of a result, `epicyclic.Result.to_dict`."""
+    """The JSON form of a result, `epicyclic.Result.to_dict`.
+
+    What only a single set or only a train states has a default.
+    """
 
     title: str
     kind: Kind
@@ -114,11 +121,23 @@ class ResultContents(_Part):
     validity: tuple[Validity, ...]
     members: dict[str, Member]
     meshes: dict[str, dict[str, Measure]]
-    fluid: dict[str, Measure]
-    planet_bearing: dict[str, Measure] | None
-    planet_angles: Measures
-    planet_shares: Measures
-    mesh_load_factor: Measure
+    fluid: dict[str, Measure] | None
+    planet_bearing: dict[str, Measure] | None = None
+    planet_angles: Measures = Measures(value=(), unit="deg")
+    planet_shares: Measures = Measures(value=(), unit="1")
+    mesh_load_factor: Measure | None = None
+    state: str = ""
+    input: str = ""
+    output: str = ""
+    ratio: float | None = None
+    power_ratio: float | None = None
+    self_locking: bool = False
+    rolling_power: dict[str, float] = {}
+    clutches: dict[str, float] = {}
+    stage_torques: dict[str, dict[str, float]] = {}
+    stages: dict[str, float] = {}
+    bearings: dict[str, dict[str, Measure]] = {}
+    parts: dict[str, dict[str, Measure]] = {}
     sources: tuple[str, ...]
     inputs: Inputs
     versions: Versions
@@ -129,7 +148,26 @@ class ResultContents(_Part):
             raise ValueError("losses and groups name different losses")
         if len(self.planet_angles.value) != len(self.planet_shares.value):
             raise ValueError("planet_angles and planet_shares count different planets")
+        if self.kind == "train":
+            self._check_train()
+        elif self.fluid is None or self.mesh_load_factor is None:
+            raise ValueError("fluid or mesh_load_factor is missing")
         return self
+
+    def _check_train(self) -> None:
+        """Shafts that clutches, stages, input and output name must be there."""
+        named = {self.input, self.output}
+        named |= {shaft for clutch in self.clutches for shaft in clutch.split("+")}
+        named |= {shaft for taken in self.stage_torques.values() for shaft in taken}
+        unknown = named - self.members.keys() - {HOUSING}
+        if unknown:
+            raise ValueError(f"members lacks {', '.join(sorted(unknown))}")
+        shafts = self.inputs.get("shafts", {})
+        if not isinstance(shafts, dict) or not all(
+            isinstance(names, list) and all(isinstance(name, str) for name in names)
+            for names in shafts.values()
+        ):
+            raise ValueError("inputs.shafts must be lists of members")
 
 
 class RecordContents(_Part):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from epicyclic.case.case import GearPairCase, PlanetaryCase
+from epicyclic.case.case import Case
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.records.checks import RUN_AGAIN, field_problems, map_problems
@@ -34,12 +34,12 @@ _LARGEST = 400_000_000
 _MOST_VARIABLES = 2000
 
 
-def save_result(result: ResultRecord | PlanetaryCase | GearPairCase, path: str | Path) -> None:
+def save_result(result: ResultRecord | Case, path: str | Path) -> None:
     """Write a result with everything that reports and plots show, whole or not at all.
 
     Parameters
     ----------
-    result : ResultRecord, PlanetaryCase or GearPairCase
+    result : ResultRecord, PlanetaryCase, GearPairCase or TrainCase
         A case is solved first.
     path : str or Path
         A ``.nc`` file: NetCDF with groups, its own documentation.
@@ -64,7 +64,7 @@ def save_result(result: ResultRecord | PlanetaryCase | GearPairCase, path: str |
         "conventions": "losses in W of the whole gear set, summed over planets; attribute result: "
         "the result as JSON; attribute given: the case as it was given; groups: meshes, planet "
         "bearing, shapes",
-        "result": contents.model_dump_json(),
+        "result": contents.model_dump_json(exclude_unset=True),
         "given": json.dumps(kept.given),
     }
     tree = xr.DataTree.from_dict({"/": kept.numbers.assign_attrs(attributes), **kept.fields})

@@ -13,14 +13,16 @@ from epicyclic.analysis.mesh_details import mesh_details
 from epicyclic.analysis.pocket_details import pocket_details
 from epicyclic.analysis.shapes import gear_shapes, mesh_views
 from epicyclic.analysis.solve import solve
-from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.builders.build import build
+from epicyclic.case.case import Case
+from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.records.contents import ResultContents
 from epicyclic.results.result import Result
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["ResultRecord", "record"]
+__all__ = ["ResultRecord", "record", "set_of", "sets_of"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,7 +42,8 @@ class ResultRecord:
     fields : mapping of str to xarray.Dataset
         By path: ``"meshes/sun_mesh"`` as `mesh_details` returns it, ``"gears/sun"``,
         ``"views/sun_mesh"``, ``"bearings/planet_bearing"``, ``"pockets/sun_mesh"`` as
-        `pocket_details` returns it, without outlines.
+        `pocket_details` returns it, without outlines. Of a train with the set:
+        ``"meshes/P1.sun_mesh"``.
     """
 
     result: ResultContents
@@ -68,7 +71,7 @@ def record(case: Case) -> ResultRecord:
 
     Parameters
     ----------
-    case : PlanetaryCase or GearPairCase
+    case : PlanetaryCase, GearPairCase or TrainCase
 
     Returns
     -------
@@ -82,18 +85,22 @@ def record(case: Case) -> ResultRecord:
     result = solve(case)
     # as a file would keep it, so that reports of both are the same
     contents = ResultContents.model_validate_json(result.to_json())
-    fields = {"gears": gear_shapes(case), "views": mesh_views(case), "bearings": {}}
-    if case.operation.torque != 0:
+    fields = {"gears": gear_shapes(case), "views": mesh_views(case)}
+    fields["bearings"] = {
+        key: bearing_details(_bearing_of(case, key), figures.loads)
+        for key, figures in result.bearings.items()
+        if figures.loads is not None
+    }
+    if case.operation.torque != 0 and contents.meshes:
         fields["meshes"] = mesh_details(case)
-    if isinstance(case, PlanetaryCase) and case.planet_bearing and result.bearing:
-        loads = result.bearing.loads
-        assert loads is not None
-        fields["bearings"]["planet_bearing"] = bearing_details(
-            case.planet_bearing, case.numerics, loads
-        )
-    if all(mesh["pocket_pressure_max"].value is not None for mesh in contents.meshes.values()):
+    flowing = [
+        key
+        for key, mesh in contents.meshes.items()
+        if mesh["pocket_pressure_max"].value is not None
+    ]
+    if flowing:
         # the outlines, for pictures of one moment, would be ten times all the rest
-        pockets = pocket_details(case)
+        pockets = pocket_details(case, flowing)
         fields["pockets"] = {name: data.drop_dims("end") for name, data in pockets.items()}
     return ResultRecord(
         result=contents,
@@ -104,6 +111,27 @@ def record(case: Case) -> ResultRecord:
             f"{group}/{name}": data for group, all_ in fields.items() for name, data in all_.items()
         },
     )
+
+
+def _bearing_of(case: Case, key: str) -> RollerBearing:
+    """The bearing of the planets that `key` names."""
+    name, _, planets = key.rpartition(".")
+    found = next(one.bearing for one in build(case).sets[name].planets if one.key == planets)
+    assert found is not None
+    return found.bearing
+
+
+def set_of(key: str) -> str:
+    """The set to which a mesh, gear or bearing belongs; empty if there is one set only."""
+    return key.rpartition(".")[0]
+
+
+def sets_of(fields: Mapping[str, xr.Dataset]) -> dict[str, dict[str, xr.Dataset]]:
+    """Fields of a group by their set, and in each without its name."""
+    found: dict[str, dict[str, xr.Dataset]] = {}
+    for key, data in fields.items():
+        found.setdefault(set_of(key), {})[key.rpartition(".")[2]] = data
+    return found
 
 
 def _numbers(result: Result) -> xr.Dataset:

@@ -33,7 +33,8 @@ def draw(stored: Stored, name: str) -> list[Drawing]:
     plot = PLOTS[name]
     for number, panel in enumerate(panels_of(stored, name)):
         key = f"{name}-{number + 1}"
-        with styled_figure(1, 1, "", panel=PANEL, projection=plot.projection) as (figure, axes):
+        size = plot.size if plot.is_slide else PANEL
+        with styled_figure(1, 1, "", panel=size, projection=plot.projection) as (figure, axes):
             ax = panel.draw(axes[0, 0])
             title = ax.get_title(loc="left") or ax.get_title()
             caption = f"{title}, {panel.subject}" if panel.subject else title

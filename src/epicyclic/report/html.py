@@ -27,6 +27,7 @@ __all__ = ["report_html"]
 KINDS = {
     "planetary": "Power losses of a planetary gear set",
     "gear_pair": "Power losses of a gear pair",
+    "train": "Power losses of a train of gear sets",
 }
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
-from epicyclic.case.case import GearPairCase, PlanetaryCase
+from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase
+from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.fields import locate, quantity_of
 from epicyclic.report.page import Cell, Table
 from epicyclic.units import format_number, unit_text
@@ -19,12 +21,19 @@ DATUM = {"value", "temperature", "source"}
 """Keys of a table that states one value."""
 MOST_VALUES = 12
 """Of an array that are shown."""
-_SCHEMAS = {"planetary": PlanetaryCase, "gear_pair": GearPairCase}
+_SCHEMAS = {"planetary": PlanetaryCase, "gear_pair": GearPairCase, "train": TrainCase}
+_SHARED = ("models", "numerics")
+"""Tables that the sets of a train take from it."""
+_OF_LOSSES = ("surroundings", "models", "contact_solver", "numerics")
+_TITLES_OF_PARTS = {"bearings": "Shaft bearings", "drags": "Other drags"}
 Path = tuple[str | int, ...]
 
 
 def input_tables(inputs: Mapping[str, Any], given: Mapping[str, Any]) -> list[Table]:
     """All inputs, one table for each table of the case, gears side by side.
+
+    Of a train the tables of each set, and bearings, seals and drags side by side. Tables without
+    effect, because every loss is given, are left out.
 
     Parameters
     ----------
@@ -33,43 +42,94 @@ def input_tables(inputs: Mapping[str, Any], given: Mapping[str, Any]) -> list[Ta
     given : mapping
         The case as it was given; defaults are marked.
     """
-    schema = _SCHEMAS[inputs["kind"]]
-    members = [name for name in MEMBERS if name in inputs]
+    source = _Source(_SCHEMAS[inputs["kind"]], given)
+    if inputs["kind"] != "train":
+        return _set_tables(source, (), inputs)
     tables = []
     for name, table in inputs.items():
-        if name in NOT_SHOWN or name in members[1:]:
+        if name in NOT_SHOWN or not table or ("lubricant" not in inputs and name in _OF_LOSSES):
             continue
-        title = TITLES.get(name, name.replace("_", " ").capitalize())
-        if name in members:
-            tables.append(_side_by_side(title, members, inputs, given))
-        elif name == "losses":
-            tables += _changed_losses(title, table)
+        if name == "sets":
+            for key, own in table.items():
+                stated = given["sets"].get(key, {})
+                kept = {k: v for k, v in own.items() if k not in _SHARED or k in stated}
+                tables += _set_tables(source, ("sets", key), kept)
+        elif name in ELEMENT_KINDS:
+            title = _TITLES_OF_PARTS.get(name, _title(name))
+            tables.append(_side_by_side(source, title, (name,), table))
         else:
-            rows = tuple(
-                (Cell(_words(path[1:])), _cell(schema, path, value, given), _about(schema, path))
-                for path, value in _leaves(table, (name,))
-            )
-            tables.append(_with_meaning(("", "value"), rows, title))
+            tables.append(_plain_table(source, (name,), table))
     return tables
 
 
+@dataclass(frozen=True, slots=True)
+class _Source:
+    """What the schema says, and what was given."""
+
+    schema: Any
+    given: Mapping[str, Any]
+
+
+def _title(name: str) -> str:
+    return name.replace("_", " ").capitalize()
+
+
+def _set_tables(source: _Source, place: Path, inputs: Mapping[str, Any]) -> list[Table]:
+    """The tables of a single set, or of a set of a train, which lies at `place`."""
+    members = [name for name in MEMBERS if name in inputs and isinstance(inputs[name], Mapping)]
+    before = f"{place[-1]}: " if place else ""
+    tables: list[Table] = []
+    single = {}
+    for name, table in inputs.items():
+        if (name in NOT_SHOWN and not place) or name in members[1:]:
+            continue
+        title = before + TITLES.get(name, _title(name))
+        if name in members:
+            chosen = {member: inputs[member] for member in members}
+            tables.append(_side_by_side(source, title, place, chosen))
+        elif name == "losses":
+            tables += _changed_losses(title, table)
+        elif isinstance(table, Mapping) and not _is_datum(table):
+            if table:
+                tables.append(_plain_table(source, (*place, name), table, title))
+        else:
+            single[name] = table
+    if single and place:
+        tables.insert(0, _plain_table(source, place, single, before.removesuffix(": ")))
+    return tables
+
+
+def _plain_table(source: _Source, place: Path, table: Any, title: str = "") -> Table:
+    rows = tuple(
+        (
+            Cell(_words(path[len(place) :])),
+            _cell(source, path, value),
+            _about(source.schema, path),
+        )
+        for path, value in _leaves(table, place)
+    )
+    return _with_meaning(("", "value"), rows, title or _title(str(place[-1])))
+
+
 def _side_by_side(
-    title: str, members: list[str], inputs: Mapping[str, Any], given: Mapping[str, Any]
+    source: _Source, title: str, place: Path, parts: Mapping[str, Mapping[str, Any]]
 ) -> Table:
-    leaves = {member: dict(_leaves(inputs[member], ())) for member in members}
+    leaves = {part: dict(_leaves(table, ())) for part, table in parts.items()}
     keys = dict.fromkeys(path for values in leaves.values() for path in values)
-    schema = _SCHEMAS[inputs["kind"]]
     rows = []
     for path in keys:
         cells = [
-            _cell(schema, (member, *path), leaves[member][path], given)
-            if path in leaves[member]
-            else Cell("")
-            for member in members
+            _cell(source, (*place, part, *path), values[path]) if path in values else Cell("")
+            for part, values in leaves.items()
         ]
-        abouts = [_about(schema, (member, *path)) for member in members if path in leaves[member]]
+        abouts = [
+            _about(source.schema, (*place, part, *path))
+            for part, values in leaves.items()
+            if path in values
+        ]
         rows.append((Cell(_words(path)), *cells, abouts[0]))
-    return _with_meaning(("", *members), tuple(rows), title)
+    heads = (part.replace("_", " ") for part in parts)
+    return _with_meaning(("", *heads), tuple(rows), title)
 
 
 def _with_meaning(head: tuple[str, ...], rows: tuple[tuple[Cell, ...], ...], title: str) -> Table:
@@ -124,9 +184,9 @@ def _is_given(path: Path, given: Any) -> bool:
     return True
 
 
-def _cell(schema: Any, path: Path, value: Any, given: Mapping[str, Any]) -> Cell:
-    about = "" if _is_given(path, given) else "default"
-    return Cell(_text(schema, path, value), about=about)
+def _cell(source: _Source, path: Path, value: Any) -> Cell:
+    about = "" if _is_given(path, source.given) else "default"
+    return Cell(_text(source.schema, path, value), about=about)
 
 
 def _text(schema: Any, path: Path, value: Any) -> str:

@@ -98,9 +98,10 @@ class Drawing:
 
 @dataclass(frozen=True, slots=True)
 class Gallery:
-    """Figures side by side."""
+    """Figures side by side, or wide ones below each other."""
 
     drawings: tuple[Drawing, ...]
+    is_wide: bool = False
     kind: str = "gallery"
 
 
@@ -138,7 +139,7 @@ Drawings = Mapping[str, Sequence[Drawing]]
 """The figures of every plot, by its name."""
 
 
-def gallery(drawings: Drawings, *names: str) -> tuple[Gallery, ...]:
+def gallery(drawings: Drawings, *names: str, wide: bool = False) -> tuple[Gallery, ...]:
     """One gallery of all figures of the plots `names`; none if there are none."""
     found = tuple(chain.from_iterable(drawings.get(name, ()) for name in names))
-    return (Gallery(found),) if found else ()
+    return (Gallery(found, wide),) if found else ()

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+
+import xarray as xr
 
 from epicyclic.records.contents import Measure, ResultContents
-from epicyclic.records.record import ResultRecord
+from epicyclic.records.record import ResultRecord, set_of, sets_of
 from epicyclic.report.inputs import input_tables
 from epicyclic.report.page import (
     Cell,
     Drawings,
     Gallery,
+    Item,
     KeyFigure,
     Listing,
     Row,
@@ -20,6 +23,14 @@ from epicyclic.report.page import (
     gallery,
     number,
 )
+from epicyclic.report.train_page import (
+    label_of,
+    model_key,
+    part_tables,
+    train_losses,
+    words,
+)
+from epicyclic.report.train_tables import users_text
 from epicyclic.units import format_number, unit_text
 
 __all__ = ["key_figures", "operation_line", "result_sections"]
@@ -29,7 +40,9 @@ def key_figures(result: ResultContents) -> list[KeyFigure]:
     """What a reader looks for first."""
     efficiency = result.efficiency
     text = "" if efficiency is None else f"{100 * efficiency:.3f}"
+    ratio = [KeyFigure("ratio", number(result.ratio, "ratio", 5))]
     return [
+        *(ratio if result.kind == "train" else ()),
         KeyFigure("efficiency", number(efficiency, "efficiency", text=text), "%" if text else ""),
         KeyFigure("total loss", _watts(result.total, "total"), "W"),
         KeyFigure("load-dependent", _watts(result.load_dependent, "load_dependent"), "W"),
@@ -44,30 +57,37 @@ def operation_line(result: ResultContents) -> str:
     words = [f"{operation['speed']}, {operation['torque']}"]
     if "input" in operation:
         words.insert(0, f"input {operation['input']}")
+    if "output" in operation:
+        words.insert(1, f"output {operation['output']}")
+    if operation.get("state"):
+        words.insert(0, f"state {operation['state']}")
     if operation.get("fixed"):
         words.append(f"{operation['fixed']} fixed")
-    words.append(f"oil at {operation['oil_inlet_temperature']}")
+    if "oil_inlet_temperature" in operation:
+        words.append(f"oil at {operation['oil_inlet_temperature']}")
     return unit_text(", ".join(words))
 
 
 def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
     """All chapters for which the record has content."""
     result = record.result
+    own_losses: tuple[Item, ...] = (
+        Row((_losses(result), *gallery(drawings, "losses"))),
+        Row((_members(result), *gallery(drawings, "loss-sum"))),
+        *gallery(drawings, "power-flow", wide=True),
+    )
     sections = [
         Section(
             "losses",
             "Losses",
-            (
-                Row((_losses(result), *gallery(drawings, "losses"))),
-                Row((_members(result), *gallery(drawings, "loss-sum"))),
-            ),
+            train_losses(result, drawings) if result.kind == "train" else own_losses,
         ),
         Section("validity", "Validity", _validity(result), _validity_lead(result)),
         Section(
             "gears",
             "Gears",
             (
-                Row((*gallery(drawings, "gear-set"), _gears(record))),
+                *_gears(record, drawings),
                 *gallery(drawings, "teeth"),
                 *_planets(result),
             ),
@@ -76,7 +96,7 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
             "load",
             "Load on the teeth",
             (
-                _meshes(record),
+                *_meshes(record),
                 *gallery(drawings, "line-load", "pressure", "pair-load"),
                 *gallery(drawings, "transmission-error", "stiffness"),
             ),
@@ -86,14 +106,18 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
             "Friction in the meshes",
             gallery(drawings, "friction", "sliding", "film", "friction-power"),
         ),
-        Section("bearing", "Planet bearing", _bearing(record, drawings)),
+        Section("bearing", *_bearings(record, drawings)),
         Section(
             "pockets",
             "Pockets",
             gallery(drawings, "pocket-pressure", "pocket-volume", "pocket-power"),
             _POCKET_LEAD,
         ),
-        Section("oil", "Oil", (_measures(record, "fluid", "", result.fluid),)),
+        Section(
+            "oil",
+            "Oil",
+            () if result.fluid is None else (_measures(record, "fluid", "", result.fluid),),
+        ),
         Section("methods", "Methods and assumptions", _methods(result)),
         Section("inputs", "Inputs", tuple(input_tables(result.inputs, record.given)), _INPUT_LEAD),
         Section("versions", "Versions", (_versions(result),)),
@@ -218,16 +242,24 @@ def _members(result: ResultContents) -> Table:
     return Table(("", *heads), rows, "Power flow", note=_FLOW_NOTE)
 
 
-def _gears(record: ResultRecord) -> Table:
+def _gears(record: ResultRecord, drawings: Drawings) -> Iterator[Row]:
+    """Each set to scale beside the teeth and diameters of its gears."""
+    drawn = drawings.get("gear-set", ())
+    for number_of, (name, gears) in enumerate(sets_of(record.group("gears")).items()):
+        picture = (Gallery((drawn[number_of],)),) if number_of < len(drawn) else ()
+        title = f"Gears of {words(name)}" if name else "Gears"
+        yield Row((*picture, _gears_table(title, gears)))
+
+
+def _gears_table(title: str, gears: Mapping[str, xr.Dataset]) -> Table:
     """Teeth and diameters of the gears side by side."""
-    gears = record.group("gears")
     teeth = (number(int(gear.attrs["teeth"]), "") for gear in gears.values())
     rows = [(Cell("teeth"), *teeth, Cell(""))]
     for name in _DIAMETERS:
         shown_ones = (number(float(gear[name]), "", 6) for gear in gears.values())
         unit = unit_text(str(next(iter(gears.values()))[name].attrs["units"]))
         rows.append((Cell(name.replace("_", " ")), *shown_ones, Cell(unit)))
-    return Table(("", *gears, "unit"), tuple(rows), "Gears")
+    return Table(("", *gears, "unit"), tuple(rows), title)
 
 
 def _planets(result: ResultContents) -> tuple[Table, ...]:
@@ -247,35 +279,58 @@ def _planets(result: ResultContents) -> tuple[Table, ...]:
     return (Table(("planet", f"angle, {unit}", "share of the torque"), rows, "Planets"),)
 
 
-def _meshes(record: ResultRecord) -> Table:
-    """Figures of the meshes side by side."""
-    meshes = record.result.meshes
-    keys = dict.fromkeys(key for figures in meshes.values() for key in figures)
+def _meshes(record: ResultRecord) -> Iterator[Table]:
+    """Figures of the meshes of each set side by side."""
+    sets: dict[str, dict[str, dict[str, Measure]]] = {}
+    for key, figures in record.result.meshes.items():
+        sets.setdefault(set_of(key), {})[key] = figures
+    for name, meshes in sets.items():
+        title = f"Meshes of {words(name)}" if name else "Figures of the meshes"
+        yield _figures_table(record, title, "meshes", meshes)
+
+
+def _figures_table(
+    record: ResultRecord, title: str, place: str, parts: Mapping[str, Mapping[str, Measure]]
+) -> Table:
+    """Figures of parts of one kind side by side."""
+    keys = dict.fromkeys(key for figures in parts.values() for key in figures)
     rows = []
     for key in keys:
-        found = {name: figures[key] for name, figures in meshes.items() if key in figures}
+        found = {name: figures[key] for name, figures in parts.items() if key in figures}
         first = next(iter(found))
         cells = (
-            number(found[name].value, f"meshes.{name}.{key}") if name in found else Cell("")
-            for name in meshes
+            number(found[name].value, f"{place}.{name}.{key}") if name in found else Cell("")
+            for name in parts
         )
-        rows.append((Cell(_label(record, first, key)), *cells, Cell(unit_text(found[first].unit))))
-    heads = (name.replace("_", " ") for name in meshes)
-    return Table(("", *heads, "unit"), tuple(rows), "Figures of the meshes")
+        unit = Cell(unit_text(found[first].unit))
+        rows.append((Cell(label_of(record, first, key)), *cells, unit))
+    heads = (name.rpartition(".")[2].replace("_", " ") for name in parts)
+    if len(set(map(set_of, parts))) > 1:
+        heads = (words(name) for name in parts)
+    return Table(("", *heads, "unit"), tuple(rows), title)
 
 
-def _bearing(record: ResultRecord, drawings: Drawings) -> tuple[Table | Gallery, ...]:
-    figures = record.result.planet_bearing
-    if figures is None:
-        return ()
-    table = _measures(record, "planet_bearing", "planet_bearing", figures)
-    return (*gallery(drawings, "roller-loads", "roller-pressure"), table)
+def _bearings(record: ResultRecord, drawings: Drawings) -> tuple[str, tuple[Item, ...]]:
+    """Title and content of the chapter on bearings; of a train also those of shafts, and seals."""
+    result = record.result
+    rollers = gallery(drawings, "roller-loads", "roller-pressure")
+    if result.kind != "train":
+        figures = result.planet_bearing
+        if figures is None:
+            return "Planet bearing", ()
+        table = _measures(record, "planet_bearing", "planet_bearing", figures)
+        return "Planet bearing", (*rollers, table)
+    items: list[Item] = [*rollers]
+    if result.bearings:
+        items.append(_figures_table(record, "Planet bearings", "bearings", result.bearings))
+    items += part_tables(record)
+    return "Bearings and seals", tuple(items)
 
 
 def _measures(record: ResultRecord, key: str, prefix: str, figures: Mapping[str, Measure]) -> Table:
     rows = tuple(
         (
-            Cell(_label(record, prefix or key, name)),
+            Cell(label_of(record, prefix or key, name)),
             number(measure.value, f"{key}.{name}"),
             Cell(unit_text(measure.unit)),
         )
@@ -284,29 +339,23 @@ def _measures(record: ResultRecord, key: str, prefix: str, figures: Mapping[str,
     return Table(("", "value", "unit"), rows)
 
 
-def _label(record: ResultRecord, part: str, key: str) -> str:
-    """Label of a figure, as the numbers of the record have it."""
-    name = f"{part}_{key}"
-    if name not in record.numbers:
-        return key.replace("_", " ")
-    return str(record.numbers[name].attrs["long_name"]).partition(": ")[2]
-
-
 def _methods(result: ResultContents) -> tuple[Table | Listing, ...]:
     """Each method once with what it computes and where it is printed."""
     users: dict[tuple[str, str], list[str]] = {}
     for name, method in result.methods.items():
         key = method, result.citations.get(name, "")
-        users.setdefault(key, []).append(name.replace("_", " "))
+        users.setdefault(key, []).append(name)
     rows = tuple(
-        (Cell(", ".join(names)), Cell(method), Cell(source))
+        (Cell(users_text(names)), Cell(method), Cell(source))
         for (method, source), names in users.items()
     )
-    models = tuple((Cell(f"models.{key}"), Cell(value)) for key, value in result.models.items())
-    assumptions = _ASSUMPTIONS + (_OF_PLANETS if result.kind == "planetary" else ())
+    models = tuple((Cell(model_key(key)), Cell(value)) for key, value in result.models.items())
+    assumptions = _ASSUMPTIONS + (() if result.kind == "gear_pair" else _OF_PLANETS)
+    if not models:
+        assumptions = (_ASSUMPTIONS[0], _ASSUMPTIONS[-1])
     return (
         Table(("what", "method", "source"), rows),
-        Table(("key of the case", "model used"), models, "Models"),
+        *((Table(("key of the case", "model used"), models, "Models"),) if models else ()),
         Listing(assumptions, "Assumptions"),
     )
 

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
-from rich import box
 from rich.console import Console, Group, RenderableType
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
 from epicyclic.analysis.compare import FrictionComparison
-from epicyclic.elements.figures import Figure, MeshFigures, figures
-from epicyclic.report.shown import MISSING, shown
+from epicyclic.elements.figures import figures
+from epicyclic.report.result_parts import (
+    efficiency_text,
+    figure_table,
+    meshes_table,
+    number_table,
+    plain_table,
+    share_cells,
+)
+from epicyclic.report.train_tables import train_tables, users_text
 from epicyclic.results.result import LOAD_DEPENDENT, LOAD_INDEPENDENT, LossTerm, Result
 from epicyclic.units import DEGREE, NEWTON_METRE, RPM, unit_text
 
@@ -29,25 +36,12 @@ def terminal() -> Console:
     return console if console.is_terminal else Console(highlight=False, width=PIPE_WIDTH)
 
 
-def plain_table(title: str) -> Table:
-    """An empty table in the style of the package."""
-    return Table(
-        title=title,
-        title_justify="left",
-        title_style="bold",
-        header_style="",
-        box=box.SIMPLE_HEAD,
-        pad_edge=False,
-    )
-
-
 def result_tables(result: Result) -> RenderableType:
     """Everything an engineer reads first: losses, figures, warnings, sources."""
     parts: list[RenderableType] = [Text(result.title or result.kind, style="bold")]
-    parts += [_losses(result), _members(result), _meshes(result)]
-    if result.bearing is not None:
-        parts.append(_figure_table("Planet bearing", figures(result.bearing)))
-    parts.append(_figure_table("Oil", figures(result.fluid)))
+    parts += _of_set(result) if result.train is None else train_tables(result, result.train)
+    if result.fluid is not None:
+        parts.append(figure_table("Oil", figures(result.fluid)))
     if result.planet_angles:
         angles = ", ".join(f"{DEGREE.to_display(angle):z.4f}" for angle in result.planet_angles)
         parts.append(Text(f"Planets at {angles} {DEGREE.display}"))
@@ -59,33 +53,33 @@ def result_tables(result: Result) -> RenderableType:
     return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
 
 
-def _table(title: str, *columns: str) -> Table:
-    table = plain_table(title)
-    for number, column in enumerate(columns):
-        first = number == 0
-        table.add_column(column, justify="left" if first else "right", no_wrap=first)
-    return table
+def _of_set(result: Result) -> list[RenderableType]:
+    """What only a single set states."""
+    parts: list[RenderableType] = [_losses(result), _members(result)]
+    parts.append(meshes_table("Meshes", result.meshes))
+    if result.bearing is not None:
+        parts.append(figure_table("Planet bearing", figures(result.bearing)))
+    return parts
 
 
 def _losses(result: Result) -> Table:
-    table = _table("Losses of the gear set", "", "W", "of total", "of input")
+    table = number_table("Losses of the gear set", "", "W", "of total", "of input")
     for group in (LOAD_DEPENDENT, LOAD_INDEPENDENT):
         for term in result.terms:
             if term.group == group:
                 table.add_row(term.name.replace("_", " "), *_share_cells(result, term))
         watts = result.load_dependent if group == LOAD_DEPENDENT else result.load_independent
-        table.add_row(group, *_shares(result, watts), style="bold", end_section=True)
-    table.add_row("total", *_shares(result, result.total), style="bold", end_section=True)
+        table.add_row(group, *share_cells(result, watts), style="bold", end_section=True)
+    table.add_row("total", *share_cells(result, result.total), style="bold", end_section=True)
     table.add_row("input power", f"{result.input_power:z.1f}", "", "")
-    efficiency = "undefined" if result.efficiency is None else f"{result.efficiency:.3%}"
-    table.add_row("efficiency", efficiency, "", "")
+    table.add_row("efficiency", efficiency_text(result), "", "")
     return table
 
 
 def _share_cells(result: Result, term: LossTerm) -> tuple[str, str, str]:
     if term.left_out:
         return "not included", "", ""
-    return _shares(result, term.watts)
+    return share_cells(result, term.watts)
 
 
 def _methods(result: Result) -> Group:
@@ -93,21 +87,15 @@ def _methods(result: Result) -> Group:
     users: dict[str, list[str]] = {}
     for term in result.terms:
         if not term.left_out:
-            users.setdefault(term.method, []).append(term.name.replace("_", " "))
+            users.setdefault(term.method, []).append(term.name)
     for what, method in result.load_methods.items():
-        users.setdefault(method, []).append(what.replace("_", " "))
-    return _list("Methods", [f"{', '.join(names)}: {how}" for how, names in users.items()])
-
-
-def _shares(result: Result, watts: float) -> tuple[str, str, str]:
-    of_total = f"{watts / result.total:z.1%}" if result.total else ""
-    of_input = f"{watts / result.input_power:z.3%}" if result.input_power else ""
-    return f"{watts:z.1f}", of_total, of_input
+        users.setdefault(method, []).append(what)
+    return _list("Methods", [f"{users_text(names)}: {how}" for how, names in users.items()])
 
 
 def _members(result: Result) -> Table:
     units = f"speed {unit_text(RPM.display)}", f"torque {unit_text(NEWTON_METRE.display)}"
-    table = _table("Power flow (into the gear set)", "", *units, "power W")
+    table = number_table("Power flow (into the gear set)", "", *units, "power W")
     for name, member in result.flow.members.items():
         table.add_row(
             name,
@@ -115,27 +103,6 @@ def _members(result: Result) -> Table:
             f"{NEWTON_METRE.to_display(member.torque):z.2f}",
             f"{member.power:z.1f}",
         )
-    return table
-
-
-def _meshes(result: Result) -> RenderableType:
-    names = [name.replace("_", " ") for name in result.meshes]
-    table = _table("Meshes", "", *names, "unit")
-    table.columns[-1].justify = "left"
-    columns: Sequence[MeshFigures] = tuple(result.meshes.values())
-    for row in zip(*(figures(mesh) for mesh in columns), strict=True):
-        cells = (shown(item.value) for item in row)
-        table.add_row(row[0].label, *cells, unit_text(row[0].unit))
-    if any(mesh.contact is None for mesh in columns):
-        return Group(table, Text(f'"{MISSING}": no load or no motion in the mesh.'))
-    return table
-
-
-def _figure_table(title: str, items: Iterable[Figure]) -> Table:
-    table = _table(title, "", "value", "unit")
-    table.columns[-1].justify = "left"
-    for item in items:
-        table.add_row(item.label, shown(item.value), unit_text(item.unit))
     return table
 
 
@@ -151,10 +118,10 @@ def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
     meshes = list(rows[0].mean_friction)
     if all(math.isnan(row.mean_friction[mesh]) for row in rows for mesh in meshes):
         return Text("There is no load or no motion: nothing slides, and no friction to compare.")
-    columns = [f"μ {mesh.replace('_', ' ')}" for mesh in meshes]
-    table = _table("Friction models", "", *columns, "sliding W", "quick W", "to chosen", "")
+    columns = [f"μ {mesh.replace('_', ' ').replace('.', ': ')}" for mesh in meshes]
+    table = number_table("Friction models", "", *columns, "sliding W", "quick W", "to chosen", "")
     table.columns[-1].justify = "left"
-    chosen = next(row.sliding for row in rows if row.chosen)
+    chosen = next((row.sliding for row in rows if row.chosen), 0.0)
     for row in rows:
         marks = ", ".join(
             mark for mark, holds in (("chosen", row.chosen), ("out of range", row.flagged)) if holds

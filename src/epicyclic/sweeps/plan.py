@@ -16,16 +16,17 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from epicyclic.analysis.solve import solve
-from epicyclic.case.case import Case, build_case
+from epicyclic.case.case import Case, TrainCase, build_case
 from epicyclic.case.fields import (
     all_keys,
-    find_field,
     is_array,
     is_named,
+    is_text,
     is_whole_number,
     quantity_of,
     table_of,
 )
+from epicyclic.case.keys import field_at, known_keys
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.plain import plain
 from epicyclic.case.values import parse_value
@@ -115,9 +116,7 @@ class CasePlan(Plan):
 
     def describe(self) -> dict[str, Any]:
         """The case, and what is in the files that it names: it may change, their names do not."""
-        models = self.case.models
-        named = [file for file in (models.oil_model, models.pocketing_table) if file is not None]
-        contents = [(self.case.folder / file).read_bytes() for file in named]
+        contents = [(self.case.folder / file).read_bytes() for file in _files(self.case)]
         return {
             "case": self.case.given(),
             "files": [hashlib.sha256(content).hexdigest() for content in contents],
@@ -131,6 +130,19 @@ class CasePlan(Plan):
             warnings=" | ".join(result.warnings),
             numbers={item.key: item.value for item in result.numbers()},
         )
+
+
+def _files(case: Case) -> Iterator[str]:
+    """The files that a case names."""
+    tables: list[Any] = [case.models]
+    if isinstance(case, TrainCase):
+        tables += [table.models for table in case.sets.values() if hasattr(table, "models")]
+        tables += [table for _, _, table in case.elements]
+    for table in tables:
+        for key in ("oil_model", "pocketing_table", "file"):
+            file = getattr(table, key, None)
+            if file is not None:
+                yield file
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,10 +270,9 @@ def _too_many(key: str, count: int) -> Problem:
 
 
 def _make_axis(case: Case, key: str, values: list[Any]) -> tuple[Axis | None, list[Problem]]:
-    field = find_field(type(case), key)
+    field = field_at(case, key)
     if field is None:
-        known = list(all_keys(type(case)))
-        remedy = did_you_mean(key, known) or "See 'epicyclic init' for the keys."
+        remedy = did_you_mean(key, known_keys(case)) or "See 'epicyclic init' for the keys."
         return None, [Problem(key, "", "is not a known key.", remedy)]
     unsuitable = _unsuitable(key, *field)
     if unsuitable is not None:
@@ -269,6 +280,8 @@ def _make_axis(case: Case, key: str, values: list[Any]) -> tuple[Axis | None, li
     if not values:
         return None, [Problem(key, "", "has no values.", "Give at least one.")]
     quantity = quantity_of(*field)
+    if is_text(field[0]):  # a name may be a bare number
+        values = [str(value) if isinstance(value, Integral) else value for value in values]
     coordinate: list[float | str] = []
     problems = []
     for value in values:
@@ -405,7 +418,7 @@ def _range(case: Case, key: str, match: re.Match[str]) -> Iterator[Any]:
     if len(units) > 1:
         raise ValueError(f"the units {' and '.join(sorted(units))} differ")
     unit = units.pop() if units else ""
-    field = find_field(type(case), key)
+    field = field_at(case, key)
     whole = field is not None and is_whole_number(field[0])
     for number in np.linspace(float(start[1]), float(stop[1]), count):
         if unit:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["flow_tables"]
 
 _LIKE_SPEED = (
+    "operation.state",
     "operation.speed",
     "operation.second_speed",
     "operation.oil_inlet_temperature",

@@ -161,8 +161,14 @@ class Runner:
         """The same with a journal of its own for one of several plans, in the folder `journal`."""
         if self.journal is None:
             return self
-        Path(self.journal).mkdir(parents=True, exist_ok=True)
-        return replace(self, journal=Path(self.journal) / f"{fingerprint(plan)}.partial")
+        folder = Path(self.journal)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            allowed = f"is no place for a folder: {error.strerror}."
+            problem = Problem("journal", str(folder), allowed, "Name another folder.")
+            raise InputError([problem], "the command") from None
+        return replace(self, journal=folder / f"{fingerprint(plan)}.partial")
 
 
 HERE = Runner()

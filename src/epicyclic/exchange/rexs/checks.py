@@ -7,9 +7,12 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from epicyclic.case.build import pair_mesh, planetary_meshes
-from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
+from epicyclic.case.train_tables import PairSet
+from epicyclic.case.train_tables import PlanetarySet as PlanetaryTable
 from epicyclic.exchange.rexs.model import Component, Model
 from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, is_internal
+from epicyclic.exchange.rexs.trains import Train
 from epicyclic.geometry import mesh as geometry
 from epicyclic.geometry.gear import involute
 from epicyclic.units import DEGREE, MILLIMETRE, Quantity, format_number
@@ -44,9 +47,9 @@ def _signed_helix(gear: Component) -> float:
         return 0.0
 
 
-def geometry_notes(case: Case, chosen: PlanetarySet | Pair, model: Model) -> Iterator[str]:
+def geometry_notes(case: Case, chosen: PlanetarySet | Pair | Train, model: Model) -> Iterator[str]:
     """Figures of the file that differ from those of the case's geometry."""
-    for mesh, components, stage in _computed(case, chosen):
+    for mesh, components, stage in _all_computed(case, chosen):
         for gear, component in zip((mesh.gear1, mesh.gear2), components, strict=True):
             reference, base = 2 * gear.reference_radius, 2 * gear.base_radius
             yield from _compared(
@@ -60,16 +63,33 @@ def geometry_notes(case: Case, chosen: PlanetarySet | Pair, model: Model) -> Ite
             yield from _compared(data, name, mesh.operating_pressure_angle, DEGREE)
 
 
+_Computed = Iterator[tuple[geometry.Mesh, tuple[Component, Component], Component]]
+"""Meshes as they are computed here, each with its gears and its stage in the file."""
+
+
+def _all_computed(case: Case, chosen: PlanetarySet | Pair | Train) -> _Computed:
+    """Every mesh; of a train those of its sets whose losses are computed."""
+    if not isinstance(chosen, Train):
+        if not isinstance(case, TrainCase):
+            yield from _computed(case, chosen)
+        return
+    sets = case.sets if isinstance(case, TrainCase) else {}
+    for name, one in chosen.sets.items():
+        table = sets.get(name)
+        if isinstance(table, PlanetaryTable | PairSet):
+            yield from _computed(table, one)
+
+
 def _computed(
-    case: Case, chosen: PlanetarySet | Pair
-) -> Iterator[tuple[geometry.Mesh, tuple[Component, Component], Component]]:
-    """Each mesh as it is computed here, with its gears and its stage in the file."""
-    if isinstance(case, PlanetaryCase) and isinstance(chosen, PlanetarySet):
+    case: PlanetaryCase | GearPairCase | PlanetaryTable | PairSet, chosen: PlanetarySet | Pair
+) -> _Computed:
+    """The meshes of a set."""
+    if isinstance(case, PlanetaryCase | PlanetaryTable) and isinstance(chosen, PlanetarySet):
         sun_mesh, ring_mesh = planetary_meshes(case.gears, case.sun, case.planet, case.ring)
         planet = chosen.planets[0]
         yield sun_mesh, (chosen.sun, planet), chosen.sun_meshes[0].stage
         yield ring_mesh, (planet, chosen.ring), chosen.ring_meshes[0].stage
-    elif isinstance(chosen, Pair) and not isinstance(case, PlanetaryCase):
+    elif isinstance(case, GearPairCase | PairSet) and isinstance(chosen, Pair):
         mesh = pair_mesh(case.gears, case.pinion, case.gear)
         yield mesh, (chosen.pinion, chosen.gear), chosen.mesh.stage
 
@@ -122,8 +142,13 @@ def _signed_teeth(tables: Mapping[str, Any], name: str) -> int:
     return sign * int(table["teeth"])
 
 
-def shift_notes(tables: Mapping[str, Any], member1: str, member2: str) -> Iterator[str]:
-    """A note if the profile shift of an internal gear seems to count the other way."""
+def shift_notes(
+    tables: Mapping[str, Any], member1: str, member2: str, place: str = ""
+) -> Iterator[str]:
+    """A note if the profile shift of an internal gear seems to count the other way.
+
+    `place` is where `tables` stand in the case.
+    """
     table = tables.get(member2, {})
     shift = table.get("profile_shift_coefficient")
     is_ring = member2 == "ring" or table.get("internal", False)
@@ -133,6 +158,6 @@ def shift_notes(tables: Mapping[str, Any], member1: str, member2: str) -> Iterat
     if abs(shift - closing) > SHIFT_AGREES >= abs(-shift - closing):
         yield (
             f"The profile shift {format_number(shift)} of the {member2} fits the centre distance "
-            f"with the other sign only; if so, set {member2}.profile_shift_coefficient = "
+            f"with the other sign only; if so, set {place}{member2}.profile_shift_coefficient = "
             f"{format_number(-shift)}."
         )

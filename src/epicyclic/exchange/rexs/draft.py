@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from epicyclic.case.plain import with_value
-from epicyclic.case.wording import path_of
+from epicyclic.case.wording import key_parts, path_of
 from epicyclic.errors import Problem
 from epicyclic.exchange.rexs.model import Attribute, Component
 from epicyclic.exchange.rexs.vocabulary import term
@@ -104,7 +104,7 @@ class Draft:
 
     def give(self, key: str, value: Any, origin: str) -> None:
         """Set a key."""
-        self.tables = with_value(self.tables, key.split("."), value)
+        self.tables = with_value(self.tables, key_parts(key), value)
         self.origins[key] = origin
 
     def lack(
@@ -113,6 +113,11 @@ class Draft:
         """Note that the file has no value for a key; without `instead` the case needs one."""
         where = f"{attribute} of {at(components)}" if components else attribute
         self.lacks[key] = Lack(key, where, not instead, instead)
+
+    def need(self, key: str, attribute: str, components: Sequence[Component], hint: str) -> None:
+        """Note that the file has no value for a key that the case needs, with a hint."""
+        self.lack(key, attribute, components)
+        self.lacks[key] = replace(self.lacks[key], instead=hint)
 
     def read(self, attribute: str, components: Sequence[Component], key: str = "") -> Amount | None:
         """An attribute that `components` have in common.
@@ -163,6 +168,16 @@ class Draft:
             value = int(change(found.number))
         self.give(key, value, found.origin)
         return found.number
+
+    def adopt(self, other: Draft, name: str) -> None:
+        """Take over what is known of the set called `name`."""
+        place = f"sets.{name}."
+        self.tables = with_value(self.tables, ["sets", name], other.tables)
+        self.origins |= {f"{place}{key}": origin for key, origin in other.origins.items()}
+        for key, lack in other.lacks.items():
+            self.lacks[f"{place}{key}"] = replace(lack, key=f"{place}{key}")
+        self.notes += [f"{name}: {note}" for note in other.notes]
+        self.problems += other.problems
 
     def wrong(self, key: str, attribute: Attribute, component: Component, what: str) -> None:
         """Note a value that cannot be read."""

@@ -6,14 +6,17 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from epicyclic.case.case import load_case
+from epicyclic.case.case import TrainCase, load_case
 from epicyclic.case.wording import one_line
-from epicyclic.errors import InputError
+from epicyclic.errors import InputError, Problem
 from epicyclic.exchange.rexs.content import build_model
 from epicyclic.exchange.rexs.file import Document, new_document, read_document
+from epicyclic.exchange.rexs.model import Model
 from epicyclic.exchange.rexs.new_file import case_parts
+from epicyclic.exchange.rexs.new_train import train_parts
 from epicyclic.exchange.rexs.results import check_match, write_results
-from epicyclic.exchange.rexs.sets import choose
+from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, choose
+from epicyclic.exchange.rexs.trains import Train, chosen_train
 from epicyclic.exchange.rexs.vocabulary import versions
 from epicyclic.results.result import Result
 from epicyclic.sweeps.dataset import whole_file
@@ -37,8 +40,8 @@ def write_rexs(
     result : Result
         From `solve`.
     original : str or Path, optional
-        The file that the gear set came from. All that it holds stays as it is; results are added.
-        Without it, a new file of version 2.0.0 describes the gear set of the result.
+        The file that the gear set or train came from. All that it holds stays as it is; results
+        are added. Without it, a new file of version 2.0.0 describes the gears of the result.
     component : int, optional
         Id of the stage in the original, if it has several.
 
@@ -62,12 +65,27 @@ def rexs_bytes(
         document = read_document(Path(original), with_others=True)
     try:
         model = build_model(document.content)
-        chosen = choose(model, component)
+        chosen = _chosen(model, result, component)
         check_match(chosen, result)
     except InputError as error:
         raise InputError(error.problems, one_line(str(original), 500)) from None
     write_results(document.content, model, chosen, result)
     return document.to_bytes()
+
+
+def _chosen(model: Model, result: Result, component: int | None) -> PlanetarySet | Pair | Train:
+    """What a result belongs to in a file."""
+    if result.train is None:
+        return choose(model, component)
+    train = chosen_train(model) if component is None else None
+    if train is None:
+        allowed = "the result is of a train, and the file has one stage."
+        if component is not None:
+            allowed = "names one stage, and the result is of a train."
+        shown = "" if component is None else str(component)
+        remedy = "Write it into the file of all its stages."
+        raise InputError([Problem("--component", shown, allowed, remedy)])
+    return train
 
 
 def _described(path: str | Path, result: Result) -> Document:
@@ -79,6 +97,7 @@ def _described(path: str | Path, result: Result) -> Document:
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
     }
     document = new_document(path, head)
-    for part in case_parts(load_case(result.inputs)):
+    case = load_case(result.inputs)
+    for part in train_parts(case) if isinstance(case, TrainCase) else case_parts(case):
         document.content.add(part)
     return document

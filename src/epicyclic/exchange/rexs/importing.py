@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,31 +9,27 @@ from typing import Any
 
 from epicyclic.case.case import Case, build_case, changed_tables
 from epicyclic.case.template import case_text
+from epicyclic.case.train_text import train_text
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
-from epicyclic.exchange.rexs import checks, planetary
+from epicyclic.exchange.rexs import checks
 from epicyclic.exchange.rexs.content import build_model
 from epicyclic.exchange.rexs.draft import Draft, Lack
 from epicyclic.exchange.rexs.file import read_document
-from epicyclic.exchange.rexs.flank_forms import micro_geometry
-from epicyclic.exchange.rexs.gears import gear_table, shared_table
 from epicyclic.exchange.rexs.lubricant import lubricant_table, temperature
 from epicyclic.exchange.rexs.model import Model
 from epicyclic.exchange.rexs.operation import pair_operation, planetary_operation
-from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, choose, is_internal
-from epicyclic.units import format_number
+from epicyclic.exchange.rexs.set_tables import set_tables
+from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, choose
+from epicyclic.exchange.rexs.train_draft import train_draft
+from epicyclic.exchange.rexs.trains import Train, chosen_train
 
 __all__ = ["RexsImport", "read_rexs"]
-
-ROUNDING = 1e-3
-"""Sum of the profile shifts of a mesh, as printed with three decimals, less the exact sum. [1]"""
-
-_SHIFT = "profile_shift_coefficient"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RexsImport:
-    """What a REXS file says of one gear set, and what it lacks.
+    """What a REXS file says of one gear set or of a train, and what it lacks.
 
     Attributes
     ----------
@@ -43,9 +38,9 @@ class RexsImport:
     version : str
         Of REXS.
     kind : str
-        ``"planetary"`` or ``"gear_pair"``.
+        ``"planetary"`` or ``"gear_pair"``; ``"train"`` if the file has several stages.
     component : str
-        The stage it was read from.
+        The stage it was read from, or the gear unit.
     tables : mapping
         The tables of the case as far as the file gives them.
     origins : mapping of str to str
@@ -66,7 +61,7 @@ class RexsImport:
     missing: tuple[Lack, ...]
     notes: tuple[str, ...]
     _model: Model
-    _chosen: PlanetarySet | Pair
+    _chosen: PlanetarySet | Pair | Train
 
     def case(self, changes: Mapping[str, Any] | None = None) -> Case:
         """The case, with some keys set.
@@ -115,7 +110,8 @@ class RexsImport:
             "Keys behind a # have the default that is shown or told, or are NEEDED.",
             *self.notes,
         ]
-        return case_text(tables, [one_line(line, 400) for line in head], about)
+        write = train_text if self.kind == "train" else case_text
+        return write(tables, [one_line(line, 400) for line in head], about)
 
     def geometry_notes(self, case: Case) -> tuple[str, ...]:
         """Figures of the file, such as base diameters, that differ from those of `case`."""
@@ -138,14 +134,15 @@ def _is_below(key: str, owner: str) -> bool:
 def read_rexs(
     path: str | Path, component: int | None = None, load_case: int | None = None
 ) -> RexsImport:
-    """Read a gear set from a REXS file.
+    """Read a gear set from a REXS file, or the train that its stages make.
 
     Parameters
     ----------
     path : str or Path
-        A file ``.rexs``, ``.rexsj`` or ``.rexsz`` of version 1.1 to 2.0.
+        A file ``.rexs``, ``.rexsj`` or ``.rexsz`` of version 1.0 to 2.0.
     component : int, optional
-        Id of the ``planetary_stage`` or ``cylindrical_stage``, if the file has several.
+        Id of one ``planetary_stage`` or ``cylindrical_stage``. Without it, several stages are read
+        as one train.
     load_case : int, optional
         Id of a load case of the load spectrum, whose values come before those of the components.
 
@@ -162,7 +159,8 @@ def read_rexs(
     document = read_document(Path(path))
     try:
         model = _with_load_case(build_model(document.content), load_case)
-        chosen = choose(model, component)
+        train = chosen_train(model) if component is None else None
+        chosen = train or choose(model, component)
         draft = _draft(model, chosen)
     except InputError as error:
         raise InputError(error.problems, one_line(source, 500)) from None
@@ -170,7 +168,7 @@ def read_rexs(
         source=source,
         version=model.version,
         kind=draft.tables["kind"],
-        component=str(chosen.component),
+        component=str(chosen if isinstance(chosen, Train) else chosen.component),
         tables=draft.tables,
         origins=draft.origins,
         missing=tuple(draft.lacks.values()),
@@ -190,18 +188,8 @@ def _with_load_case(model: Model, load_case: int | None) -> Model:
     return model.with_load_case(load_case)
 
 
-def _draft(model: Model, chosen: PlanetarySet | Pair) -> Draft:
-    title = chosen.component.name.strip()
-    is_pair = isinstance(chosen, Pair)
-    draft = Draft({"kind": "gear_pair" if is_pair else "planetary", "title": one_line(title)})
-    if isinstance(chosen, Pair):
-        _pair(draft, model, chosen)
-    else:
-        _planetary(draft, model, chosen)
-    stages = [mesh.stage for mesh in chosen.meshes]
-    temperature(draft, model, stages)
-    lubricant_table(draft, model, stages)
-    draft.notes += checks.file_notes(chosen)
+def _draft(model: Model, chosen: PlanetarySet | Pair | Train) -> Draft:
+    draft = train_draft(model, chosen) if isinstance(chosen, Train) else _set_draft(model, chosen)
     if len(model.load_cases) > 0:
         cases = ", ".join(map(str, list(model.load_cases)[:12]))
         draft.notes.append(f"The file has load cases: {cases}. One is read with --load-case.")
@@ -210,55 +198,17 @@ def _draft(model: Model, chosen: PlanetarySet | Pair) -> Draft:
     return draft
 
 
-def _planetary(draft: Draft, model: Model, chosen: PlanetarySet) -> None:
-    planetary_operation(draft, model, chosen)
-    gears = [chosen.sun, *chosen.planets, chosen.ring]
-    shared_table(draft, model, gears, [mesh.stage for mesh in chosen.meshes])
-    for key, own in (("sun", [chosen.sun]), ("planet", chosen.planets), ("ring", [chosen.ring])):
-        gear_table(draft, model, key, own)
-        micro_geometry(draft, model, key, own)
-    draft.give("planet.count", len(chosen.planets), f"counted: planets of {chosen.component}")
-    draft.take("planet.mass", "mass_of_component", chosen.planets, None)
-    _shifts(draft, "sun", "planet", "sun")
-    _shifts(draft, "planet", "ring", "ring")
-    planetary.planet_angles(draft, chosen)
-    planetary.bearing_table(draft, model, chosen)
-    planetary.carrier_table(draft, model, chosen)
-    rims = model.partners(chosen.ring.id, "assembly", "assembly", "part", "gear_body")
-    draft.take("ring.rim_thickness", "gear_body_rim_thickness", rims, None)
-
-
-def _pair(draft: Draft, model: Model, chosen: Pair) -> None:
-    pair_operation(draft, model, chosen)
-    shared_table(draft, model, [chosen.pinion, chosen.gear], [chosen.mesh.stage])
-    for key, own in (("pinion", [chosen.pinion]), ("gear", [chosen.gear])):
-        gear_table(draft, model, key, own)
-        micro_geometry(draft, model, key, own)
-    if is_internal(chosen.gear):
-        draft.give("gear.internal", True, f"{chosen.gear}")
-    _shifts(draft, "pinion", "gear", "gear")
-
-
-def _shifts(draft: Draft, member1: str, member2: str, changed: str) -> None:
-    """Look at the profile shifts of a mesh.
-
-    Say which one would close it if one is lacking, and if one seems to have the wrong sign. Shifts
-    of a mesh without backlash may overlap by the last digit that is printed of them; the one of
-    `changed` is then reduced.
-    """
-    draft.notes += checks.shift_notes(draft.tables, member1, member2)
-    for own, other in ((member2, member1), (member1, member2)):
-        key = f"{own}.profile_shift_coefficient"
-        closing = checks.closing_shift(draft.tables, other, own)
-        if closing is None:
-            continue
-        shown = math.floor(closing * 1e6) / 1e6 + 0.0
-        if key in draft.lacks:
-            text = f"With the {other}, {format_number(shown)} leaves no backlash."
-            draft.lacks[key] = replace(draft.lacks[key], instead=text)
-            continue
-        shift = draft.tables[own].get(_SHIFT)
-        is_too_much = isinstance(shift, float) and 0 < shift - shown <= ROUNDING
-        if own == changed and is_too_much:
-            origin = f"{draft.origins[key]}: {shift}, less what the printed digits are too much"
-            draft.give(key, shown, origin)
+def _set_draft(model: Model, chosen: PlanetarySet | Pair) -> Draft:
+    title = chosen.component.name.strip()
+    is_pair = isinstance(chosen, Pair)
+    draft = Draft({"kind": "gear_pair" if is_pair else "planetary", "title": one_line(title)})
+    if isinstance(chosen, Pair):
+        pair_operation(draft, model, chosen)
+    else:
+        planetary_operation(draft, model, chosen)
+    set_tables(draft, model, chosen)
+    stages = [mesh.stage for mesh in chosen.meshes]
+    temperature(draft, model, stages)
+    lubricant_table(draft, model, stages)
+    draft.notes += checks.file_notes(chosen)
+    return draft

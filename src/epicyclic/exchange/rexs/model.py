@@ -70,13 +70,18 @@ class Attribute:
             raise _KindError("is not an array")
         return tuple(map(_number, self.value))
 
+    def flags(self) -> tuple[bool, ...]:
+        """The value, or those of an array, as true or false; ValueError if it is neither."""
+        values = self.value if isinstance(self.value, tuple) else (self.value,)
+        known = {"true": True, "false": False}
+        flags = tuple(known[text] for text in map(str.lower, map(str, values)) if text in known)
+        if len(flags) < len(values) or not flags:
+            raise ValueError("is neither true nor false")
+        return flags
+
     def flag(self) -> bool:
         """The value as true or false, all of an array; ValueError if it is neither."""
-        values = self.value if isinstance(self.value, tuple) else (self.value,)
-        flags = [{"true": True, "false": False}.get(str(value).lower()) for value in values]
-        if None in flags or not flags:
-            raise ValueError("is neither true nor false")
-        return all(flags)
+        return all(self.flags())
 
     def text(self) -> str:
         """The value as one line of text."""

@@ -1,12 +1,13 @@
 """A gear set as the parts of a new REXS file.
 
-Axes run along u. The helix of the sun, or of the pinion, is written right-handed: the losses do not
-depend on the hand.
+Axes run along u. The helix of the sun, or of the pinion, is written right-handed unless the set of
+a train has another hand: the losses of a single set do not depend on it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from epicyclic.case.build import gear
@@ -14,6 +15,7 @@ from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.case.schema import Material
+from epicyclic.case.train_tables import PairSet, PlanetarySet
 from epicyclic.exchange.rexs.model import Attribute, Component, Relation
 from epicyclic.exchange.rexs.vocabulary import term, written
 from epicyclic.geometry.gear import Gear
@@ -21,7 +23,16 @@ from epicyclic.losses.friction.base import RA_OVER_RQ
 from epicyclic.lubricant.oil import Oil
 from epicyclic.lubricant.properties import oil_state
 
-__all__ = ["case_parts"]
+__all__ = [
+    "Builder",
+    "add_load",
+    "add_pair",
+    "add_planetary",
+    "add_shaft",
+    "case_parts",
+    "hold",
+    "surroundings",
+]
 
 _CELSIUS = 273.15
 
@@ -32,18 +43,17 @@ _OIL_TYPES = {
 }
 
 
-def case_parts(case: Case) -> Iterator[Component | Relation]:
+def case_parts(case: PlanetaryCase | GearPairCase) -> Iterator[Component | Relation]:
     """Components and relations that describe the gear set of a case."""
-    builder = _Builder()
+    builder = Builder()
     if isinstance(case, PlanetaryCase):
         _planetary(builder, case)
     else:
         _pair(builder, case)
-    yield from builder.components
-    yield from builder.relations
+    return builder.parts()
 
 
-class _Builder:
+class Builder:
     """Collects parts and numbers them."""
 
     def __init__(self) -> None:
@@ -52,22 +62,25 @@ class _Builder:
 
     def add(self, kind: str, name: str, /, **attributes: Any) -> int:
         """A component; attributes as text, flags, numbers, or numbers with the unit they have."""
-        made = {}
-        for key, value in attributes.items():
-            known = term(key)
-            if isinstance(value, tuple) and isinstance(value[1], str):
-                value = written(value[0], value[1], known.unit)
-            if isinstance(value, float):
-                value = float(f"{value:.15g}")
-            made[known.id] = Attribute(known.id, known.unit, value)
         number = len(self.components) + 1
-        self.components.append(Component(number, kind, name, made))
+        self.components.append(Component(number, kind, name, _made(attributes)))
         return number
+
+    def extend(self, number: int, /, **attributes: Any) -> None:
+        """Further attributes of a component."""
+        own = self.components[number - 1]
+        made = {**own.attributes, **_made(attributes)}
+        self.components[number - 1] = replace(own, attributes=made)
 
     def relate(self, kind: str, order: int | None = None, **roles: int) -> None:
         """A relation of components by their roles."""
         number = len(self.relations) + 1
         self.relations.append(Relation(number, kind, tuple(roles.items()), order))
+
+    def parts(self) -> Iterator[Component | Relation]:
+        """All that was added."""
+        yield from self.components
+        yield from self.relations
 
     def part(self, assembly: int, *parts: int) -> None:
         """Parts of an assembly."""
@@ -75,18 +88,32 @@ class _Builder:
             self.relate("assembly", assembly=assembly, part=part)
 
 
-def _surroundings(builder: _Builder, case: Case) -> tuple[int, int, int]:
-    """Gear unit, casing and lubricant."""
-    temperature = (case.operation.oil_inlet_temperature, "K")
-    unit = builder.add("gear_unit", case.title or "gear unit")
-    casing = builder.add("gear_casing", "casing", temperature_lubricant=temperature)
-    oil = _lubricant(builder, case.lubricant.oil)
+def _made(attributes: Mapping[str, Any]) -> dict[str, Attribute]:
+    made = {}
+    for key, value in attributes.items():
+        known = term(key)
+        if isinstance(value, tuple) and isinstance(value[-1], str):
+            value = written(value[0], value[1], known.unit)
+        if isinstance(value, float):
+            value = float(f"{value:.15g}")
+        made[known.id] = Attribute(known.id, known.unit, value)
+    return made
+
+
+def surroundings(builder: Builder, case: Case, **attributes: Any) -> tuple[int, int, int]:
+    """Gear unit with `attributes`, casing and lubricant of a case with computed losses."""
+    temperature, lubricant = case.operation.oil_inlet_temperature, case.lubricant
+    assert temperature is not None
+    assert lubricant is not None
+    unit = builder.add("gear_unit", case.title or "gear unit", **attributes)
+    casing = builder.add("gear_casing", "casing", temperature_lubricant=(temperature, "K"))
+    oil = _lubricant(builder, lubricant.oil)
     builder.part(unit, casing)
     builder.relate("reference", origin=casing, referenced=oil)
     return unit, casing, oil
 
 
-def _lubricant(builder: _Builder, oil: Oil) -> int:
+def _lubricant(builder: Builder, oil: Oil) -> int:
     at_40, at_100, at_15, at_38 = (oil_state(oil, _CELSIUS + t) for t in (40, 100, 15, 38))
     kind = {}
     if oil.kind in _OIL_TYPES:
@@ -104,14 +131,17 @@ def _lubricant(builder: _Builder, oil: Oil) -> int:
     )
 
 
-def _shaft(builder: _Builder, unit: int, name: str, speed: float | None = None) -> int:
+def add_shaft(
+    builder: Builder, unit: int, name: str, speed: float | None = None, **attributes: Any
+) -> int:
+    """A shaft of the gear unit."""
     turning = {} if speed is None else {"rotational_speed": (speed, "rad/s")}
-    shaft = builder.add("shaft", name, **turning)
+    shaft = builder.add("shaft", name, **turning, **attributes)
     builder.part(unit, shaft)
     return shaft
 
 
-def _gear(builder: _Builder, shaft: int, table: GearTable, made: Gear, hand: int, name: str) -> int:
+def _gear(builder: Builder, shaft: int, table: GearTable, made: Gear, hand: int, name: str) -> int:
     """A gear on its shaft, with its flanks and material."""
     number = builder.add(
         "ring_gear" if made.internal else "cylindrical_gear",
@@ -141,7 +171,7 @@ def _gear(builder: _Builder, shaft: int, table: GearTable, made: Gear, hand: int
     return number
 
 
-def _material(builder: _Builder, material: Material) -> int:
+def _material(builder: Builder, material: Material) -> int:
     return builder.add(
         "material",
         material.title,
@@ -152,62 +182,103 @@ def _material(builder: _Builder, material: Material) -> int:
     )
 
 
-def _stage(builder: _Builder, owner: int, oil: int, gears: Sequence[int], center: float) -> int:
-    stage = builder.add("cylindrical_stage", "mesh", center_distance=(center, "m"))
+def _stage(
+    builder: Builder,
+    owner: int,
+    oil: int,
+    gears: Sequence[int],
+    center: float,
+    name: str = "mesh",
+) -> int:
+    stage = builder.add("cylindrical_stage", name, center_distance=(center, "m"))
     builder.part(owner, stage)
     builder.relate("stage", stage=stage, gear_1=gears[0], gear_2=gears[1])
     builder.relate("reference", origin=stage, referenced=oil)
     return stage
 
 
-def _load(builder: _Builder, shaft: int, torque: float) -> None:
+def add_load(builder: Builder, shaft: int, torque: float) -> None:
+    """A torque from outside."""
     load = builder.add(
         "external_load", "load", torque_around_u_axis=(torque, "N*m"), defines_torque=True
     )
     builder.part(shaft, load)
 
 
-def _pair(builder: _Builder, case: GearPairCase) -> None:
-    unit, _, oil = _surroundings(builder, case)
-    shafts = [_shaft(builder, unit, "pinion shaft", case.operation.speed)]
-    shafts.append(_shaft(builder, unit, "gear shaft"))
-    made = [gear("pinion", case.pinion, case.gears), gear("gear", case.gear, case.gears)]
-    hands = (1, 1 if made[1].internal else -1)
-    numbers = [
-        _gear(builder, shaft, table, one, hand, name)
-        for shaft, table, one, hand, name in zip(
-            shafts, (case.pinion, case.gear), made, hands, ("pinion", "gear"), strict=True
-        )
-    ]
-    _stage(builder, unit, oil, numbers, case.gears.center_distance)
-    _load(builder, shafts[0], case.operation.torque)
+def _pair(builder: Builder, case: GearPairCase) -> None:
+    unit, _, oil = surroundings(builder, case)
+    shafts = {
+        "pinion": add_shaft(builder, unit, "pinion shaft", case.operation.speed),
+        "gear": add_shaft(builder, unit, "gear shaft"),
+    }
+    add_pair(builder, case, (unit, oil), shafts, "mesh")
+    add_load(builder, shafts["pinion"], case.operation.torque)
 
 
-def _planetary(builder: _Builder, case: PlanetaryCase) -> None:
-    unit, casing, oil = _surroundings(builder, case)
+def add_pair(
+    builder: Builder,
+    case: GearPairCase | PairSet,
+    owners: tuple[int, int],
+    shafts: Mapping[str, int],
+    name: str,
+) -> dict[str, int]:
+    """Both gears on their shafts, and their stage; `owners` are unit and oil. Returns the gears."""
+    unit, oil = owners
+    hand = -1 if isinstance(case, PairSet) and case.hand == "left" else 1
+    made = {"pinion": gear("pinion", case.pinion, case.gears)}
+    made["gear"] = gear("gear", case.gear, case.gears)
+    hands = {"pinion": hand, "gear": hand if made["gear"].internal else -hand}
+    tables = {"pinion": case.pinion, "gear": case.gear}
+    numbers = {
+        member: _gear(builder, shafts[member], tables[member], one, hands[member], member)
+        for member, one in made.items()
+    }
+    center = case.gears.center_distance
+    _stage(builder, unit, oil, list(numbers.values()), center, name)
+    return numbers
+
+
+def _planetary(builder: Builder, case: PlanetaryCase) -> None:
+    unit, casing, oil = surroundings(builder, case)
     operation = case.operation
     speeds = {operation.input: operation.speed}
     if operation.second_input is not None and operation.second_speed is not None:
         speeds[operation.second_input] = operation.second_speed
-    stage = builder.add("planetary_stage", case.title or "planetary stage")
+    title = case.title or "planetary stage"
+    stage = builder.add("planetary_stage", title)
     builder.part(unit, stage)
     shafts = {
-        name: _shaft(builder, unit, f"{name} shaft", speeds.get(name))
+        name: add_shaft(builder, unit, f"{name} shaft", speeds.get(name))
         for name in ("sun", "ring", "carrier")
     }
+    if operation.fixed is not None:
+        hold(builder, shafts[operation.fixed], casing, operation.fixed)
+    add_load(builder, shafts[operation.input], operation.torque)
+    add_planetary(builder, case, (unit, stage, oil), shafts)
+
+
+def hold(builder: Builder, shaft: int, casing: int, name: str) -> None:
+    """A shaft that stands still."""
+    joint = builder.add("coupling", f"holds the {name}")
+    builder.relate("side", assembly=joint, inner_part=shaft, outer_part=casing)
+
+
+def add_planetary(
+    builder: Builder,
+    case: PlanetaryCase | PlanetarySet,
+    owners: tuple[int, int, int],
+    shafts: Mapping[str, int],
+) -> None:
+    """The gears of a planetary set on their shafts; `owners` are unit, stage and oil."""
+    _, stage, _ = owners
     for name in ("sun", "ring"):
         builder.relate("central_shaft", planetary_stage=stage, shaft=shafts[name])
     builder.relate("planet_carrier_shaft", planetary_stage=stage, shaft=shafts["carrier"])
     _carrier(builder, case, stage, shafts["carrier"])
-    if operation.fixed is not None:
-        joint = builder.add("coupling", f"holds the {operation.fixed}")
-        held = shafts[operation.fixed]
-        builder.relate("side", assembly=joint, inner_part=held, outer_part=casing)
-    _load(builder, shafts[operation.input], operation.torque)
-    _planets(builder, case, (unit, stage, oil), shafts)
+    _planets(builder, case, owners, shafts)
 
 
-def _carrier(builder: _Builder, case: PlanetaryCase, stage: int, shaft: int) -> None:
+def _carrier(builder: Builder, case: PlanetaryCase | PlanetarySet, stage: int, shaft: int) -> None:
     carrier = builder.add("planet_carrier", "carrier")
     builder.part(stage, carrier)
     builder.part(carrier, shaft)
@@ -223,28 +294,32 @@ def _carrier(builder: _Builder, case: PlanetaryCase, stage: int, shaft: int) -> 
 
 
 def _planets(
-    builder: _Builder, case: PlanetaryCase, owners: tuple[int, int, int], shafts: dict[str, int]
+    builder: Builder,
+    case: PlanetaryCase | PlanetarySet,
+    owners: tuple[int, int, int],
+    shafts: Mapping[str, int],
 ) -> None:
     """Sun, ring, and for each planet its shaft, pin, bearing and two meshes."""
     unit, stage, oil = owners
     tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
     made = {name: gear(name, table, case.gears) for name, table in tables.items()}
-    sun = _gear(builder, shafts["sun"], case.sun, made["sun"], 1, "sun")
-    ring = _gear(builder, shafts["ring"], case.ring, made["ring"], -1, "ring")
+    hand = -1 if isinstance(case, PlanetarySet) and case.hand == "left" else 1
+    sun = _gear(builder, shafts["sun"], case.sun, made["sun"], hand, "sun")
+    ring = _gear(builder, shafts["ring"], case.ring, made["ring"], -hand, "ring")
     center = case.gears.center_distance
     for number in range(1, case.planet.count + 1):
         name = f"planet {number}"
-        shaft, pin = (_shaft(builder, unit, f"{name}, {part}") for part in ("shaft", "pin"))
+        shaft, pin = (add_shaft(builder, unit, f"{name}, {part}") for part in ("shaft", "pin"))
         builder.relate("planet_shaft", planetary_stage=stage, shaft=shaft)
         builder.relate("planet_pin", planetary_stage=stage, shaft=pin)
-        planet = _gear(builder, shaft, case.planet, made["planet"], -1, name)
+        planet = _gear(builder, shaft, case.planet, made["planet"], -hand, name)
         if case.planet_bearing is not None:
             _bearing(builder, case.planet_bearing, pin, shaft, name)
         for gears in ((sun, planet), (planet, ring)):
             _stage(builder, stage, oil, gears, center)
 
 
-def _bearing(builder: _Builder, bearing: PlanetBearing, pin: int, shaft: int, name: str) -> None:
+def _bearing(builder: Builder, bearing: PlanetBearing, pin: int, shaft: int, name: str) -> None:
     number = builder.add(
         "rolling_bearing_with_detailed_geometry",
         f"bearing of {name}",

@@ -9,7 +9,7 @@ from epicyclic.exchange.rexs.draft import Amount, Draft, amount_text
 from epicyclic.exchange.rexs.model import Component, Model
 from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, fixed_by, rigid_parts
 
-__all__ = ["pair_operation", "planetary_operation"]
+__all__ = ["pair_operation", "planetary_operation", "speed_and_torque", "speed_of", "stated_load"]
 
 _WATTS = {"W": 1.0, "kW": 1e3}
 
@@ -30,9 +30,9 @@ def planetary_operation(draft: Draft, model: Model, planetary: PlanetarySet) -> 
     if member is None:
         every = [shaft for name in free for shaft in shafts[name]]
         draft.lack("operation.input", "external_load with torque_around_u_axis or power", every)
-        _speed_and_torque(draft, [], every)
+        speed_and_torque(draft, [], every)
     else:
-        _speed_and_torque(draft, members[member], shafts[member])
+        speed_and_torque(draft, members[member], shafts[member])
     if fixed is None and not _second_speed(draft, members, member):
         draft.lack("operation.fixed", "coupling to a gear_casing, or speed of a second member,", [])
 
@@ -41,9 +41,9 @@ def _second_speed(
     draft: Draft, members: Mapping[str, Sequence[Component]], member: str | None
 ) -> bool:
     """The speed of a member beside the input; one that stands still is the fixed one."""
-    own = None if member is None else _speed(draft, members[member])
+    own = None if member is None else speed_of(draft, members[member])
     for name, parts in members.items():
-        speed = None if name == member else _speed(draft, parts)
+        speed = None if name == member else speed_of(draft, parts)
         if own is None or speed is None:
             continue
         if speed.number == 0:
@@ -63,19 +63,27 @@ def pair_operation(draft: Draft, model: Model, pair: Pair) -> None:
     parts = rigid_parts(model, [pair.pinion, *shafts])
     gears = [part for part in parts if part.type in ("cylindrical_gear", "ring_gear")]
     loads = parts if len(gears) == 1 else [item for item in parts if item.type != "external_load"]
-    _speed_and_torque(draft, loads, shafts)
+    speed_and_torque(draft, loads, shafts)
 
 
 def _driven_by_load(draft: Draft, members: Mapping[str, Sequence[Component]]) -> str | None:
     """The member with the load that states torque or power; sun before ring before carrier."""
     for name, parts in members.items():
-        for load in parts:
-            for attribute in ("torque_around_u_axis", "power"):
-                stated = load.type == "external_load" and load.get(attribute)
-                if stated and _nonzero(load, attribute):
-                    draft.give("operation.input", name, f"{attribute} of {load}")
-                    return name
+        origin = stated_load(parts)
+        if origin:
+            draft.give("operation.input", name, origin)
+            return name
     return None
+
+
+def stated_load(parts: Sequence[Component]) -> str:
+    """Which torque or power of a load on `parts` is stated and not zero; nothing if none is."""
+    for load in parts:
+        for attribute in ("torque_around_u_axis", "power"):
+            stated = load.type == "external_load" and load.get(attribute)
+            if stated and _nonzero(load, attribute):
+                return f"{attribute} of {load}"
+    return ""
 
 
 def _nonzero(load: Component, attribute: str) -> bool:
@@ -86,7 +94,7 @@ def _nonzero(load: Component, attribute: str) -> bool:
     return amount is not None and amount[0] != 0.0
 
 
-def _speed(draft: Draft, parts: Sequence[Component]) -> Amount | None:
+def speed_of(draft: Draft, parts: Sequence[Component]) -> Amount | None:
     """Speed of the first part that has one; all turn together."""
     turning = [part for part in parts if part.get("rotational_speed") is not None]
     return draft.read("rotational_speed", turning[:1], "operation.speed")
@@ -102,12 +110,10 @@ def _torque(draft: Draft, loads: Sequence[Component]) -> Amount | None:
     return Amount(sum(amount.number for amount in found), found[0].unit, origin)
 
 
-def _speed_and_torque(
-    draft: Draft, parts: Sequence[Component], shafts: Sequence[Component]
-) -> None:
+def speed_and_torque(draft: Draft, parts: Sequence[Component], shafts: Sequence[Component]) -> None:
     """Speed as a magnitude; torque positive if power flows in, as far as the file tells."""
     key = "operation.speed"
-    speed = _speed(draft, parts)
+    speed = speed_of(draft, parts)
     if speed is None:
         draft.lack(key, "rotational_speed", shafts)
     else:

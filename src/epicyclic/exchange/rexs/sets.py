@@ -4,20 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from epicyclic.errors import InputError, Problem
 from epicyclic.exchange.rexs.model import Component, Model
+from epicyclic.exchange.rexs.vocabulary import types_of
 
-__all__ = ["Mesh", "Pair", "PlanetarySet", "choose", "fixed_by", "gear_sets", "rigid_parts"]
+__all__ = [
+    "Joint",
+    "Mesh",
+    "Pair",
+    "PlanetarySet",
+    "choose",
+    "fixed_by",
+    "gear_sets",
+    "is_rigid",
+    "is_switched",
+    "joints",
+    "read_stage",
+    "rigid_links",
+    "rigid_parts",
+]
 
 GEARS = ("cylindrical_gear", "ring_gear")
 
 _RIGID = (
-    "coupling",
+    *types_of("coupling"),
     "switchable_coupling",
     "cylindrical_interference_fit",
     "tapered_interference_fit",
     "feather_key_connection",
+    "involute_spline_connection",
 )
 """Components that make two parts turn as one."""
 
@@ -122,9 +139,12 @@ def choose(model: Model, component: int | None) -> PlanetarySet | Pair:
             allowed = f"the file has {len(sets) or 'no'} stages to choose from."
             raise InputError([Problem("--component", "", allowed, _remedy(model))])
         chosen = sets[0]
-    if chosen.type == "planetary_stage":
-        return _planetary_set(model, chosen)
-    return _pair(model, chosen)
+    return read_stage(model, chosen)
+
+
+def read_stage(model: Model, stage: Component) -> PlanetarySet | Pair:
+    """The gear set of a stage; InputError if it is of a kind that is not covered."""
+    return _planetary_set(model, stage) if stage.type == "planetary_stage" else _pair(model, stage)
 
 
 def _remedy(model: Model) -> str:
@@ -235,13 +255,14 @@ def rigid_parts(model: Model, start: Iterable[Component]) -> list[Component]:
 
 def _rigid_neighbours(model: Model) -> dict[int, list[int]]:
     neighbours: dict[int, list[int]] = {}
-    for first, second in _rigid_links(model):
+    for first, second in rigid_links(model):
         neighbours.setdefault(first, []).append(second)
         neighbours.setdefault(second, []).append(first)
     return neighbours
 
 
-def _rigid_links(model: Model) -> Iterator[tuple[int, int]]:
+def rigid_links(model: Model, *, switched: bool = True) -> Iterator[tuple[int, int]]:
+    """Parts that turn as one, two by two; without clutches that are `switched` if that is False."""
     owners = ("shaft", "planet_carrier")
     for relation in model.relations:
         sides: Sequence[int] = ()
@@ -249,17 +270,47 @@ def _rigid_links(model: Model) -> Iterator[tuple[int, int]]:
             sides = [*relation.partners("assembly"), *relation.partners("part")]
             if model.components[sides[0]].type not in owners if sides else True:
                 sides = ()
-        elif relation.type == "side" and _is_closed(model, relation.partners("assembly")):
+        elif relation.type == "side" and is_rigid(
+            model, relation.partners("assembly"), switched=switched
+        ):
             sides = [*relation.partners("inner_part"), *relation.partners("outer_part")]
         if len(sides) == 2:
             yield sides[0], sides[1]
 
 
-def _is_closed(model: Model, joints: Iterable[int]) -> bool:
-    """True if the joint of a relation makes its parts turn as one."""
-    for number in joints:
+class Joint(NamedTuple):
+    """A coupling, a bearing or the like, and the parts at its two sides."""
+
+    component: Component
+    inner: int
+    outer: int
+
+
+def joints(model: Model) -> Iterator[Joint]:
+    """Everything that stands between two parts."""
+    for relation in model.relations:
+        if relation.type == "side":
+            roles = (relation.partners(role) for role in ("assembly", "inner_part", "outer_part"))
+            joint, inner, outer = (next(parts, None) for parts in roles)
+            if joint is not None and inner is not None and outer is not None:
+                yield Joint(model.components[joint], inner, outer)
+
+
+def is_switched(joint: Component) -> bool:
+    """True for a clutch or brake whose positions the file states."""
+    return joint.type == "switchable_coupling" and joint.get("is_engaged") is not None
+
+
+def is_rigid(model: Model, parts: Iterable[int], *, switched: bool = True) -> bool:
+    """True if the joint of a relation, the first of `parts`, makes its sides turn as one.
+
+    A clutch with several positions does if it is closed in all; none does if `switched` is False.
+    """
+    for number in parts:
         joint = model.components[number]
         engaged = joint.get("is_engaged")
+        if not switched and is_switched(joint):
+            return False
         try:
             return joint.type in _RIGID and (engaged is None or engaged.flag())
         except ValueError:
@@ -271,7 +322,7 @@ def fixed_by(model: Model, parts: Iterable[Component]) -> Component | None:
     """The joint that holds one of `parts` to the casing; None if none does."""
     numbers = {part.id for part in parts}
     for relation in model.relations:
-        if relation.type == "side" and _is_closed(model, relation.partners("assembly")):
+        if relation.type == "side" and is_rigid(model, relation.partners("assembly")):
             sides = [*relation.partners("inner_part"), *relation.partners("outer_part")]
             to_casing = any(model.components[side].type == "gear_casing" for side in sides)
             if to_casing and numbers & set(sides):

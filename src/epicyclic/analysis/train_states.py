@@ -1,0 +1,88 @@
+"""The kinematics of every state of a train: which ratio it has, or why it has none."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from epicyclic.case.train import TrainCase
+from epicyclic.case.train_tables import StateTable
+from epicyclic.elements.base import HOUSING
+from epicyclic.machine.kinematics import freedom, speeds_of
+
+__all__ = ["StateKinematics", "train_states"]
+
+AT_REST = 1e-10
+"""Speed, relative to that of the input, of a shaft that stands still. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class StateKinematics:
+    """One state of a train.
+
+    Attributes
+    ----------
+    name : str
+        Empty if the train has no states.
+    held : tuple of str
+        As the case names them.
+    joined : tuple of tuple of str
+        Groups of shafts that clutches join.
+    ratio : float or None
+        Speed of the input over that of the output, signed; None if there is none. [1]
+    speeds : mapping of str to float
+        Of every shaft over that of the input; NaN where it is open, empty if the state is blocked.
+        [1]
+    remark : str
+        Why there is no ratio, or what is open.
+    """
+
+    name: str
+    held: tuple[str, ...]
+    joined: tuple[tuple[str, ...], ...]
+    ratio: float | None
+    speeds: dict[str, float]
+    remark: str = ""
+
+
+def train_states(case: TrainCase) -> tuple[StateKinematics, ...]:
+    """The kinematics of every state of a train, with the further speeds of its operation."""
+    states = case.states or {"": StateTable()}
+    return tuple(_state(case, name, state) for name, state in states.items())
+
+
+def _state(case: TrainCase, name: str, state: StateTable) -> StateKinematics:
+    shape, operation = case.shape, case.operation
+    driven, output = (shape.shaft_of(end) or "" for end in (operation.input, operation.output))
+    machine = shape.machine(state)
+    held = shape.held(state)
+    drawn = StateKinematics(name, state.fixed, state.joined, None, {})
+    if driven in held:
+        return _with(drawn, f"blocked: {operation.input} is held")
+    unit = operation.speed or 1.0
+    further = {shape.shaft_of(key) or "": value for key, value in operation.speeds.items()}
+    given = dict.fromkeys(held, 0.0) | {
+        shaft: speed / unit for shaft, speed in further.items() if shaft not in held
+    }
+    found = freedom(machine, driven, list(given))
+    if found.blocked:
+        return _with(drawn, f"blocked: {operation.input} cannot turn")
+    speeds = speeds_of(machine, {driven: 1.0} | given)
+    shafts = {
+        shaft: math.nan if shaft in found.loose else speeds[shaft]
+        for shaft in shape.shafts
+        if shaft != HOUSING
+    }
+    if output in found.loose:
+        return _with(drawn, f"neutral: {operation.output} is free to turn", shafts)
+    if abs(speeds[output]) < AT_REST:
+        return _with(drawn, f"{operation.output} stands still", shafts)
+    loose = [shaft for shaft in shafts if shaft in found.loose]
+    remark = f"free to turn: {', '.join(loose)}" if loose else ""
+    return StateKinematics(name, state.fixed, state.joined, 1 / speeds[output], shafts, remark)
+
+
+def _with(
+    state: StateKinematics, remark: str, speeds: dict[str, float] | None = None
+) -> StateKinematics:
+    return StateKinematics(state.name, state.held, state.joined, None, speeds or {}, remark)

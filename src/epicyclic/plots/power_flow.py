@@ -1,0 +1,619 @@
+"""The power flow of a train: sets as columns, shafts as lines, arrows as wide as the power.
+
+Every length is in inches on a slide of 16 to 9.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise, permutations
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.patches import FancyBboxPatch, Polygon, Rectangle
+
+from epicyclic.analysis.train_flow import Line, Link, TrainFlow, flow_of
+from epicyclic.plots.style import COLOURS
+from epicyclic.records.contents import ResultContents
+from epicyclic.report.shown import shown
+from epicyclic.units import NEWTON_METRE, RPM, unit_text
+
+__all__ = ["SLIDE", "contents_flow", "plot_power_flow"]
+
+SLIDE = (13.33, 7.5)
+"""Width and height. [inch]"""
+THROUGH, CIRCULATING, LOST = COLOURS[0], COLOURS[4], COLOURS[1]
+DARK = "#8a5f00"
+"""The colour of circulating power, for words."""
+INK, SOFT, STRIPE, BOX = "#1a1d21", "#5b6470", "#f2f4f7", "#e3e8ee"
+LABELS, RIGHT_END = 2.55, 1.55
+"""Room for the names of shafts at the left, and for the output at the right."""
+TOP, LOWEST, GROUNDS, LEGEND = 6.85, 1.75, 1.45, 0.25
+"""Upper edge of the cards of the sets; lower edge of the shafts; brakes; legend."""
+HEAD, ROW = 0.36, 0.24
+"""Heights of the name on a card, and of each of its meshes."""
+WIDEST, THINNEST, SHORTEST = 0.6, 0.02, 0.55
+"""Of arrows, whatever the power; length below which they have no label."""
+NO_POWER = 1e-9
+MOST_ORDERED = 6
+"""Sets, and shafts, of which all orders are compared."""
+_LABEL: Any = {"ha": "center", "fontsize": 11, "zorder": 6}
+
+
+@dataclass(frozen=True, slots=True)
+class _Tap:
+    """Bearings, seals and drags of one line."""
+
+    line: str
+    loss: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """What is drawn where.
+
+    Attributes
+    ----------
+    flow : TrainFlow
+    columns, lanes : mapping of str to float
+        x of each set and y of each line that passes power.
+    taps : mapping of str to _Tap
+        By line.
+    width, spacing : float
+        Of a column; of a lane.
+    scale : float
+        Width of an arrow over its power. [inch/W]
+    """
+
+    flow: TrainFlow
+    columns: Mapping[str, float]
+    lanes: Mapping[str, float]
+    taps: Mapping[str, _Tap]
+    width: float
+    spacing: float
+    scale: float = 0.0
+
+    @property
+    def box(self) -> float:
+        """Half the width of a box."""
+        return min(0.62, 0.3 * self.width)
+
+    @property
+    def height(self) -> float:
+        """Half the height of a box."""
+        return min(0.36, 0.4 * self.spacing)
+
+    def crossing(self, stage: str) -> list[Link]:
+        """The links of a set with lines that pass power, from the lowest one upwards."""
+        links = [link for link in self.flow.of_stage(stage) if link.line in self.lanes]
+        return sorted(links, key=lambda link: self.lanes[link.line])
+
+    def grounds(self, stage: str) -> list[Link]:
+        """The links of a set with what stands still and holds it."""
+        links = [link for link in self.flow.of_stage(stage) if link.line not in self.lanes]
+        most = max((abs(link.torque) for link in self.flow.of_stage(stage)), default=0.0)
+        return [link for link in links if link.members and abs(link.torque) > NO_POWER * most]
+
+
+def contents_flow(result: ResultContents) -> TrainFlow:
+    """The power flow of a stored result, `train_flow` of the result itself."""
+    speeds = {
+        name: (member.speed.value or 0.0) / RPM.to_display(1.0)
+        for name, member in result.members.items()
+    }
+    torques = {name: member.torque.value or 0.0 for name, member in result.members.items()}
+    if result.kind != "train":
+        stage = "gear set" if result.kind == "planetary" else "gear pair"
+        return flow_of(speeds, torques, {stage: torques}, {stage: result.total})
+    return flow_of(
+        speeds,
+        torques,
+        result.stage_torques,
+        result.stages,
+        clutches=result.clutches,
+        rolling=result.rolling_power,
+        ends=(result.input, result.output),
+        shafts=result.inputs.get("shafts", {}),
+    )
+
+
+def plot_power_flow(result: ResultContents, ax: Axes) -> Axes:
+    """Which power each set takes from which shaft, what circulates, what is lost where."""
+    flow = contents_flow(result)
+    ax.set_axis_off()
+    ax.set(xlim=(0, SLIDE[0]), ylim=(0, SLIDE[1]))
+    ax.set_title(f"Power flow: {_headline(result)}", fontsize=13, x=0.008)
+    layout = _layout(flow)
+    for number, (key, y) in enumerate(sorted(layout.lanes.items(), key=lambda item: -item[1])):
+        _draw_lane(ax, layout, flow.lines[key], y, striped=number % 2 == 0)
+    for stage, x in layout.columns.items():
+        _draw_spine(ax, layout, stage, x)
+    for key, y in layout.lanes.items():
+        _draw_line(ax, layout, flow.lines[key], y)
+    for stage, x in layout.columns.items():
+        _draw_boxes(ax, layout, stage, x)
+        _draw_card(ax, layout, stage, x, result.input_power)
+        _draw_grounds(ax, layout, stage, x)
+    _draw_legend(ax, layout, result.input_power)
+    return ax
+
+
+def _headline(result: ResultContents) -> str:
+    words = [f"state {result.state}"] if result.state else []
+    if result.ratio is not None:
+        words.append(f"ratio {shown(result.ratio)}")
+    if result.efficiency is not None:
+        words.append(f"efficiency {100 * result.efficiency:.2f} %")
+    words.append(f"loss {_power(result.total)}")
+    if result.power_ratio is not None:
+        words.append(f"rolling power {shown(result.power_ratio, 3)} times the input power")
+    if result.self_locking:
+        words.append("self-locking")
+    return ", ".join(words)
+
+
+def _power(watts: float) -> str:
+    large = abs(watts) >= 1e3
+    return f"{shown(abs(watts) / (1e3 if large else 1), 3)} {'kW' if large else 'W'}"
+
+
+def _torque(value: float) -> str:
+    return f"{shown(abs(value), 4)} {unit_text(NEWTON_METRE.display)}"
+
+
+# --- where everything stands ----------------------------------------------------------------------
+
+
+def _layout(flow: TrainFlow) -> _Layout:
+    most = max((abs(link.power) for link in flow.links), default=0.0)
+    busy = {link.line for link in flow.links if abs(link.power) > NO_POWER * most} & set(flow.lines)
+    ends = [key for key, line in flow.lines.items() if line.role in ("input", "output")]
+    lines = [key for key in flow.lines if key in busy or key in ends]
+    stages, taps = [], {}
+    for stage in flow.stages:
+        links = [link for link in flow.of_stage(stage) if link.line in lines]
+        if not any(link.members for link in links) and len(links) == 1:
+            key = links[0].line
+            before = taps.get(key, _Tap(key, 0.0))
+            taps[key] = _Tap(key, before.loss + flow.stages[stage].loss)
+        elif any(abs(link.power) > NO_POWER * most for link in links):
+            stages.append(stage)
+    stages = _ordered_stages(flow, stages, lines)
+    lines = _ordered_lines(flow, stages, lines)
+    width = (SLIDE[0] - LABELS - RIGHT_END) / max(1, len(stages))
+    rows = max((len(flow.stages[key].rolling) for key in stages), default=0)
+    highest = TOP - HEAD - ROW * rows - 0.2
+    spacing = (highest - LOWEST) / max(1, len(lines))
+    columns = {key: LABELS + (number + 0.5) * width for number, key in enumerate(stages)}
+    lanes = {key: highest - (number + 0.5) * spacing for number, key in enumerate(lines)}
+    drawn = _Layout(flow, columns, lanes, taps, width, spacing)
+    pieces = [piece for key in lanes for piece in _pieces(drawn, flow.lines[key])]
+    pieces += [piece for key in columns for piece in _rises(drawn, key)]
+    widest = max((abs(one.through) + abs(one.circulating) for one in pieces), default=0.0)
+    return replace(drawn, scale=min(WIDEST, 0.45 * spacing) / widest if widest else 0.0)
+
+
+def _ordered_stages(flow: TrainFlow, stages: list[str], lines: list[str]) -> list[str]:
+    """Sets in the order of the power, with short lines between them."""
+    if len(stages) > MOST_ORDERED:
+        return stages
+    ends = {key: line.power for key, line in flow.lines.items() if line.power}
+    links = {key: [link for link in flow.of_line(key) if link.stage in stages] for key in lines}
+
+    def effort(order: tuple[str, ...]) -> float:
+        place = {key: number for number, key in enumerate(order)}
+        total = 0.0
+        for key in lines:
+            own = [(place[link.stage], link.power) for link in links[key]]
+            if not own:
+                continue
+            places = [at for at, _ in own]
+            left = -1 if ends.get(key, 0.0) > 0 else min(places)
+            right = len(order) if ends.get(key, 0.0) < 0 else max(places)
+            total += max(right, *places) - min(left, *places)
+            total += sum(
+                0.6 for at, power in own for to, more in own if power < 0 < more and to < at
+            )
+        return total
+
+    return list(min(permutations(stages), key=effort))
+
+
+def _ordered_lines(flow: TrainFlow, stages: list[str], lines: list[str]) -> list[str]:
+    """Lines so that those of one set lie beside each other, the input on top."""
+    if len(lines) > MOST_ORDERED:
+        return lines
+    joined = [
+        [link.line for link in flow.of_stage(stage) if link.line in lines] for stage in stages
+    ]
+
+    def effort(order: tuple[str, ...]) -> float:
+        place = {key: number for number, key in enumerate(order)}
+        total = 0.0
+        for own in joined:
+            places = [place[key] for key in own]
+            total += max(places) - min(places)
+        for key in lines:
+            if flow.lines[key].role == "input":
+                total += 0.4 * place[key]
+            elif flow.lines[key].role == "output":
+                total -= 0.4 * place[key]
+        return total
+
+    return list(min(permutations(lines), key=effort))
+
+
+# --- lines ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """Power from `start` to `end`, positive to the right or upwards."""
+
+    start: float
+    end: float
+    through: float
+    circulating: float
+
+
+def _pieces(layout: _Layout, line: Line) -> Iterator[_Piece]:
+    """The power on a line from place to place.
+
+    Bearings and seals take theirs where it enters, at the output where it leaves.
+    """
+    marks = _marks(layout, line)
+    through = circulating = 0.0
+    for (left, power, loops), (right, *_) in pairwise(marks):
+        through += power - loops
+        circulating += loops
+        if right == SLIDE[0] - RIGHT_END:
+            through = -line.power - circulating
+        # what loops leave over where they end is rounding
+        flows = (through, circulating)
+        whole = max((abs(mark[1]) for mark in marks), default=0.0)
+        through, circulating = (0.0 if abs(one) <= NO_POWER * whole else one for one in flows)
+        yield _Piece(left, right, through, circulating)
+
+
+def _rises(layout: _Layout, stage: str) -> Iterator[_Piece]:
+    """The power inside a set from line to line, upwards."""
+    through = circulating = 0.0
+    for below, above in pairwise(layout.crossing(stage)):
+        through += below.power - below.circulating
+        circulating += below.circulating
+        yield _Piece(layout.lanes[below.line], layout.lanes[above.line], through, circulating)
+
+
+def _marks(layout: _Layout, line: Line) -> list[tuple[float, float, float]]:
+    """Where power enters a line: place, power, and how much of it circulates."""
+    marks = [
+        (layout.columns[link.stage], -link.power, -link.circulating)
+        for link in layout.flow.of_line(line.key)
+        if link.stage in layout.columns
+    ]
+    if line.role == "input":
+        marks.append((LABELS - 0.15, line.power, 0.0))
+    elif line.power or line.role == "output":
+        marks.append((SLIDE[0] - RIGHT_END, line.power, 0.0))
+    return sorted(marks)
+
+
+def _draw_lane(ax: Axes, layout: _Layout, line: Line, y: float, *, striped: bool) -> None:
+    """Stripe and name of a line."""
+    if striped:
+        low = y - layout.spacing / 2
+        ax.add_patch(Rectangle((0, low), SLIDE[0], layout.spacing, color=STRIPE, lw=0, zorder=0))
+    words = [f"{shown(RPM.to_display(line.speed))} {unit_text(RPM.display)}", _torque(line.passed)]
+    lower = ", ".join(words)
+    name = " + ".join(name.replace("_", " ") for name in line.shafts)
+    size = 13.0 if len(name) <= 19 else 13.0 * 19 / len(name)
+    up = 0.02 if not line.clutches else 0.08
+    ax.text(0.1, y + up, name, fontsize=size, fontweight="bold", va="bottom", color=INK)
+    ax.text(0.1, y + up - 0.03, lower, fontsize=11, va="top", color=INK)
+    if line.clutches:
+        torques = ", ".join(_torque(torque) for torque in line.clutches.values())
+        word = "clutch" if len(line.clutches) == 1 else "clutches"
+        ax.text(0.1, y + up - 0.23, f"{word} {torques}", fontsize=9.5, va="top", color=SOFT)
+    marks = _marks(layout, line)
+    if marks and marks[0][0] > LABELS:
+        ax.add_patch(Rectangle((LABELS - 0.15, y), marks[0][0] - LABELS + 0.15, 0.0, ec="0.75"))
+
+
+def _draw_line(ax: Axes, layout: _Layout, line: Line, y: float) -> None:
+    own = {
+        layout.columns[link.stage]
+        for link in layout.flow.of_line(line.key)
+        if link.stage in layout.columns
+    }
+    pieces = list(_pieces(layout, line))
+    for piece in pieces:
+        left = piece.start + (layout.box if piece.start in own else 0.0)
+        right = piece.end - (layout.box if piece.end in own else 0.0)
+        crossed = [x for x in layout.columns.values() if left < x < right]
+        whole = sum(_widths(layout, piece))
+        if crossed and whole:
+            low, height = y - whole / 2 - 0.06, whole + 0.12
+            bridge = Rectangle((left, low), right - left, height, color="white", lw=0, zorder=3)
+            ax.add_patch(bridge)
+        _draw_band(ax, layout, replace(piece, start=left, end=right), y)
+        # words stand in the longest part that no other set crosses
+        start, end = max(
+            pairwise([left, *sorted(crossed), right]), key=lambda part: round(part[1] - part[0], 3)
+        )
+        if end - start > SHORTEST:
+            _label_band(ax, piece, (start + end) / 2, y, whole / 2)
+    if line.key in layout.taps and pieces:
+        piece = pieces[-1] if line.role == "output" else pieces[0]
+        edge = y - sum(_widths(layout, piece)) / 2
+        _draw_tap(ax, layout.taps[line.key], _middle(layout, piece), edge)
+
+
+def _middle(layout: _Layout, piece: _Piece) -> float:
+    """The middle of a piece of a line, beside the sets that it passes."""
+    after = min(x for x in (*layout.columns.values(), piece.end) if x > piece.start)
+    return (piece.start + after) / 2
+
+
+def _widths(layout: _Layout, piece: _Piece) -> tuple[float, float]:
+    """Widths of the power that passes through and of what circulates."""
+    through, circulating = (
+        max(THINNEST, abs(power) * layout.scale) if power else 0.0
+        for power in (piece.through, piece.circulating)
+    )
+    return through, circulating
+
+
+def _draw_band(
+    ax: Axes, layout: _Layout, piece: _Piece, middle: float, *, upright: bool = False
+) -> None:
+    """What passes through and what circulates, side by side."""
+    widths = _widths(layout, piece)
+    edge = middle + sum(widths) / 2
+    zorder = 2.5 if upright else 4
+    for power, width, colour in zip(
+        (piece.through, piece.circulating), widths, (THROUGH, CIRCULATING), strict=True
+    ):
+        if width:
+            ends = (piece.start, piece.end) if power > 0 else (piece.end, piece.start)
+            points = list(_arrow(ends, edge - width / 2, width))
+            if upright:
+                points = [(across, along) for along, across in points]
+            ax.add_patch(Polygon(points, closed=True, color=colour, lw=0, zorder=zorder))
+            edge -= width
+
+
+def _arrow(ends: tuple[float, float], middle: float, width: float) -> Iterator[tuple[float, float]]:
+    """Corners of an arrow from the first to the second of `ends`: along, across."""
+    start, tip = ends
+    half, reach = width / 2, max(0.09, width / 2)
+    length = min(0.5 * abs(tip - start), max(0.16, half))
+    neck = tip - length if tip > start else tip + length
+    yield from ((start, middle - half), (neck, middle - half), (neck, middle - reach))
+    yield tip, middle
+    yield from ((neck, middle + reach), (neck, middle + half), (start, middle + half))
+
+
+def _label_band(ax: Axes, piece: _Piece, x: float, y: float, half: float) -> None:
+    """Powers above and below a band."""
+    if piece.through:
+        ax.text(x, y + half + 0.07, _power(piece.through), va="bottom", color=THROUGH, **_LABEL)
+    if piece.circulating:
+        ax.text(x, y - half - 0.07, _power(piece.circulating), va="top", color=DARK, **_LABEL)
+
+
+def _draw_tap(ax: Axes, tap: _Tap, x: float, y: float) -> None:
+    """The losses of bearings and seals on a line, whose lower edge is at `y`."""
+    _draw_loss(ax, (x, y), y - 0.28, THINNEST)
+    ax.text(x + 0.12, y - 0.16, _power(tap.loss), va="center", fontsize=10, color=LOST, zorder=6)
+
+
+def _draw_loss(ax: Axes, start: tuple[float, float], tip: float, width: float) -> None:
+    """An upright arrow of a loss."""
+    x, y = start
+    points = [(across, along) for along, across in _arrow((y, tip), x, width)]
+    ax.add_patch(Polygon(points, closed=True, color=LOST, lw=0, zorder=3.5))
+
+
+# --- sets -----------------------------------------------------------------------------------------
+
+
+def _draw_spine(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
+    """What joins the boxes of a set to its card and its brakes, and the power within it."""
+    links = layout.crossing(stage)
+    lowest = GROUNDS if layout.grounds(stage) else layout.lanes[links[0].line]
+    ax.add_patch(
+        Rectangle((x - 0.11, lowest), 0.22, TOP - HEAD - lowest, color=BOX, lw=0, zorder=2)
+    )
+    for piece in _rises(layout, stage):
+        within = replace(piece, start=piece.start + layout.height, end=piece.end - layout.height)
+        _draw_band(ax, layout, within, x, upright=True)
+    loss = layout.flow.stages[stage].loss
+    if loss:
+        width = max(THINNEST, loss * layout.scale)
+        highest = layout.lanes[links[-1].line]
+        ax.add_patch(
+            Rectangle((x - width / 2, highest), width, TOP - highest, color=LOST, lw=0, zorder=2.5)
+        )
+        _draw_loss(ax, (x, TOP), TOP + 0.4, width)
+
+
+def _draw_boxes(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
+    """One box for each line of a set, with its members and their torque."""
+    for link in layout.crossing(stage):
+        y = layout.lanes[link.line]
+        _box(ax, (x - layout.box, y - layout.height), (2 * layout.box, 2 * layout.height))
+        name = " + ".join(member.replace("_", " ") for member in link.members)
+        ax.text(
+            x,
+            y + 0.02,
+            name,
+            ha="center",
+            va="bottom",
+            fontsize=_fit(name, 2 * layout.box, 11),
+            color=INK,
+            zorder=7,
+        )
+        torque = _torque(link.torque)
+        ax.text(
+            x,
+            y - 0.02,
+            torque,
+            ha="center",
+            va="top",
+            fontsize=_fit(torque, 2 * layout.box, 10),
+            color=SOFT,
+            zorder=7,
+        )
+
+
+def _fit(text: str, room: float, size: float) -> float:
+    """The size of a font at which `text` fits into `room`. [point]"""
+    return min(size, size * room / (0.0085 * size * max(1, len(text))))
+
+
+def _box(ax: Axes, corner: tuple[float, float], size: tuple[float, float]) -> None:
+    ax.add_patch(
+        FancyBboxPatch(
+            (corner[0] + 0.04, corner[1] + 0.04),
+            size[0] - 0.08,
+            size[1] - 0.08,
+            boxstyle="round,pad=0.04",
+            fc=BOX,
+            ec=SOFT,
+            lw=0.9,
+            zorder=5,
+        )
+    )
+
+
+def _draw_card(ax: Axes, layout: _Layout, stage: str, x: float, entering: float) -> None:
+    """Name of a set, the rolling power of its meshes, its loss."""
+    own = layout.flow.stages[stage]
+    rows = len(own.rolling)
+    half = min(1.3, 0.5 * layout.width - 0.08)
+    height = HEAD + ROW * rows
+    _box(ax, (x - half, TOP - height), (2 * half, height))
+    name = stage.replace("_", " ")
+    ax.text(
+        x,
+        TOP - 0.06,
+        name,
+        ha="center",
+        va="top",
+        fontsize=_fit(name, 2 * half, 13),
+        fontweight="bold",
+        color=INK,
+        zorder=7,
+    )
+    most = max(
+        (abs(power) for each in layout.flow.stages.values() for power in each.rolling.values()),
+        default=0.0,
+    )
+    room = 2 * half - 0.16
+    for number, (mesh, power) in enumerate(own.rolling.items()):
+        low = TOP - HEAD - ROW * (number + 1) + 0.04
+        scale = room / max(most, entering)
+        inside = min(abs(power), entering) * scale
+        for start, length, colour in (
+            (0.0, inside, THROUGH),
+            (inside, abs(power) * scale - inside, CIRCULATING),
+        ):
+            ax.add_patch(
+                Rectangle(
+                    (x - half + 0.08 + start, low),
+                    length,
+                    0.19,
+                    color=colour,
+                    alpha=0.35,
+                    lw=0,
+                    zorder=6,
+                )
+            )
+        words = mesh.removesuffix("_mesh").replace("_", " ")
+        size = _fit(f"{words}  {_power(power)}", room, 10)
+        ax.text(x - half + 0.12, low + 0.09, words, va="center", fontsize=size, color=INK, zorder=7)
+        ax.text(
+            x + half - 0.12,
+            low + 0.09,
+            _power(power),
+            ha="right",
+            va="center",
+            fontsize=size,
+            color=INK,
+            zorder=7,
+        )
+    share = f" ({100 * own.loss / entering:.2f} %)" if entering and own.loss else ""
+    aside = 0.14 + own.loss * layout.scale / 2
+    ax.text(
+        x + aside, TOP + 0.26, f"{_power(own.loss)}{share}", va="center", fontsize=11, color=LOST
+    )
+
+
+def _draw_grounds(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
+    """What is held, as ground, with the torque that holds it."""
+    grounds = layout.grounds(stage)
+    step = min(1.25, layout.width / max(1, len(grounds)))
+    for number, link in enumerate(grounds):
+        at = x + (number - (len(grounds) - 1) / 2) * step
+        if len(grounds) > 1:
+            ax.add_patch(
+                Rectangle((min(x, at), GROUNDS - 0.03), abs(at - x), 0.06, color=BOX, zorder=2)
+            )
+        ax.add_patch(Rectangle((at - 0.03, GROUNDS - 0.22), 0.06, 0.22, color=INK, lw=0, zorder=3))
+        ax.add_patch(Rectangle((at - 0.26, GROUNDS - 0.25), 0.52, 0.04, color=INK, lw=0, zorder=3))
+        for stroke in range(5):
+            right = at - 0.2 + 0.11 * stroke
+            ax.add_patch(
+                Polygon(
+                    [(right, GROUNDS - 0.25), (right - 0.1, GROUNDS - 0.37)],
+                    closed=False,
+                    ec=INK,
+                    fill=False,
+                    lw=1.1,
+                )
+            )
+        member = " + ".join(name.replace("_", " ") for name in link.members)
+        held = link.line.replace("_", " ")
+        name = member if held == f"{stage}.{member}" else f"{member}, {held}"
+        for low, words, colour in ((0.42, name, INK), (0.6, _torque(link.torque), SOFT)):
+            ax.text(
+                at,
+                GROUNDS - low,
+                words,
+                ha="center",
+                va="top",
+                fontsize=_fit(words, step, 10),
+                color=colour,
+            )
+
+
+# --- legend ---------------------------------------------------------------------------------------
+
+
+def _draw_legend(ax: Axes, layout: _Layout, entering: float) -> None:
+    flow = layout.flow
+    rolling = [abs(power) for stage in flow.stages.values() for power in stage.rolling.values()]
+    entries = [("power from shaft to shaft", THROUGH), ("loss", LOST)]
+    beyond = max(rolling, default=0.0) > entering > 0
+    if flow.circulating or beyond:
+        entries.insert(1, ("circulating power", CIRCULATING))
+    x = 0.1
+    for words, colour in entries:
+        ax.add_patch(Rectangle((x, LEGEND + 0.1), 0.3, 0.16, color=colour, lw=0))
+        ax.text(x + 0.38, LEGEND + 0.18, words, va="center", fontsize=10, color=INK)
+        x += 0.6 + 0.085 * len(words)
+    notes = []
+    if rolling:
+        bars = "bars: rolling power of the meshes"
+        notes.append(f"{bars}, orange beyond the input power" if beyond else bars)
+    if layout.taps:
+        notes.append("down from shafts: bearings, seals, drags")
+    idle = [
+        key.replace("_", " ")
+        for key, stage in flow.stages.items()
+        if stage.rolling and key not in layout.columns
+    ]
+    if idle:
+        notes.append(f"without power: {', '.join(idle)}")
+    ax.text(0.1, LEGEND - 0.12, "; ".join(notes), va="center", fontsize=10, color=SOFT)
