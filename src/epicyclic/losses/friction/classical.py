@@ -71,8 +71,9 @@ def _held_ra(contact: MeshContact) -> float:
 
 
 def _relative_roughness(contact: MeshContact) -> float:
-    """Ra/d1 in um/mm, as in the X_R of Niemann and Winter."""
-    return mean_roughness_ra(contact) * 1e6 / (2e3 * contact.mesh.gear1.reference_radius)
+    """Ra/d1 in um/mm, as in the X_R of Niemann and Winter; d1 is that of the pinion."""
+    pinion = min(contact.mesh.gear1.reference_radius, contact.mesh.gear2.reference_radius)
+    return mean_roughness_ra(contact) * 1e6 / (2e3 * pinion)
 
 
 def _mean_rms(contact: MeshContact) -> float:
