@@ -87,6 +87,9 @@ def bounds_of(annotation: Any, metadata: Sequence[Any] = ()) -> tuple[Ge | Gt | 
     if typing.get_origin(annotation) is typing.Annotated:
         inner, *items = typing.get_args(annotation)
         return bounds_of(inner, (*metadata, *items))
+    members = [member for member in _members(annotation) if member is not type(None)]
+    if len(members) == 1 and members[0] is not annotation:  # a key that need not be given
+        return bounds_of(members[0], metadata)
     found: list[Any] = []
     for item in metadata:
         found += item.metadata if isinstance(item, FieldInfo) else [item]

@@ -191,10 +191,11 @@ class _TrainTables(CaseTable):
         values = {key: getattr(case, key) for key in type(case).model_fields}
         train = cls.model_construct(**values, sets=sets)
         train._source = source
+        known_shapes = not found
         train._shape, wrong = shape_of_train(shapes, train.shafts)
         found += wrong
         found += _element_problems(train)
-        if not found:
+        if known_shapes and not wrong:
             found += operation_problems(train, train.shape)
             found += bearing_force_problems(train)
         return cls._made(train, tables, source, found)

@@ -144,7 +144,7 @@ def _freedom_problems(train: TrainCase, shape: TrainShape) -> list[Problem]:
             )
         )
     if found.loose:
-        names = ", ".join(found.loose)
+        names = ", ".join(body for body in found.loose if body in shape.shafts)
         freedoms = found.freedoms
         word = "one" if freedoms == 1 else str(freedoms)
         problems.append(

@@ -324,7 +324,8 @@ def _planets(
         around = any("planet" in name for name in (*bodies, *bodies.values()))
     planets = []
     for body in dict.fromkeys(bodies.values()):
-        named = body in joined or any(name in joined for name in bodies if bodies[name] == body)
+        names = {body, *(name for name in bodies if bodies[name] == body)}
+        named = bool(names & joined) and not any("planet" in name for name in names)
         if body in stated:
             on_carrier = bool(stated[body])
         elif body in rings or named or not around:
