@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
 
 from epicyclic.case.gear_tables import Gears, GearTable, MeshTable, PairGear, Planet, Ring
 from epicyclic.case.model_tables import (
@@ -229,13 +230,36 @@ class GivenMesh(Table):
 MeshPair = tuple[str, str]
 
 
-class ListedSet(Table):
-    """A set whose gears and meshes are listed, with computed losses."""
+class _Listed(Table):
+    """A set whose gears and meshes are listed."""
 
     planets: int | None = Field(
         default=None, ge=1, le=24, description="Number of planets of each kind; none: fixed axes."
     )
     meshes: tuple[MeshPair, ...] = Field(min_length=1, description="Pairs of gears.")
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """In a file the tables of the gears stand in ``gears``, beside what all gears share."""
+        found = handler.resolve_ref_schema(handler(schema))
+        properties = found["properties"]
+        members = properties.pop("members")
+        shared = properties.get("gears")
+        known = handler.resolve_ref_schema(shared)["properties"] if shared is not None else {}
+        properties["gears"] = {
+            "type": "object",
+            "properties": known,
+            "additionalProperties": members["additionalProperties"],
+        }
+        found["required"] = ["meshes", "gears"]
+        return found
+
+
+class ListedSet(_Listed):
+    """A set whose gears and meshes are listed, with computed losses."""
+
     gears: SharedGears = SharedGears()
     members: dict[str, ListedGear]
     mesh: dict[str, ListedMesh] = Field(default={})
@@ -252,13 +276,9 @@ class ListedSet(Table):
     losses: dict[str, LossOption] = Field(default={})
 
 
-class GivenListedSet(Table):
+class GivenListedSet(_Listed):
     """A set whose gears and meshes are listed, with given efficiencies."""
 
-    planets: int | None = Field(
-        default=None, ge=1, le=24, description="Number of planets of each kind; none: fixed axes."
-    )
-    meshes: tuple[MeshPair, ...] = Field(min_length=1, description="Pairs of gears.")
     members: dict[str, GivenListedGear]
     mesh_efficiency: Efficiency = Field(description="Of every mesh, with the carrier at rest.")
     mesh: dict[str, GivenMesh] = Field(default={})
