@@ -9,14 +9,15 @@ from epicyclic.builders.built import Built
 from epicyclic.builders.train import set_case
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
 from epicyclic.case.listed_set import ListedCase
+from epicyclic.elements.fluids import Fluids
 from epicyclic.elements.gear_set import GearSet
 from epicyclic.errors import InputError, Problem
 
 __all__ = ["build_computed", "set_cases"]
 
 
-def build_computed(case: Case) -> Built:
-    """The machine of a case.
+def build_computed(case: Case) -> tuple[Built, Fluids]:
+    """The machine of a case, and its oil.
 
     Raises
     ------
@@ -24,7 +25,7 @@ def build_computed(case: Case) -> Built:
         If it is a train in which every set has a given efficiency: there are no teeth to look at.
     """
     built = build(case)
-    if not built.sets:
+    if not built.sets or built.known_fluids is None:
         problem = Problem(
             "sets",
             "",
@@ -32,7 +33,7 @@ def build_computed(case: Case) -> Built:
             "Give a set its gears (module, face widths, roughness) in place of its efficiency.",
         )
         raise InputError([problem], case.source)
-    return built
+    return built, built.fluids
 
 
 def set_cases(

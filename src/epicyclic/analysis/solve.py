@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from epicyclic.analysis.sets_of import build_computed
 from epicyclic.builders.assembly import assemble
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
@@ -58,6 +59,8 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
 def pocket_flow_numbers(case: Case) -> tuple[tuple[FlowFamily, float], ...]:
     """Family and number of the flow through the pockets of every mesh whose loss is included."""
     built = build(case)
+    if built.known_fluids is None:
+        return ()
     return tuple(flow_numbers(tuple(built.mean_duties().values()), built.fluids))
 
 
@@ -66,10 +69,8 @@ def mesh_contacts(case: Case) -> dict[str, MeshContact]:
 
     Of a planetary set both meshes of the most loaded planet.
     """
-    built = build(case)
-    contacts = {
-        key: load_mesh(duty, built.fluids.oil) for key, duty in built.loaded_duties().items()
-    }
+    built, fluids = build_computed(case)
+    contacts = {key: load_mesh(duty, fluids.oil) for key, duty in built.loaded_duties().items()}
     return {key: contact for key, contact in contacts.items() if contact is not None}
 
 
@@ -79,5 +80,5 @@ def loaded_meshes(case: Case) -> dict[str, LoadedMesh]:
     Line loads, load of each pair of teeth, contact pattern, transmission error and stiffness over
     the mesh period; of a planetary set for the most loaded planet. Empty without load.
     """
-    duties = build(case).loaded_duties()
+    duties = build_computed(case)[0].loaded_duties()
     return {key: elastic_loads(duty) for key, duty in duties.items() if duty.torque1 != 0}

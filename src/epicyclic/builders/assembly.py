@@ -42,7 +42,7 @@ def assemble(case: Case, built: Built, solution: Solution) -> Result:
     )
     figures = dict(_figures(solution))
     methods = dict(_methods(built))
-    flags = () if built.fluids is None else built.fluids.flags
+    flags = () if built.known_fluids is None else built.fluids.flags
     sharing = built.sets[""].sharing if "" in built.sets else None
     return Result(
         title=case.title,
@@ -57,7 +57,7 @@ def assemble(case: Case, built: Built, solution: Solution) -> Result:
             for key, item in figures.items()
             if not isinstance(item, MeshFigures | BearingFigures)
         },
-        fluid=None if built.fluids is None else built.fluids.figures,
+        fluid=None if built.known_fluids is None else built.fluids.figures,
         models=dict(_models(case, built)),
         flags=flags + tuple(_flags(solution)),
         notes=(

@@ -25,8 +25,8 @@ class Built:
     ----------
     machine : Machine
     operation : Operation
-    fluids : Fluids or None
-        None if every loss is given.
+    known_fluids : Fluids or None
+        Oil and mixture; None if every loss is given.
     sets : mapping of str to GearSet
         Those whose losses are computed; the key of a single set is empty.
     layout : Layout
@@ -35,17 +35,23 @@ class Built:
 
     machine: Machine
     operation: Operation
-    fluids: Fluids | None
+    known_fluids: Fluids | None
     sets: Mapping[str, GearSet]
     layout: Layout
 
+    @property
+    def fluids(self) -> Fluids:
+        """Oil and mixture of a machine that computes losses."""
+        assert self.known_fluids is not None, "a machine of given efficiencies has no oil"
+        return self.known_fluids
+
     def solve(self) -> Solution:
         """Torques and losses that agree."""
-        return solve_machine(self.machine, self.operation, self.fluids)
+        return solve_machine(self.machine, self.operation, self.known_fluids)
 
     def state(self) -> State:
         """Speeds, and torques as without losses."""
-        return lossless_state(self.machine, self.operation, self.fluids)
+        return lossless_state(self.machine, self.operation, self.known_fluids)
 
     def loaded_duties(self) -> dict[str, MeshDuty]:
         """The meshes of the planet that carries most, of every set, by their keys."""

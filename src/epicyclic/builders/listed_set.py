@@ -146,7 +146,7 @@ def _planet_meshes(case: ListedCase, body: str) -> Iterator[PlanetMesh]:
                 mesh=mesh.key,
                 member=member,
                 outward=(0.0, -1.0) if mesh.internal else outward,
-                # a torque from t to r pushes a right-handed gear against y. Theory (J19)
+                # a torque from t to r pushes a right-handed gear against y
                 hand=-hands[gear],
                 position=places[gear],
             )

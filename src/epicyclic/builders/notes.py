@@ -218,7 +218,7 @@ def _arrangement_notes(case: ListedCase) -> Iterator[str]:
         yield (
             f"{planets} equally spaced planets cannot be alike: on each {stepped} the gears must "
             f"be turned against each other in its own way, because {found.number}/{planets} is no "
-            f"integer. Up to {fitting[-1]} alike ones fit, at multiples of 360/{found.number} deg."
+            f"integer. Alike ones fit equally spaced if there are {' or '.join(fitting)}."
         )
     elif not are_evenly_spaced(found.angles):
         placed = ", ".join(f"{math.degrees(angle):.4f}" for angle in found.angles)

@@ -31,7 +31,7 @@ def build_pair(case: GearPairCase, flow_tables: FlowTables) -> Built:
         operation=Operation(
             "pinion", "gear", case.operation.torque, {"pinion": case.operation.speed}
         ),
-        fluids=fluids_of(case),
+        known_fluids=fluids_of(case),
         sets={"": element},
         layout=Layout(tuple(element.choices), PAIR_MEMBERS, ("mesh",)),
     )

@@ -70,7 +70,7 @@ def build_planetary(case: PlanetaryCase, flow_tables: FlowTables) -> Built:
             operation.torque,
             {operation.input: operation.speed, held: held_speed},
         ),
-        fluids=fluids_of(case),
+        known_fluids=fluids_of(case),
         sets={"": element},
         layout=Layout(
             tuple(element.choices),

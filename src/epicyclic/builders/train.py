@@ -39,7 +39,7 @@ def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:
             layouts=tuple(shaft_layouts(case, sets)),
         ),
         operation=_operation(case),
-        fluids=fluids_of(case) if case.computed else None,
+        known_fluids=fluids_of(case) if case.computed else None,
         sets=sets,
         layout=train_layout(case),
     )

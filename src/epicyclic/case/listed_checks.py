@@ -60,7 +60,7 @@ def listed_set_problems(table: ListedSet, shape: SetShape) -> list[Problem]:
         *_planet_problems(table, shape),
         *_sharing_problems(table),
     ]
-    racks = [problem for gear in table.members for problem in _rack_problems(table, gear)]
+    racks = list(dict.fromkeys(_rack_problems(table)))
     if racks:
         return problems + racks
     sound, found = _sound_gears(table)
@@ -111,7 +111,7 @@ def _planet_problems(table: ListedSet, shape: SetShape) -> Iterator[Problem]:
     """Planets without a number, and a carrier or bearings without planets."""
     if shape.planets and table.planets is None:
         names = ", ".join(shape.planets)
-        allowed = f"is missing: {names} turn on a carrier."
+        allowed = f"is missing, and the set has planets ({names})."
         remedy = "Add planets = 3, or as many as there are."
         yield Problem("planets", "", allowed, remedy)
     if not shape.planets:
@@ -169,21 +169,26 @@ def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
 # --- gears ----------------------------------------------------------------------------------------
 
 
-def _rack_problems(table: ListedSet, gear: str) -> Iterator[Problem]:
-    """What the basic rack of a gear lacks, or has twice."""
-    given = rack_keys(table, gear)
+def _rack_problems(table: ListedSet) -> Iterator[Problem]:
+    """What the basic racks of the gears lack, or have twice."""
+    given = {gear: rack_keys(table, gear) for gear in table.members}
     for group in RACK_KEYS:
-        found = [key for key in group if key in given]
-        if not found:
-            names = " or ".join(group)
-            allowed = "is missing."
+        names = " or ".join(group)
+        without = [gear for gear, keys in given.items() if not keys.keys() & set(group)]
+        if len(without) == len(given):
+            remedy = f"Give {names}, there for all gears or at each of them."
+            yield Problem(f"gears.{group[0]}", "", "is missing.", remedy)
+            without = []
+        for gear in without:
             remedy = f"Give {names} to this gear, or to all in gears."
-            yield Problem(f"gears.{gear}.{group[0]}", "", allowed, remedy)
-        elif len(found) > 1:
-            own = getattr(table.members[gear], found[0]) is not None
-            prefix = f"gears.{gear}" if own else "gears"
-            keys = ", ".join(f"{prefix}.{key}" for key in found)
-            yield Problem(keys, "", "state the same twice.", "Keep one of them.")
+            yield Problem(f"gears.{gear}.{group[0]}", "", "is missing.", remedy)
+        for gear, keys in given.items():
+            found = [key for key in group if key in keys]
+            if len(found) > 1:
+                own = getattr(table.members[gear], found[0]) is not None
+                prefix = f"gears.{gear}" if own else "gears"
+                both = ", ".join(f"{prefix}.{key}" for key in found)
+                yield Problem(both, "", "state the same twice.", "Keep one of them.")
 
 
 def _sound_gears(table: ListedSet) -> tuple[dict[str, Gear], list[Problem]]:

@@ -270,14 +270,15 @@ def hands_of(table: ListedSet, shape: SetShape) -> dict[str, int]:
     """Hand of the helix of each gear, +1 right.
 
     As stated; mates demand the other of an external and the same of an internal mesh. What they
-    leave open is as on the rest of the body, and of the first gear right.
+    leave open is as on the rest of the body, and of the first gear of the first mesh right.
     """
+    gears = _in_order(table)
     hands = {
-        name: 1 if gear.hand == "right" else -1
-        for name, gear in table.members.items()
-        if gear.hand is not None
+        gear: 1 if hand == "right" else -1
+        for gear in gears
+        if (hand := table.members[gear].hand) is not None
     }
-    while len(hands) < len(table.members):
+    while len(hands) < len(gears):
         before = len(hands)
         for mesh in shape.meshes:
             for known, other in ((mesh.first, mesh.second), (mesh.second, mesh.first)):
@@ -286,21 +287,26 @@ def hands_of(table: ListedSet, shape: SetShape) -> dict[str, int]:
         if len(hands) > before:
             continue
         of_body = {shape.bodies[gear]: hand for gear, hand in reversed(hands.items())}
-        left = [gear for gear in table.members if gear not in hands]
+        left = [gear for gear in gears if gear not in hands]
         nearest = next((gear for gear in left if shape.bodies[gear] in of_body), left[0])
         hands[nearest] = of_body.get(shape.bodies[nearest], 1)
     return hands
 
 
+def _in_order(table: ListedSet) -> list[str]:
+    """All gears in the order of the meshes; the order of tables in a file has no meaning."""
+    return list(dict.fromkeys(gear for pair in table.meshes for gear in pair))
+
+
 def positions_of(table: ListedSet, shape: SetShape) -> dict[str, float]:
     """Middle of the face of each gear on a planet from the middle of its bearing. [m]
 
-    As stated; else the gears of a body stand side by side in their order, the bearing in the middle
-    of all.
+    As stated; else the gears of a body stand side by side in the order of the meshes, the bearing
+    in the middle of all.
     """
     positions = {}
     for body in shape.planets:
-        gears = [gear for gear, own in shape.bodies.items() if own == body]
+        gears = [gear for gear in _in_order(table) if shape.bodies[gear] == body]
         start = -sum(table.members[gear].face_width for gear in gears) / 2
         for gear in gears:
             width, stated = table.members[gear].face_width, table.members[gear].axial_position

@@ -20,13 +20,41 @@ _EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {
     "planetary": ("talbot-2012", PlanetaryCase),
     "gear_pair": ("talbot-2012-pair", GearPairCase),
 }
+_TRAIN = "train-eaxle"
+_TRAIN_HEAD = f"""\
+# A case file of epicyclic, kind train, filled in with the built-in case {_TRAIN}.
+# Every dimensional value carries its unit. The tables of a set are those of a case of kind
+# planetary or gear_pair: 'epicyclic init --kind planetary' writes all their keys. A set with teeth
+# and efficiency = 0.99 only has that given loss in place of computed ones.
+"""
+_TRAIN_STATES = """
+# A gearbox with brakes and clutches has states; operation.state = "1" chooses the one that runs:
+# [states.1]
+# fixed = ["ring"]                     # shafts that brakes hold
+# joined = [["motor", "middle"]]       # shafts that clutches join
+
+# Drag of a clutch, a pump or another part, from a table:
+# [drags.pump]
+# between = ["motor", "housing"]
+# speed = ["0 rpm", "5000 rpm", "10000 rpm"]
+# torque = ["0.1 N*m", "0.15 N*m", "0.2 N*m"]
+
+# [models]                             # of all sets; a set may have its own, [sets.pair.models]
+# friction = "schlenk"                 # 'epicyclic friction CASE' compares them
+"""
 COMMENT_COLUMN = 44
 _SPELT_OUT = ("micro_geometry", "micro_geometry_ring_side", "topography", "oil")
 """Tables within a table whose keys are listed."""
 
 
 def case_template(kind: str) -> str:
-    """A case file of `kind` with every key: given ones with values, defaults commented out."""
+    """A case file of `kind` with every key: given ones with values, defaults commented out.
+
+    That of a train, whose sets have the keys of the other kinds, is a built-in one.
+    """
+    if kind == "train":
+        _, mark, tables = library.case_source(_TRAIN).partition('kind = "train"')
+        return f"{_TRAIN_HEAD}{mark}{tables}{_TRAIN_STATES}"
     name, _ = _EXAMPLES[kind]
     head = [
         f"A case file of epicyclic, kind {kind}, filled in with the built-in case {name}.",

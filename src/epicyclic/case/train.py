@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self, cast
 
 from pydantic import Field, PrivateAttr, create_model
 
@@ -19,6 +19,7 @@ from epicyclic.case.listed_set import directions_of, hands_of
 from epicyclic.case.model_tables import (
     ContactSolver,
     FrictionTable,
+    GearPairModels,
     Numerics,
     PlanetaryModels,
 )
@@ -32,6 +33,7 @@ from epicyclic.case.train_tables import (
     GivenListedSet,
     GivenPair,
     GivenPlanetarySet,
+    ListedGear,
     ListedSet,
     PairSet,
     PlanetarySet,
@@ -149,8 +151,9 @@ class _TrainTables(CaseTable):
     ) -> Self:
         """The train of `tables`; parameters and errors as of every case."""
         folder = Path(source).parent
-        raw_sets = tables.get("sets")
-        named = tuple(raw_sets) if isinstance(raw_sets, dict) else ()
+        given = tables.get("sets")
+        raw_sets: dict[str, Any] = given if isinstance(given, dict) else {}
+        named = tuple(raw_sets)
         whole = validate(_top(cls), {k: v for k, v in tables.items() if k != "sets"})
         found = [*problems]
         known = {problem.key for problem in problems}
@@ -164,7 +167,7 @@ class _TrainTables(CaseTable):
             )
         ]
         if not named:
-            found.append(_no_sets(raw_sets))
+            found.append(_no_sets(given))
         shared = {key: tables[key] for key in _SHARED if key in tables and key in whole.sections}
         sets: dict[str, SetTable] = {}
         shapes: dict[str, SetShape] = {}
@@ -198,7 +201,7 @@ class _TrainTables(CaseTable):
         if known_shapes and not wrong:
             found += operation_problems(train, train.shape)
             found += bearing_force_problems(train)
-        return cls._made(train, tables, source, found)
+        return cls._made(cast(Self, train), tables, source, found)
 
 
 _ELEMENTS: dict[str, Any] = {
@@ -301,7 +304,7 @@ def _read_set_cached(given: _Given) -> _ReadSet:
     if not any(key in raw for key in _GIVEN):
         raw = {key: value for key, value in given.shared.items() if key in form.model_fields} | raw
     if "models" in raw and form is PairSet:
-        own = PairSet.model_fields["models"].annotation.model_fields
+        own = GearPairModels.model_fields
         raw = raw | {"models": {k: v for k, v in raw["models"].items() if k in own}}
     read: Validation[Any] = validate(form, raw)
     problems = [_with_gears(problem) for problem in read.problems]
@@ -365,7 +368,7 @@ def all_gears_to_members(raw: dict[str, Any], *, given: bool) -> dict[str, Any]:
 
 def _is_gear_key(key: str) -> bool:
     """True for keys of a gear whose losses are computed; of no effect with a given efficiency."""
-    return key in ListedSet.model_fields["members"].annotation.__args__[1].model_fields
+    return key in ListedGear.model_fields
 
 
 def _teeth_only(raw: dict[str, Any]) -> dict[str, Any]:

@@ -79,8 +79,8 @@ def _of_shaft(
                 f"is missing: the forces on the bearings {names} follow from it.",
                 f'Add "{gear}" = "... mm" to [positions]. {GIVE_FORCE}',
             )
-    for name, table in train.sets.items():
-        if not isinstance(table, GivenPlanetarySet | GivenPair | GivenListedSet):
+    for name, gears in train.sets.items():
+        if not isinstance(gears, GivenPlanetarySet | GivenPair | GivenListedSet):
             continue
         if shaft in train.shape.bodies_of(name).values():
             yield Problem(

@@ -113,9 +113,12 @@ def _ends_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]:
     for key, values in given.items():
         for name in values:
             shaft = shape.shaft_of(name)
-            taken = {ends["input"]: "the input", ends["output"]: "the output"}
+            taken: dict[str | None, str] = {
+                ends["input"]: "the input",
+                ends["output"]: "the output",
+            }
             if key == "speeds":
-                taken |= dict.fromkeys(held, "held") | {HOUSING: "held"}
+                taken.update(dict.fromkeys((*held, HOUSING), "held"))
                 taken.pop(ends["output"], None)
             if shaft in taken:
                 allowed = f"cannot be given: this shaft is {taken[shaft]}."

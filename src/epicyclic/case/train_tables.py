@@ -183,8 +183,13 @@ class ListedGear(PairGear):
     axial_position: Position | None = Field(
         default=None,
         description="Of the middle of its face from the middle of the planet bearing. Default: "
-        "gears of one body side by side, in their order.",
+        "gears of one body side by side, in the order of meshes.",
     )
+
+
+def _of_gears(key: str) -> Any:
+    """A key as the gears of a planetary case have it."""
+    return Gears.model_fields[key]
 
 
 class SharedGears(Table):
@@ -202,8 +207,8 @@ class SharedGears(Table):
         default=None, description="beta at the reference circle, magnitude."
     )
     center_distance: Length | None = Field(default=None, description="Of every mesh.")
-    addendum_coefficient: Number = Gears.model_fields["addendum_coefficient"]
-    dedendum_coefficient: Number = Gears.model_fields["dedendum_coefficient"]
+    addendum_coefficient: Number = _of_gears("addendum_coefficient")
+    dedendum_coefficient: Number = _of_gears("dedendum_coefficient")
 
 
 class ListedMesh(MeshTable):

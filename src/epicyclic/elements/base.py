@@ -46,7 +46,7 @@ class State:
     forces : mapping of str to BearingLoad
         On each bearing of a shaft, by the key of its element.
     fluids : Fluids
-        Oil and mixture with air.
+        Oil and mixture with air. A machine without elements may do without.
     lossless : bool
         True if no loss has been taken from the torques yet.
     idle : mapping of str to object

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from epicyclic.elements.fluids import Fluids
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.lubricant.properties import MixtureState
-from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow
+from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow, PocketModel
 from epicyclic.pocketing.similarity import FlowFamily, FlowFigures
 from epicyclic.pocketing.stored import stored_table
 from epicyclic.pocketing.table import FlowTables
@@ -48,8 +48,7 @@ class PocketSettings:
         False if the loss is left out, so that nobody asks for the flow.
     oil_fraction : float
         Oil share by volume at ambient pressure. [1]
-    model : str
-        A key of `POCKETING_MODELS`.
+    model : PocketModel
     slices, steps : int
         Resolution: across the face, in one pitch.
     end_length : float
@@ -62,7 +61,7 @@ class PocketSettings:
 
     include: bool
     oil_fraction: float
-    model: str
+    model: PocketModel
     slices: int
     steps: int
     end_length: float
@@ -190,7 +189,7 @@ def _solve(request: _Request) -> MeshFlow:
         return MeshFlow(left_out=f"no tooth outline: {error}")
 
 
-def pocketing_method(model: str, figures: FlowFigures | None) -> str:
+def pocketing_method(model: PocketModel, figures: FlowFigures | None) -> str:
     """How the loss was found, in words."""
     method = POCKETING_MODELS[model]
     if figures is None or not figures.nodes:

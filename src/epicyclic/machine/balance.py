@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.elements.base import HOUSING
-from epicyclic.machine.machine import Machine, Operation
+from epicyclic.machine.machine import Machine, MeshRow, Operation, Terms
 
 __all__ = ["Balance", "Friction", "balance", "drives_first"]
 
@@ -99,12 +99,9 @@ def balance(
     unknown = _unknown_torques(operation, place)
     columns = np.zeros((len(bodies), len(machine.rows) + len(machine.couplings) + len(unknown)))
     scale = []
-    for number, constraint in enumerate((*machine.rows, *machine.couplings)):
-        terms = constraint.terms()
-        if number < len(machine.rows):
-            eta = efficiencies[constraint.key]
-            first = drives[constraint.key]
-            terms = machine.rows[number].terms(1.0 if first else eta, eta if first else 1.0)
+    lossy = [_lossy_terms(row, drives[row.key], efficiencies[row.key]) for row in machine.rows]
+    stiff = [coupling.terms() for coupling in machine.couplings]
+    for number, terms in enumerate((*lossy, *stiff)):
         for body, coefficient in terms:
             if body != HOUSING:
                 columns[place[body], number] += coefficient
@@ -141,11 +138,16 @@ def balance(
     )
 
 
+def _lossy_terms(row: MeshRow, first: bool, efficiency: float) -> Terms:
+    """The terms of a mesh with that of its driven gear reduced; `first` if gear 1 drives."""
+    return row.terms(1.0, efficiency) if first else row.terms(efficiency, 1.0)
+
+
 def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
     """The smallest solution of a linear system, and whether it is the only one."""
     if matrix.shape[0] == matrix.shape[1]:
         try:
-            found: FloatArray = np.linalg.solve(matrix, known)
+            found = np.asarray(np.linalg.solve(matrix, known), float)
         except np.linalg.LinAlgError:
             pass
         else:
@@ -153,7 +155,8 @@ def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
             size = float(np.abs(known).max(initial=0.0))
             if float(np.abs(found).max(initial=0.0)) <= LARGEST_FACTOR * size:
                 return found, True
-    found, _, rank, _ = np.linalg.lstsq(matrix, known, rcond=SINGULAR)
+    least, _, rank, _ = np.linalg.lstsq(matrix, known, rcond=SINGULAR)
+    found = np.asarray(least, float)
     found += np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR)[0]
     return found, int(rank) == matrix.shape[1]
 

@@ -102,9 +102,11 @@ def _matrix(machine: Machine, given: Sequence[str]) -> FloatArray:
     """Constraints, scaled to length 1, and below them one row for each given speed."""
     place = {body: index for index, body in enumerate(machine.bodies)}
     rows = []
-    for constraint in (*machine.rows, *machine.couplings):
+    constraints = [mesh.terms() for mesh in machine.rows]
+    constraints += [coupling.terms() for coupling in machine.couplings]
+    for terms in constraints:
         row = np.zeros(len(place))
-        for body, coefficient in constraint.terms():
+        for body, coefficient in terms:
             if body != HOUSING:
                 row[place[body]] += coefficient
         length = np.linalg.norm(row)

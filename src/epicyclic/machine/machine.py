@@ -8,7 +8,10 @@ from dataclasses import dataclass, field
 from epicyclic.elements.base import Element
 from epicyclic.machine.forces import ShaftLayout
 
-__all__ = ["Coupling", "Machine", "MeshRow", "Operation"]
+__all__ = ["Coupling", "Machine", "MeshRow", "Operation", "Terms"]
+
+Terms = tuple[tuple[str, float], ...]
+"""Bodies with the coefficients of their speeds in a constraint."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +41,7 @@ class MeshRow:
     internal: bool = False
     efficiency: float = 1.0
 
-    def terms(self, first: float = 1.0, second: float = 1.0) -> tuple[tuple[str, float], ...]:
+    def terms(self, first: float = 1.0, second: float = 1.0) -> Terms:
         """Bodies with their coefficients in z1 (w1 - wc) + s z2 (w2 - wc) = 0. Theory (T1).
 
         s = -1 for a ring gear, else 1; `first` and `second` multiply the coefficients of the gears.
@@ -56,7 +59,7 @@ class Coupling:
     first: str
     second: str
 
-    def terms(self) -> tuple[tuple[str, float], ...]:
+    def terms(self) -> Terms:
         """Bodies with their coefficients in w1 - w2 = 0."""
         return ((self.first, 1.0), (self.second, -1.0))
 

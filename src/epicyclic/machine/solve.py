@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 from epicyclic.elements.base import LOAD_DEPENDENT, ElementResult, Loss, State
 from epicyclic.elements.fluids import Fluids
@@ -110,12 +110,12 @@ class Solution:
         yield from self.given.values()
 
 
-def lossless_state(machine: Machine, operation: Operation, fluids: Fluids) -> State:
+def lossless_state(machine: Machine, operation: Operation, fluids: Fluids | None) -> State:
     """Speeds, and torques as without losses: what elements see first."""
     speeds = speeds_of(machine, operation.speeds)
     found = _lossless(machine, operation, speeds)
     forces = forces_of(machine.layouts, found.meshes)
-    return State(speeds, found.meshes, forces, fluids, lossless=True)
+    return State(speeds, found.meshes, forces, cast(Fluids, fluids), lossless=True)
 
 
 def _lossless(machine: Machine, operation: Operation, speeds: Mapping[str, float]) -> Balance:
@@ -192,7 +192,9 @@ def _converged(
     idle: dict[str, Any] = {}
     for number in range(MOST_PASSES):
         forces = forces_of(machine.layouts, found.meshes)
-        state = State(speeds, found.meshes, forces, fluids, lossless=number == 0, idle=idle)
+        state = State(
+            speeds, found.meshes, forces, cast(Fluids, fluids), lossless=number == 0, idle=idle
+        )
         if not number:
             idle |= {element.key: element.idle(state) for element in machine.elements}
         changed = False
