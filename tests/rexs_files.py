@@ -1,4 +1,4 @@
-"""Small REXS files made to order: one planetary set, or one pair."""
+"""Small REXS files made to order: one planetary set, one pair, trains of both."""
 
 from __future__ import annotations
 
@@ -227,4 +227,141 @@ def pair(version: str = "2.0.0") -> Parts:
     _gear(parts, RING, "gear", "cylindrical_gear", 6, -1, number_of_teeth=none(36))
     _gear(parts, SUN, "pinion", "cylindrical_gear", SUN_SHAFT, number_of_teeth=none(24))
     parts.relate("stage", stage=STAGE, gear_1=RING, gear_2=SUN)
+    return parts
+
+
+# --- trains ---------------------------------------------------------------------------------------
+
+FIRST, SECOND, THIRD = 1000, 2000, 3000
+"""Ids of the first, second and third stage; those of their gears follow."""
+
+UNIT, LOAD, DRIVEN = 1, 60, 61
+
+
+def shaft(parts: Parts, number: int, name: str, along: float = 0.0, up: float = 0.0) -> int:
+    """A shaft of the gear unit that starts at `along` and lies `up` from its middle."""
+    parts.add(number, "shaft", name, support_vector=([along, up, 0.0], "mm"),
+              u_axis_vector=([1.0, 0.0, 0.0], "mm"))  # fmt: skip
+    parts.relate("assembly", assembly=UNIT, part=number)
+    return number
+
+
+def _set_place(parts: Parts, number: int, along: float, up: float) -> None:
+    parts.set(number, support_vector=([along, up, 0.0], "mm"), u_axis_vector=([1.0, 0, 0], "mm"))
+
+
+def add_pair(parts: Parts, stage: int, name: str, shafts: tuple[int, int], along: float,
+             up: tuple[float, float] = (0.0, 61.4), hand: int = 1) -> None:  # fmt: skip
+    """24 and 36 teeth on two shafts; the gears are `stage` + 1 and + 2."""
+    parts.add(stage, "cylindrical_stage", name, center_distance=mm(61.4))
+    for member, teeth in enumerate((24, 36)):
+        number = stage + 1 + member
+        _gear(parts, number, f"{name} {teeth}", "cylindrical_gear", shafts[member],
+              -hand if member else hand, number_of_teeth=none(teeth))  # fmt: skip
+        _set_place(parts, number, along, up[member])
+    parts.relate("stage", stage=stage, gear_1=stage + 1, gear_2=stage + 2)
+
+
+def add_planetary(parts: Parts, stage: int, name: str, shafts: dict[str, int]) -> None:
+    """24, 18 and 60 teeth, three planets without bearings; sun `stage` + 1, ring + 2."""
+    parts.add(stage, "planetary_stage", name)
+    for member in ("sun", "ring"):
+        parts.relate("central_shaft", planetary_stage=stage, shaft=shafts[member])
+    parts.relate("planet_carrier_shaft", planetary_stage=stage, shaft=shafts["carrier"])
+    sun, ring = stage + 1, stage + 2
+    _gear(parts, sun, f"{name} sun", "cylindrical_gear", shafts["sun"],
+          number_of_teeth=none(24), tip_diameter=mm(53.07), root_diameter=mm(44.07))  # fmt: skip
+    _gear(parts, ring, f"{name} ring", "ring_gear", shafts["ring"], -1,
+          number_of_teeth=none(60), tip_diameter=mm(119.6), root_diameter=mm(127.68))  # fmt: skip
+    for number in PLANETS:
+        planet_shaft, planet = stage + 10 + number, stage + 20 + number
+        parts.add(planet_shaft, "shaft", f"{name} planet shaft {number}")
+        parts.relate("planet_shaft", planetary_stage=stage, shaft=planet_shaft)
+        _gear(parts, planet, f"{name} planet {number}", "cylindrical_gear", planet_shaft, -1,
+              number_of_teeth=none(18), tip_diameter=mm(40.8), root_diameter=mm(31.8))  # fmt: skip
+        meshes = ((stage + 30 + number, sun, planet), (stage + 40 + number, planet, ring))
+        for mesh, first, second in meshes:
+            parts.add(mesh, "cylindrical_stage", f"{name} mesh", center_distance=mm(42.94))
+            parts.relate("stage", stage=mesh, gear_1=first, gear_2=second)
+
+
+def hold(parts: Parts, joint: int, held: int, **attributes: Any) -> None:
+    """A shaft that a coupling, or a brake with its positions, joins to the casing."""
+    kind = "switchable_coupling" if attributes else "coupling"
+    parts.add(joint, kind, f"joint {joint}", **attributes)
+    parts.relate("side", assembly=joint, inner_part=held, outer_part=CASING)
+
+
+def run(parts: Parts, driven: int, output: int, torque: float, speed: float) -> None:
+    """Torque and speed on a shaft, a load without a torque on another."""
+    parts.add(LOAD, "external_load", "drives", torque_around_u_axis=(torque, "N m"))
+    parts.add(DRIVEN, "external_load", "driven")
+    parts.relate("assembly", assembly=driven, part=LOAD)
+    parts.relate("assembly", assembly=output, part=DRIVEN)
+    parts.set(driven, rotational_speed=(speed, "1 / min"))
+
+
+def bearing(parts: Parts, number: int, name: str, on: int, along: float, up: float = 0.0,
+            kind: str = "radial_grooved_ball_bearing", support: str = "both_directions",
+            outer: int = CASING) -> None:  # fmt: skip
+    """A rolling bearing between a shaft and the casing."""
+    parts.add(
+        number, "rolling_bearing_with_catalog_geometry", name, bearing_type=none(kind),
+        inner_diameter=mm(30.0), outer_diameter=mm(62.0), width=mm(16.0),
+        radial_dynamic_load_rating=(20.0, "kN"), radial_static_load_rating=(11.0, "kN"),
+        axial_force_absorption=none(support),
+    )  # fmt: skip
+    _set_place(parts, number, along, up)
+    parts.relate("side", assembly=number, inner_part=on, outer_part=outer)
+
+
+def eaxle(version: str = "2.0.0") -> Parts:
+    """A pair and a planetary set, its ring held: motor, mid, wheels; bearings of the motor shaft.
+
+    The gear of the pair and the sun stand on two shafts that a coupling joins.
+    """
+    parts = Parts(version)
+    _surroundings(parts)
+    motor, mid, sun = (shaft(parts, 20, "motor"), shaft(parts, 21, "mid", 5.0, 61.4),
+                       shaft(parts, 22, "sun shaft", 60.0, 61.4))  # fmt: skip
+    ring, wheels = shaft(parts, 23, "ring", 80.0, 61.4), shaft(parts, 24, "wheels", 90.0, 61.4)
+    add_pair(parts, FIRST, "pair", (motor, mid), 40.0)
+    add_planetary(parts, SECOND, "set", {"sun": sun, "ring": ring, "carrier": wheels})
+    parts.add(70, "coupling", "spline")
+    parts.relate("side", assembly=70, inner_part=mid, outer_part=sun)
+    hold(parts, 71, ring)
+    run(parts, motor, wheels, 100.0, 3000.0)
+    bearing(parts, 80, "left", motor, 10.0)
+    bearing(parts, 81, "right", motor, 75.0, kind="radial_roller_bearing", support="no_direction")
+    return parts
+
+
+def two_planetary(version: str = "2.0.0") -> Parts:
+    """Two planetary sets one after the other, both rings held: carrier 1 drives sun 2."""
+    parts = Parts(version)
+    _surroundings(parts)
+    names = ("in", "between", "out", "ring 1", "ring 2")
+    first, between, out, *rings = (shaft(parts, 20 + i, name) for i, name in enumerate(names))
+    add_planetary(parts, FIRST, "stage", {"sun": first, "ring": rings[0], "carrier": between})
+    add_planetary(parts, SECOND, "stage", {"sun": between, "ring": rings[1], "carrier": out})
+    hold(parts, 70, rings[0])
+    hold(parts, 71, rings[1])
+    run(parts, first, out, 20.0, 3000.0)
+    return parts
+
+
+def wind(version: str = "2.0.0") -> Parts:
+    """Two planetary sets driven at the carrier and a pair, speeding up."""
+    parts = Parts(version)
+    _surroundings(parts)
+    names = ("rotor", "slow", "wheel", "generator", "ring 1", "ring 2")
+    rotor, slow, wheel, generator, *rings = (
+        shaft(parts, 20 + i, name) for i, name in enumerate(names)
+    )
+    add_planetary(parts, FIRST, "low", {"sun": slow, "ring": rings[0], "carrier": rotor})
+    add_planetary(parts, SECOND, "middle", {"sun": wheel, "ring": rings[1], "carrier": slow})
+    add_pair(parts, THIRD, "high", (generator, wheel), 300.0)
+    hold(parts, 70, rings[0])
+    hold(parts, 71, rings[1])
+    run(parts, rotor, generator, 500.0, 100.0)
     return parts

@@ -12,7 +12,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.cli.main import main
-from rexs_files import SUN, pair, planetary
+from rexs_files import FIRST, SUN, eaxle, pair, planetary
 
 HOW_TO = Path(__file__).parents[2] / "docs" / "how-to" / "rexs.md"
 COARSE = ("--set", "numerics.mesh_positions=4", "--set", "numerics.contact_segments=4")
@@ -121,3 +121,28 @@ def test_export_without_an_original_describes_the_case(command, folder):
     first, again = ep.load_case("talbot-2012-pair"), ep.load_case(folder / "new.toml")
     assert again.operation == first.operation
     assert again.gears.center_distance == pytest.approx(first.gears.center_distance)
+
+
+def test_several_stages_become_a_train(command, folder):
+    parts = eaxle()
+    parts.set(FIRST + 1, arithmetic_mean_roughness_flank_iso_4287_1997=None)
+    parts.write(folder / "eaxle.rexs")
+    code, out, _ = command("rexs", "import", "eaxle.rexs", "-o", "train.toml")
+    assert code == 5
+    assert "sets.pair.pinion.roughness" in out
+    assert re.search(
+        r"^# roughness = .*# NEEDED\. The file has no",
+        (folder / "train.toml").read_text(encoding="utf-8"),
+        re.MULTILINE,
+    )
+    rough = ("--set", "sets.pair.pinion.roughness=0.4 um")
+    code, out, _ = command("run", "eaxle.rexs", *COARSE, *rough)
+    assert code == 0
+    assert "wheels" in out
+    code, out, _ = command("rexs", "import", "eaxle.rexs", "-o", "whole.toml", *rough)
+    assert code == 0, out
+    assert command("rexs", "export", "whole.toml", "eaxle.rexs", "-o", "out.rexs", *COARSE)[0] == 0
+    assert "custom_epicyclic_total" in (folder / "out.rexs").read_text(encoding="utf-8")
+    one = ("--component", str(FIRST), "-o", "one.toml", "--set", "pinion.roughness=0.4 um")
+    assert command("rexs", "import", "eaxle.rexs", *one)[0] == 0
+    assert tomllib.loads((folder / "one.toml").read_text(encoding="utf-8"))["kind"] == "gear_pair"

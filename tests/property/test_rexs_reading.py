@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import epicyclic as ep
-from rexs_files import pair, planetary
+from rexs_files import eaxle, pair, planetary, wind
 
 VALUES = st.sampled_from(
     [0, -1, 1e308, 1e-300, "NaN", "", "abc", True, -60, 10**30, [1.0], [], ["x"], None]
@@ -19,7 +19,7 @@ UNITS = st.sampled_from(["mm", "none", "", "kg", "C", "°", "furlong", "N m"])
 @settings(max_examples=25)
 @given(st.data())
 def test_changed_files_are_read_or_refused(tmp_path_factory, data):
-    parts = data.draw(st.sampled_from([planetary, pair]))()
+    parts = data.draw(st.sampled_from([planetary, pair, eaxle, wind]))()
     for _ in range(data.draw(st.integers(1, 4))):
         number = data.draw(st.sampled_from(sorted(parts.components)))
         component = parts.components[number]

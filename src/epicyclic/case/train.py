@@ -140,7 +140,8 @@ class _TrainTables(CaseTable):
         return inputs
 
     def __hash__(self) -> int:
-        return hash(json.dumps(self.given(), sort_keys=True, default=str))
+        operation = self.operation
+        return hash((self.title, *self.sets, operation.state, operation.torque, operation.speed))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _read, (self.given(), self.source)

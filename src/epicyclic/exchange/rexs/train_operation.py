@@ -20,7 +20,7 @@ def train_operation(draft: Draft, model: Model, train: Train) -> None:
     """Tables ``shafts``, ``states`` and ``operation``, but for the temperature of the oil."""
     still = {name: at([shaft.held]) for name, shaft in train.shafts.items() if shaft.held}
     closed = _states(draft, model, train)
-    braked = {name for pair in closed if HOUSING in pair for name in pair}
+    braked = {name for pair in closed or () if HOUSING in pair for name in pair}
     free = {
         name: shaft
         for name, shaft in train.shafts.items()
@@ -34,7 +34,8 @@ def train_operation(draft: Draft, model: Model, train: Train) -> None:
     else:
         own = free[driven]
         speed_and_torque(draft, list(own.parts.values()), own.components or shafts)
-    still |= _further_speeds(draft, train, free, driven, closed)
+    if closed is not None:
+        still |= _further_speeds(draft, train, free, driven, closed)
     _shafts(draft, train, still)
     _whole(draft, train)
 
@@ -62,8 +63,11 @@ def _whole(draft: Draft, train: Train) -> None:
     draft.need("shafts", "relation assembly with a shaft, or coupling of shafts,", loose, hint)
 
 
-def _states(draft: Draft, model: Model, train: Train) -> list[tuple[str, str]]:
-    """What clutches and brakes join in each position; the pairs of the position that is chosen."""
+def _states(draft: Draft, model: Model, train: Train) -> list[tuple[str, str]] | None:
+    """What clutches and brakes join in each position.
+
+    Returns the pairs of the position that is chosen, None if the file does not say which.
+    """
     positions: list[tuple[bool, ...]] = []
     for switch in train.switches:
         engaged = switch.component.get("is_engaged")
@@ -72,32 +76,36 @@ def _states(draft: Draft, model: Model, train: Train) -> list[tuple[str, str]]:
             positions.append(engaged.flags())
         except ValueError as error:
             draft.wrong("states", engaged, switch.component, str(error))
-            return []
+            return None
     if not positions:
         return []
     count = max(map(len, positions))
     origin = f"is_engaged of {at([switch.component for switch in train.switches])}"
-    for number in range(count):
-        closed = [
-            switch.shafts
-            for switch, engaged in zip(train.switches, positions, strict=True)
-            if number < len(engaged) and engaged[number]
-        ]
+    states = [_closed(train, positions, number) for number in range(count)]
+    for number, closed in enumerate(states, start=1):
         fixed = [one if two == HOUSING else two for one, two in closed if HOUSING in (one, two)]
         joined = [list(pair) for pair in closed if HOUSING not in pair]
-        draft.give(f"states.{number + 1}", {"fixed": fixed, "joined": joined}, origin)
+        draft.give(f"states.{number}", {"fixed": fixed, "joined": joined}, origin)
     units = model.of_type("gear_unit")
     index = draft.read("gear_shift_index", units, "operation.state")
     chosen = index.number if index is not None else 1.0 if count == 1 else 0.0
     if not (1 <= chosen <= count and chosen.is_integer()):
         draft.lack("operation.state", f"gear_shift_index from 1 to {count}", units)
-        return []
+        return None
     draft.give("operation.state", f"{chosen:.0f}", index.origin if index else "the only one")
-    return [
+    return states[int(chosen) - 1]
+
+
+def _closed(
+    train: Train, positions: Sequence[tuple[bool, ...]], number: int
+) -> list[tuple[str, str]]:
+    """What is joined in a position, each pair of shafts once."""
+    closed = (
         switch.shafts
         for switch, engaged in zip(train.switches, positions, strict=True)
-        if chosen <= len(engaged) and engaged[int(chosen) - 1]
-    ]
+        if number < len(engaged) and engaged[number]
+    )
+    return list(dict.fromkeys(closed))
 
 
 def _input(draft: Draft, free: Mapping[str, Shaft]) -> str | None:

@@ -25,8 +25,8 @@ from epicyclic.exchange.rexs.sets import (
 
 __all__ = ["Shaft", "Switch", "Train", "chosen_train"]
 
-MOST_STAGES = 40
-"""A file with more stages than this is no gear unit."""
+MOST_STAGES, MOST_BEARINGS = 40, 400
+"""A file with more than this is no gear unit."""
 
 _LONGEST_NAME = 32
 
@@ -137,12 +137,12 @@ def chosen_train(model: Model) -> Train | None:
     """
     kinds = ("planetary_stage", "cylindrical_stage")
     if len(model.of_type(kinds[0])) > MOST_STAGES:
-        raise _too_many(len(model.of_type(kinds[0])))
+        raise _too_many(f"{len(model.of_type(kinds[0]))} stages", MOST_STAGES)
     stages = gear_sets(model)
     if len(stages) < 2:
         return None
     if len(stages) > MOST_STAGES:
-        raise _too_many(len(stages))
+        raise _too_many(f"{len(stages)} stages", MOST_STAGES)
     order = list(model.components)
     names = Names()
     sets: dict[str, PlanetarySet | Pair] = {}
@@ -158,12 +158,15 @@ def chosen_train(model: Model) -> Train | None:
     shafts = _shafts(model, sets, names)
     by_part = {part: name for name, shaft in shafts.items() for part in shaft.parts}
     switches = tuple(_switches(model, by_part))
-    bearings = {names.of(joint.component, "bearing"): joint for joint in _bearings(model, sets)}
+    borne = list(_bearings(model, sets))
+    if len(borne) > MOST_BEARINGS:
+        raise _too_many(f"{len(borne)} bearings", MOST_BEARINGS)
+    bearings = {names.of(joint.component, "bearing"): joint for joint in borne}
     return Train(units[0] if units else stages[0], sets, shafts, switches, bearings)
 
 
-def _too_many(count: int) -> InputError:
-    allowed = f"has {count} stages; up to {MOST_STAGES} are read as one train."
+def _too_many(found: str, most: int) -> InputError:
+    allowed = f"has {found}; up to {most} are read as one train."
     remedy = "Import one stage with --component, or export fewer."
     return InputError([Problem("", "", f"the file {allowed}", remedy)])
 
@@ -229,12 +232,16 @@ def _members(one: PlanetarySet | Pair) -> Iterator[tuple[str, list[Component]]]:
 
 def _bodies(model: Model, joined: Iterable[list[Component]]) -> dict[int, int]:
     """For each part that turns with others, which body it belongs to, by one of its parts."""
-    links = [(parts[0].id, part.id) for parts in joined for part in parts]
+    own = [(parts[0].id, part.id) for parts in joined for part in parts]
+    others = [
+        pair
+        for pair in rigid_links(model, switched=False)
+        if all(model.components[part].type != "gear_casing" for part in pair)
+    ]
     neighbours: dict[int, list[int]] = {}
-    for one, two in [*links, *rigid_links(model, switched=False)]:
-        if "gear_casing" not in (model.components[one].type, model.components[two].type):
-            neighbours.setdefault(one, []).append(two)
-            neighbours.setdefault(two, []).append(one)
+    for one, two in (*own, *others):
+        neighbours.setdefault(one, []).append(two)
+        neighbours.setdefault(two, []).append(one)
     bodies: dict[int, int] = {}
     for start in neighbours:
         waiting = [start]
