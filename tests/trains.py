@@ -7,6 +7,8 @@ import tomllib
 from importlib import resources
 from typing import Any
 
+import epicyclic as ep
+
 PUBLISHED = tomllib.loads(
     resources.files("epicyclic.validation").joinpath("trains.toml").read_text(encoding="utf-8")
 )
@@ -107,3 +109,18 @@ def turned_round(train):
     operation = turned["operation"]
     operation["input"], operation["output"] = operation["output"], operation["input"]
     return turned
+
+
+SMALL = {
+    "numerics.mesh_positions": 5,
+    "numerics.contact_segments": 5,
+    "sets.pair.losses.mesh_pocketing.include": False,
+    "sets.planets.losses.sun_mesh_pocketing.include": False,
+    "sets.planets.losses.ring_mesh_pocketing.include": False,
+}
+"""Few points and no pocketing for the built-in e-axle."""
+
+
+def small_axle(**changes):
+    """The built-in e-axle, quickly solved."""
+    return ep.load_case("train-eaxle").updated(SMALL | changes)

@@ -600,3 +600,25 @@ def test_friction_table_of_the_train_serves_its_sets():
     assert problems_of(ep.load_case, tables) == ()
     del tables["friction_table"]
     assert "models.friction" in problems_of(ep.load_case, tables)[0].key
+
+
+def test_geometry_may_stay_where_efficiencies_are_given():
+    given = ep.solve(ep.load_case(changed("double_planet", mesh_efficiency=0.99)))
+    assert given.losses.keys() == {
+        "S.sun_inner_mesh",
+        "S.inner_outer_mesh",
+        "S.outer_ring_mesh",
+    }
+    mesh = {"sun-inner": {"center_distance": "48 mm", "efficiency": 0.5}}
+    worse = ep.solve(ep.load_case(changed("double_planet", mesh_efficiency=0.99, mesh=mesh)))
+    assert worse.efficiency < given.efficiency
+
+
+def test_names_of_gears_may_have_hyphens():
+    tables = listed_trains.layshaft()
+    own = tables["sets"]["S"]
+    own["gears"]["lay-pinion"] = own["gears"].pop("lay_pinion")
+    own["meshes"][1] = ["lay-pinion", "driven"]
+    own["mesh"] = {"driven-lay-pinion": {"misalignment": "5 um"}}
+    (_, element) = build(ep.load_case(tables)).sets["S"].meshes
+    assert element.deviations.misalignment == pytest.approx(5e-6)

@@ -34,6 +34,7 @@ from epicyclic.case.train_tables import (
     GivenPair,
     GivenPlanetarySet,
     ListedGear,
+    ListedMesh,
     ListedSet,
     PairSet,
     PlanetarySet,
@@ -359,6 +360,14 @@ def all_gears_to_members(raw: dict[str, Any], *, given: bool) -> dict[str, Any]:
             else gear
             for name, gear in members.items()
         }
+        if isinstance(split.get("mesh"), dict):
+            split["mesh"] = {
+                name: {k: item for k, item in mesh.items() if k not in ListedMesh.model_fields}
+                if isinstance(mesh, dict)
+                else mesh
+                for name, mesh in split["mesh"].items()
+                if not isinstance(mesh, dict) or mesh.keys() - ListedMesh.model_fields.keys()
+            }
         return {
             key: value
             for key, value in split.items()

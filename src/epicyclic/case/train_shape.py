@@ -265,9 +265,9 @@ def _name_problems(table: ListedSet | GivenListedSet, bodies: Mapping[str, str])
         for gear in bodies
         if gear not in used
     ]
-    pairs = {frozenset(pair) for pair in table.meshes}
+    known = {f"{one}-{two}" for pair in table.meshes for one, two in (pair, pair[::-1])}
     for name in table.mesh:
-        if frozenset(name.split("-", 1)) not in pairs:
+        if name not in known:
             remedy = f"Known are: {', '.join('-'.join(pair) for pair in table.meshes)}."
             problems.append(Problem(f"mesh.{name}", "", "is no mesh of this set.", remedy))
     return problems
