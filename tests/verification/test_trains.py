@@ -36,7 +36,7 @@ def balances(result, limit=1e-10):
 
 @pytest.mark.parametrize(("sun", "ring"), [(23, 85), (48, 96), (31, 101)])
 def test_simple_sets_have_the_efficiencies_of_the_closed_forms(sun, ring):
-    """W. H. Mueller, Epicyclic Drive Trains (1982): from the efficiency with the carrier at rest."""
+    """H. W. Mueller, Epicyclic Drive Trains (1982): from that with the carrier at rest."""
     eta, ratio = 0.99**2, ring / sun
     cases = {
         ("ring", "sun", "carrier"): (1 + ratio, (1 + eta * ratio) / (1 + ratio)),
@@ -129,7 +129,7 @@ def test_wolfrom_sets(teeth, ratio, at_99, at_995):
     ],
 )
 def test_efficiencies_of_transmissions(name, state, efficiency):
-    """Found before with a nodal solver of its own, 0.99 for every mesh, printed with five digits."""
+    """Found with a nodal solver of its own, 0.99 for every mesh, printed with five digits."""
     changes = {"operation.state": state}
     if (name, state) == ("simpson", "R"):
         changes["operation.input"] = "suns"
@@ -250,6 +250,24 @@ def test_torques_from_outside_on_further_shafts_take_part():
     # 10 N m times 4.5, less 4 N m, times 5.1
     assert result.flow.members["out"].torque == pytest.approx(-(10 * 4.5 - 4) * 5.1, rel=1e-12)
     assert result.total == pytest.approx(0.0, abs=1e-9)
+
+
+def test_an_input_shaft_that_only_clutches_join():
+    """The Simpson set again, as a transmission has it: nothing is on its input shaft for good."""
+    train = published("simpson")
+    train["shafts"] |= {"turbine": [], "spare": []}
+    train["operation"]["input"] = "turbine"
+    train["states"] = {
+        "1": {"fixed": ["rear.carrier"], "joined": [["turbine", "front.ring"]]},
+        "3": {"joined": [["front.ring", "turbine", "suns"]], "fixed": ["spare"]},
+        "R": {"fixed": ["rear.carrier"], "joined": [["suns", "turbine"]]},
+    }
+    for state, ratio in (("1", 2.479452), ("3", 1.0), ("R", -2.085714)):
+        result = solved(train, **{"operation.state": state})
+        assert result.train.ratio == pytest.approx(ratio, rel=1e-6)
+        assert result.flow.members["spare"].speed == 0.0
+        assert balances(result)
+    assert solved(train).train.clutches["turbine+front.ring"] == pytest.approx(200.0)
 
 
 def test_second_driven_shaft_of_a_set_with_two_freedoms():

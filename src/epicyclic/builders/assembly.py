@@ -34,7 +34,7 @@ def assemble(case: Case, built: Built, solution: Solution) -> Result:
     terms = tuple(_term(name, losses[name]) for name in built.layout.losses)
     flow = PowerFlow(
         {
-            name: MemberState(solution.speeds[name], solution.torques[name])
+            name: MemberState(solution.speeds.get(name, 0.0), solution.torques.get(name, 0.0))
             for name in built.layout.members
         },
         solution.input_power,

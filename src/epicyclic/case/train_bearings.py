@@ -37,9 +37,7 @@ def bearing_force_problems(train: TrainCase) -> Iterator[Problem]:
         yield from _of_shaft(train, shaft, own)
 
 
-def _of_shaft(
-    train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]
-) -> Iterator[Problem]:
+def _of_shaft(train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Problem]:
     for name, table in own.items():
         if table.position is None:
             yield Problem(

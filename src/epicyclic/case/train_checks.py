@@ -97,7 +97,14 @@ def _ends_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]:
         remedy = "Name another shaft; a train passes power from one shaft to another."
         yield Problem("operation.output", written(operation.output), allowed, remedy)
     held = shape.held(train.state)
+    turning = {*shape.turning(train.state), HOUSING}
     for key, shaft in ends.items():
+        if shaft not in turning:
+            allowed = f"is joined to nothing in {_state_words(train)}: it has no members, and no "
+            allowed += "clutch that joins it is closed."
+            given = written(getattr(operation, key))
+            yield Problem(f"operation.{key}", given, allowed, "Close a clutch, or name another.")
+            continue
         by_clutch = any(shaft in group and group & set(held) for group in groups)
         if shaft == HOUSING or shaft in held or by_clutch:
             allowed = "stands still, as the housing does."

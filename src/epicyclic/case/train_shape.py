@@ -122,8 +122,20 @@ class TrainShape:
         """The constraints of all meshes and closed clutches, without anything that loses power."""
         rows = tuple(row for name in self.sets for row in self.rows(name))
         planets = [f"{name}.{body}" for name, shape in self.sets.items() for body in shape.planets]
-        shafts = [shaft for shaft in self.shafts if shaft != HOUSING]
-        return Machine((*shafts, *planets), rows, (), tuple(self._couplings(state)))
+        couplings = tuple(self._couplings(state))
+        return Machine((*self.turning(state), *planets), rows, (), couplings)
+
+    def turning(self, state: StateTable) -> tuple[str, ...]:
+        """Shafts of a state but the housing.
+
+        A shaft that only clutches join to others is none while these are open.
+        """
+        coupled = {shaft for one in self._couplings(state) for shaft in (one.first, one.second)}
+        return tuple(
+            shaft
+            for shaft, members in self.shafts.items()
+            if shaft != HOUSING and (members or shaft in coupled)
+        )
 
     def rows(self, name: str) -> Iterator[MeshRow]:
         """The constraints of the meshes of a set."""
@@ -146,7 +158,8 @@ class TrainShape:
             if any(self.shaft_of(name) == HOUSING for name in group):
                 names += group
         shafts = [self.shaft_of(name) for name in names]
-        return tuple(dict.fromkeys(shaft for shaft in shafts if shaft not in (None, HOUSING)))
+        turning = self.turning(state)
+        return tuple(dict.fromkeys(shaft for shaft in shafts if shaft in turning))
 
     def _couplings(self, state: StateTable) -> Iterator[Coupling]:
         for group in state.joined:
