@@ -68,7 +68,7 @@ def assemble(case: Case, built: Built, solution: Solution) -> Result:
         load_methods={key: title for key, (title, _) in methods.items()},
         load_sources={key: source for key, (_, source) in methods.items()},
         sources=_sources(terms, methods),
-        inputs=case.inputs(),
+        read_inputs=case.inputs,
         planet_angles=() if sharing is None else sharing.angles,
         planet_shares=next(
             (

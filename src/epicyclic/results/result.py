@@ -211,8 +211,8 @@ class Result:
         How the load is found, along the teeth and between planets.
     sources : tuple of str
         Literature of the models used.
-    inputs : mapping
-        The case, defaults included, as a case file has it.
+    read_inputs : callable
+        Gives the case, defaults included, as a case file has it: few results are asked for it.
     planet_angles : tuple of float
         Positions of the planets; empty for a pair. [rad]
     planet_shares : tuple of float
@@ -237,11 +237,16 @@ class Result:
     load_methods: Mapping[str, str]
     load_sources: Mapping[str, str]
     sources: tuple[str, ...]
-    inputs: Mapping[str, Any]
+    read_inputs: Callable[[], Mapping[str, Any]]
     planet_angles: tuple[float, ...] = ()
     planet_shares: tuple[float, ...] = ()
     train: Train | None = None
     status: Status = Status.CONVERGED
+
+    @property
+    def inputs(self) -> Mapping[str, Any]:
+        """The case, defaults included, as a case file has it."""
+        return self.read_inputs()
 
     @property
     def bearing(self) -> BearingFigures | None:
