@@ -1,22 +1,29 @@
-"""Warn about keys of a case file that how-to/case-file.md does not describe as the schema has them.
+"""Keys of case files: those that a page describes are compared with the schema, others listed.
 
-A row of a table there starts with a key in backticks, then its default. With ``sphinx-build -W`` a
-missing key, a key that no longer exists or a wrong default ends the build.
+A row of a table in how-to/case-file.md starts with a key in backticks, then its default. With
+``sphinx-build -W`` a missing key, a key that no longer exists or a wrong default ends the build.
+
+The directive ``{case-keys} PREFIX MODULE.TABLE`` lists the keys of a table from the schema; those
+named in its content, one a line, are left out.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from docutils import nodes
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 from sphinx.application import Sphinx
 from sphinx.util import logging
+from sphinx.util.docutils import SphinxDirective
 
 from epicyclic.case.case import GearPairCase, PlanetaryCase
-from epicyclic.case.fields import quantity_of, table_of
+from epicyclic.case.fields import choices_of, entry_of, quantity_of, table_of
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.units import Quantity
 
@@ -82,6 +89,49 @@ def check(app: Sphinx) -> None:
             )
 
 
+class CaseKeys(SphinxDirective):
+    """A table of the keys of one table of a case file."""
+
+    required_arguments = 2
+    has_content = True
+
+    def run(self) -> list[nodes.Node]:
+        """Key, default and meaning of every field."""
+        prefix, place = self.arguments
+        module, _, name = place.rpartition(".")
+        table: type[BaseModel] = getattr(import_module(module), name)
+        rows = [("Key", "Default", "Meaning")]
+        rows += [
+            (f"``{prefix}.{key}``", _default(field), _meaning(field))
+            for key, field in table.model_fields.items()
+            if key not in self.content
+        ]
+        lines = [".. list-table::", "   :header-rows: 1", ""]
+        for row in rows:
+            lines += [f"   {'*' if not i else ' '} - {cell}" for i, cell in enumerate(row)]
+        return self.parse_text_to_nodes("\n".join(["```{eval-rst}", *lines, "```"]))
+
+
+def _default(field: FieldInfo) -> str:
+    if field.is_required():
+        return "required"
+    if table_of(field.annotation) is not None or isinstance(field.default, dict | tuple):
+        return "none" if field.default in (None, {}, ()) else "its defaults"
+    text = _text(field.default, quantity_of(field.annotation, tuple(field.metadata)))
+    return f"``{text}``" if text else "none"
+
+
+def _meaning(field: FieldInfo) -> str:
+    annotation = entry_of(field.annotation) or field.annotation
+    quantity = quantity_of(annotation, tuple(field.metadata))
+    choices = ", ".join(f"``{choice}``" for choice in choices_of(field.annotation))
+    parts = [field.description or "", choices]
+    if quantity is not None and quantity.display:
+        parts.append(f"[{quantity.display}]")
+    return " ".join(part for part in parts if part).replace("*", "\\*")
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
+    app.add_directive("case-keys", CaseKeys)
     app.connect("builder-inited", check)
     return {"parallel_read_safe": True}

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-import epicyclic as ep
 import pytest
+
+import epicyclic as ep
 from epicyclic.analysis.train_flow import train_flow
 from epicyclic.analysis.train_losses import loss_sums
 from epicyclic.analysis.train_states import train_states
-from pytest import approx
-from tests.trains import published, simple
+from trains import published, simple, small_axle
 
 GEARS = "12345678R"
 
@@ -26,34 +26,20 @@ def axle():
     return ep.solve(small_axle())
 
 
-def small_axle(**changes):
-    """The built-in e-axle with few points and without pocketing."""
-    return ep.load_case("train-eaxle").updated(
-        {
-            "numerics.mesh_positions": 5,
-            "numerics.contact_segments": 5,
-            "sets.pair.losses.mesh_pocketing.include": False,
-            "sets.planets.losses.sun_mesh_pocketing.include": False,
-            "sets.planets.losses.ring_mesh_pocketing.include": False,
-            **changes,
-        }
-    )
-
-
 def assert_balanced(result):
     flow = train_flow(result)
     scale = result.input_power
     for key, stage in flow.stages.items():
-        assert sum(link.power for link in flow.of_stage(key)) == approx(
+        assert sum(link.power for link in flow.of_stage(key)) == pytest.approx(
             stage.loss, abs=1e-9 * scale
         )
-        assert sum(link.torque for link in flow.of_stage(key)) == approx(
+        assert sum(link.torque for link in flow.of_stage(key)) == pytest.approx(
             0.0, abs=1e-9 * max(abs(link.torque) for link in flow.links)
         )
     for key, line in flow.lines.items():
         taken = sum(link.power for link in flow.of_line(key))
-        assert taken == approx(line.power, abs=1e-9 * scale)
-        assert sum(link.torque for link in flow.of_line(key)) == approx(
+        assert taken == pytest.approx(line.power, abs=1e-9 * scale)
+        assert sum(link.torque for link in flow.of_line(key)) == pytest.approx(
             line.torque, abs=1e-9 * max(1.0, line.passed)
         )
 
@@ -74,7 +60,7 @@ def test_a_coasting_and_an_unloaded_axle_are_balanced(torque):
     scale = max(abs(member.power) for member in result.flow.members.values())
     for key, stage in flow.stages.items():
         power = sum(link.power for link in flow.of_stage(key))
-        assert power == approx(stage.loss, abs=1e-9 * scale)
+        assert power == pytest.approx(stage.loss, abs=1e-9 * scale)
 
 
 def test_the_torques_of_a_wolfrom_set_hold_its_ring():
@@ -82,16 +68,18 @@ def test_the_torques_of_a_wolfrom_set_hold_its_ring():
     assert_balanced(result)
     ring = next(link for link in train_flow(result).links if link.members == ("fixed_ring",))
     outside = sum(member.torque for member in result.flow.members.values())
-    assert ring.torque == approx(-outside)
+    assert ring.torque == pytest.approx(-outside)
     assert ring.power == 0.0
 
 
 def test_what_circulates_flows_in_loops(eight_speeds):
     flow = train_flow(eight_speeds["R"])
-    assert flow.circulating == approx(32515, rel=1e-4)  # P4 returns it to P3 through the output
+    assert flow.circulating == pytest.approx(
+        32515, rel=1e-4
+    )  # P4 returns it to P3 through the output
     for key in (*flow.lines, *flow.stages):
         loops = [link.circulating for link in flow.links if key in (link.line, link.stage)]
-        assert sum(loops) == approx(0.0, abs=1e-6)
+        assert sum(loops) == pytest.approx(0.0, abs=1e-6)
     assert all(train_flow(eight_speeds[gear]).circulating == 0 for gear in "1234567")
 
 
@@ -99,7 +87,7 @@ def test_closed_clutches_make_one_line_of_two_shafts(eight_speeds):
     lines = train_flow(eight_speeds["1"]).lines
     line = lines["input+third"]
     assert (line.shafts, line.role) == (("input", "third"), "input")
-    assert line.clutches == {"input+third": approx(300.0)}
+    assert line.clutches == {"input+third": pytest.approx(300.0)}
     assert (lines["suns"].role, lines["first"].role, lines["second"].role) == (
         "held", "at rest", "idle",
     )  # fmt: skip
@@ -108,13 +96,15 @@ def test_closed_clutches_make_one_line_of_two_shafts(eight_speeds):
 def test_a_single_set_is_one_stage():
     result = ep.solve(ep.load_case("talbot-2012-pair").updated({"operation.torque": "100 N*m"}))
     (stage,) = train_flow(result).stages.values()
-    assert stage.loss == approx(result.total)
+    assert stage.loss == pytest.approx(result.total)
 
 
 def test_losses_are_summed_by_set_and_kind(axle):
     losses = {term.name: term.watts for term in axle.terms if not term.left_out}
     sums = loss_sums(losses, axle.inputs)
-    assert {stage: approx(sum(own.values())) for stage, own in sums.items()} == axle.stage_losses
+    assert {
+        stage: pytest.approx(sum(own.values())) for stage, own in sums.items()
+    } == axle.stage_losses
     assert set(sums["planets"]) == {"sliding", "rolling", "bearings", "drag"}
     assert set(sums["motor_rear"]) == {"bearings"}
     assert set(sums["motor_seal"]) == {"seals"}
@@ -122,15 +112,15 @@ def test_losses_are_summed_by_set_and_kind(axle):
 
 def test_losses_of_given_efficiency_are_one_kind(eight_speeds):
     sums = loss_sums(eight_speeds["1"].losses, eight_speeds["1"].inputs)
-    assert sums["P4"] == {"given": approx(eight_speeds["1"].total)}
+    assert sums["P4"] == {"given": pytest.approx(eight_speeds["1"].total)}
 
 
 def test_the_states_of_a_gearbox_have_their_published_ratios():
     states = {state.name: state for state in train_states(ep.load_case("train-8hp70"))}
     wanted = (4.696, 3.130, 2.104, 1.667, 1.285, 1.000, 0.839, 0.667, -3.297)
     for gear, ratio in zip(GEARS, wanted, strict=True):
-        assert states[gear].ratio == approx(ratio, abs=1e-3)
-    assert states["6"].speeds == {shaft: approx(1.0) for shaft in states["6"].speeds}
+        assert states[gear].ratio == pytest.approx(ratio, abs=1e-3)
+    assert states["6"].speeds == {shaft: pytest.approx(1.0) for shaft in states["6"].speeds}
 
 
 @pytest.mark.parametrize(
@@ -155,13 +145,13 @@ def test_shafts_that_a_state_leaves_free_are_named():
     case = ep.load_case("train-8hp70").updated(
         {"states.8.fixed": ["suns", "P1.ring"], "states.8.joined": [["input", "third"]]}
     )
-    assert train_states(case)[-2].ratio == approx(4.6957, abs=1e-4)
+    assert train_states(case)[-2].ratio == pytest.approx(4.6957, abs=1e-4)
     free = ep.load_case("train-8hp70").updated({"states.8.joined": [["input", "output"]]})
     state = train_states(free)[-2]
-    assert (state.ratio, state.remark.partition(":")[0]) == (approx(1.0), "free to turn")
+    assert (state.ratio, state.remark.partition(":")[0]) == (pytest.approx(1.0), "free to turn")
     assert any(math.isnan(speed) for speed in state.speeds.values())
 
 
 def test_a_train_without_states_has_one():
     (state,) = train_states(ep.load_case(simple(23, 85, "ring", ("sun", "carrier"))))
-    assert (state.name, state.ratio) == ("", approx(1 + 85 / 23))
+    assert (state.name, state.ratio) == ("", pytest.approx(1 + 85 / 23))

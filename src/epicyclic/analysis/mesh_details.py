@@ -75,11 +75,11 @@ def mesh_details(case: Case) -> dict[str, xr.Dataset]:
             "Give a torque other than zero.",
         )
         raise InputError([problem], case.source)
-    built = build_computed(case)
+    built, fluids = build_computed(case)
     notes = {name: load_notes(own) for name, own in set_cases(case, built.sets)}
     state = built.state()
     return {
-        key: _details(case.title, key, duty, built.fluids.oil, notes[name])
+        key: _details(case.title, key, duty, fluids.oil, notes[name])
         for name, own in built.sets.items()
         for duty in own.loaded_duties(state)
         for key in (mesh_key(name, duty.key),)

@@ -87,7 +87,7 @@ def pocket_details(case: Case, meshes: Collection[str] | None = None) -> dict[st
     ConvergenceError
         If the flow is not found.
     """
-    built = build_computed(case)
+    built, fluids = build_computed(case)
     found = {}
     for name, own in built.sets.items():
         for duty in own.mean_duties(built.state()):
@@ -95,12 +95,12 @@ def pocket_details(case: Case, meshes: Collection[str] | None = None) -> dict[st
             if meshes is not None and key not in meshes:
                 continue
             try:
-                flow = solve_pockets(duty, built.fluids)
+                flow = solve_pockets(duty, fluids)
             except ValueError as error:
                 raise _unsuitable(case, key, f"has no tooth outline: {error}.") from None
             if flow is None:
                 raise _unsuitable(case, key, "does not turn: its pockets keep their volume.")
-            found[key] = _dataset(case.title, duty, flow, built.fluids, own.count)
+            found[key] = _dataset(case.title, key, duty, flow, fluids, own.count)
     return found
 
 
@@ -200,8 +200,15 @@ class _Life:
         return (leading, trailing) if self.drives1 else (trailing, leading)
 
 
+def _words(key: str) -> str:
+    """A mesh in words, that of a train with its set: ``"P1: sun mesh"``."""
+    name, dot, mesh = key.rpartition(".")
+    words = mesh.replace("_", " ")
+    return f"{name}: {words}" if dot else f"the {words}"
+
+
 def _dataset(
-    title: str, duty: MeshDuty, flow: PocketFlow, fluids: Fluids, meshes: int
+    title: str, key: str, duty: MeshDuty, flow: PocketFlow, fluids: Fluids, meshes: int
 ) -> xr.Dataset:
     import xarray as xr
 
@@ -232,7 +239,7 @@ def _dataset(
         **_numbers(duty, flow, fluids),
     }
     attributes = {
-        "title": f"Pockets of the {duty.key.replace('_', ' ')} of {title or 'the case'}",
+        "title": f"Pockets of {_words(key)} of {title or 'the case'}",
         "notes": "\n".join(pocket_notes(mesh, flow_figures(flow), fluids.pressure)),
         "model": POCKETING_MODELS[duty.models.pockets.model],
         "drives": mesh.gear1.name if duty.drives1 else mesh.gear2.name,

@@ -84,6 +84,11 @@ def case_variants() -> dict[str, list[dict[str, Any]]]:
     return _read(_root().joinpath("variants.toml"))
 
 
+def case_source(name: str) -> str:
+    """The file of a built-in case, with its comments."""
+    return _root().joinpath("cases", f"{name}.toml").read_text(encoding="utf-8")
+
+
 def builtin_case(name: str) -> dict[str, Any]:
     """The tables of a built-in case or of one of its variants.
 

@@ -159,16 +159,22 @@ def _pocket_pressure(stored: Stored) -> list[Panel]:
     ]
 
 
+def _power_flow(stored: Stored) -> list[Panel]:
+    if not isinstance(stored, ResultRecord) or not stored.result.input_power:
+        return []
+    return _of_result(plot_power_flow)(stored)
+
+
 PLOTS: dict[str, Plot] = {
-    "power-flow": Plot(
-        "Where does the power flow, what circulates, what is lost?",
-        _of_result(plot_power_flow),
-        size=SLIDE,
-    ),
     "gear-set": Plot("What does the gear set look like, to scale?", _gear_set),
     "teeth": Plot("How do the teeth touch, and where is the path of contact?", _teeth),
     "losses": Plot("Where do the watts go?", _of_result(plot_losses)),
     "loss-sum": Plot("How do the losses add up?", _of_result(plot_loss_sum)),
+    "power-flow": Plot(
+        "Where does the power flow, what circulates, what is lost?",
+        _power_flow,
+        size=SLIDE,
+    ),
     "line-load": Plot(
         "How is the load distributed over the flanks?",
         _of_group("meshes", plot_plane_of_action, "line_load"),

@@ -21,18 +21,19 @@ ROOM = 1.32
 def plot_losses(result: ResultContents, ax: Axes) -> Axes:
     """Every component of the loss, its power and share; of a train every set and part."""
     rows = _rows(result)
-    labels = list(dict.fromkeys(label for label, *_ in rows))
-    sums = dict.fromkeys(labels, 0.0)
-    for label, group, watts in rows:
-        ax.barh(
-            label,
-            watts,
-            left=sums[label],
-            color=GROUP_COLOURS[group],
-            edgecolor="black",
-            linewidth=0.5,
-        )
+    sums = dict.fromkeys((label for label, *_ in rows), 0.0)
+    starts = []
+    for label, _, watts in rows:
+        starts.append(sums[label])
         sums[label] += watts
+    ax.barh(
+        [label for label, *_ in rows],
+        [watts for *_, watts in rows],
+        left=starts,
+        color=[GROUP_COLOURS[group] for _, group, _ in rows],
+        edgecolor="black",
+        linewidth=0.5,
+    )
     for row, value in enumerate(sums.values()):
         share = f" ({value / result.total:.1%})" if result.total else ""
         ax.annotate(

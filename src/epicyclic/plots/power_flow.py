@@ -16,8 +16,7 @@ from matplotlib.patches import FancyBboxPatch, Polygon, Rectangle
 from epicyclic.analysis.train_flow import Line, Link, TrainFlow, flow_of
 from epicyclic.plots.style import COLOURS
 from epicyclic.records.contents import ResultContents
-from epicyclic.report.shown import shown
-from epicyclic.units import NEWTON_METRE, RPM, unit_text
+from epicyclic.units import NEWTON_METRE, RPM, format_number, unit_text
 
 __all__ = ["SLIDE", "contents_flow", "plot_power_flow"]
 
@@ -105,7 +104,18 @@ def contents_flow(result: ResultContents) -> TrainFlow:
     torques = {name: member.torque.value or 0.0 for name, member in result.members.items()}
     if result.kind != "train":
         stage = "gear set" if result.kind == "planetary" else "gear pair"
-        return flow_of(speeds, torques, {stage: torques}, {stage: result.total})
+        powers = {name: member.power.value or 0.0 for name, member in result.members.items()}
+        return flow_of(
+            speeds,
+            torques,
+            {stage: torques},
+            {stage: result.total},
+            ends=(
+                max(powers, key=lambda key: powers[key]),
+                min(powers, key=lambda key: powers[key]),
+            ),
+            shafts={name: (f"{stage}.{name}",) for name in torques},
+        )
     return flow_of(
         speeds,
         torques,
@@ -142,24 +152,29 @@ def plot_power_flow(result: ResultContents, ax: Axes) -> Axes:
 def _headline(result: ResultContents) -> str:
     words = [f"state {result.state}"] if result.state else []
     if result.ratio is not None:
-        words.append(f"ratio {shown(result.ratio)}")
+        words.append(f"ratio {_shown(result.ratio)}")
     if result.efficiency is not None:
         words.append(f"efficiency {100 * result.efficiency:.2f} %")
     words.append(f"loss {_power(result.total)}")
     if result.power_ratio is not None:
-        words.append(f"rolling power {shown(result.power_ratio, 3)} times the input power")
+        words.append(f"rolling power {_shown(result.power_ratio, 3)} times the input power")
     if result.self_locking:
         words.append("self-locking")
     return ", ".join(words)
 
 
+def _shown(value: float, digits: int = 4) -> str:
+    # what rounding leaves over is nothing
+    return format_number(0.0 if abs(value) < NO_POWER else value, digits)
+
+
 def _power(watts: float) -> str:
     large = abs(watts) >= 1e3
-    return f"{shown(abs(watts) / (1e3 if large else 1), 3)} {'kW' if large else 'W'}"
+    return f"{_shown(abs(watts) / (1e3 if large else 1), 3)} {'kW' if large else 'W'}"
 
 
 def _torque(value: float) -> str:
-    return f"{shown(abs(value), 4)} {unit_text(NEWTON_METRE.display)}"
+    return f"{_shown(abs(value), 4)} {unit_text(NEWTON_METRE.display)}"
 
 
 # --- where everything stands ----------------------------------------------------------------------
@@ -170,7 +185,8 @@ def _layout(flow: TrainFlow) -> _Layout:
     busy = {link.line for link in flow.links if abs(link.power) > NO_POWER * most} & set(flow.lines)
     ends = [key for key, line in flow.lines.items() if line.role in ("input", "output")]
     lines = [key for key in flow.lines if key in busy or key in ends]
-    stages, taps = [], {}
+    stages: list[str] = []
+    taps: dict[str, _Tap] = {}
     for stage in flow.stages:
         links = [link for link in flow.of_stage(stage) if link.line in lines]
         if not any(link.members for link in links) and len(links) == 1:
@@ -217,7 +233,9 @@ def _ordered_stages(flow: TrainFlow, stages: list[str], lines: list[str]) -> lis
             )
         return total
 
-    return list(min(permutations(stages), key=effort))
+    orders: Iterator[tuple[str, ...]] = permutations(stages)
+    best: tuple[str, ...] = min(orders, key=effort)
+    return list(best)
 
 
 def _ordered_lines(flow: TrainFlow, stages: list[str], lines: list[str]) -> list[str]:
@@ -241,7 +259,9 @@ def _ordered_lines(flow: TrainFlow, stages: list[str], lines: list[str]) -> list
                 total -= 0.4 * place[key]
         return total
 
-    return list(min(permutations(lines), key=effort))
+    orders: Iterator[tuple[str, ...]] = permutations(lines)
+    best: tuple[str, ...] = min(orders, key=effort)
+    return list(best)
 
 
 # --- lines ----------------------------------------------------------------------------------------
@@ -304,7 +324,7 @@ def _draw_lane(ax: Axes, layout: _Layout, line: Line, y: float, *, striped: bool
     if striped:
         low = y - layout.spacing / 2
         ax.add_patch(Rectangle((0, low), SLIDE[0], layout.spacing, color=STRIPE, lw=0, zorder=0))
-    words = [f"{shown(RPM.to_display(line.speed))} {unit_text(RPM.display)}", _torque(line.passed)]
+    words = [f"{_shown(RPM.to_display(line.speed))} {unit_text(RPM.display)}", _torque(line.passed)]
     lower = ", ".join(words)
     name = " + ".join(name.replace("_", " ") for name in line.shafts)
     size = 13.0 if len(name) <= 19 else 13.0 * 19 / len(name)
@@ -553,7 +573,8 @@ def _draw_card(ax: Axes, layout: _Layout, stage: str, x: float, entering: float)
 def _draw_grounds(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
     """What is held, as ground, with the torque that holds it."""
     grounds = layout.grounds(stage)
-    step = min(1.25, layout.width / max(1, len(grounds)))
+    room = layout.width / max(1, len(grounds))
+    step = min(1.25, room)
     for number, link in enumerate(grounds):
         at = x + (number - (len(grounds) - 1) / 2) * step
         if len(grounds) > 1:
@@ -575,7 +596,7 @@ def _draw_grounds(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
             )
         member = " + ".join(name.replace("_", " ") for name in link.members)
         held = link.line.replace("_", " ")
-        name = member if held == f"{stage}.{member}" else f"{member}, {held}"
+        name = member if held in (member, f"{stage}.{member}") else f"{member}, {held}"
         for low, words, colour in ((0.42, name, INK), (0.6, _torque(link.torque), SOFT)):
             ax.text(
                 at,
@@ -583,7 +604,7 @@ def _draw_grounds(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
                 words,
                 ha="center",
                 va="top",
-                fontsize=_fit(words, step, 10),
+                fontsize=_fit(words, room, 10),
                 color=colour,
             )
 

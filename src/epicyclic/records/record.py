@@ -93,11 +93,13 @@ def record(case: Case) -> ResultRecord:
     }
     if case.operation.torque != 0 and contents.meshes:
         fields["meshes"] = mesh_details(case)
-    flowing = [
-        key
+    # of sets in which every mesh turns and has the flow of its pockets solved
+    lacking = {
+        set_of(key)
         for key, mesh in contents.meshes.items()
-        if mesh["pocket_pressure_max"].value is not None
-    ]
+        if mesh["pocket_pressure_max"].value is None
+    }
+    flowing = [key for key in contents.meshes if set_of(key) not in lacking]
     if flowing:
         # the outlines, for pictures of one moment, would be ten times all the rest
         pockets = pocket_details(case, flowing)

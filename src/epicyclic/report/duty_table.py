@@ -56,7 +56,24 @@ def _tables(data: xr.Dataset, title: str) -> list[RenderableType]:
     _add_row(table, "duration s", data["duration"])
     efficiencies = [*data["efficiency"].values, data["total_efficiency"].item()]
     table.add_row("efficiency", *("" if math.isnan(it) else f"{it:.3%}" for it in efficiencies))
-    return [table, Text(_error_text(data, whole))]
+    states = [_states_table(data)] if "state" in data.dims else []
+    return [table, *states, Text(_error_text(data, whole))]
+
+
+def _states_table(data: xr.Dataset) -> Table:
+    """Energy of each state."""
+    table = plain_table("States: energy in kJ")
+    heads = ("", "entering", "leaving", "lost", "duration s", "efficiency")
+    for number, column in enumerate(heads):
+        table.add_column(column, justify="right" if number else "left")
+    for name in data["state"].values:
+        own = data.sel(state=name)
+        values = [own["state_energy_in"], own["state_energy_out"]]
+        values += [own["state_energy_lost"].sum(), own["state_duration"]]
+        efficiency = float(own["state_efficiency"])
+        shown_efficiency = "" if math.isnan(efficiency) else f"{efficiency:.3%}"
+        table.add_row(str(name), *(shown(float(it), 6) for it in values), shown_efficiency)
+    return table
 
 
 def _add_row(table: Table, name: str, values: xr.DataArray, share: str = "", **style: Any) -> None:

@@ -55,10 +55,10 @@ def operation_line(result: ResultContents) -> str:
     """The operating point in one line."""
     operation = result.inputs["operation"]
     words = [f"{operation['speed']}, {operation['torque']}"]
-    if "input" in operation:
-        words.insert(0, f"input {operation['input']}")
     if "output" in operation:
-        words.insert(1, f"output {operation['output']}")
+        words.insert(0, f"{operation['input']} to {operation['output']}")
+    elif "input" in operation:
+        words.insert(0, f"input {operation['input']}")
     if operation.get("state"):
         words.insert(0, f"state {operation['state']}")
     if operation.get("fixed"):

@@ -25,6 +25,10 @@ __all__ = [
 ]
 
 
+MOST_BESIDE = 3
+"""Parts beside each other that leave room for labels on one line."""
+
+
 def plain_table(title: str) -> Table:
     """An empty table in the style of the package."""
     return Table(
@@ -70,6 +74,7 @@ def side_by_side(title: str, parts: Mapping[str, Iterable[Figure]]) -> Table:
     """Figures of parts of one kind, a column for each part."""
     table = number_table(title, "", *(name.replace("_", " ") for name in parts), "unit")
     table.columns[-1].justify = "left"
+    table.columns[0].no_wrap = len(parts) <= MOST_BESIDE
     columns: Sequence[Iterable[Figure]] = tuple(parts.values())
     for row in zip(*columns, strict=True):
         cells = (shown(item.value) for item in row)

@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from epicyclic.analysis.compare import FrictionComparison
+from epicyclic.elements.base import LOAD_DEPENDENT, LOAD_INDEPENDENT
 from epicyclic.elements.figures import figures
 from epicyclic.report.result_parts import (
     efficiency_text,
@@ -21,7 +22,7 @@ from epicyclic.report.result_parts import (
     share_cells,
 )
 from epicyclic.report.train_tables import train_tables, users_text
-from epicyclic.results.result import LOAD_DEPENDENT, LOAD_INDEPENDENT, LossTerm, Result
+from epicyclic.results.result import LossTerm, Result
 from epicyclic.units import DEGREE, NEWTON_METRE, RPM, unit_text
 
 __all__ = ["friction_table", "plain_table", "result_tables", "terminal"]

@@ -10,7 +10,7 @@ from epicyclic.records.contents import Measure, ResultContents
 from epicyclic.records.record import ResultRecord
 from epicyclic.report.page import Cell, Drawings, Gallery, Item, Row, Table, gallery, number
 from epicyclic.report.shown import shown
-from epicyclic.report.train_tables import circulation_text, locking_text
+from epicyclic.report.train_tables import circulation_text, locking_text, part_head
 from epicyclic.units import unit_text
 
 __all__ = ["label_of", "model_key", "part_tables", "train_losses", "words"]
@@ -154,7 +154,7 @@ def part_tables(record: ResultRecord) -> Iterator[Table]:
     for (kind, names), parts in kinds.items():
         first = next(iter(parts))
         heads = (
-            f"{label_of(record, first, name)}, {unit_text(parts[first][name].unit)}".rstrip(", 1")
+            part_head(name, label_of(record, first, name), parts[first][name].unit)
             for name in names
         )
         rows = tuple(

@@ -34,11 +34,28 @@ __all__ = [
     "circulation_text",
     "headline",
     "locking_text",
+    "part_head",
     "state_tables",
     "train_tables",
     "users_text",
 ]
 
+SHORT_HEADS = {
+    "radial_force": "radial",
+    "axial_force": "axial",
+    "friction_load": "P1",
+    "minimum_load": "minimum load",
+    "speed": "speed",
+    "lip_speed": "lip",
+    "friction_torque": "torque",
+    "coefficient": "f1",
+    "iso_14179_1_viton": "14179-1 Viton",
+    "iso_14179_1_buna_n": "14179-1 Buna N",
+    "iso_14179_2": "14179-2",
+    "linke": "Linke",
+}
+MOST_KINDS = 5
+"""Kinds of losses beside each other in a table that also has room for shares of the total."""
 _TITLES = {
     "ShaftBearingFigures": "Shaft bearings",
     "SealFigures": "Seals: loss after the chosen formula, and after every one",
@@ -125,14 +142,24 @@ def _losses(result: Result) -> Table:
     sums = loss_sums(losses, result.inputs)
     kinds = [kind for kind in LOSS_KINDS if any(kind in own for own in sums.values())]
     columns = kinds if len(kinds) > 1 else []
-    table = number_table("Losses in W", "", *columns, "total", "of total", "of input")
+    # a wide table leaves out the shares of the total, which stand beside the single losses too
+    wide = len(columns) > MOST_KINDS
+    heads = ["total", "of input"] if wide else ["total", "of total", "of input"]
+    table = number_table("Losses in W", "", *columns, *heads)
+    for column in table.columns:
+        column.no_wrap = True
+
+    def ending(watts: float) -> Iterator[str]:
+        cells = share_cells(result, watts)
+        yield from (cells[0], cells[2]) if wide else cells
+
     for stage, own in sums.items():
         cells = [f"{own[kind]:z.1f}" if kind in own else "" for kind in columns]
-        table.add_row(_words(stage), *cells, *share_cells(result, sum(own.values())))
+        table.add_row(_words(stage), *cells, *ending(sum(own.values())))
     table.add_section()
     totals = [sum(own.get(kind, 0.0) for own in sums.values()) for kind in columns]
     cells = [f"{watts:z.1f}" for watts in totals]
-    table.add_row("total", *cells, *share_cells(result, result.total), style="bold")
+    table.add_row("total", *cells, *ending(result.total), style="bold")
     return table
 
 
@@ -192,7 +219,7 @@ def _terms(result: Result) -> Table:
     last = ""
     for term in result.terms:
         stage = term.name.partition(".")[0]
-        if last and stage != last:
+        if last in result.inputs["sets"] and stage != last:
             table.add_section()
         last = stage
         if not term.left_out:
@@ -208,6 +235,11 @@ def _by_stage(items: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     return found
 
 
+def part_head(key: str, label: str, unit: str) -> str:
+    """Head of the column of a figure, short where many stand side by side."""
+    return f"{SHORT_HEADS.get(key, label)} {unit_text(unit)}".rstrip()
+
+
 def _parts(result: Result) -> Iterator[Table]:
     """Bearings of shafts, seals and drags: one table for each kind, a row for each part."""
     kinds: dict[type, dict[str, DataclassInstance]] = {}
@@ -216,7 +248,7 @@ def _parts(result: Result) -> Iterator[Table]:
     stages = result.stage_losses
     for kind, parts in kinds.items():
         first = next(iter(parts.values()))
-        heads = [f"{one.label} {unit_text(one.unit)}".rstrip() for one in figures(first)]
+        heads = [part_head(one.key, one.label, one.unit) for one in figures(first)]
         table = number_table(_TITLES.get(kind.__name__, "Other parts"), "", "loss W", *heads)
         for name, part in parts.items():
             cells = (shown(one.value) for one in figures(part))

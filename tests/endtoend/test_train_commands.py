@@ -1,0 +1,73 @@
+"""Commands on trains as a user meets them."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+SMALL = (
+    "--set", "numerics.mesh_positions=5", "--set", "numerics.contact_segments=5",
+    "--set", "sets.pair.losses.mesh_pocketing.include=false",
+    "--set", "sets.planets.losses.sun_mesh_pocketing.include=false",
+    "--set", "sets.planets.losses.ring_mesh_pocketing.include=false",
+)  # fmt: skip
+
+
+def test_a_train_is_started_checked_and_run(epicyclic):
+    done = epicyclic("init", "--kind", "train", "axle.toml")
+    assert (done.returncode, done.stdout) == (
+        0,
+        "Wrote axle.toml. Next: epicyclic run axle.toml\n",
+    )
+    checked = epicyclic("check", "axle.toml")
+    assert checked.returncode == 0, checked.stderr
+    assert checked.stdout.startswith("axle.toml: a sound train case.\n")
+    assert "-7.8996" in checked.stdout
+    run = epicyclic("run", "axle.toml", *SMALL)
+    assert run.returncode == 0, run.stderr
+    assert "Ratio -7.8996, efficiency" in run.stdout
+    assert "Shaft bearings" in run.stdout
+    assert max(map(len, run.stdout.splitlines())) <= 100
+
+
+def test_a_gearbox_is_stored_shown_and_drawn(epicyclic, tmp_path):
+    folder = tmp_path / "elsewhere"
+    run = epicyclic(
+        "run", "train-8hp70", "--set", "operation.state=R", "--save", "r.nc", "--json", "-"
+    )
+    assert run.returncode == 0, run.stderr
+    result = json.loads(run.stdout)
+    assert result["stage_torques"]["P4"]["output"] == pytest.approx(1447.4, abs=0.1)
+    assert epicyclic("report", "r.nc", "-o", "r.html").stdout == "Wrote r.html.\n"
+    page = (folder / "r.html").read_text(encoding="utf-8")
+    assert "Power losses of a train of gear sets" in page
+    assert "state R, input to output, 2000 rpm, 300 N·m" in page
+    listed = epicyclic("plot", "r.nc").stdout.splitlines()
+    assert [line.split()[0] for line in listed] == ["losses", "loss-sum", "power-flow"]
+    drawn = epicyclic("plot", "r.nc", "power-flow", "-o", "flow.svg")
+    assert (drawn.returncode, drawn.stdout) == (0, "Wrote flow.svg.\n")
+    assert "output + P3.carrier" in (folder / "flow.svg").read_text(encoding="utf-8")
+
+
+def test_the_states_of_a_gearbox_are_listed(epicyclic):
+    done = epicyclic("check", "train-8hp70")
+    assert done.returncode == 0
+    assert "4.6957" in done.stdout
+    assert "-3.2968" in done.stdout
+
+
+@pytest.mark.parametrize("command", ["friction", "mesh", "pockets"])
+def test_given_efficiencies_end_in_one_clear_error(epicyclic, command):
+    done = epicyclic(command, "train-8hp70")
+    assert done.returncode == 2
+    assert done.stderr.startswith("1 problem in train-8hp70:")
+    assert "given efficiencies only" in done.stderr
+
+
+def test_meshes_of_a_train_are_drawn_one_by_one(epicyclic, tmp_path):
+    done = epicyclic("mesh", "train-eaxle", *SMALL, "--plot", "m.png")
+    assert done.returncode == 0, done.stderr
+    assert "planets: sun mesh of Two-stage e-axle" in done.stdout
+    names = {path.name for path in (tmp_path / "elsewhere").iterdir()}
+    assert names == {"m-pair.mesh.png", "m-planets.sun_mesh.png", "m-planets.ring_mesh.png"}

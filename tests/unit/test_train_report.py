@@ -1,0 +1,283 @@
+"""Tables, report, plots and files of trains."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import re
+from itertools import combinations
+
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from rich.console import Console
+
+import epicyclic as ep
+from epicyclic.case.template import case_template
+from epicyclic.errors import InputError
+from epicyclic.plots.catalogue import available, figure_of
+from epicyclic.plots.power_flow import SLIDE, contents_flow
+from epicyclic.report.tables import friction_table, result_tables
+from epicyclic.report.train_tables import state_tables
+from trains import plus, published, simple, small_axle, turned_round
+
+GEARS = "235R"
+"""One with brakes only, one with a locked set, one with all sets at work, one with a loop."""
+
+
+@pytest.fixture(scope="module")
+def axle():
+    return ep.record(small_axle())
+
+
+@pytest.fixture(scope="module")
+def gearbox():
+    return ep.record(ep.load_case("train-8hp70").updated({"operation.state": "R"}))
+
+
+@pytest.fixture(scope="module")
+def wolfrom():
+    return ep.record(ep.load_case(published("wolfrom")))
+
+
+def printed(renderable):
+    console = Console(width=100, record=True, file=io.StringIO(), highlight=False)
+    console.print(renderable)
+    return console.export_text()
+
+
+# --- tables ---------------------------------------------------------------------------------------
+
+
+def test_tables_of_an_axle_tell_everything_and_fit():
+    result = ep.solve(small_axle())
+    text = printed(result_tables(result))
+    assert "…" not in text
+    assert f"Ratio -7.8996, efficiency {result.efficiency:.3%}" in text
+    for title in ("Losses in W", "Shafts", "Rolling power", "Meshes of pair", "Meshes of planets",
+                  "Planet bearings", "Shaft bearings", "Seals", "Oil"):  # fmt: skip
+        assert f"\n{title}" in text
+    row = next(line.split() for line in text.splitlines() if line.startswith(" total"))
+    assert float(row[-3]) == pytest.approx(result.total, abs=0.06)
+    assert "nan" not in text
+
+
+def test_tables_of_given_efficiencies_have_no_blanks():
+    result = ep.solve(ep.load_case("train-8hp70").updated({"operation.state": "R"}))
+    text = printed(result_tables(result))
+    for title in ("Meshes of", "Planet bearings", "Oil", "Single losses", "Shaft bearings"):
+        assert title not in text
+    assert "State R, ratio -3.2968, efficiency 94.596%" in text
+    assert "Closed clutches" in text
+    assert "P1: sun mesh, ring mesh" in text.split("Methods")[1]
+    sentence = re.search(r"Power circulates: (.*?) as much", text, re.DOTALL)
+    assert sentence
+    assert "P3: sun mesh" in sentence[1]
+    assert "1.19 times" in sentence[1]
+
+
+def test_self_locking_is_said_at_the_top():
+    train = turned_round(plus(99, 100, 101, 100, "B", ("carrier", "A"), 0.99))
+    text = printed(result_tables(ep.solve(ep.load_case(train))))
+    assert "Self-locking: out cannot drive in" in text.partition("Losses")[0]
+
+
+def test_a_train_without_circulation_has_no_sentence_on_it():
+    train = ep.load_case(simple(23, 85, "ring", ("sun", "carrier")))
+    assert "circulates" not in printed(result_tables(ep.solve(train)))
+
+
+def test_the_states_of_a_gearbox_are_a_table_of_ratios_and_steps():
+    text = printed(state_tables(ep.load_case("train-8hp70")))
+    rows = {line.split()[0]: line for line in text.split("Ratio:")[1].splitlines() if line.strip()}
+    assert rows["1"].split()[:2] == ["1", "4.6957"]
+    assert rows["2"].split()[:3] == ["2", "3.1304", "1.5"]
+    assert rows["R"].split()[1:3] == ["-3.2968", "suns,"]  # no step to another sense of rotation
+    assert "housing, stands still" in printed(state_tables(small_axle()))
+
+
+def test_friction_of_all_sets_is_compared():
+    from epicyclic.analysis.compare import compare_friction
+
+    rows = compare_friction(small_axle())
+    assert [row.name for row in rows if row.chosen] == ["schlenk"]
+    own = next(row for row in rows if row.chosen)
+    assert set(own.mean_friction) == {"pair.mesh", "planets.sun_mesh", "planets.ring_mesh"}
+    mixed = compare_friction(
+        small_axle(**{"sets.pair.models.friction": "doleschel", "sets.pair.models.mesh": "local"})
+    )
+    assert not any(row.chosen for row in mixed)
+    assert next(row for row in mixed if row.name == "schlenk").sliding == pytest.approx(own.sliding)
+    assert "planets" in printed(friction_table(mixed))
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [ep.mesh_details, ep.pocket_details, ep.loaded_meshes, ep.mesh_contacts],
+)
+def test_given_efficiencies_have_no_teeth_to_look_at(ask):
+    with pytest.raises(InputError) as caught:
+        ask(ep.load_case("train-8hp70"))
+    (problem,) = caught.value.problems
+    assert problem.key == "sets"
+    assert "given efficiencies only" in str(problem)
+
+
+def test_the_template_of_a_train_is_a_sound_case():
+    import tomllib
+
+    text = case_template("train")
+    assert ep.load_case(tomllib.loads(text)).kind == "train"
+    extra = text.partition("# [drags.pump]")[2].partition("# [models]")[0]
+    drag = "[drags.pump]" + extra.replace("\n# ", "\n")
+    assert tomllib.loads(drag)["drags"]["pump"]["between"] == ["motor", "housing"]
+    assert ep.load_case(tomllib.loads(text + "\n" + drag))
+
+
+# --- records and pages ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["axle", "gearbox", "wolfrom"])
+def test_a_stored_train_reads_back_as_it_was(name, request, tmp_path):
+    stored = request.getfixturevalue(name)
+    ep.save_result(stored, tmp_path / "train.nc")
+    back = ep.open_result(tmp_path / "train.nc")
+    assert back.result == stored.result
+    assert back.fields.keys() == stored.fields.keys()
+    if not stored.fields:  # that of others takes its time
+        assert ep.report_html(back) == ep.report_html(stored)
+
+
+def test_fields_of_a_train_are_named_with_their_set(axle, gearbox):
+    assert set(axle.group("meshes")) == {"pair.mesh", "planets.sun_mesh", "planets.ring_mesh"}
+    assert set(axle.group("bearings")) == {"planets.planet_bearing"}
+    assert set(axle.group("gears")) == {
+        "pair.pinion", "pair.gear", "planets.sun", "planets.planet", "planets.ring",
+    }  # fmt: skip
+    assert not axle.group("pockets")  # left out
+    assert not gearbox.fields
+
+
+def test_a_stored_train_with_unknown_shafts_is_refused(gearbox):
+    from epicyclic.records.contents import ResultContents
+
+    content = json.loads(gearbox.result.model_dump_json())
+    content["clutches"] = {"input+nowhere": 1.0}
+    with pytest.raises(ValueError, match="members lacks nowhere"):
+        ResultContents.model_validate(content)
+
+
+def test_the_page_of_a_train_has_its_chapters(axle, gearbox):
+    page = ep.report_html(axle)
+    for title in ("Shafts", "Meshes of planets", "Gears of pair", "Shaft bearings", "Seals",
+                  "planets: Gears"):  # fmt: skip
+        assert f"<caption>{title}</caption>" in page
+    assert 'data-key="stages.planets"' in page
+    assert "sets.planets.models.friction" in page
+    assert page.count('id="figure-power-flow-1"') == 1
+    given = ep.report_html(gearbox)
+    for chapter in ("gears", "load", "friction", "bearing", "pockets", "oil"):
+        assert f'<section id="{chapter}">' not in given
+    assert "Power circulates" in given
+    assert "<caption>Numerics</caption>" not in given  # of no effect
+
+
+def test_only_plots_that_make_sense_are_offered(axle, gearbox):
+    assert list(available(gearbox)) == ["losses", "loss-sum", "power-flow"]
+    assert {"gear-set", "teeth", "roller-loads", "line-load"} <= set(available(axle))
+    assert not {"pocket-pressure", "loss-map"} & set(available(axle))
+
+
+# --- power flow -----------------------------------------------------------------------------------
+
+
+def drawn(record):
+    figure = figure_of(record, "power-flow")
+    FigureCanvasAgg(figure).draw()
+    return figure
+
+
+def texts(figure):
+    return [text for text in figure.axes[0].texts if text.get_text()]
+
+
+def records_of_all_gears():
+    for gear in GEARS:
+        yield gear, ep.record(ep.load_case("train-8hp70").updated({"operation.state": gear}))
+
+
+def test_the_power_flow_is_a_slide_without_overlapping_words(axle, wolfrom):
+    records = dict(records_of_all_gears()) | {"axle": axle, "wolfrom": wolfrom}
+    for name, record in records.items():
+        figure = drawn(record)
+        assert tuple(figure.get_size_inches()) == SLIDE
+        inside = figure.bbox
+        boxes = [(text.get_text(), text.get_window_extent()) for text in texts(figure)]
+        for words, box in boxes:
+            assert inside.x0 <= box.x0, (name, words)
+            assert box.x1 <= inside.x1, (name, words)
+        for (one, first), (two, second) in combinations(boxes, 2):
+            small = first.expanded(0.9, 0.8).overlaps(second.expanded(0.9, 0.8))
+            assert not small, (name, one, two)
+
+
+def test_the_power_flow_shows_shafts_members_and_brakes(gearbox):
+    words = [text.get_text() for text in texts(drawn(gearbox))]
+    for expected in ("input", "output + P3.carrier", "clutch 511.8 N·m", "62.8 kW", "32.5 kW",
+                     "sun, suns", "ring, first", "circulating power"):  # fmt: skip
+        assert expected in words
+    assert any("without power: P1" in text for text in words)
+    assert any(text.startswith("-606.7 rpm, 1447") for text in words)
+
+
+def test_arrows_are_as_wide_as_the_power(gearbox):
+    from epicyclic.plots.power_flow import CIRCULATING, THROUGH
+
+    patches = drawn(gearbox).axes[0].patches
+    arrows = {}
+    for colour in (THROUGH, CIRCULATING):
+        arrows[colour] = sorted(
+            abs(patch.get_xy()[0][1] - patch.get_xy()[-2][1])
+            for patch in patches
+            if type(patch).__name__ == "Polygon" and _hex(patch) == colour and _lies(patch)
+        )
+    # from narrow to wide: 59.4, 60.9, 62.4, 62.8 kW through; 32.5 kW twice around
+    assert len(arrows[CIRCULATING]) == 2
+    assert arrows[CIRCULATING][0] == pytest.approx(arrows[CIRCULATING][1])
+    scale = arrows[THROUGH][-1] / gearbox.result.input_power
+    assert arrows[CIRCULATING][0] == pytest.approx(32515 * scale, rel=1e-3)
+    assert arrows[THROUGH][0] == pytest.approx(
+        (gearbox.result.input_power - 3396) * scale, rel=1e-3
+    )
+
+
+def _hex(patch):
+    from matplotlib.colors import to_hex
+
+    return to_hex(patch.get_facecolor()).upper()
+
+
+def _lies(patch):
+    """True for arrows along shafts, whose tail is upright."""
+    corners = patch.get_xy()
+    return len(corners) == 8 and math.isclose(corners[0][0], corners[-2][0])
+
+
+def test_the_flow_of_a_stored_result_is_that_of_the_result(axle):
+    from epicyclic.analysis.train_flow import train_flow
+
+    flow, stored = train_flow(ep.solve(small_axle())), contents_flow(axle.result)
+    assert [link.power for link in stored.links] == pytest.approx(
+        [link.power for link in flow.links]
+    )
+    assert stored.lines.keys() == flow.lines.keys()
+
+
+def test_a_single_set_has_a_power_flow_too():
+    record = ep.record(
+        ep.load_case("talbot-2012-pair").updated(
+            {"operation.torque": "100 N*m", "losses.mesh_pocketing.include": False}
+        )
+    )
+    words = [text.get_text() for text in texts(drawn(record))]
+    assert {"gear pair", "pinion", "gear"} <= set(words)
