@@ -35,12 +35,16 @@ def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path |
 
     loaded = load_with(case, changes)
     if save is not None:
-        from epicyclic.records.files import check_result_output, save_result
+        from epicyclic.records.files import check_result_output
 
         check_result_output(save)
-        save_result(loaded, save)
     with telling_contacts(loaded):
         result = solve(loaded)
+    if save is not None:
+        from epicyclic.records.files import save_result
+        from epicyclic.records.record import record
+
+        save_result(record(loaded, result=result), save)
     show(lambda: result_tables(result), result.to_json, json_file)
 
 

@@ -66,12 +66,14 @@ class ResultRecord:
         }
 
 
-def record(case: Case) -> ResultRecord:
+def record(case: Case, *, result: Result | None = None) -> ResultRecord:
     """Solve a case and keep everything that reports and plots show.
 
     Parameters
     ----------
     case : PlanetaryCase, GearPairCase or TrainCase
+    result : Result, optional
+        Of that case, if it is solved already.
 
     Returns
     -------
@@ -82,7 +84,7 @@ def record(case: Case) -> ResultRecord:
     ConvergenceError
         As for `solve`.
     """
-    result = solve(case)
+    result = solve(case) if result is None else result
     # as a file would keep it, so that reports of both are the same
     contents = ResultContents.model_validate_json(result.to_json())
     fields = {"gears": gear_shapes(case), "views": mesh_views(case)}
