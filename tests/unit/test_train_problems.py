@@ -175,8 +175,99 @@ def test_computed_losses_need_an_oil_and_its_temperature():
     tables = copy.deepcopy(dict(ep.load_case("train-eaxle").given()))
     del tables["lubricant"]
     tables["operation"] = {
-        key: value
-        for key, value in tables["operation"].items()
-        if key != "oil_inlet_temperature"
+        key: value for key, value in tables["operation"].items() if key != "oil_inlet_temperature"
     }
     assert {"lubricant", "operation.oil_inlet_temperature"} <= told(tables).keys()
+
+
+def with_clutch_to_a_take_off(**operation):
+    """A set whose second state joins a shaft that has no members of its own."""
+    tables = simple(30, 78, "ring", ("sun", "carrier"))
+    tables["shafts"] = {"in": ["S.sun"], "out": ["S.carrier"], "held": ["S.ring"], "pto": []}
+    tables["states"] = {
+        "1": {"fixed": ["held"]},
+        "2": {"fixed": ["held"], "joined": [["pto", "in"]]},
+    }
+    tables["operation"] |= {"state": "1"} | operation
+    return tables
+
+
+@pytest.mark.parametrize(
+    ("key", "shaft", "words"),
+    [
+        ("torques", "pto", "nothing is joined to it"),
+        ("speeds", "pto", "nothing is joined to it"),
+        ("torques", "held", "is held"),
+        ("torques", "housing", "is held"),
+        ("torques", "out", "is the output"),
+        ("speeds", "in", "is the input"),
+    ],
+)
+def test_further_speeds_and_torques_of_shafts_that_have_none(key, shaft, words):
+    unit = "rpm" if key == "speeds" else "N*m"
+    tables = with_clutch_to_a_take_off(**{key: {shaft: f"5 {unit}"}})
+    assert words in told(tables)[f"operation.{key}.{shaft}"]
+
+
+def test_what_stands_on_a_shaft_that_is_joined_to_nothing_stands_still():
+    tables = with_clutch_to_a_take_off(oil_inlet_temperature="60 degC")
+    tables["lubricant"] = {"oil": "iso-vg-100-mineral"}
+    tables["seals"] = {"seal": {"shaft": "pto", "diameter": "30 mm"}}
+    assert ep.solve(ep.load_case(tables)).losses["seal.friction"] == 0.0
+    tables["operation"]["state"] = "2"
+    assert ep.solve(ep.load_case(tables)).losses["seal.friction"] > 0.0
+
+
+def test_speeds_that_follow_from_others_cannot_be_given():
+    tables = {
+        "kind": "train",
+        "sets": {
+            "split": {"sun": {"teeth": 30}, "ring": {"teeth": 78}, "efficiency": 0.98},
+            "pair": {"pinion": {"teeth": 23}, "gear": {"teeth": 53}, "efficiency": 0.985},
+        },
+        "shafts": {
+            "engine": ["split.carrier"],
+            "sun": ["split.sun"],
+            "ring": ["split.ring", "pair.gear"],
+            "motor": ["pair.pinion"],
+        },
+        "operation": {
+            "input": "engine",
+            "output": "sun",
+            "torque": "100 N*m",
+            "speed": "2000 rpm",
+            "speeds": {"motor": "1000 rpm", "ring": "1000 rpm"},
+        },
+    }
+    (key,) = told(tables)
+    assert key in ("operation.speeds.ring", "operation.speeds.motor")
+    tables["operation"]["speeds"] = {"motor": "1000 rpm", "pair.pinion": "900 rpm"}
+    assert "is the same shaft" in told(tables)["operation.speeds.pair.pinion"]
+
+
+def test_teeth_that_leave_no_room():
+    tables = simple(30, 90, "ring", ("sun", "carrier"))
+    tables["sets"] |= {
+        "a": {"sun": {"teeth": 78}, "ring": {"teeth": 30}, "efficiency": 0.98},
+        "b": {
+            "sun": {"teeth": 30},
+            "planet": {"teeth": 100},
+            "ring": {"teeth": 78},
+            "efficiency": 0.98,
+        },
+        "c": {"pinion": {"teeth": 20}, "gear": {"teeth": 15, "internal": True}, "efficiency": 1.0},
+    }
+    assert set(told(tables)) == {"sets.a.ring.teeth", "sets.b.planet.teeth", "sets.c.gear.teeth"}
+
+
+def test_positions_are_those_of_gears_on_shafts():
+    tables = copy.deepcopy(dict(ep.load_case("train-eaxle").given()))
+    tables["positions"] = tables["positions"] | {"pair.pinon": "3 mm", "planets.planet": "4 mm"}
+    found = told(tables)
+    assert set(found) == {'positions."pair.pinon"', 'positions."planets.planet"'}
+
+
+def test_names_are_not_empty():
+    tables = simple(30, 90, "ring", ("sun", "carrier"))
+    tables["sets"][" "] = tables["sets"]["S"]
+    assert any("is no name for a set" in allowed for allowed in told(tables).values())

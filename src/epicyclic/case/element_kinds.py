@@ -304,8 +304,12 @@ def _between(names: Mapping[str, str], shafts: Mapping[str, str]) -> tuple[str, 
     ]
     if problems:
         raise InputError(problems)
-    first, second = names.values()
-    return known[first], known[second]
+    first, second = (known[name] for name in names.values())
+    if first == second:
+        reason = f"is the same shaft, {first}, by another name: nothing moves between them."
+        key, name = list(names.items())[1]
+        raise InputError([Problem(key, written(name), reason, "Name another shaft.")])
+    return first, second
 
 
 def _same_body_problems(bodies: Mapping[str, str]) -> list[Problem]:

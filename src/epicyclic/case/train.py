@@ -177,8 +177,8 @@ class _TrainTables(CaseTable):
         for name in named:
             read = _read_set(raw_sets[name], shared, folder)
             found += [_below(f"sets.{name}", problem) for problem in read.problems]
-            if "." in name:
-                allowed = "is no name for a set: a dot stands between set and member."
+            if "." in name or not name.strip():
+                allowed = "is no name for a set: letters, and no dot, which parts set and member."
                 found.append(Problem(f"sets.{name}", "", allowed, "Choose another name."))
             if read.table is not None:
                 sets[name] = read.table
@@ -247,7 +247,7 @@ def _below(prefix: str, problem: Problem) -> Problem:
 def _joined_members(tables: Mapping[str, Any]) -> dict[str, set[str]]:
     """Members of each set that shafts, states, operation and drags name."""
     found: dict[str, set[str]] = {}
-    for text in _texts([tables.get(key) for key in ("shafts", "states", "operation", "positions")]):
+    for text in _texts([tables.get(key) for key in ("shafts", "states", "operation")]):
         name, dot, member = text.partition(".")
         if dot:
             found.setdefault(name, set()).add(member)
@@ -393,7 +393,11 @@ def _teeth_only(raw: dict[str, Any]) -> dict[str, Any]:
             annotation = form.model_fields[name].annotation
             assert annotation is not None
             known = annotation.model_fields
-            kept[name] = {k: v for k, v in table.items() if k in known or not _is_gear_key(k)}
+            kept[name] = {
+                key: value
+                for key, value in table.items()
+                if key in known or key == "internal" or not _is_gear_key(key)
+            }
     return kept
 
 
@@ -435,8 +439,8 @@ def _element_problems(train: TrainCase) -> list[Problem]:
     taken = dict.fromkeys(train.sets, "sets")
     for kind, name, table in train.elements:
         key = f"{kind}.{name}"
-        if "." in name:
-            allowed = "is no name for a part: a dot stands before the name of a loss."
+        if "." in name or not name.strip():
+            allowed = "is no name for a part: letters, and no dot, which parts it from its losses."
             problems.append(Problem(key, "", allowed, "Choose another name."))
         if name in taken:
             allowed = f"has the name of another part, {taken[name]}.{name}."

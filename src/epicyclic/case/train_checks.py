@@ -14,7 +14,7 @@ from epicyclic.case.train_tables import StateTable
 from epicyclic.case.wording import written
 from epicyclic.elements.base import HOUSING
 from epicyclic.errors import Problem
-from epicyclic.machine.kinematics import freedom, speeds_of
+from epicyclic.machine.kinematics import freedom, implied, speeds_of
 from epicyclic.machine.machine import Machine
 
 if TYPE_CHECKING:
@@ -35,6 +35,7 @@ def operation_problems(train: TrainCase, shape: TrainShape) -> list[Problem]:
     for key in ("speeds", "torques"):
         for name in getattr(operation, key):
             problems += _shaft_problems(f"operation.{key}.{name}", name, shape)
+    problems += _position_problems(train, shape)
     if problems:
         return problems
     problems += _ends_problems(train, shape)
@@ -60,6 +61,21 @@ def state_problems(key: str, state: StateTable, shape: TrainShape) -> list[Probl
                 allowed = f"joins the shaft {twice} to itself."
                 problems.append(Problem(where, shown, allowed, "Name two different shafts."))
     return problems
+
+
+def _position_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]:
+    """Positions of gears that there are, and that stand on a shaft."""
+    known = [
+        f"{name}.{gear}"
+        for name, own in shape.sets.items()
+        for gear, body in own.bodies.items()
+        if body not in own.planets
+    ]
+    members = [member for names in shape.shafts.values() for member in names]
+    for gear in train.positions:
+        if gear not in known and gear not in members:
+            remedy = did_you_mean(gear, known) or f"Known are: {', '.join(known)}."
+            yield Problem(f'positions."{gear}"', "", "is no gear on a shaft.", remedy)
 
 
 def _shaft_problems(key: str, name: str, shape: TrainShape) -> list[Problem]:
@@ -102,8 +118,8 @@ def _ends_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]:
         if shaft not in turning:
             allowed = f"is joined to nothing in {_state_words(train)}: it has no members, and no "
             allowed += "clutch that joins it is closed."
-            given = written(getattr(operation, key))
-            yield Problem(f"operation.{key}", given, allowed, "Close a clutch, or name another.")
+            shown = written(getattr(operation, key))
+            yield Problem(f"operation.{key}", shown, allowed, "Close a clutch, or name another.")
             continue
         by_clutch = any(shaft in group and group & set(held) for group in groups)
         if shaft == HOUSING or shaft in held or by_clutch:
@@ -116,19 +132,35 @@ def _ends_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]:
                 allowed,
                 "Name a shaft that turns, or release it.",
             )
-    given = {"speeds": operation.speeds, "torques": operation.torques}
-    for key, values in given.items():
+    yield from _given_problems(train, shape, ends)
+
+
+def _given_problems(
+    train: TrainCase, shape: TrainShape, ends: Mapping[str, str | None]
+) -> Iterator[Problem]:
+    """Further speeds and torques: of shafts that turn, each once, and only one of the two."""
+    operation = train.operation
+    turning = shape.turning(train.state)
+    held: dict[str | None, str] = dict.fromkeys((*shape.held(train.state), HOUSING), "held")
+    driven = {shape.shaft_of(name): "given a speed" for name in operation.speeds}
+    inputs: dict[str | None, str] = {ends["input"]: "the input"}
+    output: dict[str | None, str] = {ends["output"]: "the output"}
+    kinds = {
+        "speeds": (operation.speeds, held | inputs),
+        "torques": (operation.torques, held | driven | output | inputs),
+    }
+    for key, (values, taken) in kinds.items():
+        seen: dict[str | None, str] = {}
         for name in values:
-            shaft = shape.shaft_of(name)
-            taken: dict[str | None, str] = {
-                ends["input"]: "the input",
-                ends["output"]: "the output",
-            }
-            if key == "speeds":
-                taken.update(dict.fromkeys((*held, HOUSING), "held"))
-                taken.pop(ends["output"], None)
+            shaft, allowed = shape.shaft_of(name), ""
             if shaft in taken:
                 allowed = f"cannot be given: this shaft is {taken[shaft]}."
+            elif shaft not in turning:
+                allowed = f"cannot be given: nothing is joined to it in {_state_words(train)}."
+            elif shaft in seen:
+                allowed = f"is given twice: {seen[shaft]} is the same shaft."
+            seen[shaft] = name
+            if allowed:
                 yield Problem(f"operation.{key}.{name}", "", allowed, "Leave it out.")
 
 
@@ -167,7 +199,15 @@ def _freedom_problems(train: TrainCase, shape: TrainShape) -> list[Problem]:
                 f"{word} of them a speed in [operation.speeds].",
             )
         )
-    return problems or _standing_output(train, shape, machine, driven, others)
+    further = {shape.shaft_of(name) or "": name for name in train.operation.speeds}
+    if not found.loose:
+        for shaft in implied(machine, [driven, *held], list(further)):
+            allowed = "cannot be given: this speed follows from those of the other shafts."
+            key = f"operation.speeds.{further[shaft]}"
+            problems.append(Problem(key, "", allowed, "Leave it out."))
+    if problems or shape.shaft_of(train.operation.output) in further:
+        return problems
+    return _standing_output(train, shape, machine, driven, others)
 
 
 def _standing_output(

@@ -123,7 +123,9 @@ class TrainShape:
         rows = tuple(row for name in self.sets for row in self.rows(name))
         planets = [f"{name}.{body}" for name, shape in self.sets.items() for body in shape.planets]
         couplings = tuple(self._couplings(state))
-        return Machine((*self.turning(state), *planets), rows, (), couplings)
+        turning = self.turning(state)
+        resting = tuple(shaft for shaft in self.shafts if shaft not in (*turning, HOUSING))
+        return Machine((*turning, *planets), rows, (), couplings, resting=resting)
 
     def turning(self, state: StateTable) -> tuple[str, ...]:
         """Shafts of a state but the housing.
@@ -183,10 +185,31 @@ def shape_of_set(table: SetTable, joined: Iterable[str] = ()) -> tuple[SetShape,
         Members of the set that shafts, states and the operation name: they are no planets.
     """
     if isinstance(table, PlanetarySet | GivenPlanetarySet):
-        return _planetary(table), []
+        return _planetary(table), list(_planetary_problems(table))
     if isinstance(table, PairSet | GivenPair):
-        return _pair(table), []
+        return _pair(table), list(_pair_problems(table))
     return _listed(table, set(joined))
+
+
+def _planetary_problems(table: PlanetarySet | GivenPlanetarySet) -> Iterator[Problem]:
+    """Tooth numbers that leave no room for planets; those of computed sets are checked before."""
+    if not isinstance(table, GivenPlanetarySet):
+        return
+    sun, ring, planet = table.sun.teeth, table.ring.teeth, table.planet.teeth
+    if ring <= sun:
+        allowed = f"must exceed the {sun} teeth of the sun, around which it stands."
+        yield Problem("ring.teeth", str(ring), allowed, "Check both tooth numbers.")
+    elif planet is not None and planet >= ring:
+        allowed = f"must be less than the {ring} teeth of the ring, in which the planet turns."
+        yield Problem("planet.teeth", str(planet), allowed, "Check it, or leave it out.")
+
+
+def _pair_problems(table: PairSet | GivenPair) -> Iterator[Problem]:
+    if isinstance(table, GivenPair) and table.gear.internal:
+        pinion, gear = table.pinion.teeth, table.gear.teeth
+        if gear <= pinion:
+            allowed = f"must exceed the {pinion} teeth of the pinion, which turns inside it."
+            yield Problem("gear.teeth", str(gear), allowed, "Check both tooth numbers.")
 
 
 def _planetary(table: PlanetarySet | GivenPlanetarySet) -> SetShape:
@@ -225,13 +248,18 @@ def _listed(table: ListedSet | GivenListedSet, joined: set[str]) -> tuple[SetSha
         if all(gear in gears for gear in pair) and bodies[pair[0]] != bodies[pair[1]]
     ]
     planets = _planets(table, bodies, pairs, joined)
-    meshes = []
+    meshes: list[ShapeMesh] = []
     for one, two in pairs:
         found = _mesh_problem(table, bodies, planets, one, two)
         if found is not None:
             problems.append(found)
             continue
         first, second = (two, one) if gears[one].internal else (one, two)
+        if any(mesh.key == f"{one}_{two}_mesh" for mesh in meshes):
+            key, allowed = f"meshes[{table.meshes.index((one, two))}]", "and another mesh have "
+            allowed += f"the same name, {one}_{two}_mesh, in the results."
+            problems.append(Problem(key, f'["{one}", "{two}"]', allowed, "Rename a gear."))
+            continue
         meshes.append(
             ShapeMesh(
                 f"{one}_{two}_mesh",
@@ -279,6 +307,12 @@ def _name_problems(table: ListedSet | GivenListedSet, bodies: Mapping[str, str])
         if gear not in used
     ]
     known = {f"{one}-{two}" for pair in table.meshes for one, two in (pair, pair[::-1])}
+    both = [
+        pair for pair in table.meshes if {"-".join(pair), "-".join(pair[::-1])} <= {*table.mesh}
+    ]
+    for one, two in both:
+        allowed = f"is the mesh {one}-{two} again."
+        problems.append(Problem(f"mesh.{two}-{one}", "", allowed, "Keep one of the two."))
     for name in table.mesh:
         if name not in known:
             remedy = f"Known are: {', '.join('-'.join(pair) for pair in table.meshes)}."
@@ -366,7 +400,7 @@ def shape_of_train(
         key = f"shafts.{shaft}"
         joined[shaft] = []
         if "." in shaft or not shaft.strip():
-            allowed = "is no name for a shaft: a dot stands between set and member."
+            allowed = "is no name for a shaft: letters, and no dot, which parts set and member."
             problems.append(Problem(key, "", allowed, "Choose another name."))
         for name in names:
             member = aliases.get(name, name)

@@ -180,7 +180,9 @@ def _known_torques(
     frictions: Iterable[Friction],
 ) -> FloatArray:
     """Given torques and those of friction on every body. Theory (T6). [N m]"""
-    torques = dict.fromkeys((*machine.bodies, HOUSING), 0.0) | dict(operation.torques)
+    torques = dict.fromkeys((*machine.bodies, *machine.resting, HOUSING), 0.0) | dict(
+        operation.torques
+    )
     torques[operation.input] += operation.torque
     for friction in frictions:
         one, two = friction.between

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from epicyclic.elements.base import HOUSING
 from epicyclic.machine.machine import Machine
 
-__all__ = ["Freedom", "freedom", "speeds_of"]
+__all__ = ["Freedom", "freedom", "implied", "speeds_of"]
 
 FloatArray = NDArray[np.float64]
 
@@ -66,6 +66,19 @@ def freedom(machine: Machine, driven: str, given: Sequence[str]) -> Freedom:
     return Freedom(blocked, loose, free.shape[1])
 
 
+def implied(machine: Machine, known: Sequence[str], further: Sequence[str]) -> tuple[str, ...]:
+    """Those of `further` whose speeds follow from the ones before and from the `known` bodies."""
+    given, found = list(known), []
+    left = _null_space(_matrix(machine, given)).shape[1]
+    for body in further:
+        now = _null_space(_matrix(machine, [*given, body])).shape[1]
+        if now == left:
+            found.append(body)
+        else:
+            given, left = [*given, body], now
+    return tuple(found)
+
+
 def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
     """Speeds of all bodies, `HOUSING` among them, from `given` ones that determine them. [rad/s]
 
@@ -83,7 +96,7 @@ def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
         found, *_ = np.linalg.lstsq(matrix, known, rcond=SINGULAR)
         found += np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR)[0]
     speeds = dict(zip(bodies, map(float, found), strict=True))
-    return _joined(speeds | dict(given))
+    return dict.fromkeys(machine.resting, 0.0) | _joined(speeds | dict(given))
 
 
 def _joined(speeds: Mapping[str, float]) -> dict[str, float]:

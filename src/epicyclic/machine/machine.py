@@ -99,6 +99,8 @@ class Machine:
     rows : tuple of MeshRow
     couplings : tuple of Coupling
     elements : tuple of Element
+    resting : tuple of str
+        Shafts that are joined to nothing; what is on them stands still.
     layouts : tuple of ShaftLayout
         Gears and bearings along the shafts whose bearing forces are computed.
     """
@@ -108,3 +110,4 @@ class Machine:
     elements: tuple[Element, ...]
     couplings: tuple[Coupling, ...] = ()
     layouts: tuple[ShaftLayout, ...] = ()
+    resting: tuple[str, ...] = ()
