@@ -1,7 +1,7 @@
 """Write the tables of the theory manual that say which function implements which equation.
 
-Run it after a function that cites an equation, "Theory (G4).", was moved or renamed. A table keeps its
-equations; its functions are those that cite them.
+Run it after a function that cites an equation, "Theory (G4).", was moved or renamed. A table keeps
+its equations; its functions are those that cite them.
 """
 
 from __future__ import annotations

@@ -20,12 +20,12 @@ import pytest
 import epicyclic as ep
 
 _EMPTY_PLANET = (
-    "The flow through the pockets takes the driving flank of the planets' mean load; it took that of "
-    "planet 1, which counted as driving even while it carried nothing in a set that coasts."
+    "The flow through the pockets takes the driving flank of the planets' mean load; it took that "
+    "of planet 1, which counted as driving even while it carried nothing in a set that coasts."
 )
 _PINION = (
-    "The friction of Niemann and Winter takes the diameter of the pinion, the smaller gear of a mesh; "
-    "it took that of the gear that the case names first."
+    "The friction of Niemann and Winter takes the diameter of the pinion, the smaller gear of a "
+    "mesh; it took that of the gear that the case names first."
 )
 _GEAR_1_IS_LARGER = """
     pair-033 pair-044 pair-069 pair-105 planetary-013 planetary-037 planetary-043 planetary-054

@@ -15,7 +15,8 @@ TALBOT_WORDS = [[*group["words"]] for group in library.case_variants()["talbot-2
 
 
 def test_cases_and_their_variants_are_found():
-    assert library.case_files() == ("talbot-2012", "talbot-2012-pair")
+    names = ("talbot-2012", "talbot-2012-pair", "train-8hp70", "train-eaxle")
+    assert library.case_files() == names
     assert TALBOT_WORDS == [["n3", "n4", "n5", "n6"], ["shaved", "polished"], ["40C", "60C", "90C"]]
 
 

@@ -464,7 +464,10 @@ def bearing_table(**changes):
     return ShaftBearingTable.model_validate(given)
 
 
-def build(table, oil, tmp_path, shafts={"input": "input", "output": "output"}):
+SHAFTS = {"input": "input", "output": "output"}
+
+
+def build(table, oil, tmp_path, shafts=SHAFTS):
     kind = ELEMENT_KINDS["bearings"]
     assert kind.check(table) == []
     return kind.build("input.front", table, shafts=shafts, oil=oil, folder=tmp_path)
@@ -596,7 +599,7 @@ def test_unknown_shafts_are_found(oil, tmp_path):
     table = bearing_table(shaft="inptu", against="somewhere else")
 
     def action():
-        kind.build("b", table, shafts={"input": "input", "output": "output"}, oil=oil, folder=tmp_path)
+        kind.build("b", table, shafts=SHAFTS, oil=oil, folder=tmp_path)
 
     first, second = problems_of(action)
     assert first.key == "shaft"
