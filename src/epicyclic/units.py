@@ -364,9 +364,21 @@ def _as_float(number: float) -> float:
         return math.inf
 
 
+@cache
+def _factor(si: str, display: str) -> float | None:
+    """What a number in one unit is multiplied by for another; None if their zeros differ."""
+    if registry().Quantity(0.0, si).to(display).magnitude != 0:
+        return None
+    return float(registry().Quantity(1.0, si).to(display).magnitude)
+
+
 @lru_cache(maxsize=4096)
 def _convert_back(value: float, si: str, display: str) -> float:
-    converted = float(registry().Quantity(value, si).to(display).magnitude)
+    factor = _factor(si, display)
+    if factor is None:
+        converted = float(registry().Quantity(value, si).to(display).magnitude)
+    else:
+        converted = value * factor
     # 139.23 mm -> m -> mm must read 139.23 again, not 139.23000000000002
     return float(f"{converted:.14g}")
 

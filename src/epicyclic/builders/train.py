@@ -41,7 +41,7 @@ def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:
         operation=_operation(case),
         known_fluids=fluids_of(case) if case.computed else None,
         sets=sets,
-        layout=train_layout(case),
+        layout=_layout(case, elements),
     )
 
 

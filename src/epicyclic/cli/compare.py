@@ -37,7 +37,7 @@ __all__ = ["compare"]
     help="The loss that was measured, if no column says so: a term, load_dependent, "
     "load_independent, total (default), or several joined by +.",
 )
-@click.option("--group", metavar="COLUMN", default="temperature", help="Errors by its values too.")
+@click.option("--group", metavar="COLUMN", help="Errors by its values; default: temperature.")
 @click.option(
     "--fit",
     metavar="KEY,...",
@@ -65,7 +65,7 @@ def compare(
     measured: Path,
     changes: tuple[str, ...],
     component: str,
-    group: str,
+    group: str | None,
     fit: str | None,
     hold_out: str | None,
     seed: int,
@@ -78,8 +78,8 @@ def compare(
     """Compare measured losses with computed ones; with --fit, calibrate inputs to them.
 
     MEASURED is a .csv, .xlsx or .parquet file with columns such as "speed [rpm]", "torque [N*m]",
-    "temperature [degC]", "loss [W]"; optionally "uncertainty [W]" or [%], component, and any key of
-    the case.
+    "temperature [degC]", "loss [W]"; optionally "uncertainty [W]" or [%], component, the state of a
+    train, and any key of the case.
     """
     from epicyclic.cli.progress import progress_bar
     from epicyclic.measurement.compare import compare_measured
@@ -127,6 +127,8 @@ def _check_outputs(output: Path | None, plot: Path | None, keys: list[str]) -> N
 def _calibrated_text(comparison: MeasuredComparison) -> str:
     """The calibrated case as a case file that says which values are fitted, and to what."""
     from epicyclic.case.template import case_text
+    from epicyclic.case.train import TrainCase
+    from epicyclic.case.train_text import train_text
     from epicyclic.measurement.deviations import CALIBRATED
     from epicyclic.report.measured_table import fitted_comment
 
@@ -145,4 +147,5 @@ def _calibrated_text(comparison: MeasuredComparison) -> str:
         table, _, name = item.key.rpartition(".")
         if "." in table:  # a table within a table may stand on one line
             about[table] = f"{name}: {comment}"
-    return case_text(calibrated.given(), heading, about)
+    write = train_text if isinstance(calibrated, TrainCase) else case_text
+    return write(calibrated.given(), heading, about)

@@ -129,8 +129,9 @@ def loss_map(
 ) -> None:
     """Compute a loss map: torque loss, losses and efficiency over speed and torque.
 
-    A train has a map of each of its states. VALUES are a,b,c or start:stop:count with a unit. The torque loss is that at the input member;
-    the file states the signs. An interrupted map goes on where it stopped, as a sweep does.
+    VALUES are a,b,c or start:stop:count with a unit. The torque loss is that at the input member;
+    the file states the signs. A train has a map of each of its states. An interrupted map goes on
+    where it stopped, as a sweep does.
     """
     from epicyclic.maps.compute import AXES, map_plan, states_left_out
     from epicyclic.sweeps.plan import parse_vary
@@ -150,13 +151,15 @@ def loss_map(
 def map_writer(plan: MapPlan, output: Path, format: str | None = None) -> Write:
     """Writes a map; raises `InputError` if it cannot."""
     from epicyclic.maps.compute import coordinates, held_shaft, to_map
-    from epicyclic.maps.formats import check_map_output, write_map
+    from epicyclic.maps.formats import check_map_output, files_of_map, write_map
 
-    check_map_output(output, format, coordinates(plan), held_shaft(plan.case))
+    axes = coordinates(plan)
+    chosen = check_map_output(output, format, axes, held_shaft(plan.case))
+    files = ", ".join(map(str, files_of_map(output, chosen, axes).values()))
 
     def write(rows: Rows) -> str:
         write_map(to_map(plan, rows), output, format)
-        return points_written(rows, output)
+        return points_written(rows, files)
 
     return write
 
@@ -219,8 +222,8 @@ def finish(
         sys.exit(EXIT_FAILED_POINTS)
 
 
-def points_written(rows: Rows, output: Path) -> str:
-    """What to say of the file."""
+def points_written(rows: Rows, output: Path | str) -> str:
+    """What to say of the file, or of several."""
     failed = len(rows.failures)
     outcome = f", {failed} of them failed." if failed else "."
     return f"Wrote {len(rows)} point{'' if len(rows) == 1 else 's'} to {output}{outcome}"

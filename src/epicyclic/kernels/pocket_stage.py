@@ -49,18 +49,21 @@ NEWTON_TOLERANCE = 1e-9
 def _solve_banded(matrix: Floats, right: Floats, width: int) -> None:
     """Gauss elimination of a banded matrix without pivoting; the solution replaces `right`.
 
-    `matrix[r, width + c - r]` is the element in row r and column c.
+    `matrix[r, width + c - r]` is the element in row r and column c. The rows of the inner loop are
+    views, counted from zero: only so does it become vector instructions.
     """
     n = right.size
     for k in range(n):
         pivot = matrix[k, width]
+        upper = matrix[k, width + 1 : 2 * width + 1]
         for r in range(k + 1, min(n, k + width + 1)):
             factor = matrix[r, width + k - r]
             if factor != 0.0:
                 factor /= pivot
-                shift = k - r
-                for c in range(width + 1, 2 * width + 1):
-                    matrix[r, c + shift] -= factor * matrix[k, c]
+                start = width + 1 + k - r
+                lower = matrix[r, start : start + width]
+                for c in range(width):
+                    lower[c] -= factor * upper[c]
                 right[r] -= factor * right[k]
     for k in range(n - 1, -1, -1):
         total = right[k]

@@ -9,6 +9,7 @@ from typing import Any, cast
 from epicyclic.elements.base import LOAD_DEPENDENT, ElementResult, Loss, State
 from epicyclic.elements.fluids import Fluids
 from epicyclic.errors import ConvergenceError
+from epicyclic.machine.answers import Answer, distance
 from epicyclic.machine.balance import Balance, Friction, balance, drives_first
 from epicyclic.machine.directions import find_directions
 from epicyclic.machine.forces import forces_of
@@ -21,6 +22,9 @@ AGREEMENT = 1e-10
 """Relative change of each load from one pass to the next at which torques and losses agree. [1]"""
 ROUNDING = 1e-14
 """Change, relative to the largest load, that is rounding. [1]"""
+FORETOLD = 0.1
+"""Error of a foretold loss over the change of the loads from one pass to the next, at most: losses
+are small beside powers, so that the error leaves less of the change than a pass does. [1]"""
 MOST_PASSES = 60
 MOST_BRANCHES = 8
 """Directions of the rolling powers that are tried with the losses of elements."""
@@ -187,7 +191,8 @@ def _converged(
     """Torques and losses that agree, with these directions of the rolling powers."""
     rows = {row.key: row.efficiency for row in machine.rows}
     found = balance(machine, operation, speeds, drives, rows)
-    answered: dict[str, Mapping[str, float]] = {}
+    answers: dict[str, Answer] = {}
+    seen: dict[str, Mapping[str, float]] = {}
     results: dict[str, ElementResult] = {}
     idle: dict[str, Any] = {}
     for number in range(MOST_PASSES):
@@ -199,11 +204,18 @@ def _converged(
             idle |= {element.key: element.idle(state) for element in machine.elements}
         changed = False
         for element in machine.elements:
-            loads = element.loads(state)
-            if element.key not in answered or not _agrees(answered[element.key], loads):
-                results[element.key] = element.evaluate(state)
-                answered[element.key] = loads
-                changed = True
+            key, loads = element.key, element.loads(state)
+            if key in seen and _agrees(seen[key], loads):
+                continue
+            last = answers.get(key)
+            told = None
+            if last is not None:
+                told = last.foretold(loads, max(AGREEMENT, FORETOLD * distance(seen[key], loads)))
+            if told is None:
+                told = element.evaluate(state)
+                answers[key] = last.followed_by(loads, told) if last else Answer(loads, told)
+            results[key], seen[key] = told, loads
+            changed = True
         efficiencies, frictions = effects_of(machine, found.powers, results.values())
         if not changed and efficiencies == rows:  # friction alone: the balance has all of it
             return _Pass(found, drives, efficiencies, state, results)

@@ -1,7 +1,9 @@
 """Loss maps: losses, torque loss and efficiency over speed, torque and oil temperature.
 
 A train has its states of brakes and clutches as a further dimension; one whose losses are all given
-has no oil, and no temperature. The torque loss refers to the input member, `reference_shaft` in the attributes: the power loss over
+has no oil, and no temperature.
+
+The torque loss refers to the input member, `reference_shaft` in the attributes: the power loss over
 the magnitude of the speed of that shaft. With it the torque that the shaft passes on is the torque
 on it less the torque loss times the sign of its speed, driving and coasting.
 """

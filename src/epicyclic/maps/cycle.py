@@ -7,6 +7,7 @@ as a whole.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -26,12 +27,15 @@ __all__ = ["SHARE", "TIME", "Cycle", "Piece", "open_cycle"]
 Array = NDArray[np.float64]
 
 TIME, DURATION, SHARE = "time", "duration", "share"
+STATE = "state"
+"""Column of the states of a train: text."""
 _WEIGHTINGS = (TIME, DURATION, SHARE)
-_OPTIONAL = ("temperature",)
+_OPTIONAL = ("temperature", STATE)
 _QUANTITIES: dict[str, Quantity | None] = {
     "speed": RPM,
     "torque": NEWTON_METRE,
     "temperature": CELSIUS,
+    STATE: None,
     TIME: SECOND,
     DURATION: SECOND,
     SHARE: None,
@@ -39,6 +43,8 @@ _QUANTITIES: dict[str, Quantity | None] = {
 _HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 _NUMBER = r"^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$"
 _SHOWN_HEADERS = 20
+_MOST_STATES = 1000
+"""A column of more different texts is another one by that name, and left alone."""
 SHARE_DURATION = 3600.0
 """What a cycle of shares lasts. [s]"""
 
@@ -58,15 +64,20 @@ class Piece:
 
     Attributes
     ----------
-    speed, torque, temperature : array, shape (n,)
-        In rpm, N m, degC.
+    speed, torque : array, shape (n,)
+        In rpm, N m.
+    temperature : array, shape (n,), or None
+        In degC; None if there is none.
+    state : array of int, shape (n,), or None
+        Numbers in `Cycle.states`; None if there is no such column.
     duration : array, shape (n,)
         [s]
     """
 
     speed: Array
     torque: Array
-    temperature: Array
+    temperature: Array | None
+    state: NDArray[np.intp] | None
     duration: Array
 
 
@@ -84,6 +95,8 @@ class Cycle:
     rows : int
     ranges : mapping of str to (float, float)
         Smallest and largest value of every quantity, in display units.
+    states : tuple of str
+        What its column of states has, in the order in which it appears; none without the column.
     """
 
     source: Source
@@ -91,6 +104,7 @@ class Cycle:
     weighting: str
     rows: int
     ranges: Mapping[str, tuple[float, float]]
+    states: tuple[str, ...] = ()
 
     def pieces(self, celsius: float | None = None) -> Iterator[Piece]:
         """All points, at their own temperatures or at one.
@@ -103,7 +117,10 @@ class Cycle:
             rows = {
                 name: column.factor * _numbers(batch[column.header]) + column.offset
                 for name, column in self.columns.items()
+                if name != STATE
             }
+            if self.states:
+                rows[STATE] = self._state_numbers(batch[self.columns[STATE].header])
             if self.weighting == TIME:
                 rows = {name: np.append(last.get(name, []), rows[name]) for name in rows}
                 last = {name: values[-1:] for name, values in rows.items()}
@@ -111,9 +128,17 @@ class Cycle:
                 duration = (np.append(steps, 0.0) + np.append(0.0, steps)) / 2
             else:
                 duration = rows[self.weighting]
-            speed = rows["speed"]
-            temperature = rows["temperature"] if celsius is None else np.full_like(speed, celsius)
-            yield Piece(speed, rows["torque"], temperature, duration)
+            speed, temperature = rows["speed"], rows.get("temperature")
+            if celsius is not None:
+                temperature = np.full_like(speed, celsius)
+            state = rows[STATE].astype(np.intp) if self.states else None
+            yield Piece(speed, rows["torque"], temperature, state, duration)
+
+    def _state_numbers(self, column: Any) -> Array:
+        """Numbers of the states in a column."""
+        place = {name: float(number) for number, name in enumerate(self.states)}
+        codes, texts = _texts(column)
+        return np.array([place.get(text, math.nan) for text in texts])[codes]
 
 
 def open_cycle(table: Any, progress: Callable[[int, None], None] | None = None) -> Cycle:
@@ -146,14 +171,18 @@ def open_cycle(table: Any, progress: Callable[[int, None], None] | None = None) 
     (weighting,) = (name for name in _WEIGHTINGS if name in columns)
     if weighting == SHARE:
         columns[SHARE] = Column(columns[SHARE].header, SHARE_DURATION / checks.sums[SHARE])
+    if len(checks.states) > _MOST_STATES:
+        del columns[STATE]
     ranges = {
         name: (
             column.factor * checks.low[name] + column.offset,
             column.factor * checks.high[name] + column.offset,
         )
         for name, column in columns.items()
+        if name != STATE
     }
-    return Cycle(source, columns, weighting, checks.rows, ranges)
+    states = tuple(checks.states) if STATE in columns else ()
+    return Cycle(source, columns, weighting, checks.rows, ranges, states)
 
 
 # --- headers --------------------------------------------------------------------------------------
@@ -237,6 +266,20 @@ def _numbers(column: Any) -> Array:
     return values
 
 
+def _texts(column: Any) -> tuple[NDArray[np.intp], list[str]]:
+    """A column of `pyarrow` as numbers of texts, and these; whole numbers without decimals."""
+    import pyarrow as pa
+
+    if not pa.types.is_dictionary(column.type):
+        column = column.dictionary_encode(null_encoding="encode")
+    texts = []
+    for item in column.dictionary.to_pylist():
+        whole = isinstance(item, float) and item.is_integer()
+        texts.append("" if item is None else str(int(item) if whole else item).strip())
+    codes = column.indices.fill_null(len(texts)).to_numpy(zero_copy_only=False).astype(np.intp)
+    return codes, [*texts, ""]
+
+
 @dataclass(slots=True)
 class _Fault:
     """Rows with one kind of mistake: how many, and the first."""
@@ -262,12 +305,16 @@ class _Checks:
         self.low = dict.fromkeys(columns, np.inf)
         self.high = dict.fromkeys(columns, -np.inf)
         self.sums = dict.fromkeys(columns, 0.0)
+        self.states: dict[str, None] = {}
         self._faults: dict[tuple[str, str], _Fault] = {}
         self._last_time = -np.inf
 
     def add(self, batch: Mapping[str, Any]) -> None:
         """Take in a piece; arrays of `pyarrow` by quantity."""
         for name, column in batch.items():
+            if name == STATE:
+                self._add_states(column)
+                continue
             values = _numbers(column)
             bad = np.isnan(values)
             self._note(bad, column, _Fault(name, "must be a finite number.", "Correct the row."))
@@ -286,6 +333,11 @@ class _Checks:
                 self.high[name] = max(self.high[name], float(sound.max()))
                 self.sums[name] += float(sound.sum())
         self.rows += len(column)
+
+    def _add_states(self, column: Any) -> None:
+        codes, texts = _texts(column)
+        if len(self.states) <= _MOST_STATES:
+            self.states |= {texts[code]: None for code in dict.fromkeys(codes.tolist())}
 
     def _note(self, bad: NDArray[np.bool_], column: Any, fault: _Fault) -> None:
         """Count rows with a mistake; `fault` is what to keep of the first."""

@@ -7,7 +7,7 @@ the nodes they give the energy of every component at once.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.case.case import Case
+from epicyclic.case.case import Case, TrainCase
+from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.wording import sentence, written
 from epicyclic.errors import InputError, Problem
-from epicyclic.maps.compute import AXES, map_plan, to_map
-from epicyclic.maps.cycle import Cycle, open_cycle
+from epicyclic.maps.compute import STATE, map_plan, to_map
+from epicyclic.maps.cycle import Cycle, Piece, open_cycle
 from epicyclic.maps.interpolation_error import (
     Deviation,
     Sample,
@@ -80,7 +81,8 @@ def duty_cycle(
         A file that ends in .csv or .parquet, or columns by name: ``"speed [rpm]"``,
         ``"torque [N*m]"`` of the input member, ``"temperature [degC]"`` if it varies, and
         ``"time [s]"`` of a time series, or ``"duration [s]"`` or ``"share"`` of a histogram.
-        Any units; other columns are left alone.
+        Any units; a train with states has a column ``"state"`` of their names. Other columns are
+        left alone.
     temperature : iterable, optional
         Oil inlet temperatures as text with units, for a cycle without a column of them. Default:
         that of the case, or of a map that has one.
@@ -103,13 +105,15 @@ def duty_cycle(
         ``energy_lost`` [kJ] over ``mode`` and ``component``; ``total_efficiency``;
         ``share_outside`` of the duration; ``interpolation_error`` [kJ] of the energy lost, its
         ``interpolation_standard_error`` and the ``largest_deviation`` of a point, with the way they
-        were found in the attributes. With `temperature` all have that dimension.
+        were found in the attributes. A train with states has ``state_energy_in``,
+        ``state_energy_out``, ``state_energy_lost``, ``state_duration`` and ``state_efficiency``
+        over ``state`` too. With `temperature` all have that dimension.
 
     Raises
     ------
     InputError
-        With all problems of the cycle; for points outside of the map; for a map with gaps,
-        further axes of several values, or two driven members.
+        With all problems of the cycle; for points outside of the map and states that it does not
+        have; for a map with gaps, further axes of several values, or two driven members.
     """
     runner = Runner(jobs, dask, journal=journal)
     checked = open_cycle(cycle)
@@ -153,8 +157,13 @@ def cycle_map(
     """A map of `case` that covers a cycle."""
     speeds = _crowded(*cycle.ranges["speed"], _SPEEDS)
     torques = _crowded(*cycle.ranges["torque"], _TORQUES)
-    temperatures = celsius
-    if "temperature" in cycle.ranges:
+    temperatures, states = celsius, None
+    if isinstance(case, TrainCase) and case.states:
+        _check_states(cycle, tuple(case.states))
+        states = [name for name in case.states if name in cycle.states]
+    if isinstance(case, TrainCase) and not case.computed:
+        pass  # without an oil its temperature has no effect
+    elif "temperature" in cycle.ranges:
         low, high = cycle.ranges["temperature"]
         temperatures = tuple(np.unique(np.linspace(low, high, _TEMPERATURES)).tolist())
     plan = map_plan(
@@ -162,6 +171,7 @@ def cycle_map(
         _texts(speeds, RPM),
         _texts(torques, NEWTON_METRE),
         None if temperatures is None else _texts(temperatures, CELSIUS),
+        states=states,
     )
     return to_map(plan, runner.within(plan).run(plan))
 
@@ -179,15 +189,15 @@ def _texts(values: Iterable[float], quantity: Quantity) -> list[str]:
 
 @dataclass(slots=True)
 class Totals:
-    """Sums over a cycle; arrays have one row for each of `MODES`.
+    """Sums over a cycle; arrays have a row for each of `MODES`, a column for each state or one.
 
     Attributes
     ----------
     node_work : array, shape (modes, nodes)
         Angle turned through at each node of the map. [rad]
-    duration : array, shape (modes,)
+    duration : array, shape (modes, states)
         [s]
-    energy_in, energy_out : array, shape (modes,)
+    energy_in, energy_out : array, shape (modes, states)
         [J]
     outside : float
         Duration outside of the map. [s]
@@ -232,6 +242,8 @@ def add_up(
 ) -> Sums:
     """Go through a checked cycle; raises `InputError` if it leaves the map."""
     lookup = make_lookup(data)
+    if len(lookup.states) > 1 or (lookup.states and cycle.states):
+        _check_states(cycle, lookup.states)
     totals, drawn = [], []
     for value in _temperatures(lookup, cycle, celsius):
         sample = Sample(samples)
@@ -258,7 +270,7 @@ def make_duty(
         error = (
             leave_out(sums.lookup, totals.node_work.sum(axis=0))
             if case is None
-            else solve_sample(case, sample, runner)
+            else solve_sample(case, sums.lookup, sample, runner)
         )
         results.append(_to_dataset(sums.lookup, totals, error))
     (result, *_) = results
@@ -274,16 +286,55 @@ def _temperatures(
     lookup: Lookup, cycle: Cycle, celsius: tuple[float, ...] | None
 ) -> tuple[float | None, ...]:
     """The oil temperatures at which to run a cycle; None stands for that of its column."""
+    if "temperature" not in lookup.names:
+        if celsius is not None:
+            allowed = "has no effect: every loss of the train is given."
+            problem = Problem("temperature", "", allowed, "Leave it out.")
+            raise InputError([problem], "the command")
+        return (None,)
     if "temperature" in cycle.ranges:
         return (None,)
     if celsius is not None:
         return celsius
-    (*_, axis) = lookup.axes
+    axis = lookup.axes[lookup.names.index("temperature")]
     if axis.size > 1:
         allowed = f"is not a column of the cycle, and the map has {axis.size} of them."
         remedy = f'Choose some, as "{format_number(float(axis[0]))} degC".'
         raise InputError([Problem("temperature", "", allowed, remedy)], "the command")
     return (float(axis[0]),)
+
+
+def _check_states(cycle: Cycle, known: tuple[str, ...]) -> None:
+    """Raise `InputError` unless a cycle has a column of states, all of them `known`."""
+    text = ", ".join(known)
+    if not cycle.states:
+        allowed = f"is not among the columns, and there are several: {text}."
+        problem = Problem(STATE, "", allowed, f"Name a column {STATE}, or make a map of one state.")
+        raise InputError([problem], cycle.source.name)
+    problems = [
+        Problem(
+            STATE,
+            written(name),
+            f"is none of {text}.",
+            did_you_mean(name, known) or "Correct these rows, or make a map of this state too.",
+        )
+        for name in cycle.states
+        if name not in known
+    ]
+    if problems:
+        raise InputError(problems, cycle.source.name)
+
+
+def _point(lookup: Lookup, cycle: Cycle, piece: Piece) -> tuple[Array, ...]:
+    """The points of a piece as the axes of the map."""
+    point = {"speed": piece.speed, "torque": piece.torque, "temperature": piece.temperature}
+    if piece.state is not None and lookup.states:
+        numbers = np.array([1.0 + lookup.states.index(name) for name in cycle.states])
+        point[STATE] = numbers[piece.state]
+    else:
+        point[STATE] = np.ones_like(piece.speed)
+    values = [point[name] for name in lookup.names]
+    return tuple(array for array in values if array is not None)
 
 
 def _go_through(
@@ -294,12 +345,12 @@ def _go_through(
     progress: Progress | None,
 ) -> Totals:
     """All points of a cycle added up, at its own temperatures or at one."""
-    modes, nodes = len(MODES), lookup.size
-    totals = Totals(np.zeros((modes, nodes)), *np.zeros((3, modes)))
+    modes, nodes, states = len(MODES), lookup.size, max(1, len(lookup.states))
+    totals = Totals(np.zeros((modes, nodes)), *np.zeros((3, modes, states)))
     torque_loss = lookup.total
     done = 0
     for piece in cycle.pieces(celsius):
-        point = (piece.speed, piece.torque, piece.temperature)
+        point = _point(lookup, cycle, piece)
         corners, weights = lookup.corners(*point)
         loss = loss_power((torque_loss[corners] * weights).sum(axis=0), piece.speed)
         at_shaft = loss_power(piece.torque, piece.speed) * np.sign(piece.speed)
@@ -311,9 +362,15 @@ def _go_through(
         # power enters at either shaft: what the reference shaft does not bring comes from the other
         entering = np.maximum(at_shaft, 0) + np.maximum(loss - at_shaft, 0)
         leaving = np.maximum(-at_shaft, 0) + np.maximum(at_shaft - loss, 0)
-        totals.duration += np.bincount(mode, piece.duration, modes)
-        totals.energy_in += np.bincount(mode, entering * piece.duration, modes)
-        totals.energy_out += np.bincount(mode, leaving * piece.duration, modes)
+        if lookup.states:
+            mode = mode * states + point[-1].astype(np.intp) - 1
+        for total, per_second in (
+            (totals.duration, 1.0),
+            (totals.energy_in, entering),
+            (totals.energy_out, leaving),
+        ):
+            weights_now = per_second * piece.duration
+            total += np.bincount(mode, weights_now, modes * states).reshape(modes, states)
         totals.outside += float(piece.duration[lookup.outside(*point)].sum())
         sample.add(point, loss, loss * piece.duration)
         done += piece.speed.size
@@ -329,7 +386,10 @@ def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: Totals
         ranges["temperature"] = (celsius, celsius)
     share = totals.outside / totals.duration.sum()
     problems = []
-    for name, axis, unit in zip(AXES, lookup.axes, (RPM, NEWTON_METRE, CELSIUS), strict=True):
+    units = (RPM, NEWTON_METRE, CELSIUS)
+    for name, axis, unit in zip(lookup.names, lookup.axes, units, strict=False):
+        if name == STATE:
+            continue
         low, high = (format_number(value) for value in ranges[name])
         first, last = (format_number(float(value)) for value in (axis[0], axis[-1]))
         if ranges[name][0] < axis[0] or ranges[name][1] > axis[-1]:
@@ -348,14 +408,15 @@ def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: Totals
 def _to_dataset(lookup: Lookup, totals: Totals, error: Deviation) -> xr.Dataset:
     import xarray as xr
 
-    entering, leaving = totals.energy_in, totals.energy_out
+    entering, leaving = totals.energy_in.sum(axis=1), totals.energy_out.sum(axis=1)
+    duration = totals.duration.sum(axis=1)
     by_component = totals.node_work @ lookup.torques.reshape(len(lookup.components), -1).T
     seconds, energy, pure = SECOND.display, KILOJOULE.display, "1"
     kilo, _ = KILOJOULE.scale_and_offset()
-    outside = totals.outside / totals.duration.sum()
+    outside = totals.outside / duration.sum()
     of_mode, of_both = ("mode",), ("mode", "component")
     table = (
-        ("duration", of_mode, totals.duration, seconds, "duration"),
+        ("duration", of_mode, duration, seconds, "duration"),
         ("energy_in", of_mode, entering * kilo, energy, "energy that enters"),
         ("energy_out", of_mode, leaving * kilo, energy, "energy that leaves"),
         ("energy_lost", of_both, by_component * kilo, energy, "energy lost"),
@@ -368,14 +429,39 @@ def _to_dataset(lookup: Lookup, totals: Totals, error: Deviation) -> xr.Dataset:
         ("interpolation_standard_error", (), error.standard_error * kilo, energy,
          "standard error of the estimate"),
         ("largest_deviation", (), error.largest, pure, "largest deviation of a checked point"),
+        *_of_states(lookup, totals),
     )  # fmt: skip
+    coords = {"mode": list(MODES), "component": list(lookup.components)}
+    if lookup.states:
+        coords[STATE] = list(lookup.states)
     return xr.Dataset(
         {
             name: (dims, values, {"long_name": label, "units": unit})
             for name, dims, values, unit, label in table
         },
-        {"mode": list(MODES), "component": list(lookup.components)},
+        coords,
     )
+
+
+def _of_states(
+    lookup: Lookup, totals: Totals
+) -> Iterator[tuple[str, tuple[str, ...], Array, str, str]]:
+    """Sums over each state, as `_to_dataset` has the others; none without states."""
+    if not lookup.states:
+        return
+    kilo, _ = KILOJOULE.scale_and_offset()
+    entering, leaving = totals.energy_in.sum(axis=0), totals.energy_out.sum(axis=0)
+    # states are the last axis of the map
+    turned = totals.node_work.sum(axis=0).reshape(-1, len(lookup.states))
+    torques = lookup.torques.reshape(len(lookup.components), -1, len(lookup.states))
+    lost = np.einsum("ns,cns->sc", turned, torques)
+    energy = KILOJOULE.display
+    of_state = (STATE,)
+    yield "state_duration", of_state, totals.duration.sum(axis=0), SECOND.display, "duration"
+    yield "state_energy_in", of_state, entering * kilo, energy, "energy that enters"
+    yield "state_energy_out", of_state, leaving * kilo, energy, "energy that leaves"
+    yield "state_energy_lost", (STATE, "component"), lost * kilo, energy, "energy lost"
+    yield "state_efficiency", of_state, _ratio(leaving, entering), "1", "efficiency"
 
 
 def _ratio(part: Any, whole: Any) -> Any:

@@ -7,8 +7,9 @@
 #include "fmi2Functions.h"
 #include "map_data.h"
 
-enum { AXES = 3, FIRST_COMPONENT = 6, REALS = FIRST_COMPONENT + COMPONENTS };
-enum { SPEED, TORQUE, TEMPERATURE, TORQUE_LOSS, POWER_LOSS, EFFICIENCY };
+enum { SPEED, TORQUE }; /* temperature and state follow, where the map has them */
+enum { TORQUE_LOSS = AXES, POWER_LOSS, EFFICIENCY, FIRST_COMPONENT };
+enum { REALS = FIRST_COMPONENT + COMPONENTS };
 
 typedef struct {
     double input[AXES];
@@ -45,8 +46,14 @@ static double magnitude(double value) { return value < 0 ? -value : value; }
 
 /* --- the map ---------------------------------------------------------------------------------- */
 
-static const double *const axis_values[AXES] = {speed_axis, torque_axis, temperature_axis};
-static const int axis_sizes[AXES] = {SPEEDS, TORQUES, TEMPERATURES};
+/* The number of a state next to a value; other axes are taken as they are. */
+static double place(int axis, double value) {
+    double last = axis_sizes[axis];
+    if (axis != STATE) {
+        return value;
+    }
+    return !(value > 1) ? 1 : value > last ? last : (double)(int)(value + 0.5);
+}
 
 /* The value below and the part of the way to the next; points outside are taken at the border. */
 static int bracket(int axis, double value, double *part) {
@@ -74,7 +81,11 @@ static int is_inside(const Instance *it) {
     for (int axis = 0; axis < AXES; axis++) {
         double low = axis_values[axis][0] - slack[axis];
         double high = axis_values[axis][axis_sizes[axis] - 1] + slack[axis];
-        if (!(it->input[axis] >= low && it->input[axis] <= high)) {
+        double value = it->input[axis];
+        if (!(value >= low && value <= high)) {
+            return 0;
+        }
+        if (magnitude(value - place(axis, value)) > slack[axis]) {
             return 0;
         }
     }
@@ -97,11 +108,11 @@ static void evaluate(const Instance *it, double *values) {
     double torque_loss = 0;
     for (int axis = 0; axis < AXES; axis++) {
         values[axis] = it->input[axis];
-        low[axis] = bracket(axis, it->input[axis], &part[axis]);
+        low[axis] = bracket(axis, place(axis, it->input[axis]), &part[axis]);
     }
     for (int component = 0; component < COMPONENTS; component++) {
         double sum = 0;
-        for (int corner = 0; corner < 8; corner++) {
+        for (int corner = 0; corner < 1 << AXES; corner++) {
             double weight = 1;
             int node = 0;
             for (int axis = 0; axis < AXES; axis++) {
@@ -212,7 +223,7 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference refs[], size_t 
                        const fmi2Real values[]) {
     for (size_t i = 0; i < count; i++) {
         if (refs[i] >= AXES) {
-            return fail(c, "Only speed, torque and temperature can be set.");
+            return fail(c, "Only inputs can be set.");
         }
         ((Instance *)c)->input[refs[i]] = values[i];
     }

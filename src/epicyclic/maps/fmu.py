@@ -1,4 +1,4 @@
-"""Loss maps as FMUs: losses and efficiency from speed, torque and temperature, by interpolation.
+"""Loss maps as FMUs: losses and efficiency from speed, torque, temperature and state.
 
 FMI 2.0, for Model Exchange and Co-Simulation. `fmu.c` is compiled with the numbers of the map for
 three systems at once, so that the file runs there without Python, this package or a compiler. FMPy
@@ -26,9 +26,10 @@ import numpy as np
 
 from epicyclic.case.wording import one_line
 from epicyclic.errors import EpicyclicError, Problem
+from epicyclic.maps.compute import STATE
 from epicyclic.maps.lookup import Lookup, make_lookup, slack
 from epicyclic.maps.tables import stated
-from epicyclic.units import CELSIUS, RPM
+from epicyclic.units import CELSIUS, RPM, format_number
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,6 +50,7 @@ _ABOUT = {
     "speed": "speed of the {shaft}",
     "torque": "torque on the {shaft}; against the speed it coasts",
     "temperature": "oil inlet temperature",
+    STATE: "number of the state",
     "torque_loss": "power loss over the magnitude of the speed of the {shaft}",
     "power_loss": "loss of the whole gear set",
     "efficiency": "power that leaves over power that enters; 0 where none leaves",
@@ -57,6 +59,7 @@ _UNITS = {
     "speed": ("rad/s", "rpm"),
     "torque": ("N.m", None),
     "temperature": ("K", "degC"),
+    STATE: ("1", None),
     "torque_loss": ("N.m", None),
     "power_loss": ("W", None),
     "efficiency": ("1", None),
@@ -110,18 +113,23 @@ def _write_sources(folder: Path, lookup: Lookup, guid: str) -> None:
 
 def _map_data(lookup: Lookup, guid: str) -> Iterator[str]:
     """Lines of C that define the map, in SI units."""
-    names = ("speed", "torque", "temperature")
     axes = _si_axes(lookup)
-    counts = ", ".join(
-        f"{name.upper()}S = {axis.size}" for name, axis in zip(names, axes, strict=True)
-    )
+    counts = {
+        "AXES": len(axes),
+        "NODES": lookup.size,
+        "COMPONENTS": len(lookup.components),
+        "STATE": lookup.names.index(STATE) if STATE in lookup.names else -1,
+    }
     yield f'#define GUID "{guid}"'
-    yield f"enum {{ {counts}, COMPONENTS = {len(lookup.components)} }};"
-    for name, axis in zip(names, axes, strict=True):
+    yield f"enum {{ {', '.join(f'{name} = {count}' for name, count in counts.items())} }};"
+    for name, axis in zip(lookup.names, axes, strict=True):
         yield f"static const double {name}_axis[] = {{{_numbers(axis)}}};"
+    names = ", ".join(f"{name}_axis" for name in lookup.names)
+    yield f"static const double *const axis_values[] = {{{names}}};"
+    yield f"static const int axis_sizes[] = {{{', '.join(str(axis.size) for axis in axes)}}};"
     yield f"static const double slack[] = {{{_numbers([slack(axis) for axis in axes])}}};"
-    yield f"static const double start[] = {{{_numbers(_start(axes))}}};"
-    yield "static const double torque_losses[][SPEEDS * TORQUES * TEMPERATURES] = {"
+    yield f"static const double start[] = {{{_numbers(_start(lookup.names, axes))}}};"
+    yield "static const double torque_losses[][NODES] = {"
     for torques in lookup.torques:
         yield f"    {{{_numbers(torques.ravel())}}},"
     yield "};"
@@ -132,19 +140,21 @@ def _numbers(values: Any) -> str:
 
 
 def _si_axes(lookup: Lookup) -> list[Any]:
-    """Axes in rad/s, N m, K."""
-    speed, torque, temperature = lookup.axes
+    """Axes in rad/s, N m, K, and numbers of states."""
     rpm, _ = RPM.scale_and_offset()
     _, zero = CELSIUS.scale_and_offset()
-    return [speed / rpm, torque, temperature - zero]
+    axes = dict(zip(lookup.names, lookup.axes, strict=True))
+    axes["speed"] = axes["speed"] / rpm
+    if "temperature" in axes:
+        axes["temperature"] = axes["temperature"] - zero
+    return list(axes.values())
 
 
-def _start(axes: Sequence[Any]) -> list[float]:
-    """Rest without torque, or what of the map is next to it, and the lowest temperature."""
-    speed, torque, temperature = axes
+def _start(names: Sequence[str], axes: Sequence[Any]) -> list[float]:
+    """Rest without torque, or what of the map is next to it; lowest temperature, first state."""
     return [
-        *(float(np.clip(0, axis[0], axis[-1])) for axis in (speed, torque)),
-        float(temperature[0]),
+        float(np.clip(0, axis[0], axis[-1])) if name in ("speed", "torque") else float(axis[0])
+        for name, axis in zip(names, axes, strict=True)
     ]
 
 
@@ -217,8 +227,12 @@ def _variables(data: xr.Dataset, lookup: Lookup) -> list[Any]:
 
     axes = _si_axes(lookup)
     about = {
-        name: text.format(shaft=data.attrs["reference_shaft"]) for name, text in _ABOUT.items()
+        name: text.format(shaft=data.attrs["reference_shaft"])
+        for name, text in _ABOUT.items()
+        if name in lookup.names or name not in ("temperature", STATE)
     }
+    if lookup.states:
+        about[STATE] += f": {_states_text(data)}"
     about |= {name: f"loss: {name.replace('_', ' ')}" for name in lookup.components}
     variables = []
     for number, (name, text) in enumerate(about.items()):
@@ -236,8 +250,10 @@ def _variables(data: xr.Dataset, lookup: Lookup) -> list[Any]:
         )
         if number < len(axes):
             variable.causality, variable.initial = "input", None
-            variable.start = repr(_start(axes)[number])
+            variable.start = repr(_start(lookup.names, axes)[number])
             variable.min, variable.max = (repr(float(axes[number][end])) for end in (0, -1))
+        if name == STATE:
+            variable.variability = "discrete"
         variables.append(variable)
     inside = ModelVariable(
         name=_INSIDE,
@@ -249,6 +265,17 @@ def _variables(data: xr.Dataset, lookup: Lookup) -> list[Any]:
         description="false: the point is outside of the map and taken at its border",
     )
     return [*variables, inside]
+
+
+def _states_text(data: xr.Dataset) -> str:
+    """Numbers of the states with their names and ratios."""
+    ratios = data["ratio"].isel({name: 0 for name in data["ratio"].dims if name != STATE})
+    return "; ".join(
+        f"{number} = {one_line(str(name))} (ratio {format_number(float(ratio))})"
+        for number, (name, ratio) in enumerate(
+            zip(data[STATE].values, ratios.values, strict=True), start=1
+        )
+    )
 
 
 def _units() -> list[Any]:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from epicyclic.errors import InputError, Problem
 from epicyclic.maps import fmu, simscape, simulation, tables, workbook
-from epicyclic.maps.compute import AXES
+from epicyclic.maps.compute import AXES, STATE
 from epicyclic.sweeps.dataset import check_place, whole_file
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["FORMATS", "check_map_output", "write_map"]
+__all__ = ["FORMATS", "check_map_output", "files_of_map", "write_map"]
 
 Coordinates = Mapping[str, Sequence[Any]]
 
@@ -36,6 +38,8 @@ class Format:
         What of the axes of a map the format cannot hold.
     axes : tuple of str or None
         Axes that may have several values; a map then has no gaps and one member held. None: any.
+    each_state : bool
+        True: a map of several states becomes several files.
     """
 
     suffix: str
@@ -43,9 +47,11 @@ class Format:
     write: Callable[[xr.Dataset, Path], None]
     problems: Callable[[Coordinates], list[Problem]] = lambda axes: []
     axes: tuple[str, ...] | None = None
+    each_state: bool = False
 
 
 _PLANE = ("speed", "torque")
+_SPACE = (*AXES, STATE)
 
 FORMATS = {
     "netcdf": Format(".nc", "NetCDF", tables.write_netcdf),
@@ -53,13 +59,22 @@ FORMATS = {
     "parquet": Format(".parquet", "table of all points", tables.write_parquet),
     "excel": Format(".xlsx", "Excel workbook", workbook.write_workbook, workbook.workbook_problems),
     "matlab": Format(".mat", "MATLAB", workbook.write_matlab),
-    "vecto": Format(".vtlm", "VECTO", simulation.write_vecto, simulation.vecto_problems, _PLANE),
-    "modelica": Format(
-        ".mo", "Modelica", simulation.write_modelica, simulation.modelica_problems, _PLANE
+    "vecto": Format(
+        ".vtlm", "VECTO", simulation.write_vecto, simulation.vecto_problems, _PLANE, each_state=True
     ),
-    "simscape": Format(".m", "Simscape and Simulink", simscape.write_simscape, axes=tuple(AXES)),
-    "fmu": Format(".fmu", "FMI 2.0", fmu.write_fmu, fmu.fmu_problems, tuple(AXES)),
-    "gem": Format("", "EPA GEM", simulation.write_gem, simulation.gem_problems, _PLANE),
+    "modelica": Format(
+        ".mo",
+        "Modelica",
+        simulation.write_modelica,
+        simulation.modelica_problems,
+        _PLANE,
+        each_state=True,
+    ),
+    "simscape": Format(".m", "Simscape and Simulink", simscape.write_simscape, axes=_SPACE),
+    "fmu": Format(".fmu", "FMI 2.0", fmu.write_fmu, fmu.fmu_problems, _SPACE),
+    "gem": Format(
+        "", "EPA GEM", simulation.write_gem, simulation.gem_problems, _PLANE, each_state=True
+    ),
 }
 
 
@@ -71,6 +86,8 @@ def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> 
     data : xarray.Dataset
         As `loss_map` returns it.
     path : str or Path
+        A format of one table of speed and torque has a file for each state of a train, its name
+        with that of the state, ``gearbox-1.vtlm``.
     format : str, optional
         Name of the format. Default: the one that the ending of `path` names.
 
@@ -85,8 +102,21 @@ def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> 
     chosen = check_map_output(target, format, axes, data.attrs["held_shaft"])
     if chosen.axes is not None:
         tables.check_gaps(data)
-    with whole_file(target) as temporary:
-        chosen.write(data, temporary)
+    with ExitStack() as stack:
+        for state, file in files_of_map(target, chosen, axes).items():
+            part = data.sel({STATE: [state]}) if state else data
+            chosen.write(part, stack.enter_context(whole_file(file)))
+
+
+def files_of_map(path: Path, chosen: Format, axes: Coordinates) -> dict[str, Path]:
+    """The files of a map by the states that they hold; a single one of all by an empty name."""
+    states = [str(name) for name in axes.get(STATE, ())]
+    if not chosen.each_state or len(states) < 2:
+        return {"": path}
+    return {
+        state: path.with_name(f"{path.stem}-{re.sub(r'[^A-Za-z0-9_.+-]', '_', state)}{path.suffix}")
+        for state in states
+    }
 
 
 def check_map_output(path: Path, format: str | None, axes: Coordinates, held: str) -> Format:
@@ -95,14 +125,19 @@ def check_map_output(path: Path, format: str | None, axes: Coordinates, held: st
     `held` is the shaft that stands still, empty if there is none.
     """
     chosen = _choose(path, format)
-    check_place(path)
+    files = files_of_map(path, chosen, axes)
+    for file in files.values():
+        check_place(file)
     problems = chosen.problems(axes)
+    if len(set(files.values())) < len(files):
+        allowed = "have names that make the same file."
+        problems.append(Problem("states", "", allowed, "Choose them one by one."))
     if chosen.axes is not None:
-        problems = _several(axes, chosen.axes) + problems
+        several = (*chosen.axes, STATE) if chosen.each_state else chosen.axes
+        problems = _several(axes, several) + problems
         if not held:
-            allowed = "is driven; the format holds gears of one input and one output."
             problems.append(
-                Problem("operation.second_input", "", allowed, "Set operation.fixed instead.")
+                tables.driven_problem("the format holds gears of one input and one output")
             )
     if problems:
         raise InputError(problems, f"the map for {chosen.about}")

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from epicyclic.case.case import Case, load_case
 from epicyclic.errors import InputError
-from epicyclic.maps.compute import AXES
+from epicyclic.maps.compute import AXES, STATE
 from epicyclic.maps.lookup import Lookup
 from epicyclic.sweeps.plan import PointList
 from epicyclic.sweeps.runner import HERE, Runner
@@ -66,23 +66,23 @@ class Sample:
         self._size = size
         self._random = np.random.default_rng(_SEED)
         self._keys = np.empty(0)
-        self._rows = np.empty((0, 5))
+        self._rows = np.empty((0, 0))
 
-    def add(self, point: tuple[Array, Array, Array], power: Array, energy: Array) -> None:
-        """Offer points; speed, torque and temperature in the units of the map, J and W."""
+    def add(self, point: Sequence[Array], power: Array, energy: Array) -> None:
+        """Offer points as the axes of the map, in their units; W and J."""
         losing = energy > 0
         rows = np.stack([*point, power, energy], axis=1)[losing]
-        keys = self._random.exponential(size=len(rows)) / rows[:, 4]
+        keys = self._random.exponential(size=len(rows)) / rows[:, -1]
         self._keys = np.append(self._keys, keys)
-        self._rows = np.concatenate([self._rows, rows])
+        self._rows = np.concatenate([self._rows, rows]) if self._rows.size else rows
         stay = np.argsort(self._keys)[: self._size + 1]
         self._keys, self._rows = self._keys[stay], self._rows[stay]
 
     def drawn(self) -> tuple[Array, Array]:
-        """Rows of speed, torque, temperature, power, energy; and the probability of each."""
+        """Rows of the values of the axes, power, energy; and the probability of each."""
         rows = self._rows[: self._size]
         threshold = self._keys[self._size] if self._keys.size > self._size else math.inf
-        return rows, -np.expm1(-rows[:, 4] * threshold)
+        return rows, -np.expm1(-rows[:, -1] * threshold)
 
 
 def map_case(data: xr.Dataset) -> Case | None:
@@ -92,7 +92,7 @@ def map_case(data: xr.Dataset) -> Case | None:
         further = {
             str(values.attrs["case_key"]): _written(values)
             for name, values in data.coords.items()
-            if "case_key" in values.attrs and name not in AXES
+            if "case_key" in values.attrs and name not in (*AXES, STATE)
         }
         return load_case(tables).updated(further)
     except (ValueError, TypeError, InputError):
@@ -106,17 +106,13 @@ def _written(values: xr.DataArray) -> Any:
     return number if isinstance(number, str) or unit == "1" else f"{number!r} {unit}"
 
 
-def solve_sample(case: Case, sample: Sample, runner: Runner = HERE) -> Deviation:
+_UNITS = {"speed": "rpm", "torque": "N*m", "temperature": "degC"}
+
+
+def solve_sample(case: Case, lookup: Lookup, sample: Sample, runner: Runner = HERE) -> Deviation:
     """The deviation by direct solution of the points of `sample`."""
     rows, chance = sample.drawn()
-    points = tuple(
-        {
-            AXES["speed"]: f"{speed!r} rpm",
-            AXES["torque"]: f"{torque!r} N*m",
-            AXES["temperature"]: f"{celsius!r} degC",
-        }
-        for speed, torque, celsius, *_ in rows.tolist()
-    )
+    points = tuple(_changes(lookup, row) for row in rows.tolist())
     exact = case.updated({"numerics.pocket_interpolation": 0})
     plan = PointList(exact, points)
     direct = runner.within(plan).run(plan).numbers("total")
@@ -126,7 +122,8 @@ def solve_sample(case: Case, sample: Sample, runner: Runner = HERE) -> Deviation
         method += f", {(~found).sum()} more without a solution"
     if not found.any():
         return Deviation(math.nan, math.nan, math.nan, method)
-    power, energy, direct, chance = rows[found, 3], rows[found, 4], direct[found], chance[found]
+    power, energy = rows[found, -2], rows[found, -1]
+    direct, chance = direct[found], chance[found]
     difference = energy * (power - direct) / power / chance
     return Deviation(
         float(difference.sum()),
@@ -134,6 +131,17 @@ def solve_sample(case: Case, sample: Sample, runner: Runner = HERE) -> Deviation
         float(np.abs(power / direct - 1).max()),
         method,
     )
+
+
+def _changes(lookup: Lookup, row: Sequence[float]) -> dict[str, str]:
+    """The keys that make a case of a point of a cycle."""
+    point = dict(zip(lookup.names, row, strict=False))
+    changes = {
+        AXES[name]: f"{point[name]!r} {unit}" for name, unit in _UNITS.items() if name in point
+    }
+    if STATE in point:
+        changes[f"operation.{STATE}"] = lookup.states[round(point[STATE]) - 1]
+    return changes
 
 
 def leave_out(lookup: Lookup, node_work: Array) -> Deviation:

@@ -1,4 +1,4 @@
-"""Interpolation in a loss map: linear in speed, torque and temperature.
+"""Interpolation in a loss map: linear in speed, torque and temperature, within each state.
 
 Interpolated is the loss of each component over the magnitude of the speed of the reference shaft,
 its share of the torque loss, and not the power. Over the speed it is nearer to a straight line, and
@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.errors import InputError, Problem
-from epicyclic.maps.compute import AXES
-from epicyclic.maps.tables import check_gaps, check_map
+from epicyclic.maps.compute import AXES, STATE
+from epicyclic.maps.tables import check_gaps, check_map, driven_problem
 from epicyclic.units import RPM, WATT
 
 if TYPE_CHECKING:
@@ -38,15 +38,21 @@ class Lookup:
 
     Attributes
     ----------
+    names : tuple of str
+        Of the axes: speed, torque, temperature if there is an oil, state if there are any.
     axes : tuple of array
-        Rising values of speed [rpm], torque [N m] and temperature [degC].
+        Rising values of speed [rpm], torque [N m], temperature [degC]; states are numbered from 1.
+    states : tuple of str
+        Names of the states, none if there are none.
     components : tuple of str
         Names of the losses.
-    torques : array, shape (components, speeds, torques, temperatures)
+    torques : array, shape (components, speeds, torques, ...)
         Loss of each component over the magnitude of the speed. [N m]
     """
 
-    axes: tuple[Array, Array, Array]
+    names: tuple[str, ...]
+    axes: tuple[Array, ...]
+    states: tuple[str, ...]
     components: tuple[str, ...]
     torques: Array
 
@@ -67,7 +73,7 @@ class Lookup:
         Parameters
         ----------
         *point : arrays, shape (n,)
-            Speed, torque, temperature, in the units of the axes.
+            As the axes, in their units.
 
         Returns
         -------
@@ -84,7 +90,7 @@ class Lookup:
             parts = [
                 part if side else 1 - part for (_, part), side in zip(brackets, corner, strict=True)
             ]
-            weights.append(parts[0] * parts[1] * parts[2])
+            weights.append(np.prod(parts, axis=0))
         return np.array(nodes), np.array(weights)
 
     def outside(self, *point: Array) -> NDArray[np.bool_]:
@@ -96,13 +102,15 @@ class Lookup:
 
     def thinned(self) -> Lookup:
         """The same with every second node of each axis left out, interpolated at all nodes."""
-        kept = [_every_second(axis.size) for axis in self.axes]
-        axes = [axis[chosen] for axis, chosen in zip(self.axes, kept, strict=True)]
+        kept = [
+            np.arange(axis.size) if name == STATE else _every_second(axis.size)
+            for name, axis in zip(self.names, self.axes, strict=True)
+        ]
         count = len(self.components)
-        coarse = Lookup(
-            (axes[0], axes[1], axes[2]),
-            self.components,
-            self.torques[np.ix_(np.arange(count), *kept)],
+        coarse = replace(
+            self,
+            axes=tuple(axis[chosen] for axis, chosen in zip(self.axes, kept, strict=True)),
+            torques=self.torques[np.ix_(np.arange(count), *kept)],
         )
         grid = [values.ravel() for values in np.meshgrid(*self.axes, indexing="ij")]
         nodes, weights = coarse.corners(*grid)
@@ -149,20 +157,25 @@ def make_lookup(data: xr.Dataset) -> Lookup:
     check_map(data)
     _check_usable(data)
     check_gaps(data)
-    chosen = data.isel({name: 0 for name in data["torque_loss"].dims if name not in AXES})
-    axes = tuple(chosen[name].values.astype(float) for name in AXES)
-    names = [
+    names = tuple(name for name in (*AXES, STATE) if name in data["torque_loss"].dims)
+    chosen = data.isel({name: 0 for name in data["torque_loss"].dims if name not in names})
+    states = tuple(map(str, chosen[STATE].values)) if STATE in names else ()
+    axes = tuple(
+        np.arange(1.0, len(states) + 1) if name == STATE else chosen[name].values.astype(float)
+        for name in names
+    )
+    components = [
         str(name)
         for name, array in chosen.data_vars.items()
         if array.attrs.get("units") == WATT.display and name not in _SUMS
         if not array.isnull().all()  # left out of the case
     ]
-    watts = np.stack([chosen[name].transpose(*AXES).fillna(0).values for name in names])
+    watts = np.stack([chosen[name].transpose(*names).fillna(0).values for name in components])
     watts = watts[:, _nearest_moving(axes[0])]
     total = watts.sum(axis=0)
     shares = watts / np.where(total > 0, total, 1.0)
-    torque_loss = chosen["torque_loss"].transpose(*AXES).values
-    return Lookup((axes[0], axes[1], axes[2]), tuple(names), shares * torque_loss)
+    torque_loss = chosen["torque_loss"].transpose(*names).values
+    return Lookup(names, axes, states, tuple(components), shares * torque_loss)
 
 
 def _nearest_moving(speed: Array) -> NDArray[np.intp]:
@@ -182,13 +195,10 @@ def _check_usable(data: xr.Dataset) -> None:
             f"Select one, as with .isel({name}=[0]).",
         )
         for name in data["torque_loss"].dims
-        if name not in AXES and data.sizes[name] > 1
+        if name not in (*AXES, STATE) and data.sizes[name] > 1
     ]
     if not data.attrs["held_shaft"]:
-        allowed = "is driven; only one speed and one torque can be looked up."
-        problems.append(
-            Problem("operation.second_input", "", allowed, "Set operation.fixed instead.")
-        )
+        problems.append(driven_problem("only one speed and one torque can be looked up"))
     if not data["speed"].values.any():
         problems.append(Problem("speed", "", "is zero only.", "Make a map with other speeds."))
     if problems:

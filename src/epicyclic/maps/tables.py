@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 __all__ = [
     "check_gaps",
     "check_map",
+    "driven_problem",
     "read_netcdf",
     "stated",
     "statements",
@@ -57,12 +58,24 @@ def stated(data: xr.Dataset, axes: Sequence[str] = ("speed", "torque")) -> dict[
         for name in data["torque_loss"].dims
         if name not in axes
     }
+    if "ratio" in data and data["ratio"].size == 1:
+        single["ratio"] = f"{data['ratio'].item():.15g}, speed of the input over that of the output"
     return statements(data) | single
+
+
+def driven_problem(why: str) -> Problem:
+    """A map of two driven shafts, for what takes one; `why` ends the sentence."""
+    remedy = (
+        "Set operation.fixed instead; of a train leave out operation.speeds and operation.torques."
+    )
+    return Problem("operation.second_input", "", f"is driven; {why}.", remedy)
 
 
 def check_map(data: xr.Dataset, source: str = "the map") -> None:
     """Raise `InputError` unless `data` is a loss map."""
-    axes = ("speed", "torque", "temperature")
+    coords = getattr(data, "coords", ())
+    # what a map needs not have it has as an axis, or not at all
+    axes = ["speed", "torque", *(name for name in ("temperature", "state") if name in coords)]
     lacks = [name for name in _NEEDED if name not in getattr(data, "attrs", ())]
     variables = getattr(data, "data_vars", ())
     lacks += [name for name in ("torque_loss", "total") if name not in variables]

@@ -38,6 +38,7 @@ __all__ = ["MeasuredComparison", "compare_measured"]
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
+_GROUPS = ("temperature", "state", "speed")
 _EQUATION = re.compile(r"(?P<column>[^=]+)=(?P<value>.*)")
 
 
@@ -132,7 +133,7 @@ def compare_measured(
     measured: str | Path | pd.DataFrame,
     *,
     component: str = "total",
-    group: str = "temperature",
+    group: str | None = None,
     fit: Iterable[str] = (),
     hold_out: str | float | None = None,
     seed: int = 0,
@@ -150,13 +151,15 @@ def compare_measured(
         Everything that the table does not state.
     measured : str, Path or pandas.DataFrame
         CSV, Excel or Parquet file, or a table: columns ``speed``, ``torque``, ``temperature`` and
-        ``loss`` with units, ``"speed [rpm]"``; optionally ``uncertainty``, ``component``, any
-        dotted key of the case, and labels.
+        ``loss`` with units, ``"speed [rpm]"``; optionally ``uncertainty``, ``component``, of a
+        train with states ``state``, any dotted key of the case, and labels. A train whose losses
+        are all given needs no temperature.
     component : str, optional
         The loss that was measured, where no column says so: a term, terms joined by ``+``,
         ``"load_dependent"``, ``"load_independent"`` or ``"total"``.
     group : str, optional
-        Column by whose values the errors are given.
+        Column by whose values the errors are given. Default: the temperature, else the state, else
+        the speed.
     fit : iterable of str, optional
         Keys of the case to be fitted, from their values there and within the range of the schema.
     hold_out : str or float, optional
@@ -187,6 +190,7 @@ def compare_measured(
     grid = read_frame(measured) if isinstance(measured, pd.DataFrame) else read_grid(Path(measured))
     table = parse_measurements(grid, case, component)
     keys = tuple(dict.fromkeys(fit))
+    group = group or next(name for name in _GROUPS if name in table.labels)
     varied = {key for change in table.changes for key in change}
     _check_options(table, keys, group, hold_out, confidence)
     parameters = make_parameters(case, keys, varied)

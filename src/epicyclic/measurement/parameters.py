@@ -11,14 +11,13 @@ from annotated_types import Gt
 
 from epicyclic.case.case import Case
 from epicyclic.case.fields import (
-    all_keys,
     bounds_of,
-    find_field,
     is_array,
     is_whole_number,
     quantity_of,
     table_of,
 )
+from epicyclic.case.keys import field_at, known_keys, value_of
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.errors import InputError, Problem
 from epicyclic.units import Quantity
@@ -81,9 +80,9 @@ def make_parameters(
 
 
 def _parameter(case: Case, key: str, varied: set[str]) -> Parameter | Problem:
-    field = find_field(type(case), key)
+    field = field_at(case, key)
     if field is None:
-        remedy = did_you_mean(key, list(all_keys(type(case)))) or "See 'epicyclic init' for keys."
+        remedy = did_you_mean(key, known_keys(case)) or "See 'epicyclic init' for keys."
         return Problem(key, "", "is not a known key.", remedy)
     quantity = quantity_of(*field)
     if not _is_number(field, quantity):
@@ -134,9 +133,7 @@ def _bounds(
 
 
 def _start(case: Case, key: str, quantity: Quantity | None) -> float | None:
-    value: Any = case
-    for name in key.split("."):
-        value = getattr(value, name, None)
+    value = value_of(case, key)
     if value is None:
         return None
     return float(value) if quantity is None else quantity.to_display(value)

@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic.builders.build import layout_of
-from epicyclic.case.case import Case
-from epicyclic.case.fields import all_keys, find_field, is_array, quantity_of
+from epicyclic.case.case import Case, TrainCase
+from epicyclic.case.fields import is_array, is_text, quantity_of
+from epicyclic.case.keys import field_at, known_keys
 from epicyclic.case.nearest import did_you_mean, misspelt
 from epicyclic.case.values import parse_value
 from epicyclic.case.wording import one_line, sentence
 from epicyclic.errors import InputError, Problem
 from epicyclic.measurement.files import Grid
-from epicyclic.results.result import number_fields
 from epicyclic.units import WATT, Quantity, format_number
 
 __all__ = ["CONDITIONS", "Measurements", "loss_names", "parse_measurements"]
@@ -32,7 +32,9 @@ CONDITIONS = {
     "torque": "operation.torque",
     "temperature": "operation.oil_inlet_temperature",
 }
-"""Columns that every table has, and their keys."""
+"""Columns that every table has, and their keys; that of the oil only where losses need one."""
+_STATE = {"state": "operation.state"}
+"""Column that a table of a train with states may have."""
 _OWN = (*CONDITIONS, "loss", "uncertainty", "component")
 _EXAMPLES = {"speed": "rpm", "torque": "N*m", "temperature": "degC", "loss": "W"}
 _HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
@@ -53,7 +55,7 @@ class Measurements:
     changes : tuple of mapping
         The keys of the case that its row sets, as a case file has them.
     conditions : mapping of str to ndarray, shape (n,)
-        ``speed`` [rpm], ``torque`` [N m], ``temperature`` [degC].
+        ``speed`` [rpm], ``torque`` [N m], ``temperature`` [degC] if losses depend on it.
     component : tuple of str
         The loss that was measured: a term, a sum of terms joined by ``+``, ``load_dependent``,
         ``load_independent`` or ``total``.
@@ -80,8 +82,7 @@ class Measurements:
 
 def loss_names(case: Case) -> tuple[str, ...]:
     """Losses of a case that can be measured."""
-    fields = (item.key for item in number_fields(layout_of(case)) if item.unit == WATT.display)
-    return tuple(key for key in fields if key != "input_power")
+    return (*layout_of(case).losses, "load_dependent", "load_independent", "total")
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,15 +138,16 @@ def parse_measurements(grid: Grid, case: Case, component: str = "total") -> Meas
     columns = _columns(grid, case, problems)
     conditions = {
         name: _numbers(columns.get(name), quantity_of(*_field(case, key)), problems)
-        for name, key in CONDITIONS.items()
+        for name, key in _conditions(case).items()
     }
     loss = _numbers(columns.get("loss"), WATT, problems)
     uncertainty = _uncertainty(columns.get("uncertainty"), loss, problems)
     components = _components(columns.get("component"), component, case, grid, problems)
+    own = _conditions(case) | _states(case)
     keys = {
-        CONDITIONS.get(name, name): column
+        own.get(name, name): column
         for name, column in columns.items()
-        if name in CONDITIONS or "." in name
+        if name in own or "." in name
     }
     values = {key: _values(column, *_field(case, key), problems) for key, column in keys.items()}
     _check_repeats(grid, problems)
@@ -168,9 +170,21 @@ def parse_measurements(grid: Grid, case: Case, component: str = "total") -> Meas
     )
 
 
+def _conditions(case: Case) -> dict[str, str]:
+    """The conditions that a table of a case must have, and their keys."""
+    given = isinstance(case, TrainCase) and not case.computed
+    return {key: name for key, name in CONDITIONS.items() if not (given and key == "temperature")}
+
+
+def _states(case: Case) -> dict[str, str]:
+    """The column of states and its key, of a train that has any."""
+    return _STATE if isinstance(case, TrainCase) and case.states else {}
+
+
 def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
-    """The columns by name; the three conditions under their short names."""
-    short = {key: name for name, key in CONDITIONS.items()}
+    """The columns by name; the conditions under their short names."""
+    own = _conditions(case) | _states(case)
+    short = {key: name for name, key in own.items()}
     columns: dict[str, _Column] = {}
     for number, header in enumerate(grid.header):
         match = _HEADER.fullmatch(header)
@@ -181,7 +195,7 @@ def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
             )
             continue
         name = match["name"]
-        name = name.lower() if name.lower() in _OWN else short.get(name, name)
+        name = name.lower() if name.lower() in (*_OWN, *own) else short.get(name, name)
         cells = tuple(row[number] for _, row in grid.rows)
         column = _Column(header, name, (match["unit"] or "").strip(), cells)
         if name in columns:
@@ -197,7 +211,9 @@ def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
     problems.found += [
         Problem(name, "", "is missing among the columns.", f"Add a column {name} [{unit}].")
         for name, unit in _EXAMPLES.items()
-        if name not in columns and not any(misspelt(key, [name]) for key in taken)
+        if name not in columns
+        and (name in own or name not in CONDITIONS)
+        and not any(misspelt(key, [name]) for key in taken)
     ]
     return columns
 
@@ -206,13 +222,14 @@ def _name_problem(column: _Column, case: Case) -> Problem | None:
     """What is wrong with the name of a column; names without dots may be labels of the user."""
     name, shown = column.name, one_line(column.header)
     if "." not in name:
-        nearest = "" if name in _OWN else misspelt(name, _OWN)
+        own = (*_OWN, *_states(case))
+        nearest = "" if name in own else misspelt(name, own)
         if nearest:
             return Problem(shown, "", "is not a known column.", f'Did you mean "{nearest}"?')
         return None
-    known = find_field(type(case), name)
+    known = field_at(case, name)
     if known is None:
-        remedy = did_you_mean(name, list(all_keys(type(case)))) or "Remove it, or drop its dots."
+        remedy = did_you_mean(name, known_keys(case)) or "Remove it, or drop its dots."
         return Problem(shown, "", "is not a key of the case.", remedy)
     if is_array(known[0]):
         return Problem(shown, "", "is a list in the case.", "Compare one table for each list.")
@@ -220,7 +237,7 @@ def _name_problem(column: _Column, case: Case) -> Problem | None:
 
 
 def _field(case: Case, key: str) -> tuple[Any, tuple[Any, ...]]:
-    found = find_field(type(case), key)
+    found = field_at(case, key)
     assert found is not None
     return found
 
@@ -320,6 +337,8 @@ def _values(
     for row, cell in enumerate(column.cells):
         if not cell:
             problems.cell(column, row, "is empty.", "Fill it, or delete the row.")
+    if is_text(annotation):
+        return column.cells
     return tuple(map(parse_value, column.cells))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -135,14 +136,21 @@ def _teeth(stored: Stored) -> list[Panel]:
 
 
 def _of_map(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], list[Panel]]:
-    """One panel for each temperature of a map, at the first value of its further keys."""
+    """One panel for each state and temperature of a map, at the first value of further keys."""
 
     def panels(stored: Stored) -> list[Panel]:
         if isinstance(stored, ResultRecord):
             return []
+        titles = {"state": "state {}", "temperature": "{:g} °C"}
+        names = [name for name in titles if name in stored.dims]
         return [
-            Panel(f"{float(value):g} °C", partial(draw, map_at(stored, temperature=value), *more))
-            for value in stored["temperature"].values
+            Panel(
+                ", ".join(
+                    titles[name].format(value) for name, value in zip(names, point, strict=True)
+                ),
+                partial(draw, map_at(stored, **dict(zip(names, point, strict=True))), *more),
+            )
+            for point in itertools.product(*(stored[name].values.tolist() for name in names))
         ]
 
     return panels

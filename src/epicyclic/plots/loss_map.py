@@ -90,6 +90,7 @@ def plot_map_parts(data: xr.Dataset, ax: Axes) -> Axes:
         for name, values in highest.data_vars.items()
         if values.attrs.get("units") == unit and name not in LOSS_SUMS and float(values.max()) > 0
     ]
+    parts = parts or ["total"]  # nothing is lost, as where a train turns as one body
     areas = ax.stackplot(
         highest["speed"],
         [highest[name] for name in parts],

@@ -35,7 +35,10 @@ def measured_figure(comparison: MeasuredComparison) -> Figure:
     with styled_figure(2, 2, _title(comparison)) as (figure, axes):
         plot_parity(comparison, axes[0, 0])
         for name, ax in zip(AXES, axes.flat[1:], strict=True):
-            plot_residuals(comparison, name, ax)
+            if name in comparison.measured.conditions:
+                plot_residuals(comparison, name, ax)
+            else:
+                ax.set_axis_off()
         handles, labels = axes[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
     return figure

@@ -41,7 +41,8 @@ MOST_COLUMNS = 9
 
 def map_line(data: xr.Dataset) -> str:
     """Which points the map has, in one line."""
-    spans = [f"{name} {_span(data[name])}" for name in ("speed", "torque", "temperature")]
+    axes = [name for name in ("speed", "torque", "temperature") if name in data.dims]
+    spans = [f"{name} {_span(data[name])}" for name in axes]
     return f"at the {data.attrs['reference_shaft']}: {', '.join(spans)}"
 
 
@@ -106,16 +107,18 @@ def _further(data: xr.Dataset) -> str:
 
 def _tables(data: xr.Dataset) -> list[Table]:
     """Total loss and efficiency over speed and torque at each temperature."""
+    if "temperature" not in data.dims:
+        return [_grid(map_at(data), name) for name in GRIDS]
     return [
-        _grid(data, name, temperature)
-        for temperature in range(data.sizes["temperature"])
+        _grid(map_at(data, temperature=float(celsius)), name, number, float(celsius))
+        for number, celsius in enumerate(data["temperature"])
         for name in GRIDS
     ]
 
 
-def _grid(data: xr.Dataset, name: str, temperature: int) -> Table:
-    celsius = float(data["temperature"][temperature])
-    point = map_at(data, temperature=celsius)
+def _grid(
+    point: xr.Dataset, name: str, temperature: int = 0, celsius: float | None = None
+) -> Table:
     speeds, torques = (_some(point.sizes[axis]) for axis in ("speed", "torque"))
     values = point[name].transpose("speed", "torque").to_numpy()
     rows = tuple(
@@ -125,10 +128,10 @@ def _grid(data: xr.Dataset, name: str, temperature: int) -> Table:
         )
         for i in speeds
     )
-    unit = unit_text(str(data["torque"].attrs["units"]))
+    unit = unit_text(str(point["torque"].attrs["units"]))
     heads = (f"{format_number(float(point['torque'][j]))} {unit}" for j in torques)
-    title = f"{GRIDS[name]}, at {format_number(celsius)} °C"
-    return Table((f"speed, {unit_text(str(data['speed'].attrs['units']))}", *heads), rows, title)
+    title = GRIDS[name] if celsius is None else f"{GRIDS[name]}, at {format_number(celsius)} °C"
+    return Table((f"speed, {unit_text(str(point['speed'].attrs['units']))}", *heads), rows, title)
 
 
 def _some(count: int) -> list[int]:

@@ -1,0 +1,68 @@
+"""Losses that the solver foretells in place of asking an element again."""
+
+from __future__ import annotations
+
+import pytest
+
+from epicyclic.elements.base import LOAD_DEPENDENT, ElementResult, Loss
+from epicyclic.machine.answers import Answer, distance
+
+
+def result(watts, mesh="S.mesh"):
+    return ElementResult({"sliding": Loss(LOAD_DEPENDENT, watts, mesh=mesh)})
+
+
+def losses(load):
+    """Of a mesh: a little more than proportional to the load."""
+    return result(0.01 * abs(load) ** 1.2)
+
+
+def answers(*loads):
+    """The answers to one load after the other."""
+    first, *others = loads
+    answer = Answer({"mesh": first}, losses(first))
+    for load in others:
+        answer = answer.followed_by({"mesh": load}, losses(load))
+    return answer
+
+
+def test_one_answer_foretells_nothing():
+    assert answers(100.0).foretold({"mesh": 100.0001}, 1e9) is None
+
+
+def test_what_is_foretold_is_as_near_as_was_allowed():
+    answer = answers(100.0, 99.0, 99.01)
+    told = answer.foretold({"mesh": 99.0101}, 1e-6)
+    assert told is not None
+    wanted = losses(99.0101).losses["sliding"].watts
+    assert told.losses["sliding"].watts == pytest.approx(wanted, rel=1e-7)
+    assert answer.foretold({"mesh": 99.0101}, 1e-12) is None
+    assert answer.foretold({"mesh": 80.0}, 1e-6) is None
+
+
+def test_a_kink_is_not_foretold():
+    """Where the line did not foretell the last answer, it is not trusted with the next."""
+    answer = answers(100.0, 99.0).followed_by({"mesh": 98.9}, result(5.0))
+    assert answer.foretold({"mesh": 98.8999}, 1e-6) is None
+
+
+@pytest.mark.parametrize(
+    ("load", "mesh"), [(-98.9, "S.mesh"), (98.9, "")], ids=["other direction", "other place"]
+)
+def test_another_direction_or_place_starts_anew(load, mesh):
+    answer = answers(100.0, 99.0).followed_by({"mesh": load}, result(1.0, mesh))
+    assert answer.before is None
+    assert answer.foretold({"mesh": load * 1.0001}, 1e9) is None
+
+
+def test_loads_beside_the_line_are_not_foretold():
+    answer = Answer({"one": 100.0, "two": 50.0}, result(1.0))
+    answer = answer.followed_by({"one": 99.0, "two": 49.5}, result(0.99))
+    answer = answer.followed_by({"one": 98.9, "two": 49.45}, result(0.989))
+    assert answer.foretold({"one": 98.89, "two": 49.445}, 1e-6) is not None
+    assert answer.foretold({"one": 98.89, "two": 49.46}, 1e-6) is None
+
+
+def test_distance_is_relative_to_the_largest_load():
+    assert distance({"one": 1.0, "two": 10.0}, {"one": 1.1, "two": 10.0}) == pytest.approx(0.01)
+    assert distance({"one": 1.0}, {"one": 0.0}) == 0.0
