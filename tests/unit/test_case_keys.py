@@ -7,7 +7,7 @@ import pytest
 import epicyclic as ep
 from epicyclic.case.fields import is_text
 from epicyclic.case.keys import field_at, known_keys, value_of
-from tests.trains import stepped
+from trains import stepped
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from epicyclic.case.base import CaseTable
 from epicyclic.case.fields import all_keys, dict_value, find_field
 from epicyclic.case.train import TrainCase
-from epicyclic.case.wording import key_parts
+from epicyclic.case.wording import dotted, key_parts
 
 __all__ = ["field_at", "known_keys", "value_of"]
 
@@ -68,10 +68,11 @@ def _keys(table: BaseModel, prefix: str) -> Iterator[str]:
             yield from _keys(value, f"{shown}.")
         elif isinstance(value, dict):
             for item, inner in value.items():
+                own = f"{shown}.{dotted([item])}"
                 if isinstance(inner, BaseModel):
-                    yield from _keys(inner, f"{shown}.{item}.")
+                    yield from _keys(inner, f"{own}.")
                 else:
-                    yield f"{shown}.{item}"
+                    yield own
         elif dict_value(field.annotation) is None:
             yield from (
                 f"{prefix}{key}" for key in all_keys(type(table)) if key.partition(".")[0] == name
