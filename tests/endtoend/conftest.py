@@ -20,7 +20,7 @@ def epicyclic(tmp_path):
                 capture_output=True,
                 text=True,
                 check=False,
-                timeout=120,
+                timeout=300,  # the first one compiles the kernels, beside other tests
             )
         finally:
             if not any(folder.iterdir()):
