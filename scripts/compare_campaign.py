@@ -19,49 +19,42 @@ from numpy.typing import NDArray
 
 from epicyclic.campaigns.fit import simulated_quantities
 from epicyclic.campaigns.folder import open_folder
+from epicyclic.contact import LineContacts
 from epicyclic.kernels.line_contact import goksem_hargreaves_force, martin_force
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss, rolling_loss_number, sliding_friction
-from epicyclic.oilmodel.states import ContactStates
+from epicyclic.oilmodel.regressions import regression_groups, rolling_scale
 
 FloatArray = NDArray[np.float64]
 
 FILM_RATIOS = (0.0, 0.3, 0.7, 1.0, 3.0, np.inf)
 
 
-def groups(states: ContactStates) -> tuple[FloatArray, ...]:
-    """Arguments of the regressions of gear contacts."""
-    radius = states.radius
-    return (
-        states.slide_to_roll_ratio, states.speed_number, states.material_number,
-        states.pressure_number, states.radius_number, states.composite_roughness / radius,
-        states.reduced_roughness / radius, states.film_ratio,
-    )  # fmt: skip
-
-
-def published_friction(states: ContactStates) -> FloatArray:
+def published_friction(states: LineContacts) -> FloatArray:
     """Talbot (2012), Eq. 5.8. [1]"""
-    return np.array([sliding_friction(*row) for row in zip(*groups(states), strict=True)])
+    return np.array(
+        [sliding_friction(*row) for row in zip(*regression_groups(states), strict=True)]
+    )
 
 
-def published_rolling(states: ContactStates) -> FloatArray:
+def published_rolling(states: LineContacts) -> FloatArray:
     """Talbot (2012), Eq. 5.10, scaled by mu u_r^2. [W/m]"""
-    number = [rolling_loss_number(*row) for row in zip(*groups(states), strict=True)]
-    return np.array(number) * states.dynamic_viscosity * states.rolling_speed**2
+    number = [rolling_loss_number(*row) for row in zip(*regression_groups(states), strict=True)]
+    return np.array(number) * rolling_scale(states)
 
 
-def published_needle(states: ContactStates) -> FloatArray:
+def published_needle(states: LineContacts) -> FloatArray:
     """Talbot (2012), Eq. 3.5. [W/m]"""
     rows = zip(
         states.hertz_pressure, states.rolling_speed, states.dynamic_viscosity,
         states.pressure_viscosity, states.radius, states.composite_roughness, strict=True,
     )  # fmt: skip
-    modulus = states.equivalent_modulus
+    modulus = states.flanks.equivalent_modulus
     return np.array(
         [needle_rolling_loss(p_h, u, mu, a, r, rq, modulus) for p_h, u, mu, a, r, rq in rows]
     )
 
 
-def smooth_rolling(states: ContactStates) -> FloatArray:
+def smooth_rolling(states: LineContacts) -> FloatArray:
     """Goksem and Hargreaves without heating, at light load Martin. [W/m]"""
     rows = zip(
         states.speed_number, states.material_number, states.load_number, states.radius,
@@ -77,7 +70,7 @@ def smooth_rolling(states: ContactStates) -> FloatArray:
     )  # fmt: skip
 
 
-FORMULAS: dict[str, dict[str, Callable[[ContactStates], FloatArray]]] = {
+FORMULAS: dict[str, dict[str, Callable[[LineContacts], FloatArray]]] = {
     "friction": {"Eq. 5.8": published_friction},
     "rolling_loss": {"Eq. 5.10": published_rolling, "Goksem-Hargreaves": smooth_rolling},
     "bearing_rolling_loss": {"Eq. 3.5": published_needle, "Goksem-Hargreaves": smooth_rolling},

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from epicyclic.contact import Flanks
 from epicyclic.geometry.mesh import Mesh
-from epicyclic.losses.contact import Flanks, MeshContact, mesh_contact
+from epicyclic.losses.contact import MeshContact, mesh_contact
 from epicyclic.losses.load_distribution import load_shape
 from epicyclic.lubricant.properties import OilState
 

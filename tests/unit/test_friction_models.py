@@ -11,7 +11,7 @@ import pytest
 
 import epicyclic as ep
 from contacts import STEEL, contact_points, loaded_contact, oil
-from epicyclic.losses.contact import Flanks
+from epicyclic.contact import Flanks
 from epicyclic.losses.friction import FRICTION_MODELS, FrictionSettings, friction_model
 from epicyclic.losses.friction.base import (
     RA_OVER_RQ,

@@ -18,7 +18,8 @@ from epicyclic.kernels.line_contact import (
     pan_hamrock_minimum_film,
 )
 from epicyclic.kernels.mixed_ehl import rolling_loss_number
-from epicyclic.losses.rolling import ROLLING_MODELS, rolling_scale
+from epicyclic.losses.rolling import ROLLING_MODELS
+from epicyclic.oilmodel.regressions import rolling_scale
 
 MODELS = sorted(ROLLING_MODELS)
 points = partial(contact_points, radius=10e-3, sliding=0.5, rough=(0.3e-6, 0.3e-6))

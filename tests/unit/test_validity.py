@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
+from epicyclic.contact import Flanks, InletOil, LineContacts
 from epicyclic.losses.mixed_ehl_groups import TALBOT_GEAR_RANGES, beyond_data
 from epicyclic.losses.planet_bearing import NEEDLE_RANGES
 from epicyclic.losses.validity import (
@@ -44,9 +45,10 @@ def test_ranges_are_those_of_the_source():
         "dynamic_viscosity": (4.9, 48.0, "mPa*s"),
         "pressure_viscosity": (10.6, 16.5, "1/GPa"),
         "radius": (0.5, 4.0, "mm"),
-        "race_roughness": (0.02, 0.10, "um"),
-        "roller_roughness": (0.055, 0.165, "um"),
+        "roughness1": (0.02, 0.10, "um"),
+        "roughness2": (0.055, 0.165, "um"),
         "rolling_speed": (1.0, 20.0, "m/s"),
+        "hertz_pressure": (0.25, 3.0, "GPa"),
     }
 
 
@@ -111,13 +113,22 @@ def test_values_are_held_at_the_limits():
 
 
 def test_beyond_the_data_force_stays_and_load_counts():
-    load = np.array([0.0, 1.0, 4.0, 8.0])
-    assert beyond_data(load, 4.0 * np.ones(4), 2.0, 2.0) == pytest.approx(
-        [0.0, 0.25, 1.0, 1.0], rel=1e-12
-    )
+    def contacts(load, speed):
+        return LineContacts(
+            line_load=np.atleast_1d(load),
+            radius=np.ones(1),
+            rolling_speed=np.full(1, speed),
+            sliding_speed=np.zeros(1),
+            flanks=Flanks(1.0, 1.0, 1.0),
+            oil=InletOil(np.ones(1), np.ones(1)),
+        )
+
+    loads, held = contacts(np.array([0.0, 1.0, 4.0, 8.0]), 2.0), contacts(4.0, 2.0)
+    assert beyond_data(loads, held) == pytest.approx([0.0, 0.25, 1.0, 1.0], rel=1e-12)
     # beyond the held speed the force is held, so that the loss grows or falls with the speed
-    assert beyond_data(load[2:3], load[2:3], 60.0, 20.0) == pytest.approx([3.0], rel=1e-12)
-    assert beyond_data(load[2:3], load[2:3], 0.1, 1.0) == pytest.approx([0.1], rel=1e-12)
+    for speed, limit, share in ((60.0, 20.0, 3.0), (0.1, 1.0, 0.1)):
+        found = beyond_data(contacts(4.0, speed), contacts(4.0, limit))
+        assert found == pytest.approx([share], rel=1e-12)
 
 
 REGRESSIONS = {f"models.{key}": "mixed-ehl" for key in ("friction", "rolling", "bearing")}

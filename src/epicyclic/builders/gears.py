@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from epicyclic.case import flanks
 from epicyclic.case.gear_tables import GearTable
+from epicyclic.contact import Flanks
 from epicyclic.elements.gear_mesh import GearMesh, MeshModels
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.tools import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus
-from epicyclic.losses.contact import Flanks
 
 __all__ = ["gear_mesh"]
 
@@ -38,7 +38,7 @@ def gear_mesh(
     )
 
 
-def _flanks(tables: tuple[GearTable, GearTable]) -> Flanks:
+def _flanks(tables: tuple[GearTable, GearTable]) -> Flanks[float]:
     """Roughness of both flanks and their equivalent modulus."""
     one, two = tables
     modulus = equivalent_modulus(

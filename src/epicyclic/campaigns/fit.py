@@ -13,11 +13,11 @@ from epicyclic.campaigns.campaign import make_campaign
 from epicyclic.campaigns.design import AXES, quantity_of_axis
 from epicyclic.campaigns.folder import CampaignFolder, column_of, write_whole
 from epicyclic.case.contact import contact_model
+from epicyclic.contact import LineContacts, contacts_at
 from epicyclic.errors import InputError, Problem
 from epicyclic.lubricant.properties import oil_state
 from epicyclic.oilmodel.fitting import fit_quantity
 from epicyclic.oilmodel.model import FORMAT, OilModel, QuantityFit
-from epicyclic.oilmodel.states import ContactStates
 from epicyclic.sweeps.runner import Progress, Runner
 
 if TYPE_CHECKING:
@@ -154,7 +154,7 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
 
 def simulated_quantities(
     folder: CampaignFolder,
-) -> dict[str, tuple[ContactStates, FloatArray, FloatArray]]:
+) -> dict[str, tuple[LineContacts, FloatArray, FloatArray]]:
     """Conditions, value and weight of the simulations that are good enough, by quantity."""
     frame = folder.read()
     found = {}
@@ -178,7 +178,7 @@ def _modulus(folder: CampaignFolder) -> float:
     return contact_model(folder.campaign.case(0)).contact.equivalent_modulus
 
 
-def _states(rows: pd.DataFrame, folder: CampaignFolder) -> ContactStates:
+def _states(rows: pd.DataFrame, folder: CampaignFolder) -> LineContacts:
     """Conditions of some simulations, SI."""
     values: dict[str, FloatArray] = {}
     for name in AXES:
@@ -186,7 +186,7 @@ def _states(rows: pd.DataFrame, folder: CampaignFolder) -> ContactStates:
         values[name] = (rows[column_of(name)].to_numpy(dtype=float) - offset) / scale
     oil = folder.campaign.case(0).lubricant.oil
     states = [oil_state(oil, float(temperature)) for temperature in values.pop("temperature")]
-    return ContactStates(
+    return contacts_at(
         **values,
         dynamic_viscosity=np.array([state.dynamic_viscosity for state in states]),
         pressure_viscosity=np.array([state.pressure_viscosity for state in states]),

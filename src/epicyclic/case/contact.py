@@ -22,15 +22,15 @@ from epicyclic.case.plain import plain, value_at, with_value
 from epicyclic.case.reading import read_file
 from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Table
 from epicyclic.case.validation import validate
-from epicyclic.ehl.conditions import ContactOil, LineContact
-from epicyclic.ehl.heating import Heating, effusivity
+from epicyclic.ehl.conditions import LineContact, contact_oil
+from epicyclic.ehl.heating import Heating, effusivity, heating_of
 from epicyclic.ehl.profile_file import read_profile
 from epicyclic.ehl.rough import MOST_BLOCKS, NODES, STATIONARY, AsperityContact
 from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile
 from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus, line_load_at_pressure
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity
-from epicyclic.lubricant.properties import oil_state
+from epicyclic.lubricant.properties import OilState, oil_state
 from epicyclic.units import (
     Length,
     Number,
@@ -281,7 +281,7 @@ def contact_model(case: ContactCase) -> ContactModel:
         equivalent_modulus=modulus,
         speed1=table.rolling_speed * (1 + slip),
         speed2=table.rolling_speed * (1 - slip),
-        oil=_oil(case.lubricant),
+        oil=contact_oil(_oil_state(case), oil_laws(case.lubricant)),
     )
     surfaces = (_profile(case.surface1), _profile(case.surface2))
     asperities = AsperityContact(case.asperities.film, case.asperities.friction)
@@ -294,23 +294,17 @@ def _modulus(one: Material, two: Material) -> float:
     )
 
 
-def _oil(table: ContactLubricant) -> ContactOil:
-    state = oil_state(table.oil, table.temperature)
-    laws = oil_laws(table)
-    return ContactOil(
-        state.dynamic_viscosity, laws.pressure(state.pressure_viscosity), shear_law=laws.shear
-    )
+def _oil_state(case: ContactCase) -> OilState:
+    return oil_state(case.lubricant.oil, case.lubricant.temperature)
 
 
 def _heating(case: ContactCase) -> Heating | None:
     table = case.heating
     if table.model == "isothermal":
         return None
-    state = oil_state(case.lubricant.oil, case.lubricant.temperature)
     conductivity, capacity = table.solid_conductivity, table.solid_heat_capacity
-    return Heating(
-        state.thermoviscosity,
-        state.thermal_conductivity,
+    return heating_of(
+        _oil_state(case),
         effusivity(conductivity, capacity, case.surface1.material.density),
         effusivity(conductivity, capacity, case.surface2.material.density),
     )

@@ -6,11 +6,13 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
+from epicyclic.contact import LineContacts
 from epicyclic.ehl.rheology import (
     Barus,
     Carreau,
     LimitingStress,
     Newtonian,
+    OilLaws,
     PressureLaw,
     ReeEyring,
     Roelands,
@@ -30,9 +32,17 @@ from epicyclic.kernels.ehl_fluid import (
     ScaledFluid,
 )
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
-from epicyclic.lubricant.properties import ROELANDS_OFFSET, ROELANDS_PRESSURE
+from epicyclic.lubricant.properties import ROELANDS_OFFSET, ROELANDS_PRESSURE, OilState
 
-__all__ = ["Barus", "ContactOil", "LineContact", "Roelands", "TwoSlope"]
+__all__ = [
+    "Barus",
+    "ContactOil",
+    "LineContact",
+    "Roelands",
+    "TwoSlope",
+    "contact_oil",
+    "line_contact",
+]
 
 STIFFENING, PACKING = 1.34 / 5.9e8, 1.0 / 5.9e8
 """Constants of Dowson and Higginson's density. [1/Pa]"""
@@ -86,9 +96,15 @@ class ContactOil:
         )
 
 
+def contact_oil(oil: OilState, laws: OilLaws) -> ContactOil:
+    """An oil at the temperature of a contact, and how it behaves there."""
+    pressure_law = laws.pressure(oil.pressure_viscosity)
+    return ContactOil(oil.dynamic_viscosity, pressure_law, shear_law=laws.shear)
+
+
 @dataclass(frozen=True)
 class LineContact:
-    """Load, geometry and surface speeds of a line contact.
+    """Load, geometry and surface speeds of one line contact, as the solver wants them.
 
     Attributes
     ----------
@@ -207,3 +223,18 @@ class LineContact:
             stress_slope=getattr(oil.shear, "slope", 0.0),
             exponent=getattr(oil.shear, "exponent", 1.0),
         )
+
+
+def line_contact(contacts: LineContacts, index: int, oil: ContactOil) -> LineContact:
+    """One of many contacts."""
+    rolling, sliding = (
+        float(speed[index]) for speed in (contacts.rolling_speed, contacts.sliding_speed)
+    )
+    return LineContact(
+        line_load=float(contacts.line_load[index]),
+        radius=float(contacts.radius[index]),
+        equivalent_modulus=contacts.flanks.equivalent_modulus,
+        speed1=rolling + sliding / 2,
+        speed2=rolling - sliding / 2,
+        oil=oil,
+    )

@@ -11,9 +11,17 @@ from numpy.typing import NDArray
 from epicyclic.ehl.conditions import LineContact
 from epicyclic.ehl.rheology import Roelands
 from epicyclic.kernels.ehl_fluid import mean_shear
-from epicyclic.lubricant.properties import ROELANDS_PRESSURE
+from epicyclic.lubricant.properties import ROELANDS_PRESSURE, OilState
 
-__all__ = ["Heating", "effusivity", "flow_easing", "inlet_factor", "temperature_rise", "thinning"]
+__all__ = [
+    "Heating",
+    "effusivity",
+    "flow_easing",
+    "heating_of",
+    "inlet_factor",
+    "temperature_rise",
+    "thinning",
+]
 
 FloatArray = NDArray[np.float64]
 
@@ -41,6 +49,11 @@ class Heating:
     oil_conductivity: float
     effusivity1: float
     effusivity2: float
+
+
+def heating_of(oil: OilState, effusivity1: float, effusivity2: float) -> Heating:
+    """Heat carried away by an oil at the temperature of the contact and two solids."""
+    return Heating(oil.thermoviscosity, oil.thermal_conductivity, effusivity1, effusivity2)
 
 
 def effusivity(conductivity: float, heat_capacity: float, density: float) -> float:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.contact import Flanks
 from epicyclic.elasticity.loaded_mesh import LoadedMesh, load_mesh_elastically
 from epicyclic.elasticity.mesh_compliance import GearBody
 from epicyclic.elements.base import LOAD_DEPENDENT, LOAD_INDEPENDENT, Loss
@@ -24,7 +25,7 @@ from epicyclic.elements.pocket_flow import (
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.micro_geometry import FlankDeviations
 from epicyclic.geometry.tools import Tool
-from epicyclic.losses.contact import Flanks, MeshContact, mesh_contact
+from epicyclic.losses.contact import MeshContact, mesh_contact
 from epicyclic.losses.direct import EhlDirect
 from epicyclic.losses.friction import FrictionModel
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS, LineLoads, MeshLoad
@@ -108,7 +109,7 @@ class GearMesh:
     bodies: tuple[str, str]
     tools: tuple[Tool, Tool]
     roundings: tuple[float | None, float | None]
-    flanks: Flanks
+    flanks: Flanks[float]
     solids: tuple[GearBody, GearBody]
     deviations: FlankDeviations
     models: MeshModels

@@ -162,7 +162,7 @@ def rolling_loss_number(
 
     Theory (R3).
 
-    The prefactor printed in the source, 1e5 W/m, is left out: see `losses.rolling.rolling_scale`.
+    Without the prefactor printed in the source, 1e5 W/m: `oilmodel.regressions.rolling_scale`.
     """
     film = blend_weight(lam, ROLLING_LIMIT)
     log_loss = 0.0
@@ -263,15 +263,15 @@ def rolling_loss_number_at(
 @kernel
 def needle_rolling_loss_at(
     p_h: FloatArray,
-    u_r: float,
+    u_r: FloatArray,
     mu_d: float,
     alpha_pv: float,
-    r_eq: float,
+    r_eq: FloatArray,
     s_co: float,
     e_eq: float,
 ) -> FloatArray:
-    """`needle_rolling_loss` of every loaded slice; `p_h` of shape (n,), others alike. [W/m]"""
+    """`needle_rolling_loss` of every loaded slice; arrays of shape (n,). [W/m]"""
     loss = np.empty(p_h.size)
     for i in range(p_h.size):
-        loss[i] = needle_rolling_loss(p_h[i], u_r, mu_d, alpha_pv, r_eq, s_co, e_eq)
+        loss[i] = needle_rolling_loss(p_h[i], u_r[i], mu_d, alpha_pv, r_eq[i], s_co, e_eq)
     return loss

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.ehl.box import SOLVER_BOX, VALIDATED_FILM_RATIO
-from epicyclic.ehl.conditions import ContactOil, LineContact
-from epicyclic.ehl.heating import Heating
+from epicyclic.ehl.conditions import LineContact, contact_oil, line_contact
+from epicyclic.ehl.heating import Heating, heating_of
 from epicyclic.ehl.rheology import OilLaws
 from epicyclic.ehl.rough import BRIEF, LARGEST_UNSOLVED_SHARE, AsperityContact, solve_rough
 from epicyclic.ehl.roughness import generate_profile
@@ -28,7 +28,6 @@ from epicyclic.ehl.steady import solve_smooth
 from epicyclic.elasticity.threads import one_thread
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.fitted import contact_states
 from epicyclic.losses.validity import SMALLEST_SHOWN_SHARE, Range, RegressionFluid
 from epicyclic.oilmodel.structured import EYRING_STRESS, eyring_friction
 from epicyclic.status import Status
@@ -153,11 +152,10 @@ class EhlDirect:
 
 @lru_cache(maxsize=16)
 def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
-    states = contact_states(contact)
-    base = eyring_friction(states, EYRING_STRESS)
+    base = eyring_friction(contact, EYRING_STRESS)
     place = np.stack([_spread(contact.path), _spread(np.log(contact.line_load))], axis=1)
     power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
-    sliding = np.flatnonzero(states.slide_to_roll_ratio >= SMALLEST_SLIP)
+    sliding = np.flatnonzero(contact.slide_to_roll_ratio >= SMALLEST_SLIP)
     usable = sliding if sliding.size > BATCH + CHECKS else np.arange(power.size)
     checks = _quantiles(contact.path, power, usable)
     others = np.setdiff1d(usable, checks)
@@ -243,40 +241,19 @@ def _ratios(
     contact: MeshContact, settings: DirectSettings, points: IntArray, base: FloatArray, done: int
 ) -> FloatArray:
     """Friction over `base` at some points, after others; not a number without a solution."""
-    laws = settings.laws
-    oil = ContactOil(
-        contact.oil.dynamic_viscosity,
-        laws.pressure(contact.oil.pressure_viscosity),
-        shear_law=laws.shear,
-    )
-    heating = _heating(contact, settings.effusivity)
+    oil = contact_oil(contact.oil, settings.laws)
+    effusivity = settings.effusivity
+    heating = None if effusivity is None else heating_of(contact.oil, effusivity, effusivity)
     smooth = bool(contact.film_ratio.min() > SMOOTH_FILM_RATIO)
     found = []
     for i in points:
-        slide = float(contact.sliding_speed[i])
-        roll = float(contact.rolling_speed[i])
-        line = LineContact(
-            line_load=float(contact.line_load[i]),
-            radius=float(contact.radius[i]),
-            equivalent_modulus=contact.flanks.equivalent_modulus,
-            speed1=roll + slide / 2,
-            speed2=roll - slide / 2,
-            oil=oil,
-        )
+        line = line_contact(contact, int(i), oil)
         roughness = (0.0, 0.0) if smooth else contact.roughness
         seeds = np.random.SeedSequence([settings.seed, int(i)]).generate_state(2)
         pair = (int(seeds[0]), int(seeds[1]))
         found.append(abs(_friction(line, roughness, pair, heating, settings)))
         _PROGRESS.get()(done + len(found), done + points.size)
     return np.array(found) / base[points]
-
-
-def _heating(contact: MeshContact, effusivity: float | None) -> Heating | None:
-    """What carries the heat away; None for isothermal contacts."""
-    if effusivity is None:
-        return None
-    oil = contact.oil
-    return Heating(oil.thermoviscosity, oil.thermal_conductivity, effusivity, effusivity)
 
 
 @lru_cache(maxsize=4096)

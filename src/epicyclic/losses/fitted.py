@@ -9,11 +9,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.losses.contact import MeshContact
+from epicyclic.contact import LineContacts
 from epicyclic.losses.mixed_ehl_groups import beyond_data
 from epicyclic.losses.validity import Range, RegressionFluid
 from epicyclic.oilmodel.model import OilModel
-from epicyclic.oilmodel.states import ContactStates
 from epicyclic.units import (
     GIGAPASCAL,
     METRE_PER_SECOND,
@@ -25,7 +24,7 @@ from epicyclic.units import (
     Quantity,
 )
 
-__all__ = ["FittedFriction", "FittedRolling", "contact_states", "domain_ranges"]
+__all__ = ["FittedFriction", "FittedRolling", "domain_ranges"]
 
 FloatArray = NDArray[np.float64]
 
@@ -40,8 +39,6 @@ _LABELS: dict[str, tuple[str, Quantity]] = {
     "pressure_viscosity": ("pressure-viscosity coefficient", PER_GIGAPASCAL),
 }
 """Label and unit of each condition that spans a domain."""
-_OF = {"roughness1": lambda of: of.roughness[0], "roughness2": lambda of: of.roughness[1]}
-"""How to find conditions that the points of a mesh have under another name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,9 +66,9 @@ class FittedFriction:
         """The domain of the fit."""
         return tuple(domain_ranges(self.model, self.QUANTITY))
 
-    def coefficient(self, contact: MeshContact) -> FloatArray:
+    def coefficient(self, contact: LineContacts) -> FloatArray:
         """See the class. [1]"""
-        return self.model.value(self.QUANTITY, contact_states(contact), self.form)
+        return self.model.value(self.QUANTITY, contact, self.form)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,33 +106,10 @@ class FittedRolling:
         """The domain of the fit."""
         return tuple(domain_ranges(self.model, self.quantity))
 
-    def loss_density(self, contact: MeshContact) -> FloatArray:
+    def loss_density(self, contact: LineContacts) -> FloatArray:
         """See the class. [W/m]"""
-        return self.density(contact_states(contact))
-
-    def density(self, states: ContactStates) -> FloatArray:
-        """See the class. [W/m]"""
-        held = states.held(self.model.fits[self.quantity].domain)
-        density: FloatArray = self.model.value(self.quantity, states, self.form) * beyond_data(
-            states.line_load, held.line_load, states.rolling_speed, held.rolling_speed
-        )
-        return density
-
-
-def contact_states(contact: MeshContact) -> ContactStates:
-    """The points of a mesh as states of contacts."""
-    ones = np.ones(contact.line_load.shape)
-    return ContactStates(
-        slide_to_roll_ratio=contact.slide_to_roll_ratio,
-        rolling_speed=contact.rolling_speed,
-        radius=contact.radius,
-        hertz_pressure=contact.hertz_pressure,
-        roughness1=contact.flanks.roughness1 * ones,
-        roughness2=contact.flanks.roughness2 * ones,
-        dynamic_viscosity=contact.dynamic_viscosity * ones,
-        pressure_viscosity=contact.pressure_viscosity * ones,
-        equivalent_modulus=contact.flanks.equivalent_modulus,
-    )
+        held = contact.held(self.model.fits[self.quantity].domain)
+        return self.model.value(self.quantity, contact, self.form) * beyond_data(contact, held)
 
 
 def _source(model: OilModel) -> str:
@@ -151,4 +125,4 @@ def domain_ranges(model: OilModel, quantity: str) -> Iterator[Range]:
     for name, (label, unit) in _LABELS.items():
         limits = model.fits[quantity].domain[name]
         low, high = (unit.to_display(value) if unit.si else value for value in limits)
-        yield Range(name, label, low, high, unit, source, _OF.get(name))
+        yield Range(name, label, low, high, unit, source)

@@ -20,7 +20,7 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.friction.base import FrictionModel
 from epicyclic.losses.rolling import RollingModel
-from epicyclic.losses.validity import ModelUse, ValidityFlag, check_ranges
+from epicyclic.losses.validity import ModelUse, ValidityFlag, check_contacts
 
 __all__ = ["MeshLoss", "local_loss", "loss_factor_loss", "ohlendorf_loss_factor"]
 
@@ -115,11 +115,5 @@ def _sliding_integral(tip1: float, tip2: float) -> float:
 def _flags(
     role: str, model: FrictionModel | RollingModel, contact: MeshContact, weight: FloatArray
 ) -> tuple[ValidityFlag, ...]:
-    """Range check of `contact`; local quantities count with the loss where they occur."""
     use = ModelUse(role, model.name, contact.mesh.name)
-    flags: tuple[ValidityFlag, ...] = ()
-    for item in model.ranges:
-        values = item.found_in(contact)
-        weights = weight if values.shape == weight.shape else np.ones(values.shape)
-        flags += check_ranges(use, (item,), {item.name: values}, weights)
-    return flags
+    return check_contacts(use, model.ranges, contact, weight)

@@ -12,14 +12,12 @@ is flagged.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.kernels.line_contact import line_load_at_pressure, pan_hamrock_minimum_film
-from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.validity import Range, RegressionFluid, held_in_range
+from epicyclic.contact import LineContacts
+from epicyclic.losses.validity import Range, RegressionFluid
 from epicyclic.units import (
     CELSIUS,
     GIGAPASCAL,
@@ -36,16 +34,11 @@ __all__ = [
     "TALBOT_FLUID",
     "TALBOT_GEAR_RANGES",
     "VISCOSITY_RANGE",
-    "RegressionGroups",
     "beyond_data",
-    "held_line_load",
-    "held_speed",
-    "regression_groups",
+    "held_in_table",
 ]
 
 FloatArray = NDArray[np.float64]
-Real = TypeVar("Real", float, FloatArray)
-
 
 TALBOT_FLUID = RegressionFluid(
     "talbot-2012", "the automatic transmission fluid of Talbot (2012), atf-talbot-2012"
@@ -86,68 +79,34 @@ TALBOT_GEAR_RANGES = (
 """Ranges of the 33,600 simulations behind Eq. 5.8 and 5.10."""
 
 
-class RegressionGroups(NamedTuple):
-    """Arguments of the kernels, shape (n,) each but for the material number."""
-
-    slide_to_roll_ratio: FloatArray
-    speed: FloatArray
-    material: float
-    pressure: FloatArray
-    radius: FloatArray
-    composite_roughness: FloatArray
-    reduced_roughness: FloatArray
-    film_ratio: FloatArray
-
-
-def regression_groups(contact: MeshContact) -> RegressionGroups:
-    """Groups of Eq. 5.8 and 5.10 at every point of `contact`. Theory (F5)."""
-    e_eq = contact.flanks.equivalent_modulus
-    radius = held_in_range(contact.radius, _RADIUS)
-    flanks = contact.flanks.held_in(_ROUGHNESS)
-    pressure = held_in_range(contact.hertz_pressure, _HELD_PRESSURE)
-
-    load = line_load_at_pressure(pressure, radius, e_eq)
-    half_width = 2 * load / (np.pi * pressure)
-    viscosity = held_in_range(contact.dynamic_viscosity, VISCOSITY_RANGE)
-    speed_number = held_speed(contact) * viscosity / (e_eq * radius)
-    material = held_in_range(contact.pressure_viscosity, PRESSURE_VISCOSITY_RANGE) * e_eq
-    composite = flanks.composite_roughness / radius
-    film = pan_hamrock_minimum_film(speed_number, material, load / (e_eq * radius))
-    return RegressionGroups(
-        slide_to_roll_ratio=contact.slide_to_roll_ratio,
-        speed=speed_number,
-        material=material,
-        pressure=pressure / e_eq,
-        radius=radius / half_width,
-        composite_roughness=composite,
-        reduced_roughness=flanks.reduced_roughness / radius,
-        film_ratio=film / composite,
+_HELD = {
+    item.name: item.limits()
+    for item in (
+        _RADIUS,
+        _HELD_PRESSURE,
+        _SPEED,
+        VISCOSITY_RANGE,
+        PRESSURE_VISCOSITY_RANGE,
+        replace(_ROUGHNESS, name="roughness1"),
+        replace(_ROUGHNESS, name="roughness2"),
     )
+}
 
 
-def held_speed(contact: MeshContact) -> FloatArray:
-    """u_r within Table 5.1. Theory (F5). [m/s]"""
-    return held_in_range(contact.rolling_speed, _SPEED)
+def held_in_table(contact: LineContacts) -> LineContacts:
+    """The contacts with their conditions held in Table 5.1, but for the slip. Theory (F5)."""
+    return contact.held(_HELD)
 
 
-def held_line_load(contact: MeshContact) -> FloatArray:
-    """W' at the held pressure and radius. Theory (F5). [N/m]"""
-    return line_load_at_pressure(
-        held_in_range(contact.hertz_pressure, _HELD_PRESSURE),
-        held_in_range(contact.radius, _RADIUS),
-        contact.flanks.equivalent_modulus,
-    )
-
-
-def beyond_data(
-    line_load: FloatArray, held_load: FloatArray, speed: Real, held: Real
-) -> FloatArray:
-    """Rolling loss over the rolling loss at the held line load and the `held` speed. [1]
+def beyond_data(contact: LineContacts, held: LineContacts) -> FloatArray:
+    """Rolling loss over that of the same contacts with conditions `held`. [1]
 
     Theory (R5).
 
     Below the held load the loss falls with the load, so that it vanishes with it; above, it is
     that of the held load. Beyond the held speed the rolling force is that of the held speed.
     """
-    share: FloatArray = np.minimum(1.0, line_load / held_load) * (speed / held)
+    share: FloatArray = np.minimum(1.0, contact.line_load / held.line_load) * (
+        contact.rolling_speed / held.rolling_speed
+    )
     return share

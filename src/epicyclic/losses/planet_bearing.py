@@ -13,8 +13,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.contact import Flanks, LineContacts
 from epicyclic.errors import ConvergenceError
-from epicyclic.kernels.line_contact import hertz_pressure, line_load_at_pressure
+from epicyclic.kernels.line_contact import hertz_pressure
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss_at
 from epicyclic.kernels.roller_bearing import solve_roller_loads
 from epicyclic.losses.fitted import FittedRolling
@@ -27,12 +28,12 @@ from epicyclic.losses.validity import (
     ModelUse,
     Range,
     ValidityFlag,
+    check_contacts,
     check_ranges,
     held_in_range,
 )
 from epicyclic.losses.viscous import SPEED_PARAMETER, speed_parameter
 from epicyclic.lubricant.properties import OilState
-from epicyclic.oilmodel.states import ContactStates
 from epicyclic.units import (
     CELSIUS,
     GIGAPASCAL,
@@ -65,10 +66,8 @@ FIRST_APPROACH = 1e-5
 
 _SOURCE = "Talbot (2012), Table 3.1"
 _PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.25, 3.0, GIGAPASCAL, _SOURCE)
-_RACE = Range("race_roughness", "rms roughness of the races", 0.02, 0.10, MICROMETRE, _SOURCE)
-_ROLLER = Range(
-    "roller_roughness", "rms roughness of the rollers", 0.055, 0.165, MICROMETRE, _SOURCE
-)
+_RACE = Range("roughness1", "rms roughness of the races", 0.02, 0.10, MICROMETRE, _SOURCE)
+_ROLLER = Range("roughness2", "rms roughness of the rollers", 0.055, 0.165, MICROMETRE, _SOURCE)
 _COMPOSITE = Range(
     "composite_roughness",
     "composite rms roughness",
@@ -87,8 +86,13 @@ NEEDLE_RANGES = (
     _RACE,
     _ROLLER,
     _SPEED,
+    _PRESSURE,
 )
-"""Ranges of the 2,880 simulations behind Eq. 3.5, with `_PRESSURE`."""
+"""Ranges of the 2,880 simulations behind Eq. 3.5."""
+_HELD = {
+    item.name: item.limits()
+    for item in (_PRESSURE, _SPEED, VISCOSITY_RANGE, PRESSURE_VISCOSITY_RANGE, _RADIUS)
+}
 PALMGREN_RANGES = (
     Range(
         "hertz_pressure",
@@ -311,40 +315,22 @@ def mixed_ehl_rolling_loss(
     reading that reproduces the published effects of roughness and size. Conditions outside
     Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`.
     """
-    intensity = loads.intensity[loads.intensity > 0]
-    if intensity.size == 0 or speed == 0:
+    contacts = _outer_contacts(bearing, loads, speed, oil)
+    if contacts is None:
         return BearingLoss(0.0)
-    e_eq, radius = bearing.equivalent_modulus, bearing.outer_radius
-    pressure = hertz_pressure(intensity, np.full_like(intensity, radius), e_eq)
-    rolling_speed = bearing.rolling_speed(speed)
-    held_pressure, held_radius = held_in_range(pressure, _PRESSURE), held_in_range(radius, _RADIUS)
-    held_speed = held_in_range(rolling_speed, _SPEED)
+    held = contacts.held(_HELD)
     density = needle_rolling_loss_at(
-        held_pressure,
-        held_speed,
-        held_in_range(oil.dynamic_viscosity, VISCOSITY_RANGE),
-        held_in_range(oil.pressure_viscosity, PRESSURE_VISCOSITY_RANGE),
-        held_radius,
+        held.hertz_pressure,
+        held.rolling_speed,
+        held.dynamic_viscosity,
+        held.pressure_viscosity,
+        held.radius,
         held_in_range(bearing.composite_roughness, _COMPOSITE),
-        e_eq,
+        bearing.equivalent_modulus,
     )
-    held_load = line_load_at_pressure(held_pressure, np.full_like(pressure, held_radius), e_eq)
-    local = (
-        bearing.slice_width * density * beyond_data(intensity, held_load, rolling_speed, held_speed)
-    )
-    values: dict[str, FloatArray | float] = {
-        "temperature": oil.temperature,
-        "dynamic_viscosity": oil.dynamic_viscosity,
-        "pressure_viscosity": oil.pressure_viscosity,
-        "radius": radius,
-        "race_roughness": bearing.race_roughness,
-        "roller_roughness": bearing.roller_roughness,
-        "rolling_speed": rolling_speed,
-    }
+    local = bearing.slice_width * density * beyond_data(contacts, held)
     use = ModelUse("bearing", "mixed-ehl", "planet bearing")
-    flags = check_ranges(use, NEEDLE_RANGES, values)
-    flags += check_ranges(use, (_PRESSURE,), {"hertz_pressure": pressure}, local)
-    return BearingLoss(float(local.sum()), flags)
+    return BearingLoss(float(local.sum()), check_contacts(use, NEEDLE_RANGES, contacts, local))
 
 
 def fitted_rolling_loss(
@@ -354,30 +340,29 @@ def fitted_rolling_loss(
 
     Theory (O9).
     """
+    contacts = _outer_contacts(bearing, loads, speed, oil)
+    if contacts is None:
+        return BearingLoss(0.0)
+    local = bearing.slice_width * model.loss_density(contacts)
+    use = ModelUse("bearing", model.name, "planet bearing")
+    return BearingLoss(float(local.sum()), check_contacts(use, model.ranges, contacts, local))
+
+
+def _outer_contacts(
+    bearing: RollerBearing, loads: RollerLoads, speed: float, oil: OilState
+) -> LineContacts | None:
+    """The loaded slices at the outer race; None without load or motion."""
     intensity = loads.intensity[loads.intensity > 0]
     if intensity.size == 0 or speed == 0:
-        return BearingLoss(0.0)
-    ones = np.ones(intensity.size)
-    modulus, radius = bearing.equivalent_modulus, bearing.outer_radius
-    states = ContactStates(
-        slide_to_roll_ratio=0.0 * ones,
-        rolling_speed=bearing.rolling_speed(speed) * ones,
-        radius=radius * ones,
-        hertz_pressure=hertz_pressure(intensity, radius * ones, modulus),
-        roughness1=bearing.race_roughness * ones,
-        roughness2=bearing.roller_roughness * ones,
-        dynamic_viscosity=oil.dynamic_viscosity * ones,
-        pressure_viscosity=oil.pressure_viscosity * ones,
-        equivalent_modulus=modulus,
+        return None
+    return LineContacts(
+        line_load=intensity,
+        radius=np.full_like(intensity, bearing.outer_radius),
+        rolling_speed=np.full_like(intensity, bearing.rolling_speed(speed)),
+        sliding_speed=np.zeros_like(intensity),
+        flanks=Flanks(bearing.equivalent_modulus, bearing.race_roughness, bearing.roller_roughness),
+        oil=oil,
     )
-    local = bearing.slice_width * model.density(states)
-    flags = check_ranges(
-        ModelUse("bearing", model.name, "planet bearing"),
-        model.ranges,
-        {item.name: item.found_in(states) for item in model.ranges},
-        local,
-    )
-    return BearingLoss(float(local.sum()), flags)
 
 
 def palmgren_loss(coefficient: float, force: float, pitch_diameter: float, speed: float) -> float:

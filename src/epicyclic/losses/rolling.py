@@ -13,16 +13,14 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.mixed_ehl_groups import (
     TALBOT_FLUID,
     TALBOT_GEAR_RANGES,
-    VISCOSITY_RANGE,
     beyond_data,
-    held_line_load,
-    held_speed,
-    regression_groups,
+    held_in_table,
 )
-from epicyclic.losses.validity import Range, RegressionFluid, held_in_range
+from epicyclic.losses.validity import Range, RegressionFluid
+from epicyclic.oilmodel.regressions import regression_groups, rolling_scale
 from epicyclic.units import NUMBER
 
-__all__ = ["ROLLING_MODELS", "RollingModel", "rolling_scale"]
+__all__ = ["ROLLING_MODELS", "RollingModel"]
 
 FloatArray = NDArray[np.float64]
 
@@ -44,20 +42,6 @@ class RollingModel(Protocol):
         ...
 
 
-def rolling_scale(contact: MeshContact) -> FloatArray:
-    """mu u_r^2, both held: the power per length that turns the number of Eq. 5.10 into W/m.
-
-    Theory (R4).
-
-    A documented reconstruction. The source prints 1e5 W/m, with which the rolling loss exceeds the
-    input power; mu u_r^2 is the only natural scale of the problem, reproduces the published
-    totals, and agrees with smooth EHL solutions within about a factor of two.
-    """
-    viscosity = held_in_range(contact.dynamic_viscosity, VISCOSITY_RANGE)
-    scale: FloatArray = viscosity * held_speed(contact) ** 2
-    return scale
-
-
 class MixedEhlRolling:
     """Regression of 33,600 mixed-EHL simulations of an automatic transmission fluid.
 
@@ -74,11 +58,9 @@ class MixedEhlRolling:
 
     def loss_density(self, contact: MeshContact) -> FloatArray:
         """See the class. [W/m]"""
-        number = rolling_loss_number_at(*regression_groups(contact))
-        share = beyond_data(
-            contact.line_load, held_line_load(contact), contact.rolling_speed, held_speed(contact)
-        )
-        density: FloatArray = rolling_scale(contact) * number * share
+        held = held_in_table(contact)
+        number = rolling_loss_number_at(*regression_groups(held))
+        density: FloatArray = number * rolling_scale(held) * beyond_data(contact, held)
         return density
 
 

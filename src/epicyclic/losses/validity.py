@@ -236,6 +236,18 @@ def check_ranges(
     return tuple(flags)
 
 
+def check_contacts(
+    use: ModelUse, ranges: Iterable[Range], contacts: object, weight: FloatArray
+) -> tuple[ValidityFlag, ...]:
+    """`check_ranges` of line contacts; local quantities count with the loss where they occur."""
+    flags: tuple[ValidityFlag, ...] = ()
+    for item in ranges:
+        values = item.found_in(contacts)
+        local = values.shape == weight.shape
+        flags += check_ranges(use, (item,), {item.name: values}, weight if local else 1.0)
+    return flags
+
+
 def _outside(shown: FloatArray, item: Range) -> NDArray[np.bool_]:
     slack = 1e-9 * max(abs(limit) for limit in (item.low, item.high) if limit is not None)
     outside = np.zeros(shown.shape, dtype=bool)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.contact import CONDITIONS, LineContacts
 from epicyclic.oilmodel.model import FORMS, REGIMES, FitError, FittedForm, Form, QuantityFit
-from epicyclic.oilmodel.states import CONDITIONS, ContactStates
 
 __all__ = ["fit_quantity"]
 
@@ -21,7 +21,7 @@ DIGITS = 12
 
 
 def fit_quantity(
-    quantity: str, unit: str, states: ContactStates, target: FloatArray, weight: FloatArray
+    quantity: str, unit: str, states: LineContacts, target: FloatArray, weight: FloatArray
 ) -> QuantityFit:
     """Every form of a quantity. Theory (O8).
 
@@ -30,7 +30,7 @@ def fit_quantity(
     quantity : str
         A key of `FORMS`.
     unit : str
-    states : ContactStates
+    states : LineContacts
     target, weight : ndarray, shape (n,)
         Simulated values above zero, and what each counts in the sum of squares.
 
@@ -66,7 +66,7 @@ def fit_quantity(
 
 
 def _cross_validated(
-    form: Form, states: ContactStates, target: FloatArray, weight: FloatArray
+    form: Form, states: LineContacts, target: FloatArray, weight: FloatArray
 ) -> FloatArray:
     """|computed/simulated - 1| at each contact, fitted without its part, shape (n,)."""
     part = np.random.default_rng(0).permutation(target.size) % FOLDS

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from epicyclic.contact import CONDITIONS, LineContacts
 from epicyclic.errors import InputError, Problem
 from epicyclic.lubricant.oil import Oil
 from epicyclic.oilmodel.regressions import (
@@ -18,7 +19,6 @@ from epicyclic.oilmodel.regressions import (
     ROLLING_REGRESSION,
     Regression,
 )
-from epicyclic.oilmodel.states import CONDITIONS, ContactStates
 from epicyclic.oilmodel.structured import STRUCTURED_FRICTION, STRUCTURED_ROLLING, Structured
 from epicyclic.text_file import read_text
 
@@ -169,14 +169,14 @@ class OilModel(_Data):
         """The oil that was simulated."""
         return Oil.model_validate(self.settings["lubricant"]["oil"])
 
-    def value(self, quantity: str, states: ContactStates, form: str = "") -> FloatArray:
+    def value(self, quantity: str, states: LineContacts, form: str = "") -> FloatArray:
         """A quantity at every contact, conditions held in the domain. Theory (O2).
 
         Parameters
         ----------
         quantity : str
             A key of `fits`.
-        states : ContactStates
+        states : LineContacts
         form : str
             By default the first one of the file.
         """

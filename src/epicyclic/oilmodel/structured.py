@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.contact import LineContacts
 from epicyclic.kernels.line_contact import pan_hamrock_central_film
 from epicyclic.lubricant.properties import ROELANDS_OFFSET, ROELANDS_PRESSURE
-from epicyclic.oilmodel.states import ContactStates
 
 __all__ = [
     "EYRING_STRESS",
@@ -69,18 +69,18 @@ class Structured:
     start: tuple[float, ...]
     low: tuple[float, ...]
     high: tuple[float, ...]
-    function: Callable[[ContactStates, FloatArray], FloatArray]
+    function: Callable[[LineContacts, FloatArray], FloatArray]
 
     @property
     def size(self) -> int:
         """Number of coefficients."""
         return len(self.labels)
 
-    def value(self, states: ContactStates, coefficients: FloatArray) -> FloatArray:
+    def value(self, states: LineContacts, coefficients: FloatArray) -> FloatArray:
         """The quantity at every contact, shape (n,)."""
         return self.function(states, coefficients)
 
-    def fit(self, states: ContactStates, target: FloatArray, weight: FloatArray) -> FloatArray:
+    def fit(self, states: LineContacts, target: FloatArray, weight: FloatArray) -> FloatArray:
         """Coefficients by least squares of the logarithm.
 
         Raises
@@ -109,14 +109,14 @@ class Structured:
         return coefficients
 
 
-def eyring_friction(states: ContactStates, stress: float) -> FloatArray:
+def eyring_friction(states: LineContacts, stress: float) -> FloatArray:
     """Friction of an Eyring fluid under the pressure of Hertz in an even film. Theory (O4). [1]"""
     film = states.radius * pan_hamrock_central_film(
         states.speed_number, states.material_number, states.load_number
     )
     limit = np.log(states.dynamic_viscosity) + ROELANDS_OFFSET
     index = states.pressure_viscosity * ROELANDS_PRESSURE / limit
-    rate = states.dynamic_viscosity * states.sliding_speed / (film * stress)
+    rate = states.dynamic_viscosity * np.abs(states.sliding_speed) / (film * stress)
     total = np.zeros(states.radius.shape)
     for angle, weight in zip(_ANGLES, _WEIGHTS, strict=True):
         pressure = states.hertz_pressure * math.cos(angle)
@@ -127,15 +127,15 @@ def eyring_friction(states: ContactStates, stress: float) -> FloatArray:
     return friction
 
 
-def _flash(states: ContactStates, friction: FloatArray) -> FloatArray:
+def _flash(states: LineContacts, friction: FloatArray) -> FloatArray:
     """Temperature rise of the surfaces, over `FLASH`. Theory (O6). [1]"""
-    flux = friction * math.pi / 4 * states.hertz_pressure * states.sliding_speed
-    time = 2 * states.half_width / states.rolling_speed
+    flux = friction * math.pi / 4 * states.hertz_pressure * np.abs(states.sliding_speed)
+    time = 2 * states.hertz_half_width / states.rolling_speed
     rise: FloatArray = flux * np.sqrt(time) / (2 * EFFUSIVITY * FLASH)
     return rise
 
 
-def _friction(states: ContactStates, c: FloatArray) -> FloatArray:
+def _friction(states: LineContacts, c: FloatArray) -> FloatArray:
     """A sheared film and, the more the thinner it is, touching asperities. Theory (O5). [1]"""
     stress, factor, heat, asperities, ratio, steepness, slip, pressure = c
     film = eyring_friction(states, EYRING_STRESS * math.exp(stress))
@@ -146,7 +146,7 @@ def _friction(states: ContactStates, c: FloatArray) -> FloatArray:
     return friction
 
 
-def _rolling(states: ContactStates, c: FloatArray) -> FloatArray:
+def _rolling(states: LineContacts, c: FloatArray) -> FloatArray:
     """A smooth contact, and what roughness adds. Theory (O7). [W/m]"""
     factor, speed, material, load, rough, thinness, slip = c
     smooth = (

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,14 +10,14 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import StrMethodFormatter
 from numpy.typing import NDArray
 
+from epicyclic.contact import LineContacts, contacts_at
 from epicyclic.oilmodel.model import REGIMES, OilModel
-from epicyclic.oilmodel.states import CONDITIONS, ContactStates
 from epicyclic.plots.style import COLOURS, LINE_STYLES, styled_figure
 
 __all__ = ["oil_model_figure", "plot_against_simulations", "plot_over_film_ratio"]
 
 FloatArray = NDArray[np.float64]
-Simulated = Mapping[str, tuple[ContactStates, FloatArray]]
+Simulated = Mapping[str, tuple[LineContacts, FloatArray]]
 
 MARKERS = ("o", "^", "s")
 LABELS = {
@@ -45,7 +44,7 @@ def oil_model_figure(model: OilModel, simulated: Simulated) -> Figure:
 
 
 def plot_against_simulations(
-    model: OilModel, quantity: str, states: ContactStates, target: FloatArray, ax: Axes
+    model: OilModel, quantity: str, states: LineContacts, target: FloatArray, ax: Axes
 ) -> Axes:
     """The default form over the simulations, by film ratio."""
     value = model.value(quantity, states)
@@ -71,7 +70,7 @@ def plot_over_film_ratio(model: OilModel, ax: Axes) -> Axes:
     fit = model.fits["friction"]
     middle = _middle(fit.domain, model.equivalent_modulus)
     for slip, colour in zip(SLIPS, COLOURS, strict=False):
-        states = replace(middle, slide_to_roll_ratio=np.full(POINTS, slip))
+        states = middle.changed(slide_to_roll_ratio=np.full(POINTS, slip))
         for fitted, style in zip(fit.forms, LINE_STYLES, strict=False):
             values = model.value("friction", states, fitted.form)
             label = f"{slip:g} {fitted.form}"
@@ -87,7 +86,7 @@ def plot_over_film_ratio(model: OilModel, ax: Axes) -> Axes:
     return ax
 
 
-def _middle(domain: Mapping[str, tuple[float, float]], modulus: float) -> ContactStates:
+def _middle(domain: Mapping[str, tuple[float, float]], modulus: float) -> LineContacts:
     """Contacts in the middle of a domain but for their roughness, which runs through it."""
     middle = {
         name: np.full(POINTS, np.sqrt(max(low, 1e-30) * max(high, 1e-30)))
@@ -95,4 +94,4 @@ def _middle(domain: Mapping[str, tuple[float, float]], modulus: float) -> Contac
     }
     for name in ("roughness1", "roughness2"):
         middle[name] = np.geomspace(*domain[name], POINTS)
-    return ContactStates(**{name: middle[name] for name in CONDITIONS}, equivalent_modulus=modulus)
+    return contacts_at(**middle, equivalent_modulus=modulus)

@@ -12,9 +12,10 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.mixed_ehl_groups import (
     TALBOT_FLUID,
     TALBOT_GEAR_RANGES,
-    regression_groups,
+    held_in_table,
 )
 from epicyclic.losses.validity import OF_THIS_PACKAGE, Range, RegressionFluid, held_in_range
+from epicyclic.oilmodel.regressions import regression_groups
 from epicyclic.units import (
     GIGAPASCAL,
     METRE_PER_SECOND,
@@ -44,7 +45,7 @@ class MixedEhl:
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
-        return sliding_friction_at(*regression_groups(contact))
+        return sliding_friction_at(*regression_groups(held_in_table(contact)))
 
 
 _SUCCESSOR = "none is in print; that of the later regression, Talbot (2012), Table 5.1"

@@ -1,0 +1,238 @@
+"""Line contacts of gear flanks and rollers, with the oil in them, for losses, fits and solver."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.kernels.line_contact import (
+    hertz_half_width,
+    hertz_pressure,
+    line_load_at_pressure,
+    pan_hamrock_minimum_film,
+)
+from epicyclic.lubricant.properties import OilState
+
+__all__ = ["CONDITIONS", "Flanks", "InletOil", "LineContacts", "contacts_at"]
+
+FloatArray = NDArray[np.float64]
+Real = TypeVar("Real", float, FloatArray)
+
+CONDITIONS = (
+    "slide_to_roll_ratio",
+    "rolling_speed",
+    "radius",
+    "hertz_pressure",
+    "roughness1",
+    "roughness2",
+    "dynamic_viscosity",
+    "pressure_viscosity",
+)
+"""What a contact between given materials is determined by: the domain of a fit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Flanks(Generic[Real]):
+    """The two surfaces in contact: flanks of teeth, or race and roller.
+
+    Attributes
+    ----------
+    equivalent_modulus : float
+        E_eq. [Pa]
+    roughness1, roughness2 : float or ndarray
+        rms. [m]
+    """
+
+    equivalent_modulus: float
+    roughness1: Real
+    roughness2: Real
+
+    @property
+    def composite_roughness(self) -> Real:
+        """sqrt(Rq1^2 + Rq2^2). Theory (C12). [m]"""
+        roughness: Real = np.hypot(self.roughness1, self.roughness2)
+        return roughness
+
+    @property
+    def reduced_roughness(self) -> Real:
+        """Rq1 Rq2/(Rq1 + Rq2). Talbot (2012), p. 137. Theory (C13). [m]"""
+        return self.roughness1 * self.roughness2 / (self.roughness1 + self.roughness2)
+
+
+@dataclass(frozen=True, slots=True)
+class InletOil:
+    """As much of an `OilState` as contacts need, also with one value for each contact.
+
+    Attributes
+    ----------
+    dynamic_viscosity : ndarray
+        [Pa s]
+    pressure_viscosity : ndarray
+        alpha. [1/Pa]
+    temperature : float
+        Not a number where it is not known. [K]
+    """
+
+    dynamic_viscosity: FloatArray
+    pressure_viscosity: FloatArray
+    temperature: float = math.nan
+
+
+@dataclass(frozen=True, eq=False)
+class LineContacts:
+    """Line contacts, one for each entry of the arrays, all of shape (n,).
+
+    Theory (O1).
+
+    Attributes
+    ----------
+    line_load : ndarray
+        W'. [N/m]
+    radius : ndarray
+        Equivalent radius of curvature in the normal section. [m]
+    rolling_speed : ndarray
+        u_r = (u1 + u2)/2. [m/s]
+    sliding_speed : ndarray
+        u_s = u1 - u2. [m/s]
+    flanks : Flanks
+        The surfaces, alike for all contacts or with one roughness for each.
+    oil : OilState or InletOil
+        At the temperature of these contacts.
+    """
+
+    line_load: FloatArray
+    radius: FloatArray
+    rolling_speed: FloatArray
+    sliding_speed: FloatArray
+    flanks: Flanks[Any]
+    oil: OilState | InletOil
+
+    @cached_property
+    def slide_to_roll_ratio(self) -> FloatArray:
+        """abs(u_s)/u_r. Theory (C4). [1]"""
+        ratio: FloatArray = np.abs(self.sliding_speed) / self.rolling_speed
+        return ratio
+
+    @cached_property
+    def hertz_pressure(self) -> FloatArray:
+        """p_h. [Pa]"""
+        return hertz_pressure(self.line_load, self.radius, self.flanks.equivalent_modulus)
+
+    @cached_property
+    def hertz_half_width(self) -> FloatArray:
+        """b_h. [m]"""
+        return hertz_half_width(self.line_load, self.radius, self.flanks.equivalent_modulus)
+
+    @property
+    def temperature(self) -> float:
+        """Of the oil at the contacts. [K]"""
+        return self.oil.temperature
+
+    @property
+    def dynamic_viscosity(self) -> Any:
+        """Of the oil at the inlet of the contacts. [Pa s]"""
+        return self.oil.dynamic_viscosity
+
+    @property
+    def pressure_viscosity(self) -> Any:
+        """Of the oil. [1/Pa]"""
+        return self.oil.pressure_viscosity
+
+    @property
+    def roughness1(self) -> Any:
+        """rms roughness of the first surface. [m]"""
+        return self.flanks.roughness1
+
+    @property
+    def roughness2(self) -> Any:
+        """rms roughness of the second surface. [m]"""
+        return self.flanks.roughness2
+
+    @property
+    def roughness(self) -> tuple[Any, Any]:
+        """rms roughness of both surfaces. [m]"""
+        return self.flanks.roughness1, self.flanks.roughness2
+
+    @property
+    def composite_roughness(self) -> Any:
+        """sqrt(Rq1^2 + Rq2^2). [m]"""
+        return self.flanks.composite_roughness
+
+    @cached_property
+    def speed_number(self) -> FloatArray:
+        """U = u_r mu/(E_eq R_eq). Theory (C7). [1]"""
+        number: FloatArray = (
+            self.rolling_speed
+            * self.dynamic_viscosity
+            / (self.flanks.equivalent_modulus * self.radius)
+        )
+        return number
+
+    @property
+    def material_number(self) -> Any:
+        """G = alpha E_eq. Theory (C8). [1]"""
+        return self.pressure_viscosity * self.flanks.equivalent_modulus
+
+    @cached_property
+    def load_number(self) -> FloatArray:
+        """W = W'/(E_eq R_eq). Theory (C9). [1]"""
+        number: FloatArray = self.line_load / (self.flanks.equivalent_modulus * self.radius)
+        return number
+
+    @cached_property
+    def minimum_film(self) -> FloatArray:
+        """h_min of the smooth contact (Pan and Hamrock). Theory (C10). [m]"""
+        film: FloatArray = self.radius * pan_hamrock_minimum_film(
+            self.speed_number, self.material_number, self.load_number
+        )
+        return film
+
+    @cached_property
+    def film_ratio(self) -> FloatArray:
+        """Lambda = h_min/sqrt(Rq1^2 + Rq2^2). Theory (C14). [1]"""
+        ratio: FloatArray = self.minimum_film / self.composite_roughness
+        return ratio
+
+    def changed(self, **conditions: FloatArray) -> LineContacts:
+        """The contacts with other values of some of the `CONDITIONS`, the others as they are."""
+        values = {name: getattr(self, name) for name in CONDITIONS} | conditions
+        return contacts_at(**values, equivalent_modulus=self.flanks.equivalent_modulus)
+
+    def taken(self, index: Any) -> LineContacts:
+        """Some of the contacts, each of which has a value of every condition."""
+        return self.changed(**{name: getattr(self, name)[index] for name in CONDITIONS})
+
+    def held(self, limits: Mapping[str, tuple[float | None, float | None]]) -> LineContacts:
+        """With the conditions that have `limits` held within them. Theory (F5), (O2)."""
+        return self.changed(
+            **{name: np.clip(getattr(self, name), *pair) for name, pair in limits.items()}
+        )
+
+
+def contacts_at(
+    *,
+    slide_to_roll_ratio: FloatArray,
+    rolling_speed: FloatArray,
+    radius: FloatArray,
+    hertz_pressure: FloatArray,
+    roughness1: FloatArray,
+    roughness2: FloatArray,
+    dynamic_viscosity: FloatArray,
+    pressure_viscosity: FloatArray,
+    equivalent_modulus: float,
+) -> LineContacts:
+    """Contacts under given `CONDITIONS`, SI. Theory (O1)."""
+    return LineContacts(
+        line_load=line_load_at_pressure(hertz_pressure, radius, equivalent_modulus),
+        radius=radius,
+        rolling_speed=rolling_speed,
+        sliding_speed=slide_to_roll_ratio * rolling_speed,
+        flanks=Flanks(equivalent_modulus, roughness1, roughness2),
+        oil=InletOil(dynamic_viscosity, pressure_viscosity),
+    )
