@@ -12,7 +12,6 @@ from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.model_tables import LossOption
 from epicyclic.case.oil_laws import oil_laws
 from epicyclic.case.part_tables import PlanetBearing
-from epicyclic.ehl.heating import effusivity
 from epicyclic.ehl.rough import AsperityContact
 from epicyclic.elements.fluids import Fluids, fluids_at
 from epicyclic.elements.gear_mesh import MeshModels
@@ -26,6 +25,7 @@ from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
 from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.table import FlowTables
+from epicyclic.thermal.flash import effusivity
 
 __all__ = [
     "SetCase",

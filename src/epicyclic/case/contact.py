@@ -23,7 +23,7 @@ from epicyclic.case.reading import read_file
 from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Table
 from epicyclic.case.validation import validate
 from epicyclic.ehl.conditions import LineContact, contact_oil
-from epicyclic.ehl.heating import Heating, effusivity, heating_of
+from epicyclic.ehl.heating import Heating, heating_of
 from epicyclic.ehl.profile_file import read_profile
 from epicyclic.ehl.rough import MOST_BLOCKS, NODES, STATIONARY, AsperityContact
 from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile
@@ -31,6 +31,7 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus, line_load_at_pressure
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity
 from epicyclic.lubricant.properties import OilState, oil_state
+from epicyclic.thermal.flash import effusivity
 from epicyclic.units import (
     Length,
     Number,

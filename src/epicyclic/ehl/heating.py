@@ -15,7 +15,6 @@ from epicyclic.lubricant.properties import ROELANDS_PRESSURE, OilState
 
 __all__ = [
     "Heating",
-    "effusivity",
     "flow_easing",
     "heating_of",
     "inlet_factor",
@@ -54,11 +53,6 @@ class Heating:
 def heating_of(oil: OilState, effusivity1: float, effusivity2: float) -> Heating:
     """Heat carried away by an oil at the temperature of the contact and two solids."""
     return Heating(oil.thermoviscosity, oil.thermal_conductivity, effusivity1, effusivity2)
-
-
-def effusivity(conductivity: float, heat_capacity: float, density: float) -> float:
-    """sqrt(k rho c) of a solid, SI. Theory (H30). [W s^0.5/(m^2 K)]"""
-    return math.sqrt(conductivity * heat_capacity * density)
 
 
 def inlet_factor(contact: LineContact, heating: Heating) -> float:

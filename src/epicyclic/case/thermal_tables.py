@@ -1,0 +1,139 @@
+"""Tables of a case file on heat: how gears are wetted, where heat leaves, what stores it."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from epicyclic.case.schema import Table
+from epicyclic.units import (
+    Area,
+    Conductance,
+    HeatTransfer,
+    Length,
+    Mass,
+    Number,
+    Power,
+    Speed,
+    Temperature,
+    Volume,
+    VolumeFlow,
+    as_stated,
+)
+
+__all__ = ["ConductanceTable", "HousingTable", "ThermalTable"]
+
+
+class HousingTable(Table):
+    """The housing as ISO/TR 14179 sees it."""
+
+    method: Literal["iso-14179-2", "iso-14179-1"] = Field(
+        default="iso-14179-2",
+        description="iso-14179-2: convection and radiation from shape and air; iso-14179-1: "
+        "coefficient times area.",
+    )
+    area: Area = Field(description="Outside, without fins.")
+    inner_area: Area | None = Field(default=None, description="Wetted by oil. Default: area.")
+    height: Length | None = Field(
+        default=None, description="Default: that of a cube of the same area."
+    )
+    length: Length | None = Field(default=None, description="Along the air. Default: height.")
+    air_speed: Speed = Field(
+        default=as_stated("0 m/s"), description="Of the air past it; 0: free convection."
+    )
+    emissivity: Number = Field(
+        default=0.9, ge=0, le=1, description="0.9 painted, 0.15 to 0.25 bare aluminium."
+    )
+    fin_factor: Number = Field(
+        default=1.0, ge=1, le=20, description="Multiplies the convection: area and effect of fins."
+    )
+    inner_coefficient: HeatTransfer = Field(
+        default=as_stated("200 W/(m^2*K)"), description="From the oil to the wall (splash)."
+    )
+    coefficient: HeatTransfer = Field(
+        default=as_stated("15 W/(m^2*K)"),
+        description="k of iso-14179-1, oil to air: 10-14 in small rooms, 17-20 in large ones, "
+        "19-24 outdoors.",
+    )
+    foundation: Conductance = Field(
+        default=as_stated("0 W/K"), description="To what it stands on, at ambient temperature."
+    )
+    mass: Mass | None = Field(default=None, description="For warming up.")
+    heat_capacity_ratio: Number = Field(
+        default=1.0,
+        gt=0,
+        le=10,
+        description="Of its material over that of steel, by mass: aluminium 1.95.",
+    )
+
+
+class ConductanceTable(Table):
+    """One way of the heat, as 'epicyclic heat' names it."""
+
+    value: Conductance | None = Field(default=None, description="Instead of the computed one.")
+    scale: Number = Field(default=1.0, ge=0, le=1000, description="Multiplies it.")
+
+
+class ThermalTable(Table):
+    """How heat arises and leaves, for models.temperatures other than inlet."""
+
+    lubrication: Literal["spray", "dip", "spray-and-dip", "submerged"] = Field(
+        default="spray", description="How oil gets to the gears."
+    )
+    bulk: Literal["iso-6336-20", "iso-6336-22"] = Field(
+        default="iso-6336-20",
+        description="For flank: iso-6336-20: from the flash temperature of each gear's meshes; "
+        "iso-6336-22: from their loss, both gears alike.",
+    )
+    oil_flow: VolumeFlow | None = Field(
+        default=None, description="Of all oil that leaves for a tank or cooler and comes back."
+    )
+    oil_outlet_temperature: Temperature | None = Field(
+        default=None, description="Instead of oil_flow, where it was measured: the flow follows."
+    )
+    jet_effectiveness: Number = Field(
+        default=0.5,
+        ge=0,
+        le=1,
+        description="How far oil thrown on a gear reaches the temperature of the gear (estimate: "
+        "0.25 to 1).",
+    )
+    jet_shares: dict[str, Number] = Field(
+        default={},
+        description="Share of oil_flow that meets a gear or bearing. Default: each mesh an equal "
+        "part, half of it on each gear.",
+    )
+    bath_share: Number = Field(
+        default=0.3,
+        gt=0,
+        le=1,
+        description="Share of the surfaces of a gear that dips into oil (estimate), with dip.",
+    )
+    ambient_temperature: Temperature = Field(
+        default=as_stated("20 degC"), description="Of the air around the housing."
+    )
+    cooler_power: Power = Field(
+        default=as_stated("0 W"), description="That a cooler takes from the oil."
+    )
+    cooler_conductance: Conductance = Field(
+        default=as_stated("0 W/K"), description="Of a cooler in the sump, to its coolant."
+    )
+    coolant_temperature: Temperature = Field(
+        default=as_stated("40 degC"), description="Of that coolant."
+    )
+    press_fit: HeatTransfer = Field(
+        default=as_stated("2000 W/(m^2*K)"),
+        description="Contact conductance of press fits and splines (1000 to 5000).",
+    )
+    shaft_conductance: Conductance = Field(
+        default=as_stated("1 W/K"),
+        description="Along a shaft, from each gear or bearing on it: trains (estimate).",
+    )
+    conductances: dict[str, ConductanceTable] = Field(
+        default={}, description="Changes to single ways of the heat, by their names."
+    )
+    oil_volume: Volume | None = Field(default=None, description="For warming up.")
+    housing: HousingTable | None = Field(
+        default=None, description="Default: no heat leaves through it."
+    )

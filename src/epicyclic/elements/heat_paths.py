@@ -1,0 +1,185 @@
+"""Ways of the heat of gears, planets, pins, carriers and bearings: to the oil, to each other."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from epicyclic.elements.base import HOUSING, OIL, ElementResult, State
+from epicyclic.elements.figures import BearingFigures
+from epicyclic.elements.gear_set import GearSet, Planet
+from epicyclic.elements.shaft_bearing import ShaftBearing
+from epicyclic.geometry.gear import Gear
+from epicyclic.thermal.convection import dipped_disc, disc_coefficient
+from epicyclic.thermal.fluid import Fluid
+from epicyclic.thermal.network import Link
+
+__all__ = ["INLET", "Wetting", "bearing_links", "carrier_node", "gear_set_links"]
+
+INLET = "oil inlet"
+"""The oil before it meets anything."""
+WIDTH_OF_HEIGHT = 1.2
+"""Width of a bearing over the height of its section, if it is not given: an estimate. [1]"""
+SEAT_LENGTH = 1.0
+"""Length of a pin in both of its seats over its diameter: an estimate. [1]"""
+FACES = "faces as discs that turn in the mixture"
+BATH = "faces and flanks in an oil bath"
+JET = "oil that a jet throws on it"
+SEAT = "press fit"
+ROLLERS = "loaded rollers"
+DISC_SOURCE = "Levich; Gregory and Riddiford (1956); Dorfman (1963), second hand"
+BATH_SOURCE = "R. F. Handschuh (NASA), second hand"
+HERE = "derived here"
+ESTIMATE = "estimate"
+
+
+@dataclass(frozen=True, slots=True)
+class Wetting:
+    """What meets the surfaces of the gears, and how well solids that touch pass heat on.
+
+    Attributes
+    ----------
+    around : Fluid
+        The mixture of oil and air, or the oil that gears dip into.
+    bath : float
+        Share of the surfaces that dips into an oil bath; 0 in a spray. [1]
+    jet : float
+        Heat capacity of the oil flow times the effectiveness of the jets. [W/K]
+    jet_shares : mapping of str to float
+        Shares of the flow that meet each node. [1]
+    press_fit : float
+        Contact conductance of a press fit, by area. [W/(m^2 K)]
+    """
+
+    around: Fluid
+    bath: float
+    jet: float
+    jet_shares: Mapping[str, float]
+    press_fit: float
+
+
+@dataclass(frozen=True, slots=True)
+class _OneGear:
+    """A gear of a set as heat sees it."""
+
+    node: str
+    body: str
+    gear: Gear
+    count: int
+
+
+def gear_set_links(
+    own: GearSet, state: State, result: ElementResult, wetting: Wetting
+) -> Iterator[Link]:
+    """Ways of the heat of a set. Theory (N5), (N6), (N7)."""
+    planets = {planet.nodes[0]: planet for planet in own.planets}
+    for one in _gears(own, planets):
+        planet = planets.get(one.node)
+        reference = own.carrier if planet else HOUSING
+        speed = abs(state.speeds[one.body] - state.speeds[reference])
+        yield from _gear_to_oil(one, speed, planet, wetting)
+        if planet is None and one.gear.internal and not speed:
+            yield from _ring_to_housing(own, one, wetting)
+    for planet in own.planets:
+        yield from _planet_to_carrier(own, planet, result, wetting)
+    yield from _carrier_to_oil(own, state, wetting)
+
+
+def _gears(own: GearSet, planets: dict[str, Planet]) -> Iterator[_OneGear]:
+    """Every gear once, though it may have several mates."""
+    seen: set[tuple[str, str]] = set()
+    for mesh in own.meshes:
+        for node, body, gear in zip(
+            mesh.nodes, mesh.bodies, (mesh.mesh.gear1, mesh.mesh.gear2), strict=True
+        ):
+            if (node, gear.name) not in seen:
+                seen.add((node, gear.name))
+                yield _OneGear(node, body, gear, own.count if node in planets else 1)
+
+
+def _gear_to_oil(
+    one: _OneGear, speed: float, planet: Planet | None, wetting: Wetting
+) -> Iterator[Link]:
+    gear = one.gear
+    share = wetting.jet_shares.get(one.node, 0.0)
+    if share and wetting.jet:
+        key = f"{one.node}-oil jet"
+        yield Link(key, one.node, INLET, share * wetting.jet, JET, ESTIMATE, OIL)
+    inner = 0.0
+    if planet is not None and planet.bearing is not None:
+        inner = planet.bearing.bearing.outer_diameter / 2
+    outer = gear.tip_radius
+    if gear.internal or outer <= inner or not speed:
+        return
+    faces = 2 * math.pi * (outer**2 - inner**2)
+    if wetting.bath:
+        flanks = 2 * gear.teeth * abs(outer - gear.root_radius) * gear.face_width
+        coefficient = dipped_disc(wetting.around, speed, 2 * outer)
+        conductance, how = wetting.bath * coefficient * (faces + flanks), (BATH, BATH_SOURCE)
+    else:
+        coefficient = disc_coefficient(wetting.around, speed, outer, inner)
+        conductance, how = coefficient * faces, (FACES, DISC_SOURCE)
+    yield Link(f"{one.node}-oil", one.node, OIL, one.count * conductance, *how)
+
+
+def _ring_to_housing(own: GearSet, one: _OneGear, wetting: Wetting) -> Iterator[Link]:
+    """A ring gear that stands still is pressed into the housing."""
+    for discs in own.discs.values():
+        for disc in discs:
+            if disc.body == one.body:
+                area = 2 * math.pi * disc.radius * disc.width
+                key = f"{one.node}-housing"
+                yield Link(key, one.node, HOUSING, wetting.press_fit * area, SEAT, ESTIMATE)
+
+
+def _planet_to_carrier(
+    own: GearSet, planet: Planet, result: ElementResult, wetting: Wetting
+) -> Iterator[Link]:
+    if planet.bearing is None:
+        return
+    node, pin = planet.nodes
+    figures = result.figures[planet.key]
+    assert isinstance(figures, BearingFigures)
+    rollers = own.count * figures.heat_conductance
+    yield Link(f"{node}-{pin}", node, pin, rollers, ROLLERS, HERE)
+    seat = math.pi * SEAT_LENGTH * planet.bearing.bearing.inner_diameter**2
+    carrier = carrier_node(own)
+    pins = own.count * wetting.press_fit * seat
+    yield Link(f"{pin}-{carrier}", pin, carrier, pins, SEAT, ESTIMATE)
+
+
+def carrier_node(own: GearSet) -> str:
+    """The thermal node of the carrier of a set."""
+    return f"{own.key}.carrier" if own.key else "carrier"
+
+
+def _carrier_to_oil(own: GearSet, state: State, wetting: Wetting) -> Iterator[Link]:
+    if not any(planet.bearing for planet in own.planets):
+        return
+    known = [disc for discs in own.discs.values() for disc in discs if disc.where == "carrier"]
+    radius = known[0].radius if known else max(planet.pin_radius for planet in own.planets)
+    speed = abs(state.speeds[own.carrier])
+    node = carrier_node(own)
+    area = 2 * math.pi * radius**2
+    if wetting.bath:
+        coefficient = wetting.bath * dipped_disc(wetting.around, speed, 2 * radius)
+        how = BATH, BATH_SOURCE
+    else:
+        coefficient, how = disc_coefficient(wetting.around, speed, radius), (FACES, DISC_SOURCE)
+    yield Link(f"{node}-oil", node, OIL, coefficient * area, *how)
+
+
+def bearing_links(own: ShaftBearing, wetting: Wetting) -> Iterator[Link]:
+    """A bearing gives its heat off through the seat of its outer ring."""
+    bearing = own.bearing
+    width = bearing.width
+    if not width > 0:  # unknown
+        width = WIDTH_OF_HEIGHT * (bearing.outside_diameter - bearing.bore) / 2
+    if HOUSING in own.between:
+        seat = wetting.press_fit * math.pi * bearing.outside_diameter * width
+        yield Link(f"{own.key}-housing", own.key, HOUSING, seat, SEAT, ESTIMATE)
+    share = wetting.jet_shares.get(own.key, 0.0)
+    if share and wetting.jet:
+        key = f"{own.key}-oil jet"
+        yield Link(key, own.key, INLET, share * wetting.jet, JET, ESTIMATE, OIL)

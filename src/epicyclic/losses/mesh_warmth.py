@@ -1,0 +1,74 @@
+"""Flash temperature along the contact lines of a mesh, and which gear the heat goes to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.losses.contact import MeshContact
+from epicyclic.thermal.flash import flash_temperature, heat_share
+from epicyclic.thermal.solids import Solid
+
+__all__ = ["MeshWarmth", "flash_temperatures", "mesh_warmth"]
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class MeshWarmth:
+    """What sliding does to the temperatures of a mesh.
+
+    Attributes
+    ----------
+    flash_mean : float
+        Flash temperature, weighted with the load over the mesh period. [K]
+    flash_max : float
+        Largest one. [K]
+    share1 : float
+        Share of the heat of sliding that gear 1 takes up. [1]
+    """
+
+    flash_mean: float
+    flash_max: float
+    share1: float
+
+
+def mesh_warmth(
+    contact: MeshContact, friction: FloatArray, materials: tuple[Solid, Solid]
+) -> MeshWarmth:
+    """Flash temperature and shares of the heat of a mesh in contact. Theory (W1), (W2).
+
+    Parameters
+    ----------
+    contact : MeshContact
+    friction : ndarray, shape (n,)
+        Coefficient of friction at every point. [1]
+    materials : tuple of Solid
+        Of both gears.
+    """
+    flash = flash_temperatures(contact, friction, materials)
+    load = contact.line_load * contact.weight
+    heat = friction * load * np.abs(contact.sliding_speed)
+    share1 = heat_share(*contact.surface_speeds, *(solid.effusivity for solid in materials))
+    total = float(heat.sum())
+    return MeshWarmth(
+        flash_mean=float((flash * load).sum() / load.sum()),
+        flash_max=float(flash.max()),
+        share1=float((heat * share1).sum()) / total if total > 0 else 0.5,
+    )
+
+
+def flash_temperatures(
+    contact: MeshContact, friction: FloatArray, materials: tuple[Solid, Solid]
+) -> FloatArray:
+    """Flash temperature at every point of the contact lines, shape (n,). Theory (W1). [K]"""
+    return flash_temperature(
+        friction,
+        contact.line_load,
+        contact.sliding_speed,
+        *contact.surface_speeds,
+        contact.hertz_half_width,
+        *(solid.effusivity for solid in materials),
+    )

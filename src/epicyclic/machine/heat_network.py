@@ -1,0 +1,370 @@
+"""The network of a machine: nodes of its parts, the oil and the housing, and the ways between."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from epicyclic.elements.base import HOUSING, OIL
+from epicyclic.elements.fluids import Fluids
+from epicyclic.elements.gear_set import GearSet
+from epicyclic.elements.heat_paths import (
+    INLET,
+    Wetting,
+    bearing_links,
+    carrier_node,
+    gear_set_links,
+)
+from epicyclic.elements.shaft_bearing import ShaftBearing
+from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.machine.machine import Machine
+from epicyclic.machine.settle import Answer, heat_of
+from epicyclic.machine.solve import Solution
+from epicyclic.thermal import housing as shell
+from epicyclic.thermal.fluid import Fluid
+from epicyclic.thermal.network import Link, Network
+
+__all__ = ["AMBIENT", "COOLANT", "Change", "HeatSettings", "Housing", "NetworkModel"]
+
+AMBIENT = "air"
+COOLANT = "coolant"
+FUNCK = "ISO/TR 14179-2 (Funck 1985), second hand"
+SAME = 1e-11
+"""Relative change of temperatures at which conductances and temperatures agree. [1]"""
+MOST_ROUNDS = 200
+
+
+@dataclass(frozen=True, slots=True)
+class Housing:
+    """What the housing gives to its surroundings. Areas in m^2, coefficients in W/(m^2 K).
+
+    Attributes
+    ----------
+    method : str
+        ``"iso-14179-2"`` or ``"iso-14179-1"``.
+    area, inner_area : float
+    height, length : float
+        [m]
+    air_speed : float
+        [m/s]
+    emissivity, fin_factor : float
+        [1]
+    inner_coefficient, coefficient : float
+        From the oil to the wall; from the oil to the air.
+    foundation : float
+        [W/K]
+    """
+
+    method: Literal["iso-14179-2", "iso-14179-1"]
+    area: float
+    inner_area: float
+    height: float
+    length: float
+    air_speed: float
+    emissivity: float
+    fin_factor: float
+    inner_coefficient: float
+    coefficient: float
+    foundation: float
+
+    def outside(self, wall: float, air: float) -> float:
+        """Coefficient from the wall to the air. Theory (W9), (W10), (W11). [W/(m^2 K)]"""
+        if self.air_speed:
+            convection = shell.forced_convection(
+                self.air_speed, self.length, self.height, wall, air
+            )
+        else:
+            convection = shell.free_convection(self.height, wall, air)
+        return self.fin_factor * convection + shell.radiation(self.emissivity, wall, air)
+
+    def links(self, wall: float, air: float) -> Iterator[Link]:
+        """From the oil to the wall, and from there to the air."""
+        inside = self.inner_coefficient * self.inner_area
+        if self.method == "iso-14179-1":
+            whole = self.coefficient * self.area
+            outside = whole * inside / (inside - whole) if inside > whole else 1e3 * whole
+            how = "coefficient from oil to air", "ISO/TR 14179-1, second hand"
+        else:
+            outside = self.outside(wall, air) * self.area
+            how = "convection and radiation", FUNCK
+        yield Link("oil-housing", OIL, HOUSING, inside, "splash on the wall", FUNCK)
+        yield Link("housing-air", HOUSING, AMBIENT, outside, *how)
+        if self.foundation:
+            yield Link("housing-foundation", HOUSING, AMBIENT, self.foundation, "given")
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What the user does to a conductance: another value [W/K], a factor [1]."""
+
+    value: float | None
+    scale: float
+
+
+@dataclass(frozen=True, slots=True)
+class HeatSettings:
+    """How heat leaves the parts of a machine.
+
+    Attributes
+    ----------
+    inlet, outlet : float, float or None
+        Temperatures of the oil; the outlet where it was measured. [K]
+    flow : float
+        Of oil. [m^3/s]
+    effectiveness : float
+        Of jets. [1]
+    jet_shares : mapping of str to float
+        Shares of the flow that meet each node. [1]
+    bath : float
+        Share of the gears that dips into oil. [1]
+    press_fit : float
+        [W/(m^2 K)]
+    shaft : float
+        From a part to the shaft it is on. [W/K]
+    ambient, coolant : float
+        [K]
+    cooler_power : float
+        [W]
+    cooler : float
+        [W/K]
+    housing : Housing or None
+    changes : mapping of str to Change
+        By the key of the link.
+    """
+
+    inlet: float
+    outlet: float | None
+    flow: float
+    effectiveness: float
+    jet_shares: Mapping[str, float]
+    bath: float
+    press_fit: float
+    shaft: float
+    ambient: float
+    coolant: float
+    cooler_power: float
+    cooler: float
+    housing: Housing | None
+    changes: Mapping[str, Change]
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkModel:
+    """Heat flows between all parts of a machine, the oil and the surroundings.
+
+    Attributes
+    ----------
+    machine : Machine
+    settings : HeatSettings
+    fluids_at : callable
+        Oil and mixture at the temperatures of all nodes.
+    media_at : callable
+        The oil, and its mixture with air, as heat sees them, at a temperature.
+    """
+
+    machine: Machine
+    settings: HeatSettings
+    fluids_at: Callable[[Mapping[str, float]], Fluids]
+    media_at: Callable[[float], tuple[Fluid, Fluid]]
+
+    @property
+    def start(self) -> Mapping[str, float]:
+        """Everything at the temperature of the oil inlet. [K]"""
+        return dict.fromkeys(self.nodes, self.settings.inlet)
+
+    @property
+    def nodes(self) -> tuple[str, ...]:
+        """All nodes of unknown temperature."""
+        found: dict[str, None] = {}
+        for own in self.machine.elements:
+            if isinstance(own, GearSet):
+                found |= dict.fromkeys(node for mesh in own.meshes for node in mesh.nodes)
+                held = [planet for planet in own.planets if planet.bearing]
+                found |= dict.fromkeys(planet.nodes[1] for planet in held)
+                found |= dict.fromkeys(carrier_node(own) for _ in held)
+            elif isinstance(own, ShaftBearing):
+                found[own.key] = None
+        found |= dict.fromkeys(self.shafts)
+        ends = (OIL,) if self.settings.housing is None else (OIL, HOUSING)
+        return (*found, *ends)
+
+    @property
+    def shafts(self) -> Mapping[str, tuple[str, ...]]:
+        """Nodes of shafts that join parts of more than one element, with the nodes on them."""
+        on: dict[str, dict[str, str]] = {}
+        for own in self.machine.elements:
+            for body, node in _seats(own):
+                if body != HOUSING:
+                    on.setdefault(body, {})[node] = own.key
+        return {
+            f"{body} shaft": tuple(nodes)
+            for body, nodes in on.items()
+            if len(set(nodes.values())) > 1
+        }
+
+    def fluids(self, temperatures: Mapping[str, float]) -> Fluids:
+        """Oil and mixture at the temperatures of the nodes that they meet."""
+        return self.fluids_at(temperatures)
+
+    def answer(self, temperatures: Mapping[str, float], solution: Solution) -> Answer:
+        """Temperatures at which the heat of the losses leaves. Theory (N2).
+
+        Raises
+        ------
+        InputError
+            If the heat of a part has no way out.
+        """
+        heat = heat_of(solution)
+        heat[OIL] = heat.get(OIL, 0.0) - self.settings.cooler_power
+        if self.settings.housing is None:
+            heat[OIL] += heat.pop(HOUSING, 0.0)
+        found = dict(temperatures)
+        for _ in range(MOST_ROUNDS):
+            network = self.network(temperatures, found, solution, sum(heat.values()))
+            self._check(network)
+            new = network.steady(heat)
+            moved = max(abs(new[node] - found[node]) / found[node] for node in new)
+            found = new
+            if moved <= SAME:
+                break
+        else:
+            raise ConvergenceError(
+                "the temperature of the housing does not settle: check [thermal.housing]."
+            )
+        whole = sum(map(abs, heat.values()))
+        left = max(map(abs, network.residuals(found, heat).values()))
+        return Answer(
+            temperatures=found,
+            links=network.links,
+            flows=network.flows(found),
+            residual=left / whole if whole else 0.0,
+        )
+
+    def network(
+        self,
+        at: Mapping[str, float],
+        found: Mapping[str, float],
+        solution: Solution,
+        heat: float,
+    ) -> Network:
+        """The network with the conductances at some temperatures.
+
+        Parameters
+        ----------
+        at : mapping of str to float
+            At which the losses were computed: that of the oil sets its properties. [K]
+        found : mapping of str to float
+            Of the housing, for the heat to the air. [K]
+        solution : Solution
+            Speeds, and loads of the bearings.
+        heat : float
+            Of all losses, less the power of a cooler. [W]
+        """
+        own = self.settings
+        given = {INLET: own.inlet, AMBIENT: own.ambient, COOLANT: own.coolant}
+        oil, mixture = self.media_at(at[OIL])
+        carried = self._carried(oil, heat)
+        wetting = Wetting(
+            around=oil if own.bath else mixture,
+            bath=own.bath,
+            jet=own.effectiveness * carried,
+            jet_shares=own.jet_shares,
+            press_fit=own.press_fit,
+        )
+        links = [
+            self._changed(link)
+            for link in (
+                *self._of_parts(solution, wetting),
+                *self._of_shafts(),
+                *self._of_oil(carried),
+                *(() if own.housing is None else own.housing.links(found[HOUSING], own.ambient)),
+            )
+        ]
+        unknown = set(own.changes) - {link.key for link in links}
+        if unknown:
+            raise _no_such_links(unknown, [link.key for link in links])
+        return Network(self.nodes, given, tuple(links))
+
+    def _carried(self, oil: Fluid, heat: float) -> float:
+        """Heat capacity of the flow of oil. [W/K]"""
+        own = self.settings
+        if own.outlet is not None:
+            return max(heat, 0.0) / (own.outlet - own.inlet)
+        return oil.density * oil.heat_capacity * own.flow
+
+    def _of_parts(self, solution: Solution, wetting: Wetting) -> Iterator[Link]:
+        housing = self.settings.housing is not None
+        for own in self.machine.elements:
+            if isinstance(own, GearSet):
+                result = solution.results[own.key]
+                found = gear_set_links(own, solution.state, result, wetting)
+            elif isinstance(own, ShaftBearing):
+                found = bearing_links(own, wetting)
+            else:
+                continue
+            yield from (link for link in found if housing or link.cold != HOUSING)
+
+    def _of_shafts(self) -> Iterator[Link]:
+        for shaft, nodes in self.shafts.items():
+            for node in nodes:
+                yield Link(
+                    f"{node}-{shaft}", node, shaft, self.settings.shaft, "along the shaft", "given"
+                )
+
+    def _of_oil(self, carried: float) -> Iterator[Link]:
+        if carried:
+            yield Link("oil-oil inlet", OIL, INLET, carried, "flow of oil", "energy balance")
+        if self.settings.cooler:
+            yield Link("oil-coolant", OIL, COOLANT, self.settings.cooler, "cooler", "given")
+
+    def _changed(self, link: Link) -> Link:
+        change = self.settings.changes.get(link.key)
+        if change is None:
+            return link
+        value = link.conductance if change.value is None else change.value
+        return replace(link, conductance=change.scale * value)
+
+    def _check(self, network: Network) -> None:
+        left = network.cut_off()
+        if left:
+            raise InputError(
+                [
+                    Problem(
+                        "thermal",
+                        "",
+                        f"the heat of {', '.join(left)} has no way out.",
+                        "Give thermal.oil_flow or thermal.oil_outlet_temperature, "
+                        "[thermal.housing] or thermal.cooler_conductance; for single parts "
+                        "thermal.jet_shares or thermal.conductances.",
+                    )
+                ]
+            )
+
+
+def _seats(own: object) -> Iterator[tuple[str, str]]:
+    """Bodies of an element with the thermal nodes on them, planets left out."""
+    if isinstance(own, GearSet):
+        planets = {planet.nodes[0] for planet in own.planets}
+        for mesh in own.meshes:
+            for body, node in zip(mesh.bodies, mesh.nodes, strict=True):
+                if node not in planets:
+                    yield body, node
+        if any(planet.bearing for planet in own.planets):
+            yield own.carrier, carrier_node(own)
+    elif isinstance(own, ShaftBearing):
+        yield from ((body, own.key) for body in own.between)
+
+
+def _no_such_links(unknown: set[str], known: list[str]) -> InputError:
+    return InputError(
+        [
+            Problem(
+                f"thermal.conductances.{name}",
+                "",
+                f"is no way of the heat here; there are {', '.join(known)}.",
+                "Take one of these names.",
+            )
+            for name in sorted(unknown)
+        ]
+    )

@@ -1,0 +1,143 @@
+"""Temperatures and losses that agree with each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.elements.base import OIL, Loss
+from epicyclic.elements.fluids import Fluids
+from epicyclic.errors import ConvergenceError
+from epicyclic.machine.machine import Machine, Operation
+from epicyclic.machine.solve import Solution, solve_machine
+from epicyclic.thermal.network import Link
+from epicyclic.units import CELSIUS
+
+__all__ = ["Answer", "Settled", "ThermalModel", "heat_of", "settle"]
+
+FloatArray = NDArray[np.float64]
+
+AGREEMENT = 1e-7
+"""Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
+MOST_PASSES = 40
+COLDEST, HOTTEST = 200.0, 770.0
+"""Between which losses are computed; beyond the hottest no gearbox is left to compute. [K]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What the heat of the losses leads to.
+
+    Attributes
+    ----------
+    temperatures : mapping of str to float
+        Of all nodes. [K]
+    links : tuple of Link
+        Ways of the heat; empty where temperatures follow from formulas.
+    flows : mapping of str to float
+        Heat through every link. [W]
+    residual : float
+        Largest heat of a node that does not leave it, over all heat. [1]
+    """
+
+    temperatures: Mapping[str, float]
+    links: tuple[Link, ...] = ()
+    flows: Mapping[str, float] | None = None
+    residual: float = 0.0
+
+
+class ThermalModel(Protocol):
+    """How temperatures follow from losses."""
+
+    @property
+    def start(self) -> Mapping[str, float]:
+        """Temperatures of all nodes to start from. [K]"""
+
+    def fluids(self, temperatures: Mapping[str, float]) -> Fluids:
+        """Oil and mixture at the temperatures of the nodes that they meet."""
+
+    def answer(self, temperatures: Mapping[str, float], solution: Solution) -> Answer:
+        """Temperatures that the losses of a solution lead to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """A machine whose temperatures and losses agree.
+
+    Attributes
+    ----------
+    solution : Solution
+    answer : Answer
+    evaluations : int
+        Of the losses.
+    """
+
+    solution: Solution
+    answer: Answer
+    evaluations: int
+
+
+def heat_of(solution: Solution) -> dict[str, float]:
+    """Heat that the losses bring to each thermal node. [W]"""
+    heat: dict[str, float] = {}
+    for loss in _losses(solution):
+        for node, share in loss.heat:
+            heat[node] = heat.get(node, 0.0) + share * loss.watts
+    return heat
+
+
+def _losses(solution: Solution) -> list[Loss]:
+    own = [loss for result in solution.results.values() for loss in result.losses.values()]
+    return [*own, *solution.given.values()]
+
+
+def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settled:
+    """Temperatures and losses that agree. Theory (N3).
+
+    Broyden's method on the temperatures, which starts as the plain repetition of losses and
+    temperatures.
+
+    Raises
+    ------
+    ConvergenceError
+        If there is no equilibrium, or only one that no gearbox survives.
+    """
+    from scipy.optimize import NoConvergence, broyden1
+
+    nodes = tuple(model.start)
+    found: list[tuple[Solution, Answer]] = []
+
+    def change(values: FloatArray) -> FloatArray:
+        at = dict(zip(nodes, map(float, np.clip(values, COLDEST, HOTTEST)), strict=True))
+        solution = solve_machine(machine, operation, model.fluids(at))
+        answer = model.answer(at, solution)
+        found.append((solution, answer))
+        return np.array([answer.temperatures[node] for node in nodes]) - values
+
+    start = np.array([model.start[node] for node in nodes])
+    try:
+        broyden1(
+            change, start, alpha=1.0, f_tol=AGREEMENT, maxiter=MOST_PASSES, line_search=None
+        )
+    except NoConvergence:
+        raise _runaway(found[-1][1].temperatures, found) from None
+    solution, answer = found[-1]
+    if max(answer.temperatures.values()) > HOTTEST:
+        raise _runaway(answer.temperatures, found)
+    return Settled(solution, answer, len(found))
+
+
+def _runaway(
+    temperatures: Mapping[str, float], found: list[tuple[Solution, Answer]]
+) -> ConvergenceError:
+    hottest = max(temperatures, key=lambda node: temperatures[node])
+    return ConvergenceError(
+        f"the gearbox runs away: losses and heat find no balance; after {len(found)} passes "
+        f"{hottest} is at {CELSIUS.text(temperatures[hottest], 4)} and the oil at "
+        f"{CELSIUS.text(temperatures.get(OIL, temperatures[hottest]), 4)}. Take more away: "
+        "thermal.oil_flow, thermal.cooler_conductance, a larger [thermal.housing]."
+    )

@@ -1,0 +1,206 @@
+"""Bulk temperature of gears above the oil after ISO/TS 6336-20, -21 and -22, second hand.
+
+The three rises are estimates of one quantity, made for pairs of gears. The loss factor of
+ISO/TS 6336-22 is that of Ohlendorf, `epicyclic.losses.mesh.ohlendorf_loss_factor`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+
+__all__ = [
+    "LUBRICATION_FACTORS",
+    "bulk_rise_of_flash",
+    "bulk_rise_of_integral_flash",
+    "bulk_rise_of_loss",
+    "mates_factor",
+    "mean_friction",
+    "relief_factor",
+    "roughness_factor",
+]
+
+LUBRICATION_FACTORS: Mapping[str, float] = MappingProxyType(
+    {"spray": 1.2, "dip": 1.0, "spray-and-dip": 1.0, "submerged": 0.2}
+)
+"""X_S of ISO/TS 6336-20 to -22, second hand; submerged with sufficient cooling. [1]"""
+
+MM = 1e3
+"""Millimetres in a metre."""
+MICROMETRE = 1e6
+"""Micrometres in a metre."""
+
+
+def mean_friction(
+    line_load: float,
+    sum_speed: float,
+    radius: float,
+    viscosity: float,
+    roughness_factor: float,
+    lubricant_factor: float,
+) -> float:
+    """Mean coefficient of friction of ISO/TS 6336-22, second hand. [1]
+
+    Theory (W5).
+
+    Parameters
+    ----------
+    line_load : float
+        Transverse tangential force on the base circle over the face width, with the load factors.
+        [N/m]
+    sum_speed : float
+        Sum of the surface speeds at the pitch point, 2 v_t sin(alpha_wt). [m/s]
+    radius : float
+        Equivalent radius of curvature at the pitch point, normal section. [m]
+    viscosity : float
+        Of the oil at its inlet temperature, dynamic. [Pa s]
+    roughness_factor : float
+        X_R, from `roughness_factor`. [1]
+    lubricant_factor : float
+        X_L: mineral oil 1.0, PAO and ester 0.8, polyglycol 0.7, phosphate ester 0.75. [1]
+
+    Examples
+    --------
+    >>> rough = roughness_factor(0.5e-6, 8.38e-3)
+    >>> round(mean_friction(560e3, 6.58, 8.38e-3, 12e-3, rough, 1.0), 4)
+    0.0687
+    """
+    group = line_load / MM / (sum_speed * radius * MM)  # N/mm, m/s, mm
+    thin = math.pow(viscosity * 1e3, -0.05)  # mPa s
+    return 0.045 * math.pow(group, 0.2) * thin * roughness_factor * lubricant_factor
+
+
+def roughness_factor(roughness: float, radius: float) -> float:
+    """X_R = 2.2 (Ra/rho)^0.25 of ISO/TS 6336-22, um and mm, second hand. [1]
+
+    Theory (W5).
+
+    Parameters
+    ----------
+    roughness : float
+        Ra, mean of both flanks. [m]
+    radius : float
+        Equivalent radius of curvature at the pitch point, normal section. [m]
+
+    Examples
+    --------
+    >>> round(roughness_factor(0.5e-6, 8.38e-3), 3)
+    1.087
+    """
+    return 2.2 * math.pow(roughness * MICROMETRE / (radius * MM), 0.25)
+
+
+def relief_factor(tip_contact_ratio: float, relief_share: float) -> float:
+    """X_Ca of ISO/TS 6336-22, second hand: tip relief cools. [1]
+
+    Theory (W6).
+
+    For flanks without adequate tip relief the rise is taken with 1 instead.
+
+    Parameters
+    ----------
+    tip_contact_ratio : float
+        The greater of eps_1 and eps_2, parts of the transverse contact ratio. [1]
+    relief_share : float
+        Tip relief over the one that takes up the deflection of the teeth, C_a/C_eff, at most 1. [1]
+
+    Examples
+    --------
+    >>> round(relief_factor(0.8, 1.0), 3)
+    1.646
+    """
+    linear = 0.06 + 0.18 * relief_share
+    square = 0.02 + 0.69 * relief_share
+    return 1 + linear * tip_contact_ratio + square * tip_contact_ratio**2
+
+
+def bulk_rise_of_loss(
+    loss: float,
+    center_distance: float,
+    face_width: float,
+    lubrication_factor: float,
+    relief_factor: float = 1.0,
+) -> float:
+    """Bulk temperature above that of the oil, ISO/TS 6336-22, second hand. [K]
+
+    Theory (W4).
+
+    Parameters
+    ----------
+    loss : float
+        Load-dependent loss of the mesh, P mu_m H_V. [W]
+    center_distance, face_width : float
+        [m]
+    lubrication_factor : float
+        X_S, one of `LUBRICATION_FACTORS`. [1]
+    relief_factor : float
+        X_Ca. [1]
+
+    Examples
+    --------
+    The gears C-GF of the FZG test rig at load stage 9, sprayed:
+
+    >>> loss = 62.46e3 * 0.0687 * 0.19496
+    >>> round(bulk_rise_of_loss(loss, 91.5e-3, 14e-3, LUBRICATION_FACTORS["spray"]), 1)
+    37.7
+    """
+    density = loss / 1e3 / (center_distance * MM * face_width * MM)  # kW/mm^2
+    return 7400 * math.pow(density, 0.72) * lubrication_factor / (1.2 * relief_factor)
+
+
+def bulk_rise_of_flash(mean_flash: float, lubrication_factor: float, mates: int = 1) -> float:
+    """Bulk temperature above that of the oil, ISO/TS 6336-20, second hand. [K]
+
+    Theory (W7).
+
+    Parameters
+    ----------
+    mean_flash : float
+        Flash temperature, mean along the path of contact. [K]
+    lubrication_factor : float
+        X_S, one of `LUBRICATION_FACTORS`. [1]
+    mates : int
+        How many gears are in mesh with this one.
+
+    Examples
+    --------
+    A sun among three planets, sprayed:
+
+    >>> round(bulk_rise_of_flash(20.0, LUBRICATION_FACTORS["spray"], mates=3), 2)
+    22.56
+    """
+    return 0.47 * lubrication_factor * mates_factor(mates) * mean_flash
+
+
+def mates_factor(mates: int) -> float:
+    """X_mp = (1 + n_p)/2 of ISO/TS 6336-20 for a gear with n_p mates, second hand. [1]
+
+    Theory (W7).
+
+    Examples
+    --------
+    >>> mates_factor(3)
+    2.0
+    """
+    return (1 + mates) / 2
+
+
+def bulk_rise_of_integral_flash(integral_flash: float, lubrication_factor: float) -> float:
+    """Bulk temperature above that of the oil, ISO/TS 6336-21, second hand. [K]
+
+    Theory (W8).
+
+    Parameters
+    ----------
+    integral_flash : float
+        Mean flash temperature of the integral temperature method. [K]
+    lubrication_factor : float
+        X_S, one of `LUBRICATION_FACTORS`. [1]
+
+    Examples
+    --------
+    >>> round(bulk_rise_of_integral_flash(20.0, LUBRICATION_FACTORS["dip"]), 2)
+    14.0
+    """
+    return 0.70 * lubrication_factor * integral_flash

@@ -1,0 +1,60 @@
+"""Bulk temperatures of ISO/TS 6336-20, -21 and -22."""
+
+from __future__ import annotations
+
+import pytest
+
+from epicyclic.thermal.bulk import (
+    LUBRICATION_FACTORS,
+    bulk_rise_of_flash,
+    bulk_rise_of_integral_flash,
+    bulk_rise_of_loss,
+    mates_factor,
+    mean_friction,
+    relief_factor,
+    roughness_factor,
+)
+
+
+@pytest.mark.parametrize(
+    ("loss_factor", "center_distance", "face_width", "printed"),
+    [(0.181, 863, 491, 78.3), (0.161, 863, 491, 78.0), (0.149, 584, 550, 78.5)],
+)
+def test_meshes_of_the_gearbox_of_the_nrel(loss_factor, center_distance, face_width, printed):
+    """Oil of 75 degC, dip lubrication, mean friction 0.040: one planet carries a third."""
+    loss = 5000e3 / 3 * 0.040 * loss_factor
+    rise = bulk_rise_of_loss(
+        loss, center_distance * 1e-3, face_width * 1e-3, LUBRICATION_FACTORS["dip"]
+    )
+    assert 75 + rise == pytest.approx(printed, abs=0.05)  # printed digits
+
+
+def test_bulk_temperature_over_loss_size_and_cooling():
+    base = bulk_rise_of_loss(1e3, 0.1, 0.02, 1.0)
+    assert bulk_rise_of_loss(0.0, 0.1, 0.02, 1.0) == 0.0
+    assert bulk_rise_of_loss(2e3, 0.2, 0.02, 1.0) == pytest.approx(base, rel=1e-12)  # by area
+    assert bulk_rise_of_loss(1e3, 0.1, 0.02, 1.2, 1.5) == pytest.approx(base * 0.8, rel=1e-12)
+
+
+def test_mean_friction_in_printed_units():
+    """0.045 (F_bt/b/(v rho))^0.2 eta^-0.05 X_R X_L in N/mm, m/s, mm, mPa s, um."""
+    rough = roughness_factor(0.4e-6, 10e-3)
+    assert rough == pytest.approx(2.2 * 0.04**0.25, rel=1e-12)
+    found = mean_friction(500e3, 5.0, 10e-3, 20e-3, rough, 0.8)
+    assert found == pytest.approx(0.045 * 10**0.2 * 20**-0.05 * rough * 0.8, rel=1e-12)
+
+
+def test_tip_relief_cools():
+    # without relief the factor is near 1, with the best one the polynomial at 1
+    assert relief_factor(0.8, 0.0) == pytest.approx(1.06, abs=0.002)
+    assert relief_factor(1.0, 1.0) == pytest.approx(1 + 0.24 + 0.71, rel=1e-12)
+    assert relief_factor(0.0, 1.0) == 1.0
+
+
+def test_a_gear_with_more_mates_is_hotter():
+    assert [mates_factor(mates) for mates in (1, 2, 3)] == [1.0, 1.5, 2.0]
+    spray = LUBRICATION_FACTORS["spray"]
+    assert bulk_rise_of_flash(10.0, spray) == pytest.approx(5.64, rel=1e-12)
+    assert bulk_rise_of_flash(10.0, spray, 3) == pytest.approx(11.28, rel=1e-12)
+    assert bulk_rise_of_integral_flash(10.0, spray) == pytest.approx(8.4, rel=1e-12)
+    assert LUBRICATION_FACTORS["submerged"] < LUBRICATION_FACTORS["dip"] < spray
