@@ -130,6 +130,12 @@ class LineContacts:
         return hertz_half_width(self.line_load, self.radius, self.flanks.equivalent_modulus)
 
     @property
+    def surface_speeds(self) -> tuple[FloatArray, FloatArray]:
+        """u_1 and u_2 across the contact. [m/s]"""
+        half = self.sliding_speed / 2
+        return self.rolling_speed + half, self.rolling_speed - half
+
+    @property
     def temperature(self) -> float:
         """Of the oil at the contacts. [K]"""
         return self.oil.temperature

@@ -26,6 +26,7 @@ __all__ = [
     "CUBIC_MILLIMETRE",
     "DEGREE",
     "GIGAPASCAL",
+    "KELVIN",
     "KILOGRAM_PER_CUBIC_METRE",
     "KILOJOULE",
     "METRE_PER_SECOND",
@@ -44,8 +45,11 @@ __all__ = [
     "SQUARE_MM_PER_SECOND",
     "WATT",
     "Angle",
+    "Area",
+    "Conductance",
     "Density",
     "Deviation",
+    "HeatTransfer",
     "HelixAngle",
     "HertzPressure",
     "KinematicViscosity",
@@ -53,6 +57,7 @@ __all__ = [
     "Mass",
     "Modulus",
     "Number",
+    "Power",
     "Pressure",
     "PressureViscosity",
     "Quantity",
@@ -61,6 +66,8 @@ __all__ = [
     "Speed",
     "Temperature",
     "Torque",
+    "Volume",
+    "VolumeFlow",
     "as_stated",
     "describe_range",
     "format_number",
@@ -389,6 +396,7 @@ CELSIUS = Quantity("a temperature", "K", "degC")
 CUBIC_MILLIMETRE = Quantity("a volume", "m^3", "mm^3")
 DEGREE = Quantity("an angle", "rad", "deg")
 GIGAPASCAL = Quantity("a pressure", "Pa", "GPa")
+KELVIN = Quantity("a temperature difference", "K", "K")
 KILOGRAM_PER_CUBIC_METRE = Quantity("a density", "kg/m^3", "kg/m^3")
 KILOJOULE = Quantity("an energy", "J", "kJ")
 METRE_PER_SECOND = Quantity("a speed", "m/s", "m/s")
@@ -407,6 +415,7 @@ SQUARE_MILLIMETRE = Quantity("an area", "m^2", "mm^2")
 SECOND = Quantity("a time", "s", "s")
 SQUARE_MM_PER_SECOND = Quantity("a viscosity", "m^2/s", "mm^2/s")
 WATT = Quantity("a power", "W", "W")
+WATT_PER_KELVIN = Quantity("a thermal conductance", "W/K", "W/K")
 WATT_PER_MM = Quantity("a power per length", "W/m", "W/mm")
 
 
@@ -445,6 +454,17 @@ KinematicViscosity = Annotated[
 """ASTM D341 takes the logarithm of a logarithm of the value in mm^2/s plus 0.7."""
 PressureViscosity = Annotated[
     float, Quantity("a pressure-viscosity coefficient", "1/Pa", "1/GPa", low=1.0, high=60.0)
+]
+
+
+Area = Annotated[float, Quantity("an area", "m^2", "m^2", low=0.0, high=1e4, open_low=True)]
+Volume = Annotated[float, Quantity("a volume", "m^3", "l", low=0.0, high=1e6)]
+VolumeFlow = Annotated[float, Quantity("a flow", "m^3/s", "l/min", low=0.0, high=1e6)]
+Power = Annotated[float, Quantity("a power", "W", "W", low=0.0, high=1e9)]
+Conductance = Annotated[float, Quantity("a thermal conductance", "W/K", "W/K", low=0.0, high=1e7)]
+HeatTransfer = Annotated[
+    float,
+    Quantity("a heat transfer coefficient", "W/(m^2*K)", "W/(m^2*K)", low=0.0, high=1e6),
 ]
 
 

@@ -20,7 +20,9 @@ from epicyclic.elements.load_sharing import SHARING_METHODS
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.validity import ValidityFlag
 from epicyclic.machine.flow import stage_torques
+from epicyclic.machine.settle import Settled, heat_of
 from epicyclic.machine.solve import Solution
+from epicyclic.results.heat import HeatBalance, HeatWay
 from epicyclic.results.result import LossTerm, MemberState, PowerFlow, Result, Train
 
 __all__ = ["assemble"]
@@ -28,8 +30,9 @@ __all__ = ["assemble"]
 Methods = dict[str, tuple[str, str]]
 
 
-def assemble(case: Case, built: Built, solution: Solution) -> Result:
+def assemble(case: Case, built: Built, settled: Settled) -> Result:
     """The result of a case from the solution of its machine."""
+    solution = settled.solution
     losses = dict(_losses(solution))
     terms = tuple(_term(name, losses[name]) for name in built.layout.losses)
     flow = PowerFlow(
@@ -42,7 +45,8 @@ def assemble(case: Case, built: Built, solution: Solution) -> Result:
     )
     figures = dict(_figures(solution))
     methods = dict(_methods(built))
-    flags = () if built.known_fluids is None else built.fluids.flags
+    fluids = None if built.known_fluids is None else solution.state.fluids
+    flags = () if fluids is None else fluids.flags
     sharing = built.sets[""].sharing if "" in built.sets else None
     return Result(
         title=case.title,
@@ -57,7 +61,7 @@ def assemble(case: Case, built: Built, solution: Solution) -> Result:
             for key, item in figures.items()
             if not isinstance(item, MeshFigures | BearingFigures)
         },
-        fluid=None if built.known_fluids is None else built.fluids.figures,
+        fluid=None if fluids is None else fluids.figures,
         models=dict(_models(case, built)),
         flags=flags + tuple(_flags(solution)),
         notes=(
@@ -79,6 +83,34 @@ def assemble(case: Case, built: Built, solution: Solution) -> Result:
             (),
         ),
         train=_train(case, built, solution),
+        heat=_heat(case, built, settled),
+    )
+
+
+def _heat(case: Case, built: Built, settled: Settled) -> HeatBalance | None:
+    """Temperatures and the ways of the heat; None if everything is at the inlet temperature."""
+    if built.thermal is None:
+        return None
+    answer, solution = settled.answer, settled.solution
+    return HeatBalance(
+        model=case.models.temperatures,
+        temperatures=answer.temperatures,
+        sources=heat_of(solution),
+        ways=tuple(
+            HeatWay(
+                link.key,
+                link.hot,
+                link.target,
+                link.conductance,
+                (answer.flows or {}).get(link.key, 0.0),
+                link.method,
+                link.source,
+            )
+            for link in answer.links
+        ),
+        given=answer.given,
+        residual=answer.residual,
+        evaluations=settled.evaluations,
     )
 
 

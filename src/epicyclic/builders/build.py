@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from epicyclic.builders.built import Built
 from epicyclic.builders.pair import build_pair
 from epicyclic.builders.planetary import build_planetary
+from epicyclic.builders.temperatures import thermal_model
 from epicyclic.builders.train import build_train, train_layout
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.train import TrainCase
@@ -23,7 +26,15 @@ def build(case: Case, flow_tables: FlowTables | None = None) -> Built:
     flow_tables : mapping, optional
         Tables of flows through pockets that the points of a sweep share.
     """
-    tables = flow_tables or {}
+    built = _machine(case, flow_tables or {})
+    model = thermal_model(case, built.machine)
+    if model is None:
+        return built
+    layout = replace(built.layout, nodes=tuple(model.start))
+    return replace(built, thermal=model, layout=layout)
+
+
+def _machine(case: Case, tables: FlowTables) -> Built:
     if isinstance(case, PlanetaryCase):
         return build_planetary(case, tables)
     if isinstance(case, TrainCase):
@@ -33,4 +44,6 @@ def build(case: Case, flow_tables: FlowTables | None = None) -> Built:
 
 def layout_of(case: Case) -> Layout:
     """What the result of a case consists of."""
-    return train_layout(case) if isinstance(case, TrainCase) else build(case).layout
+    if isinstance(case, TrainCase) and case.models.temperatures == "inlet":
+        return train_layout(case)
+    return build(case).layout

@@ -11,7 +11,8 @@ from epicyclic.elements.gear_mesh import MeshDuty
 from epicyclic.elements.gear_set import GearSet
 from epicyclic.elements.planet_load import PlanetLoad
 from epicyclic.machine.machine import Machine, Operation
-from epicyclic.machine.solve import Solution, lossless_state, solve_machine
+from epicyclic.machine.settle import Settled, ThermalModel, isothermal, settle
+from epicyclic.machine.solve import lossless_state, solve_machine
 from epicyclic.results.result import Layout
 
 __all__ = ["Built", "mesh_key"]
@@ -31,6 +32,8 @@ class Built:
         Those whose losses are computed; the key of a single set is empty.
     layout : Layout
         What its result consists of.
+    thermal : ThermalModel or None
+        How temperatures follow from losses; None if all are those of the oil inlet.
     """
 
     machine: Machine
@@ -38,6 +41,7 @@ class Built:
     known_fluids: Fluids | None
     sets: Mapping[str, GearSet]
     layout: Layout
+    thermal: ThermalModel | None = None
 
     @property
     def fluids(self) -> Fluids:
@@ -45,9 +49,11 @@ class Built:
         assert self.known_fluids is not None, "a machine of given efficiencies has no oil"
         return self.known_fluids
 
-    def solve(self) -> Solution:
-        """Torques and losses that agree."""
-        return solve_machine(self.machine, self.operation, self.known_fluids)
+    def solve(self) -> Settled:
+        """Torques, losses and temperatures that agree."""
+        if self.thermal is None:
+            return isothermal(solve_machine(self.machine, self.operation, self.known_fluids))
+        return settle(self.machine, self.operation, self.thermal)
 
     def state(self) -> State:
         """Speeds, and torques as without losses."""

@@ -10,7 +10,12 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.tools import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus
 
-__all__ = ["gear_mesh"]
+__all__ = ["gear_mesh", "node_key"]
+
+
+def node_key(key: str, name: str) -> str:
+    """Thermal node of a gear or pin: with the name of its set before it in a train."""
+    return f"{key}.{name}" if key else name
 
 
 def gear_mesh(
@@ -19,6 +24,7 @@ def gear_mesh(
     tables: tuple[GearTable, GearTable],
     *,
     bodies: tuple[str, str],
+    nodes: tuple[str, str],
     tools: tuple[Tool, Tool],
     misalignment: float,
     models: MeshModels,
@@ -35,6 +41,8 @@ def gear_mesh(
         solids=flanks.gear_bodies(mesh, tables, planets),
         deviations=flanks.flank_deviations(mesh, tables, misalignment),
         models=models,
+        materials=(tables[0].material.solid, tables[1].material.solid),
+        nodes=nodes,
     )
 
 

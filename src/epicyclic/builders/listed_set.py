@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from epicyclic.builders.gears import gear_mesh
+from epicyclic.builders.gears import gear_mesh, node_key
 from epicyclic.builders.models import loss_choices, mesh_models
 from epicyclic.builders.planetary import planet_bearing
 from epicyclic.case import build
@@ -58,8 +58,8 @@ def listed_element(
     return GearSet(
         key=key,
         carrier=bodies[CARRIER] if planets else HOUSING,
-        meshes=tuple(_meshes(case, bodies, flow_tables)),
-        planets=tuple(_planets(case, bodies)),
+        meshes=tuple(_meshes(key, case, bodies, flow_tables)),
+        planets=tuple(_planets(key, case, bodies)),
         sharing=_sharing(case),
         discs=dict(_discs(case, bodies)),
         missing=missing,
@@ -69,7 +69,7 @@ def listed_element(
 
 
 def _meshes(
-    case: ListedCase, bodies: Mapping[str, str], flow_tables: FlowTables
+    key: str, case: ListedCase, bodies: Mapping[str, str], flow_tables: FlowTables
 ) -> Iterator[GearMesh]:
     shape, tables = case.shape, case.table.members
     models = mesh_models(case, flow_tables)
@@ -83,6 +83,7 @@ def _meshes(
             mesh,
             (tables[one], tables[two]),
             bodies=(bodies[shape.bodies[one]], bodies[shape.bodies[two]]),
+            nodes=(node_key(key, shape.bodies[one]), node_key(key, shape.bodies[two])),
             tools=(tools[one], tools[two]),
             misalignment=table.misalignment,
             models=models[drawn.key],
@@ -104,7 +105,7 @@ def _tools(case: ListedCase, meshes: list[Mesh]) -> dict[str, Tool]:
     }
 
 
-def _planets(case: ListedCase, bodies: Mapping[str, str]) -> Iterator[Planet]:
+def _planets(key: str, case: ListedCase, bodies: Mapping[str, str]) -> Iterator[Planet]:
     table, shape = case.table, case.shape
     pins = pins_of(table, shape)
     for body in shape.planets:
@@ -123,6 +124,7 @@ def _planets(case: ListedCase, bodies: Mapping[str, str]) -> Iterator[Planet]:
             bearing=planet_bearing(case, bearing),
             no_bearing=f"the case has no bearing of {body}",
             tilts=case.models.planet_tilt == "coupled",
+            nodes=(node_key(key, body), node_key(key, f"{body}_pin")),
         )
 
 

@@ -22,10 +22,9 @@ from epicyclic.losses.fitted import FittedFriction, FittedRolling
 from epicyclic.losses.friction import FrictionModel, FrictionSettings, friction_model
 from epicyclic.losses.friction.user import FrictionMap
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
-from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
+from epicyclic.losses.rolling import ROLLING_MODELS, MixedEhlRolling, RollingModel
 from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.table import FlowTables
-from epicyclic.thermal.flash import effusivity
 
 __all__ = [
     "SetCase",
@@ -97,6 +96,7 @@ def friction_settings(case: SetCase) -> FrictionSettings:
         boundary=case.models.boundary_friction,
         fluid=case.models.fluid_friction,
         table=None if table is None else FrictionMap(tuple(table.axes().items()), table.friction),
+        oil_held=case.models.oil_beyond_range == "held",
     )
 
 
@@ -114,8 +114,9 @@ def _direct_settings(case: SetCase) -> DirectSettings:
     solver = case.contact_solver
     carried = None
     if solver.heating != "isothermal":
-        density = float(np.mean([gear.material.density for gear in gear_tables(case)]))
-        carried = effusivity(solver.solid_conductivity, solver.solid_heat_capacity, density)
+        given = solver.solid_conductivity, solver.solid_heat_capacity
+        solids = [gear.material.solid_with(*given) for gear in gear_tables(case)]
+        carried = float(np.mean([solid.effusivity for solid in solids]))
     return DirectSettings(
         laws=oil_laws(solver),
         asperities=AsperityContact(solver.asperity_film, case.models.boundary_friction),
@@ -132,6 +133,8 @@ def rolling_of(case: SetCase) -> RollingModel:
     name = resolve_models(case)["rolling"]
     if name == FittedRolling.name:
         return fitted_rolling(case, "rolling_loss")
+    if name == MixedEhlRolling.name:
+        return MixedEhlRolling(case.models.oil_beyond_range == "held")
     return ROLLING_MODELS[name]
 
 

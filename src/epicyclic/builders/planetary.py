@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from epicyclic.builders.built import Built
-from epicyclic.builders.gears import gear_mesh
+from epicyclic.builders.gears import gear_mesh, node_key
 from epicyclic.builders.models import (
     bearing_model,
     fitted_rolling,
@@ -117,8 +117,8 @@ def planetary_element(
     return GearSet(
         key=key,
         carrier=carrier,
-        meshes=_meshes(case, bodies, flow_tables),
-        planets=(_planet(case, bodies["planet"]),),
+        meshes=_meshes(key, case, bodies, flow_tables),
+        planets=(_planet(key, case, bodies["planet"]),),
         sharing=_sharing(case),
         discs=_discs(case, bodies),
         missing=_missing(case),
@@ -139,7 +139,7 @@ def _levers(case: PlanetaryCase, member: str) -> dict[str, float]:
 
 
 def _meshes(
-    case: PlanetaryCase, bodies: Mapping[str, str], flow_tables: FlowTables
+    key: str, case: PlanetaryCase, bodies: Mapping[str, str], flow_tables: FlowTables
 ) -> tuple[GearMesh, GearMesh]:
     sun_mesh, ring_mesh = build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)
     sun, planet, ring = _tools(case, sun_mesh, ring_mesh)
@@ -150,6 +150,7 @@ def _meshes(
             sun_mesh,
             (case.sun, case.planet),
             bodies=(bodies["sun"], bodies["planet"]),
+            nodes=(node_key(key, "sun"), node_key(key, "planet")),
             tools=(sun, planet),
             misalignment=case.sun_mesh.misalignment,
             models=models["sun_mesh"],
@@ -159,6 +160,7 @@ def _meshes(
             ring_mesh,
             (case.planet, case.ring),
             bodies=(bodies["planet"], bodies["ring"]),
+            nodes=(node_key(key, "planet"), node_key(key, "ring")),
             tools=(planet, ring),
             misalignment=case.ring_mesh.misalignment,
             models=models["ring_mesh"],
@@ -177,7 +179,7 @@ def _tools(case: PlanetaryCase, sun_mesh: Mesh, ring_mesh: Mesh) -> tuple[Tool, 
     )
 
 
-def _planet(case: PlanetaryCase, body: str) -> Planet:
+def _planet(key: str, case: PlanetaryCase, body: str) -> Planet:
     return Planet(
         key="planet_bearing",
         body=body,
@@ -190,6 +192,7 @@ def _planet(case: PlanetaryCase, body: str) -> Planet:
         bearing=planet_bearing(case, case.planet_bearing),
         no_bearing="the case has no [planet_bearing]",
         tilts=case.models.planet_tilt == "coupled",
+        nodes=(node_key(key, "planet"), node_key(key, "pin")),
     )
 
 
@@ -221,6 +224,7 @@ def planet_bearing(
         model=model,
         palmgren_coefficient=palmgren_coefficient(table),
         viscous_factor=VISCOUS_FACTOR_PER_ROW * table.rows if factor is None else factor,
+        conductivity=table.material.thermal_conductivity,
     )
 
 

@@ -33,6 +33,7 @@ from epicyclic.case.operation_tables import (
 from epicyclic.case.part_tables import Carrier, PlanetBearing, ThrustBearing
 from epicyclic.case.plain import plain
 from epicyclic.case.reading import read_file
+from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.train import TrainCase
 from epicyclic.case.validation import tables_of
 from epicyclic.case.wording import one_line, written
@@ -68,6 +69,7 @@ class PlanetaryCase(CaseTable):
     thrust_bearing: ThrustBearing | None = None
     lubricant: Lubricant
     surroundings: Surroundings = Surroundings()
+    thermal: ThermalTable = ThermalTable()
     friction_table: FrictionTable | None = None
     models: PlanetaryModels = PlanetaryModels()
     contact_solver: ContactSolver = ContactSolver()
@@ -87,6 +89,7 @@ class GearPairCase(CaseTable):
     mesh: MeshTable = MeshTable()
     lubricant: Lubricant
     surroundings: Surroundings = Surroundings()
+    thermal: ThermalTable = ThermalTable()
     friction_table: FrictionTable | None = None
     models: GearPairModels = GearPairModels()
     contact_solver: ContactSolver = ContactSolver()

@@ -31,7 +31,6 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus, line_load_at_pressure
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity
 from epicyclic.lubricant.properties import OilState, oil_state
-from epicyclic.thermal.flash import effusivity
 from epicyclic.units import (
     Length,
     Number,
@@ -128,11 +127,11 @@ class ContactHeating(Table):
     """Heat of sliding."""
 
     model: HeatingModel = Field(default="isothermal", description=HEATING)
-    solid_conductivity: Conductivity = Field(
-        default=as_stated("46 W/(m*K)"), description="Of both solids."
+    solid_conductivity: Conductivity | None = Field(
+        default=None, description="Of both solids. Default: that of the material of each."
     )
-    solid_heat_capacity: HeatCapacity = Field(
-        default=as_stated("460 J/(kg*K)"), description="Of both solids."
+    solid_heat_capacity: HeatCapacity | None = Field(
+        default=None, description="Of both solids. Default: that of the material of each."
     )
 
 
@@ -303,12 +302,11 @@ def _heating(case: ContactCase) -> Heating | None:
     table = case.heating
     if table.model == "isothermal":
         return None
-    conductivity, capacity = table.solid_conductivity, table.solid_heat_capacity
-    return heating_of(
-        _oil_state(case),
-        effusivity(conductivity, capacity, case.surface1.material.density),
-        effusivity(conductivity, capacity, case.surface2.material.density),
+    solids = (
+        surface.material.solid_with(table.solid_conductivity, table.solid_heat_capacity)
+        for surface in (case.surface1, case.surface2)
     )
+    return heating_of(_oil_state(case), *(solid.effusivity for solid in solids))
 
 
 def _profile(table: Surface) -> Profile:

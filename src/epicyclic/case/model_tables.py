@@ -140,11 +140,11 @@ class ContactSolver(OilBehaviour):
     """How the contacts of a mesh are solved for friction = ehl-direct."""
 
     heating: HeatingModel = Field(default="isothermal", description=HEATING)
-    solid_conductivity: Conductivity = Field(
-        default=as_stated("46 W/(m*K)"), description="Of the gears, with heating."
+    solid_conductivity: Conductivity | None = Field(
+        default=None, description="With heating. Default: that of the material of each gear."
     )
-    solid_heat_capacity: HeatCapacity = Field(
-        default=as_stated("460 J/(kg*K)"), description="Of the gears, with heating."
+    solid_heat_capacity: HeatCapacity | None = Field(
+        default=None, description="With heating. Default: that of the material of each gear."
     )
     asperity_film: SmallLength = Field(
         default=as_stated("20 nm"), description="Film below which flanks touch (estimate)."
@@ -159,6 +159,9 @@ class ContactSolver(OilBehaviour):
     most_contacts: int = Field(
         default=48, ge=12, le=5000, description="Solved for one mesh at most."
     )
+
+
+TemperatureModel = Literal["inlet", "flank", "network"]
 
 
 class GearPairModels(Table):
@@ -177,6 +180,8 @@ class GearPairModels(Table):
         "pocketing_table": None,
         "pocket_end_length": None,
         "drag": None,
+        "temperatures": None,
+        "oil_beyond_range": None,
         "bearing_viscous": None,
         "planet_tilt": None,
     }
@@ -242,6 +247,16 @@ class GearPairModels(Table):
         description="Of the control volumes at the ends of the face, in normal modules.",
     )
     drag: Literal["seetharaman-kahraman"] = "seetharaman-kahraman"
+    temperatures: TemperatureModel = Field(
+        default="inlet",
+        description="inlet: everything at the oil inlet temperature; flank: gears warmed by their "
+        "own meshes; network: heat flows between all parts, the oil and the surroundings.",
+    )
+    oil_beyond_range: Literal["held", "extrapolated"] = Field(
+        default="held",
+        description="Viscosity and pressure-viscosity outside the range of the mixed-EHL "
+        "regressions: held at its limit, or the formula continued.",
+    )
 
 
 class PlanetaryModels(GearPairModels):

@@ -17,7 +17,8 @@ from pydantic_core import CoreSchema, PydanticCustomError
 from epicyclic import library
 from epicyclic.case.fields import Named
 from epicyclic.case.nearest import did_you_mean
-from epicyclic.lubricant.oil import Oil
+from epicyclic.lubricant.oil import Conductivity, HeatCapacity, Oil
+from epicyclic.thermal.solids import Solid
 from epicyclic.units import Density, Modulus, Number, Quantity, as_stated
 
 
@@ -81,13 +82,28 @@ ShortLength = Annotated[float, Quantity("a length", "m", "mm", low=0.0, high=1e5
 
 
 class Material(Table):
-    """Elastic constants of a solid."""
+    """Elastic and thermal constants of a solid."""
 
     title: str = "material of the case"
     elastic_modulus: Modulus
     poisson_ratio: Number = Field(default=0.3, ge=0.0, le=0.5)
     density: Density = Field(default=as_stated("7850 kg/m^3"))
+    thermal_conductivity: Conductivity = Field(default=as_stated("46 W/(m*K)"))
+    heat_capacity: HeatCapacity = Field(default=as_stated("460 J/(kg*K)"))
     source: str = ""
+
+    @property
+    def solid(self) -> Solid:
+        """What heat sees of it."""
+        return self.solid_with(None, None)
+
+    def solid_with(self, conductivity: float | None, heat_capacity: float | None) -> Solid:
+        """The same with other constants where they are given."""
+        return Solid(
+            self.thermal_conductivity if conductivity is None else conductivity,
+            self.heat_capacity if heat_capacity is None else heat_capacity,
+            self.density,
+        )
 
 
 @cache

@@ -137,3 +137,6 @@ class ThermalTable(Table):
     housing: HousingTable | None = Field(
         default=None, description="Default: no heat leaves through it."
     )
+
+    def __hash__(self) -> int:  # the tables of names cannot be hashed
+        return hash((self.lubrication, self.oil_flow, self.ambient_temperature, self.housing))

@@ -26,6 +26,7 @@ from epicyclic.case.model_tables import (
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.operation_tables import Lubricant, Surroundings
 from epicyclic.case.schema import Table
+from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.train_bearings import bearing_force_problems
 from epicyclic.case.train_checks import operation_problems
 from epicyclic.case.train_shape import SetShape, TrainShape, shape_of_set, shape_of_train
@@ -67,6 +68,7 @@ class _TrainTables(CaseTable):
     positions: dict[str, Position] = Field(default={})
     lubricant: Lubricant | None = None
     surroundings: Surroundings = Surroundings()
+    thermal: ThermalTable = ThermalTable()
     friction_table: FrictionTable | None = None
     models: PlanetaryModels = PlanetaryModels()
     contact_solver: ContactSolver = ContactSolver()

@@ -81,8 +81,8 @@ class Loss:
         Key of the mesh whose power the loss is a share of; empty for friction between two bodies.
     factor : float
         The user's factor, which `watts` contain. [1]
-    node : str
-        Where the heat arises.
+    heat : tuple of (str, float)
+        The thermal nodes that it heats, each with its share. [1]
     """
 
     group: str
@@ -93,7 +93,7 @@ class Loss:
     between: tuple[str, str] = (HOUSING, HOUSING)
     mesh: str = ""
     factor: float = 1.0
-    node: str = OIL
+    heat: tuple[tuple[str, float], ...] = ((OIL, 1.0),)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,8 +15,10 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.units import (
     BAR,
+    CELSIUS,
     DEGREE,
     GIGAPASCAL,
+    KELVIN,
     KILOGRAM_PER_CUBIC_METRE,
     METRE_PER_SECOND,
     MICROMETRE,
@@ -30,6 +32,7 @@ from epicyclic.units import (
     PER_GIGAPASCAL,
     RPM,
     SQUARE_MM_PER_SECOND,
+    WATT_PER_KELVIN,
     Quantity,
 )
 
@@ -117,6 +120,9 @@ class MeshFigures:
     pocket_interpolation_error: float = figure(
         "pocketing loss: largest error of its interpolation", NUMBER
     )
+    contact_temperature: float = figure("oil where it enters the contacts", CELSIUS)
+    flash_temperature_mean: float = figure("flash temperature, mean over the load", KELVIN)
+    flash_temperature_max: float = figure("flash temperature, largest", KELVIN)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,6 +137,8 @@ class BearingFigures:
     roller_load_max: float = figure("most loaded roller", NEWTON)
     roller_azimuth: float = figure("azimuth of that roller from the load", DEGREE)
     hertz_pressure_max: float = figure("largest Hertz pressure, inner race", GIGAPASCAL)
+    contact_temperature: float = figure("oil where it enters the contacts", CELSIUS)
+    heat_conductance: float = figure("heat from race to race through the rollers", WATT_PER_KELVIN)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

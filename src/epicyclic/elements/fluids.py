@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 from epicyclic.elements.figures import FluidFigures
 from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
@@ -39,12 +40,19 @@ class Fluids:
     pressure : float
         Ambient. [Pa]
     flags : tuple of ValidityFlag
+    contacts : mapping of str to OilState
+        Oil at the contacts whose temperature differs, by the keys of meshes and bearings.
     """
 
     oil: OilState
     mixture: MixtureState
     pressure: float
     flags: tuple[ValidityFlag, ...]
+    contacts: Mapping[str, OilState] = field(default_factory=dict[str, OilState], hash=False)
+
+    def at(self, contact: str) -> OilState:
+        """The oil at a contact, at the temperature of its surfaces."""
+        return self.contacts.get(contact, self.oil)
 
     @property
     def figures(self) -> FluidFigures:

@@ -30,10 +30,12 @@ from epicyclic.losses.direct import EhlDirect
 from epicyclic.losses.friction import FrictionModel
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS, LineLoads, MeshLoad
 from epicyclic.losses.mesh import MeshLoss, local_loss, loss_factor_loss, ohlendorf_loss_factor
+from epicyclic.losses.mesh_warmth import MeshWarmth, mesh_warmth
 from epicyclic.losses.rolling import RollingModel
 from epicyclic.losses.validity import ValidityFlag
 from epicyclic.lubricant.properties import OilState
 from epicyclic.pocketing.similarity import FlowFigures
+from epicyclic.thermal.solids import Solid
 
 __all__ = [
     "GearMesh",
@@ -102,6 +104,10 @@ class GearMesh:
     deviations : FlankDeviations
         Micro-geometry of both flanks, and misalignment.
     models : MeshModels
+    materials : tuple of Solid
+        Of both gears.
+    nodes : tuple of str
+        The thermal nodes of both gears.
     """
 
     key: str
@@ -113,6 +119,8 @@ class GearMesh:
     solids: tuple[GearBody, GearBody]
     deviations: FlankDeviations
     models: MeshModels
+    materials: tuple[Solid, Solid]
+    nodes: tuple[str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,15 +210,27 @@ def elastic_loads(duty: MeshDuty) -> LoadedMesh:
     )
 
 
-def load_mesh(duty: MeshDuty, oil: OilState) -> MeshContact | None:
+def load_mesh(duty: MeshDuty, oil: OilState, around: OilState | None = None) -> MeshContact | None:
     """Conditions along the contact lines; None without load or motion."""
     if duty.torque1 == 0 or duty.speed1 == 0:
         return None
-    return contact_under(duty, distribute_load(duty), oil)
+    return contact_under(duty, distribute_load(duty), oil, around)
 
 
-def contact_under(duty: MeshDuty, loads: LineLoads, oil: OilState) -> MeshContact:
-    """Conditions along the contact lines under `loads`, at standstill too."""
+def contact_under(
+    duty: MeshDuty, loads: LineLoads, oil: OilState, around: OilState | None = None
+) -> MeshContact:
+    """Conditions along the contact lines under `loads`, at standstill too.
+
+    Parameters
+    ----------
+    duty : MeshDuty
+    loads : LineLoads
+    oil : OilState
+        At the temperature of the flanks.
+    around : OilState, optional
+        Around the gears, if that differs.
+    """
     return mesh_contact(
         duty.mesh,
         loads.lines,
@@ -219,37 +239,55 @@ def contact_under(duty: MeshDuty, loads: LineLoads, oil: OilState) -> MeshContac
         speed1=abs(duty.speed1),
         oil=oil,
         flanks=duty.gears.flanks,
+        around=around,
     )
 
 
-def solve_mesh(duty: MeshDuty, fluids: Fluids, flow: MeshFlow, count: int) -> MeshOutcome:
-    """Losses and figures of one mesh, `count` of which work in parallel."""
+def solve_mesh(
+    duty: MeshDuty, fluids: Fluids, flow: MeshFlow, count: int, oil: OilState
+) -> MeshOutcome:
+    """Losses and figures of one mesh of `count` in parallel, with `oil` on its flanks."""
     friction, rolling = duty.models.friction, duty.models.rolling
     loads = distribute_load(duty) if duty.torque1 != 0 and duty.speed1 != 0 else None
-    contact = None if loads is None else contact_under(duty, loads, fluids.oil)
+    contact = None if loads is None else contact_under(duty, loads, oil, fluids.oil)
     if contact is None:
         loss = MeshLoss(0.0, 0.0, math.nan)
     elif duty.models.by_loss_factor:
         loss = loss_factor_loss(contact, friction)
     else:
         loss = local_loss(contact, friction, rolling)
+    warmth = None if contact is None else mesh_warmth(contact, loss.friction, duty.gears.materials)
     method, source = friction.title, friction.source
-    rolling_loss = Loss(LOAD_DEPENDENT, count * loss.rolling, rolling.title, rolling.source)
+    halves = _heat(duty.gears.nodes, 0.5)
+    rolling_loss = Loss(
+        LOAD_DEPENDENT, count * loss.rolling, rolling.title, rolling.source, heat=halves
+    )
     if duty.models.by_loss_factor:
         method, source = f"{method} times the loss factor", f"{source}; {OHLENDORF_SOURCE}"
         rolling_loss = Loss(LOAD_DEPENDENT, left_out="the loss-factor method has no rolling loss")
     losses = {
-        f"{duty.key}_sliding": Loss(LOAD_DEPENDENT, count * loss.sliding, method, source),
+        f"{duty.key}_sliding": Loss(
+            LOAD_DEPENDENT,
+            count * loss.sliding,
+            method,
+            source,
+            heat=halves if warmth is None else _heat(duty.gears.nodes, warmth.share1),
+        ),
         f"{duty.key}_rolling": rolling_loss,
         f"{duty.key}_pocketing": _pocketing(duty.models.pockets, flow, count),
     }
     elastic = None if loads is None else loads.elastic
-    figures = _mesh_figures(duty, contact, loss.mean_friction, elastic, flow.figures)
+    figures = _mesh_figures(duty, contact, loss.mean_friction, elastic, flow.figures, warmth)
     notes = pocket_notes(duty.mesh, flow.figures, fluids.pressure)
     notes += stored_note(duty.models.pockets, duty.mesh, flow.figures)
     if contact is not None and isinstance(friction, EhlDirect):
         notes += friction.remarks(contact)
     return MeshOutcome(losses, figures, loss.flags, notes)
+
+
+def _heat(nodes: tuple[str, str], share1: float) -> tuple[tuple[str, float], ...]:
+    """Both gears with their shares of a heat."""
+    return ((nodes[0], share1), (nodes[1], 1 - share1))
 
 
 def _pocketing(settings: PocketSettings, flow: MeshFlow, count: int) -> Loss:
@@ -275,6 +313,7 @@ def _mesh_figures(
     friction_mean: float,
     elastic: LoadedMesh | None,
     flow: FlowFigures | None,
+    warmth: MeshWarmth | None,
 ) -> MeshFigures:
     mesh = duty.mesh
     speed1 = abs(duty.speed1)
@@ -310,5 +349,8 @@ def _mesh_figures(
         pocket_speed_max=math.nan if flow is None else flow.speed_max,
         pocket_power_difference=math.nan if flow is None else flow.difference,
         pocket_interpolation_error=math.nan if flow is None else flow.error,
+        contact_temperature=math.nan if contact is None else contact.oil.temperature,
+        flash_temperature_mean=math.nan if warmth is None else warmth.flash_mean,
+        flash_temperature_max=math.nan if warmth is None else warmth.flash_max,
         contact=contact,
     )

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from epicyclic.elements.base import HOUSING, LOAD_INDEPENDENT, ElementResult, Loss, State
+from epicyclic.elements.base import HOUSING, LOAD_INDEPENDENT, OIL, ElementResult, Loss, State
 from epicyclic.elements.disc import Disc, ThrustBearing, disc_loss, thrust_loss
 from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_mesh import GearMesh, MeshDuty, solve_mesh
@@ -90,6 +90,8 @@ class Planet:
         Why there is none.
     tilts : bool
         True if the planet tilts in its bearing and misaligns its meshes.
+    nodes : tuple of str
+        The thermal nodes of the planets and of their pins.
     """
 
     key: str
@@ -100,6 +102,7 @@ class Planet:
     bearing: PlanetBearing | None = None
     no_bearing: str = ""
     tilts: bool = False
+    nodes: tuple[str, str] = (OIL, OIL)
 
     def load(
         self, duties: Mapping[str, MeshDuty], carrier_speed: float
@@ -338,17 +341,29 @@ class GearSet:
                 speed = state.speeds[planet.body] - carrier
                 bearings.append(
                     solve_bearing(
-                        planet.key, planet.bearing, load, planets, state.fluids.oil, speed
+                        planet.key,
+                        planet.bearing,
+                        load,
+                        planets,
+                        state.fluids.at(f"{self.key}.{planet.key}"),
+                        speed,
                     )
                 )
         meshes = [
-            solve_mesh(duty, state.fluids, flows[duty.key], planets) for duty in duties.values()
+            solve_mesh(
+                duty,
+                state.fluids,
+                flows[duty.key],
+                planets,
+                state.fluids.at(f"{self.key}.{duty.key}"),
+            )
+            for duty in duties.values()
         ]
         branch = _Branch({}, {}, (), tuple(note for mesh in meshes for note in mesh.notes))
         losses, figures, flags = branch.losses, branch.figures, branch.flags
         for planet, bearing in zip(self.planets, bearings, strict=True):
             losses |= {
-                name: self._inside(replace(loss, between=(planet.body, self.carrier)))
+                name: self._inside(_in_bearing(loss, planet, self.carrier))
                 for name, loss in bearing.losses.items()
             }
             flags += bearing.flags
@@ -404,9 +419,33 @@ def _summed(branches: Sequence[_Branch]) -> dict[str, Loss]:
     if len(branches) == 1:
         return branches[0].losses
     return {
-        name: replace(loss, watts=sum(branch.losses[name].watts for branch in branches))
+        name: replace(
+            loss,
+            watts=sum(branch.losses[name].watts for branch in branches),
+            heat=_mean_heat([branch.losses[name] for branch in branches]),
+        )
         for name, loss in branches[0].losses.items()
     }
+
+
+def _in_bearing(loss: Loss, planet: Planet, carrier: str) -> Loss:
+    """A loss of a planet bearing where it acts; that of the rollers heats planet and pin alike."""
+    placed = replace(loss, between=(planet.body, carrier))
+    if loss.group == LOAD_INDEPENDENT:
+        return placed
+    return replace(placed, heat=tuple((node, 0.5) for node in planet.nodes))
+
+
+def _mean_heat(losses: Sequence[Loss]) -> tuple[tuple[str, float], ...]:
+    """Shares of the heat of the same loss of all planets together."""
+    total = sum(loss.watts for loss in losses)
+    if not total:
+        return losses[0].heat
+    shares = dict.fromkeys((node for node, _ in losses[0].heat), 0.0)
+    for loss in losses:
+        for node, share in loss.heat:
+            shares[node] += share * loss.watts / total
+    return tuple(shares.items())
 
 
 def _widest(branches: Sequence[_Branch]) -> tuple[ValidityFlag, ...]:

@@ -102,10 +102,7 @@ def _gear_to_oil(
     one: _OneGear, speed: float, planet: Planet | None, wetting: Wetting
 ) -> Iterator[Link]:
     gear = one.gear
-    share = wetting.jet_shares.get(one.node, 0.0)
-    if share and wetting.jet:
-        key = f"{one.node}-oil jet"
-        yield Link(key, one.node, INLET, share * wetting.jet, JET, ESTIMATE, OIL)
+    yield from _jet(one.node, wetting)
     inner = 0.0
     if planet is not None and planet.bearing is not None:
         inner = planet.bearing.bearing.outer_diameter / 2
@@ -121,6 +118,13 @@ def _gear_to_oil(
         coefficient = disc_coefficient(wetting.around, speed, outer, inner)
         conductance, how = coefficient * faces, (FACES, DISC_SOURCE)
     yield Link(f"{one.node}-oil", one.node, OIL, one.count * conductance, *how)
+
+
+def _jet(node: str, wetting: Wetting) -> Iterator[Link]:
+    """Oil that comes from the inlet and takes heat of a part along."""
+    share = wetting.jet_shares.get(node, 0.0)
+    if share and wetting.jet:
+        yield Link(f"{node}-oil jet", node, INLET, share * wetting.jet, JET, ESTIMATE, OIL)
 
 
 def _ring_to_housing(own: GearSet, one: _OneGear, wetting: Wetting) -> Iterator[Link]:
@@ -145,6 +149,7 @@ def _planet_to_carrier(
     yield Link(f"{node}-{pin}", node, pin, rollers, ROLLERS, HERE)
     seat = math.pi * SEAT_LENGTH * planet.bearing.bearing.inner_diameter**2
     carrier = carrier_node(own)
+    yield from _jet(pin, wetting)
     pins = own.count * wetting.press_fit * seat
     yield Link(f"{pin}-{carrier}", pin, carrier, pins, SEAT, ESTIMATE)
 
@@ -179,7 +184,4 @@ def bearing_links(own: ShaftBearing, wetting: Wetting) -> Iterator[Link]:
     if HOUSING in own.between:
         seat = wetting.press_fit * math.pi * bearing.outside_diameter * width
         yield Link(f"{own.key}-housing", own.key, HOUSING, seat, SEAT, ESTIMATE)
-    share = wetting.jet_shares.get(own.key, 0.0)
-    if share and wetting.jet:
-        key = f"{own.key}-oil jet"
-        yield Link(key, own.key, INLET, share * wetting.jet, JET, ESTIMATE, OIL)
+    yield from _jet(own.key, wetting)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from epicyclic.elements.base import LOAD_INDEPENDENT, OIL, ElementResult, Loss, State
+from epicyclic.elements.base import LOAD_INDEPENDENT, ElementResult, Loss, State
 from epicyclic.elements.figures import figure
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.validity import ModelUse
@@ -36,14 +36,11 @@ class TableLoss:
         The two bodies, one of which may be `HOUSING`.
     table : LossTable
         Over speed and temperature.
-    node : str
-        Where its heat arises.
     """
 
     key: str
     between: tuple[str, str]
     table: LossTable
-    node: str = OIL
 
     terms: ClassVar = ("drag",)
     figure_types: ClassVar = (("drag", TableLossFigures),)
@@ -66,7 +63,6 @@ class TableLoss:
             "loss table",
             self.table.source,
             between=self.between,
-            node=self.node,
         )
         figures = TableLossFigures(
             speed=abs(speed), friction_torque=watts / abs(speed) if speed != 0 else math.nan

@@ -10,7 +10,7 @@ import numpy as np
 from epicyclic.elements.base import LOAD_DEPENDENT, LOAD_INDEPENDENT, Loss
 from epicyclic.elements.figures import BearingFigures
 from epicyclic.elements.planet_load import PlanetLoad
-from epicyclic.kernels.line_contact import hertz_pressure
+from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
 from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.planet_bearing import (
     BearingLoss,
@@ -30,6 +30,7 @@ from epicyclic.losses.viscous import (
     viscous_flags,
 )
 from epicyclic.lubricant.properties import OilState
+from epicyclic.thermal.convection import roller_conductance
 
 __all__ = ["BearingOutcome", "PlanetBearing", "missing_bearing", "solve_bearing"]
 
@@ -52,12 +53,15 @@ class PlanetBearing:
         f1. [1]
     viscous_factor : float
         f0 of the whole bearing. [1]
+    conductivity : float
+        Thermal, of races and rollers. [W/(m K)]
     """
 
     bearing: RollerBearing
     model: str | FittedRolling
     palmgren_coefficient: float
     viscous_factor: float
+    conductivity: float
 
     @property
     def method(self) -> tuple[str, str]:
@@ -124,14 +128,15 @@ def solve_bearing(
                 LOAD_INDEPENDENT, count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE
             ),
         },
-        _bearing_figures(bearing, loads, load, speed),
+        _bearing_figures(own, loads, load, speed, oil),
         loss.flags + viscous_flags(key.replace("_", " "), speed, bearing.pitch_diameter),
     )
 
 
 def _bearing_figures(
-    bearing: RollerBearing, loads: RollerLoads, load: PlanetLoad, speed: float
+    own: PlanetBearing, loads: RollerLoads, load: PlanetLoad, speed: float, oil: OilState
 ) -> BearingFigures:
+    bearing = own.bearing
     rollers = loads.intensity.sum(axis=2) * bearing.slice_width
     row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
     pressure = hertz_pressure(
@@ -145,5 +150,29 @@ def _bearing_figures(
         roller_load_max=float(rollers[row, most]),
         roller_azimuth=math.remainder(float(loads.azimuth[most]), 2 * math.pi),
         hertz_pressure_max=pressure,
+        contact_temperature=oil.temperature,
+        heat_conductance=_heat_conductance(own, loads),
         loads=loads,
+    )
+
+
+def _heat_conductance(own: PlanetBearing, loads: RollerLoads) -> float:
+    """Heat from race to race through the loaded rollers. [W/K]"""
+    bearing = own.bearing
+    inner, outer = (
+        hertz_half_width(
+            loads.intensity,
+            np.full_like(loads.intensity, radius),
+            bearing.equivalent_modulus,
+        )
+        for radius in (bearing.inner_radius, bearing.outer_radius)
+    )
+    return roller_conductance(
+        inner,
+        outer,
+        bearing.slice_width,
+        bearing.roller_diameter,
+        math.pi * bearing.inner_diameter / bearing.rollers_per_row,
+        math.pi * bearing.outer_diameter / bearing.rollers_per_row,
+        own.conductivity,
     )

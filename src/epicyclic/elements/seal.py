@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Literal, get_args
 
-from epicyclic.elements.base import LOAD_INDEPENDENT, OIL, ElementResult, Loss, State
+from epicyclic.elements.base import LOAD_INDEPENDENT, ElementResult, Loss, State
 from epicyclic.elements.figures import figure
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
@@ -176,8 +176,6 @@ class Seal:
         A formula of `seal_loss`, or a table of the user.
     viscosity_40 : float
         Kinematic viscosity of the oil at 40 degC. [m^2/s]
-    node : str
-        Where its heat arises.
     """
 
     key: str
@@ -185,7 +183,6 @@ class Seal:
     diameter: float
     model: SealFormula | LossTable
     viscosity_40: float
-    node: str = OIL
 
     terms: ClassVar = ("friction",)
     figure_types: ClassVar = (("seal", SealFigures),)
@@ -212,7 +209,7 @@ class Seal:
             watts = seal_loss(self.model, *at)
             method, source = SEAL_METHODS[self.model], SEAL_SOURCES[self.model]
             flags = seal_flags(self.model, self.key, *at)
-        loss = Loss(LOAD_INDEPENDENT, watts, method, source, between=self.between, node=self.node)
+        loss = Loss(LOAD_INDEPENDENT, watts, method, source, between=self.between)
         return ElementResult(
             losses={"friction": loss},
             figures={"seal": self._figures(watts, speed, temperature)},

@@ -10,7 +10,6 @@ from typing import ClassVar
 from epicyclic.elements.base import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
-    OIL,
     ElementResult,
     Loss,
     State,
@@ -61,8 +60,6 @@ class ShaftBearing:
         k_r of SKF; None for the default of the type. [1]
     reference_speed : float or None
         Of a cylindrical roller bearing, for its minimum load. [rad/s]
-    node : str
-        Where its heat arises.
     """
 
     key: str
@@ -72,7 +69,6 @@ class ShaftBearing:
     force: BearingLoad | None = None
     minimum_load_factor: float | None = None
     reference_speed: float | None = None
-    node: str = OIL
 
     figure_types: ClassVar = (("bearing", ShaftBearingFigures),)
 
@@ -95,7 +91,7 @@ class ShaftBearing:
         """Losses, figures and flags in a state."""
         load = state.forces[self.key] if self.force is None else self.force
         speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]
-        oil = state.fluids.oil
+        oil = state.fluids.at(self.key)
         parts = self.model.parts(self.bearing, load, speed, oil)
         least = minimum_load(
             self.bearing,
@@ -122,7 +118,7 @@ class ShaftBearing:
                     part.method,
                     part.source,
                     between=self.between,
-                    node=self.node,
+                    heat=((self.key, 1.0),),
                 )
                 for part in parts
             },

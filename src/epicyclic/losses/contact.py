@@ -7,8 +7,9 @@ of the helicoid, rho_n = rho_t/cos(beta_b).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,9 @@ from epicyclic.contact import Flanks, LineContacts
 from epicyclic.geometry.contact_lines import ContactLines
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.lubricant.properties import OilState
+
+if TYPE_CHECKING:
+    from epicyclic.losses.friction.base import FrictionModel
 
 __all__ = ["MeshContact", "mesh_contact"]
 
@@ -44,6 +48,8 @@ class MeshContact(LineContacts):
         over the mesh period. [m]
     path : ndarray
         Position on the path of contact from the pitch point, towards the tip of member 1. [m]
+    around : OilState or None
+        Oil around the gears, where its temperature is not that of the flanks.
     """
 
     flanks: Flanks[float]
@@ -54,6 +60,13 @@ class MeshContact(LineContacts):
     speed2: float
     weight: FloatArray
     path: FloatArray
+    around: OilState | None = None
+
+    def seen_by(self, model: FrictionModel) -> MeshContact:
+        """The contact with the oil at the temperature that a friction model was made for."""
+        if self.around is None or not model.takes_oil_temperature:
+            return self
+        return replace(self, oil=self.around)
 
     @cached_property
     def pitch_line_speed(self) -> float:
@@ -75,6 +88,7 @@ def mesh_contact(
     speed1: float,
     oil: OilState,
     flanks: Flanks[float],
+    around: OilState | None = None,
 ) -> MeshContact:
     """Conditions at the loaded segments of `lines`.
 
@@ -92,6 +106,8 @@ def mesh_contact(
         Angular speed of member 1 relative to the carrier, positive. [rad/s]
     oil, flanks
         Oil at the contacts, and the surfaces.
+    around : OilState, optional
+        Oil around the gears, if its temperature differs.
     """
     loaded = (lines.length > 0) & (line_load > 0)
     speed2 = speed1 / mesh.ratio
@@ -110,4 +126,5 @@ def mesh_contact(
         radius=mesh.equivalent_radius(rho1),
         rolling_speed=(u1 + u2) / 2,
         sliding_speed=u1 - u2,
+        around=around,
     )

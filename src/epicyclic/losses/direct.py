@@ -126,6 +126,7 @@ class EhlDirect:
     title: ClassVar = "line contacts of the mesh, solved"
     source: ClassVar = "solver for line contacts of this package"
     made_for: ClassVar[RegressionFluid | None] = None
+    takes_oil_temperature: ClassVar[bool] = False
     ranges: ClassVar[tuple[Range, ...]] = (
         solver_range("radius", "equivalent radius", MILLIMETRE),
         solver_range("hertz_pressure", "Hertz pressure", GIGAPASCAL),

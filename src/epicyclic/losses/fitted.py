@@ -51,6 +51,7 @@ class FittedFriction:
     name: ClassVar = "fitted"
     title: ClassVar = "fit to simulated contacts of the oil"
     made_for: ClassVar[RegressionFluid | None] = None
+    takes_oil_temperature: ClassVar[bool] = False
     QUANTITY: ClassVar = "friction"
 
     model: OilModel

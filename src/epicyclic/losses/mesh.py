@@ -10,7 +10,7 @@ Quick method: mean friction times the loss factor of Ohlendorf, no rolling loss.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -37,12 +37,15 @@ class MeshLoss:
         [W]
     mean_friction : float
         Coefficient of friction, weighted with the sliding power of the load. [1]
+    friction : ndarray, shape (n,)
+        Coefficient of friction at every point. [1]
     flags : tuple of ValidityFlag
     """
 
     sliding: float
     rolling: float
     mean_friction: float
+    friction: FloatArray = field(default_factory=lambda: np.zeros(0))
     flags: tuple[ValidityFlag, ...] = ()
 
 
@@ -52,14 +55,17 @@ def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingMo
     Theory (M1), (M2), (M3).
     """
     sliding_power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
-    local_sliding = friction.coefficient(contact) * sliding_power
+    own = contact.seen_by(friction)
+    coefficient = friction.coefficient(own)
+    local_sliding = coefficient * sliding_power
     local_rolling = rolling.loss_density(contact) * contact.weight
     sliding = float(local_sliding.sum())
     return MeshLoss(
         sliding=sliding,
         rolling=float(local_rolling.sum()),
         mean_friction=sliding / float(sliding_power.sum()),
-        flags=_flags("friction", friction, contact, local_sliding)
+        friction=coefficient,
+        flags=_flags("friction", friction, own, local_sliding)
         + _flags("rolling", rolling, contact, local_rolling),
     )
 
@@ -72,13 +78,16 @@ def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
     A local friction model enters with its mean over the sliding power.
     """
     sliding_power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
-    local_sliding = friction.coefficient(contact) * sliding_power
+    own = contact.seen_by(friction)
+    coefficient = friction.coefficient(own)
+    local_sliding = coefficient * sliding_power
     mean = float(local_sliding.sum() / sliding_power.sum())
     return MeshLoss(
         sliding=contact.input_power * mean * ohlendorf_loss_factor(contact.mesh),
         rolling=0.0,
         mean_friction=mean,
-        flags=_flags("friction", friction, contact, local_sliding),
+        friction=coefficient,
+        flags=_flags("friction", friction, own, local_sliding),
     )
 
 

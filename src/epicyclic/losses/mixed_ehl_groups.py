@@ -93,9 +93,17 @@ _HELD = {
 }
 
 
-def held_in_table(contact: LineContacts) -> LineContacts:
-    """The contacts with their conditions held in Table 5.1, but for the slip. Theory (F5)."""
-    return contact.held(_HELD)
+_OIL = (VISCOSITY_RANGE.name, PRESSURE_VISCOSITY_RANGE.name)
+
+
+def held_in_table(contact: LineContacts, *, oil_held: bool = True) -> LineContacts:
+    """The contacts with their conditions held in Table 5.1, but for the slip. Theory (F5).
+
+    Without `oil_held` viscosity and pressure-viscosity stay as they are: the formula goes on.
+    """
+    if oil_held:
+        return contact.held(_HELD)
+    return contact.held({name: limits for name, limits in _HELD.items() if name not in _OIL})
 
 
 def beyond_data(contact: LineContacts, held: LineContacts) -> FloatArray:

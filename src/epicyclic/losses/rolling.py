@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
 import numpy as np
@@ -42,13 +43,21 @@ class RollingModel(Protocol):
         ...
 
 
+@dataclass(frozen=True, slots=True)
 class MixedEhlRolling:
     """Regression of 33,600 mixed-EHL simulations of an automatic transmission fluid.
 
     Theory (R5).
 
     Talbot (2012), Eq. 5.10 and Table 5.2(b), in the scale of `rolling_scale`.
+
+    Attributes
+    ----------
+    oil_held : bool
+        False to continue the formula beyond its oil.
     """
+
+    oil_held: bool = True
 
     name: ClassVar = "mixed-ehl"
     title: ClassVar = "mixed-EHL rolling-loss regression"
@@ -58,7 +67,7 @@ class MixedEhlRolling:
 
     def loss_density(self, contact: MeshContact) -> FloatArray:
         """See the class. [W/m]"""
-        held = held_in_table(contact)
+        held = held_in_table(contact, oil_held=self.oil_held)
         number = rolling_loss_number_at(*regression_groups(held))
         density: FloatArray = number * rolling_scale(held) * beyond_data(contact, held)
         return density

@@ -99,7 +99,7 @@ def _sides(machine: Machine) -> dict[str, list[_Side]]:
 
 
 def _rise_of_flash(sides: list[_Side], solution: Solution, lubrication_factor: float) -> float:
-    """ISO/TS 6336-20 with the mean flash temperature of the loaded meshes of a gear. Theory (W7)."""
+    """ISO/TS 6336-20 with the mean flash temperature of its loaded meshes. Theory (W7)."""
     loaded = [(side, flash) for side, flash in _flashes(sides, solution) if not math.isnan(flash)]
     if not loaded:
         return 0.0

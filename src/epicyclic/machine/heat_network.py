@@ -238,6 +238,7 @@ class NetworkModel:
             temperatures=found,
             links=network.links,
             flows=network.flows(found),
+            given=network.given,
             residual=left / whole if whole else 0.0,
         )
 
@@ -262,7 +263,6 @@ class NetworkModel:
             Of all losses, less the power of a cooler. [W]
         """
         own = self.settings
-        given = {INLET: own.inlet, AMBIENT: own.ambient, COOLANT: own.coolant}
         oil, mixture = self.media_at(at[OIL])
         carried = self._carried(oil, heat)
         wetting = Wetting(
@@ -281,10 +281,16 @@ class NetworkModel:
                 *(() if own.housing is None else own.housing.links(found[HOUSING], own.ambient)),
             )
         ]
+        given = {INLET: own.inlet, AMBIENT: own.ambient, COOLANT: own.coolant}
+        met = {node for link in links for node in (link.hot, link.cold, link.target)}
         unknown = set(own.changes) - {link.key for link in links}
         if unknown:
             raise _no_such_links(unknown, [link.key for link in links])
-        return Network(self.nodes, given, tuple(links))
+        return Network(
+            self.nodes,
+            {node: value for node, value in given.items() if node in met},
+            tuple(links),
+        )
 
     def _carried(self, oil: Fluid, heat: float) -> float:
         """Heat capacity of the flow of oil. [W/K]"""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -17,7 +17,7 @@ from epicyclic.machine.solve import Solution, solve_machine
 from epicyclic.thermal.network import Link
 from epicyclic.units import CELSIUS
 
-__all__ = ["Answer", "Settled", "ThermalModel", "heat_of", "settle"]
+__all__ = ["Answer", "Settled", "ThermalModel", "heat_of", "isothermal", "settle"]
 
 FloatArray = NDArray[np.float64]
 
@@ -40,6 +40,8 @@ class Answer:
         Ways of the heat; empty where temperatures follow from formulas.
     flows : mapping of str to float
         Heat through every link. [W]
+    given : mapping of str to float
+        Temperatures of nodes that are given. [K]
     residual : float
         Largest heat of a node that does not leave it, over all heat. [1]
     """
@@ -47,6 +49,7 @@ class Answer:
     temperatures: Mapping[str, float]
     links: tuple[Link, ...] = ()
     flows: Mapping[str, float] | None = None
+    given: Mapping[str, float] = field(default_factory=dict[str, float])
     residual: float = 0.0
 
 
@@ -79,6 +82,11 @@ class Settled:
     solution: Solution
     answer: Answer
     evaluations: int
+
+
+def isothermal(solution: Solution) -> Settled:
+    """A solution at temperatures that nothing was asked about."""
+    return Settled(solution, Answer({}), 1)
 
 
 def heat_of(solution: Solution) -> dict[str, float]:
@@ -120,9 +128,7 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
 
     start = np.array([model.start[node] for node in nodes])
     try:
-        broyden1(
-            change, start, alpha=1.0, f_tol=AGREEMENT, maxiter=MOST_PASSES, line_search=None
-        )
+        broyden1(change, start, alpha=1.0, f_tol=AGREEMENT, maxiter=MOST_PASSES, line_search=None)
     except NoConvergence:
         raise _runaway(found[-1][1].temperatures, found) from None
     solution, answer = found[-1]

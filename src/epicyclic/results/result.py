@@ -22,8 +22,9 @@ from epicyclic.elements.figures import (
     figures,
 )
 from epicyclic.losses.validity import ValidityFlag, describe_flags
+from epicyclic.results.heat import HeatBalance
 from epicyclic.status import Status
-from epicyclic.units import DEGREE, NEWTON_METRE, RPM, WATT
+from epicyclic.units import CELSIUS, DEGREE, NEWTON_METRE, RPM, WATT
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -132,6 +133,8 @@ class Layout:
         Keys of further elements with the type of their figures.
     fluid : bool
         False if nothing is computed that needs an oil.
+    nodes : tuple of str
+        Parts whose temperatures follow from the losses.
     """
 
     losses: tuple[str, ...]
@@ -142,6 +145,7 @@ class Layout:
     rolling: tuple[str, ...] = ()
     parts: tuple[tuple[str, type[DataclassInstance]], ...] = ()
     fluid: bool = True
+    nodes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,6 +223,8 @@ class Result:
         Share of the torque that each planet carries; their sum is 1. [1]
     train : Train or None
         None for a single set.
+    heat : HeatBalance or None
+        None if everything is at the temperature of the oil inlet.
     status : Status
     """
 
@@ -241,6 +247,7 @@ class Result:
     planet_angles: tuple[float, ...] = ()
     planet_shares: tuple[float, ...] = ()
     train: Train | None = None
+    heat: HeatBalance | None = None
     status: Status = Status.CONVERGED
 
     @property
@@ -332,6 +339,7 @@ class Result:
             "members": _members_dict(self.flow),
             "meshes": {name: _figures_dict(mesh) for name, mesh in self.meshes.items()},
             "fluid": None if self.fluid is None else _figures_dict(self.fluid),
+            **({} if self.heat is None else {"heat": self.heat.to_dict()}),
             **(self._planets() if self.train is None else self._train(self.train)),
             "sources": list(self.sources),
             "inputs": dict(self.inputs),
@@ -477,6 +485,15 @@ def number_fields(layout: Layout) -> tuple[NumberField, ...]:
                 partial(_torque, name),
             ),
         ]
+    fields += [
+        NumberField(
+            f"{node}_temperature",
+            f"temperature of the {_words(node)}",
+            CELSIUS.display,
+            partial(_temperature, node),
+        )
+        for node in layout.nodes
+    ]
     if layout.fluid:
         fields += _part_fields("fluid", FluidFigures, lambda it: it.fluid)
     for name in layout.meshes:
@@ -556,6 +573,12 @@ def _speed(name: str, result: Result) -> float:
 
 def _torque(name: str, result: Result) -> float:
     return result.flow.members[name].torque
+
+
+def _temperature(node: str, result: Result) -> float:
+    if result.heat is None:
+        return math.nan
+    return CELSIUS.to_display(result.heat.temperatures[node])
 
 
 def _mesh(name: str, result: Result) -> MeshFigures | None:

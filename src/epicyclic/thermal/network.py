@@ -118,8 +118,7 @@ class Network:
         """Heat through every link. [W]"""
         known = {**self.given, **temperatures}
         return {
-            link.key: link.conductance * (known[link.hot] - known[link.cold])
-            for link in self.links
+            link.key: link.conductance * (known[link.hot] - known[link.cold]) for link in self.links
         }
 
     def residuals(
@@ -156,4 +155,3 @@ class Network:
         inertia = np.array([self.capacities[node] for node in self.nodes])
         rates = np.linalg.eigvals(matrix / inertia[:, None])
         return np.sort(1 / rates.real)[::-1]
-

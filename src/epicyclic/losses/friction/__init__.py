@@ -40,12 +40,15 @@ class FrictionSettings:
     boundary, fluid : float
         Coefficients of dry and of separated contact in the film-share models. [1]
     table : FrictionMap or None
+    oil_held : bool
+        False to continue the model mixed-ehl beyond its oil.
     """
 
     constant: float
     boundary: float
     fluid: float
     table: FrictionMap | None = None
+    oil_held: bool = True
 
 
 def _table(settings: FrictionSettings) -> FrictionModel:
@@ -55,7 +58,7 @@ def _table(settings: FrictionSettings) -> FrictionModel:
 
 
 FRICTION_MODELS: dict[str, Callable[[FrictionSettings], FrictionModel]] = {
-    MixedEhl.name: lambda _: MixedEhl(),
+    MixedEhl.name: lambda settings: MixedEhl(settings.oil_held),
     Xu2007.name: lambda _: Xu2007(),
     BenedictKelley.name: lambda _: BenedictKelley(),
     Matsumoto.name: lambda settings: Matsumoto(settings.boundary, settings.fluid),

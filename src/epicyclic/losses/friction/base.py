@@ -39,11 +39,15 @@ class FrictionModel(Protocol):
         For reports.
     made_for : RegressionFluid or None
         The fluid that it was made for, if it holds for no other.
+    takes_oil_temperature : bool
+        True if it was fitted to tests by the temperature of their oil, so that the temperature of
+        the flanks is contained in it; False if it takes the oil as it enters the contact.
     """
 
     name: ClassVar[str]
     title: ClassVar[str]
     made_for: ClassVar[RegressionFluid | None]
+    takes_oil_temperature: ClassVar[bool]
 
     @property
     def source(self) -> str: ...

@@ -94,6 +94,7 @@ class Schlenk:
     title: ClassVar = "mean friction of ISO/TR 14179-2"
     source: ClassVar = "L. Schlenk, Diss. TU Muenchen (1994); ISO/TR 14179-2:2001"
     made_for: ClassVar[RegressionFluid | None] = None
+    takes_oil_temperature: ClassVar[bool] = True
     ranges: ClassVar[tuple[Range, ...]] = (*_GEAR_TESTS, _ROUGHNESS)
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
@@ -116,6 +117,7 @@ class NiemannWinter:
     title: ClassVar = "mean friction after Michaelis, Niemann and Winter"
     source: ClassVar = "K. Michaelis, Diss. TU Muenchen (1987); Niemann and Winter, vol. II"
     made_for: ClassVar[RegressionFluid | None] = None
+    takes_oil_temperature: ClassVar[bool] = True
     RELATIVE_ROUGHNESS: ClassVar = Range(
         "relative_roughness",
         "Ra over reference diameter, um/mm",
@@ -158,6 +160,7 @@ class BenedictKelley:
     title: ClassVar = "local friction of Benedict and Kelley"
     source: ClassVar = "G. H. Benedict and B. W. Kelley, ASLE Trans. 4 (1961) 59"
     made_for: ClassVar[RegressionFluid | None] = None
+    takes_oil_temperature: ClassVar[bool] = True
 
     SMALLEST_SLIDING: ClassVar = 0.01
     MICROINCH: ClassVar = 25.4e-9

@@ -47,6 +47,7 @@ class _FilmShare(ABC):
     """
 
     made_for: ClassVar[RegressionFluid | None] = None
+    takes_oil_temperature: ClassVar[bool] = False
     ranges: ClassVar[tuple[Range, ...]] = FILM_RANGES
 
     boundary: float

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -30,22 +31,32 @@ __all__ = ["MixedEhl", "Xu2007"]
 FloatArray = NDArray[np.float64]
 
 
+@dataclass(frozen=True, slots=True)
 class MixedEhl:
     """Regression of 33,600 mixed-EHL simulations of an automatic transmission fluid.
 
     Talbot (2012), Eq. 5.8 and Table 5.2(a); branches in the film ratio blended, conditions
     outside Table 5.1 held at its limits (`mixed_ehl_groups`).
+
+    Attributes
+    ----------
+    oil_held : bool
+        False to continue the formula beyond its oil.
     """
+
+    oil_held: bool = True
 
     name: ClassVar = "mixed-ehl"
     title: ClassVar = "mixed-EHL friction regression"
     source: ClassVar = "D. C. Talbot, PhD dissertation, Ohio State (2012), Eq. 5.8"
     made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
+    takes_oil_temperature: ClassVar[bool] = False
     ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
-        return sliding_friction_at(*regression_groups(held_in_table(contact)))
+        held = held_in_table(contact, oil_held=self.oil_held)
+        return sliding_friction_at(*regression_groups(held))
 
 
 _SUCCESSOR = "none is in print; that of the later regression, Talbot (2012), Table 5.1"
@@ -80,6 +91,7 @@ class Xu2007:
     title: ClassVar = "EHL friction regression of Xu et al."
     source: ClassVar = "Xu, Kahraman, Anderson, Maddock, J. Mech. Des. 129 (2007) 58"
     made_for: ClassVar[RegressionFluid | None] = RegressionFluid("xu-2007", "a 75W-90 gear oil")
+    takes_oil_temperature: ClassVar[bool] = False
     ranges: ClassVar[tuple[Range, ...]] = (
         _PRESSURE,
         _SPEED,

@@ -33,6 +33,7 @@ class Constant:
     title: ClassVar = "constant friction"
     source: ClassVar = "the case"
     made_for: ClassVar[RegressionFluid | None] = None
+    takes_oil_temperature: ClassVar[bool] = False
     ranges: ClassVar[tuple[Range, ...]] = ()
 
     value: float
@@ -60,6 +61,7 @@ class FrictionMap:
     title: ClassVar = "friction table"
     source: ClassVar = "the case"
     made_for: ClassVar[RegressionFluid | None] = None
+    takes_oil_temperature: ClassVar[bool] = False
 
     axes: tuple[tuple[str, tuple[float, ...]], ...]
     values: tuple[float, ...] | tuple[tuple[float, ...], ...]

@@ -1,0 +1,182 @@
+"""From the tables of a case to the model of its temperatures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from itertools import chain
+
+from epicyclic.builders.models import fluids_of
+from epicyclic.case.case import Case
+from epicyclic.case.thermal_tables import HousingTable, ThermalTable
+from epicyclic.elements.base import OIL
+from epicyclic.elements.fluids import Fluids, fluids_at, oil_at, oil_flags
+from epicyclic.elements.gear_set import GearSet
+from epicyclic.elements.shaft_bearing import ShaftBearing
+from epicyclic.losses.validity import ValidityFlag
+from epicyclic.lubricant.oil import Oil
+from epicyclic.lubricant.properties import mixture_state, oil_state
+from epicyclic.machine.flank import FlankModel
+from epicyclic.machine.heat_network import Change, HeatSettings, Housing, NetworkModel
+from epicyclic.machine.machine import Machine
+from epicyclic.machine.settle import ThermalModel
+from epicyclic.thermal.bulk import LUBRICATION_FACTORS
+from epicyclic.thermal.fluid import Fluid, air, mixture, oil_conductivity, oil_heat_capacity
+
+__all__ = ["oil_medium", "thermal_model"]
+
+GRAVITY_TEMPERATURE = 288.75
+"""15.6 degC, at which the specific gravity of petroleum is stated. [K]"""
+WATER = 999.0
+"""Density of water there. [kg/m^3]"""
+IN_BATH = ("dip", "submerged")
+
+
+def thermal_model(case: Case, machine: Machine) -> ThermalModel | None:
+    """How the temperatures of a case follow from its losses; None if all are the inlet's."""
+    kind = case.models.temperatures
+    if kind == "inlet" or case.lubricant is None:
+        return None
+    table = case.thermal
+    fluids = _fluids_at(case, contact_nodes(machine))
+    inlet = fluids_of(case).oil.temperature
+    if kind == "flank":
+        factor = LUBRICATION_FACTORS[table.lubrication]
+        return FlankModel(machine, inlet, table.bulk, factor, fluids)
+    settings = _settings(table, machine, inlet)
+    pressure, share = case.surroundings.pressure, case.surroundings.oil_air_ratio
+    return NetworkModel(machine, settings, fluids, _media(case.lubricant.oil, pressure, share))
+
+
+def contact_nodes(machine: Machine) -> dict[str, tuple[str, ...]]:
+    """The thermal nodes on both sides of every contact, by the key of the contact."""
+    found: dict[str, tuple[str, ...]] = {}
+    for own in machine.elements:
+        if isinstance(own, GearSet):
+            found |= {f"{own.key}.{mesh.key}": mesh.nodes for mesh in own.meshes}
+            found |= {f"{own.key}.{planet.key}": planet.nodes for planet in own.planets}
+        elif isinstance(own, ShaftBearing):
+            found[own.key] = (own.key,)
+    return found
+
+
+def _fluids_at(
+    case: Case, contacts: Mapping[str, tuple[str, ...]]
+) -> Callable[[Mapping[str, float]], Fluids]:
+    """Oil and mixture of a case at the temperatures of its nodes; others are as warm as the oil."""
+    assert case.lubricant is not None
+    oil, factor = case.lubricant.oil, case.lubricant.pressure_viscosity_factor
+    inlet = fluids_of(case).oil.temperature
+
+    def at(temperatures: Mapping[str, float]) -> Fluids:
+        around = temperatures.get(OIL, inlet)
+        found = {
+            key: sum(temperatures.get(node, around) for node in nodes) / len(nodes)
+            for key, nodes in contacts.items()
+        }
+        fluids = fluids_at(
+            oil,
+            around,
+            oil_air_ratio=case.surroundings.oil_air_ratio,
+            pressure=case.surroundings.pressure,
+            pressure_viscosity_factor=factor,
+        )
+        return replace(
+            fluids,
+            flags=fluids.flags + _flags(oil, found),
+            contacts={key: oil_at(oil, value, factor) for key, value in found.items()},
+        )
+
+    return at
+
+
+def _flags(oil: Oil, contacts: Mapping[str, float]) -> tuple[ValidityFlag, ...]:
+    """Contacts at which the oil leaves its data."""
+    return tuple(
+        replace(flag, use=replace(flag.use, where=key.strip(".").replace("_", " ")))
+        for key, temperature in contacts.items()
+        for flag in oil_flags(oil, temperature)
+    )
+
+
+def _media(oil: Oil, pressure: float, share: float) -> Callable[[float], tuple[Fluid, Fluid]]:
+    """The oil, and its mixture with air, as heat sees them."""
+
+    def at(temperature: float) -> tuple[Fluid, Fluid]:
+        own = oil_medium(oil, temperature)
+        state = mixture_state(oil_state(oil, temperature), share, pressure)
+        return own, mixture(own, air(temperature, pressure), state)
+
+    return at
+
+
+def oil_medium(oil: Oil, temperature: float) -> Fluid:
+    """How an oil conducts and stores heat: its own data, or Cragoe's. Theory (W22)."""
+    state = oil_state(oil, temperature)
+    gravity = oil_state(oil, GRAVITY_TEMPERATURE).density / WATER
+    conductivity, capacity = oil.thermal_conductivity, oil.specific_heat_capacity
+    return Fluid(
+        density=state.density,
+        dynamic_viscosity=state.dynamic_viscosity,
+        conductivity=(
+            oil_conductivity(temperature, gravity) if conductivity is None else conductivity.value
+        ),
+        heat_capacity=(
+            oil_heat_capacity(temperature, gravity) if capacity is None else capacity.value
+        ),
+    )
+
+
+def _settings(table: ThermalTable, machine: Machine, inlet: float) -> HeatSettings:
+    bath = {"dip": table.bath_share, "submerged": 1.0}.get(table.lubrication, 0.0)
+    return HeatSettings(
+        inlet=inlet,
+        outlet=table.oil_outlet_temperature,
+        flow=table.oil_flow or 0.0,
+        effectiveness=0.0 if table.lubrication in IN_BATH else table.jet_effectiveness,
+        jet_shares=_jet_shares(machine) | table.jet_shares,
+        bath=bath,
+        press_fit=table.press_fit,
+        shaft=table.shaft_conductance,
+        ambient=table.ambient_temperature,
+        coolant=table.coolant_temperature,
+        cooler_power=table.cooler_power,
+        cooler=table.cooler_conductance,
+        housing=None if table.housing is None else _housing(table.housing),
+        changes={
+            name: Change(change.value, change.scale) for name, change in table.conductances.items()
+        },
+    )
+
+
+def _jet_shares(machine: Machine) -> dict[str, float]:
+    """Each mesh and bearing gets an equal part of the oil, half on each side. Theory (N6)."""
+    weights: dict[str, float] = {}
+    for own in machine.elements:
+        if isinstance(own, GearSet):
+            pairs = [mesh.nodes for mesh in own.meshes]
+            pairs += [planet.nodes for planet in own.planets if planet.bearing]
+            for node in chain.from_iterable(pairs):
+                weights[node] = weights.get(node, 0.0) + own.count
+        elif isinstance(own, ShaftBearing):
+            weights[own.key] = 2.0
+    whole = sum(weights.values())
+    return {node: weight / whole for node, weight in weights.items()}
+
+
+def _housing(table: HousingTable) -> Housing:
+    height = math.sqrt(table.area / 6) if table.height is None else table.height
+    return Housing(
+        method=table.method,
+        area=table.area,
+        inner_area=table.area if table.inner_area is None else table.inner_area,
+        height=height,
+        length=height if table.length is None else table.length,
+        air_speed=table.air_speed,
+        emissivity=table.emissivity,
+        fin_factor=table.fin_factor,
+        inner_coefficient=table.inner_coefficient,
+        coefficient=table.coefficient,
+        foundation=table.foundation,
+    )
