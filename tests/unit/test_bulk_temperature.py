@@ -16,19 +16,6 @@ from epicyclic.thermal.bulk import (
 )
 
 
-@pytest.mark.parametrize(
-    ("loss_factor", "center_distance", "face_width", "printed"),
-    [(0.181, 863, 491, 78.3), (0.161, 863, 491, 78.0), (0.149, 584, 550, 78.5)],
-)
-def test_meshes_of_the_gearbox_of_the_nrel(loss_factor, center_distance, face_width, printed):
-    """Oil of 75 degC, dip lubrication, mean friction 0.040: one planet carries a third."""
-    loss = 5000e3 / 3 * 0.040 * loss_factor
-    rise = bulk_rise_of_loss(
-        loss, center_distance * 1e-3, face_width * 1e-3, LUBRICATION_FACTORS["dip"]
-    )
-    assert 75 + rise == pytest.approx(printed, abs=0.05)  # printed digits
-
-
 def test_bulk_temperature_over_loss_size_and_cooling():
     base = bulk_rise_of_loss(1e3, 0.1, 0.02, 1.0)
     assert bulk_rise_of_loss(0.0, 0.1, 0.02, 1.0) == 0.0

@@ -139,7 +139,7 @@ def bulk_rise_of_loss(
 
     Examples
     --------
-    The gears C-GF of the FZG test rig at load stage 9, sprayed:
+    The gears C-GF of the FZG test rig at load stage 10, sprayed:
 
     >>> loss = 62.46e3 * 0.0687 * 0.19496
     >>> round(bulk_rise_of_loss(loss, 91.5e-3, 14e-3, LUBRICATION_FACTORS["spray"]), 1)
