@@ -16,14 +16,29 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.analysis.solve import loaded_meshes, solve
+from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
 from epicyclic.builders.build import build
 from epicyclic.builders.models import fluids_of
 from epicyclic.builders.planetary import roller_bearing
 from epicyclic.case.case import GearPairCase, PlanetaryCase, load_case
 from epicyclic.elasticity.loaded_mesh import LoadedMesh
+from epicyclic.kernels.line_contact import hertz_half_width
+from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.friction.base import (
+    pitch_point_radius,
+    pitch_point_sum_speed,
+    specific_load,
+)
+from epicyclic.losses.mesh import ohlendorf_loss_factor
 from epicyclic.losses.planet_bearing import roller_loads
 from epicyclic.results.result import Result
+from epicyclic.thermal.bulk import (
+    LUBRICATION_FACTORS,
+    bulk_rise_of_loss,
+    mean_friction,
+    roughness_factor,
+)
+from epicyclic.thermal.flash import effusivity, flash_temperature
 
 __all__ = ["FIGURES"]
 
@@ -31,6 +46,8 @@ TEST_TORQUES = (250, 500, 750, 1000)
 """Loaded tests: torque on the sun. [N m]"""
 TEST_SPEEDS = (1000, 2000, 3000, 4000)
 """Speeds of the sun. [rpm]"""
+KELVIN = 273.15
+"""0 degC in kelvin."""
 
 
 def _case(**changes: object) -> PlanetaryCase:
@@ -216,14 +233,14 @@ def _standard_mesh(teeth1: int, teeth2: int, internal: bool) -> LoadedMesh:
 
 
 @cache
-def _trains() -> dict[str, Any]:
-    """The trains of `trains.toml`, as tables of cases."""
-    file = resources.files("epicyclic.validation").joinpath("trains.toml")
+def _tables_of(name: str) -> dict[str, Any]:
+    """What a file beside `published.toml` holds."""
+    file = resources.files("epicyclic.validation").joinpath(name)
     return tomllib.loads(file.read_text(encoding="utf-8"))
 
 
 def _train(train: str, changes: Mapping[str, Any]) -> Result:
-    tables = _trains().get(train)
+    tables = _tables_of("trains.toml").get(train)
     case = load_case(train if tables is None else tables)
     return solve(case.updated(changes))
 
@@ -243,6 +260,70 @@ def train_efficiency(train: str, **changes: Any) -> float:
     return efficiency
 
 
+def bulk_temperature(mesh: str) -> float:
+    """ISO/TS 6336-22, from the friction and the loss factor printed beside it. [degC]"""
+    given = _tables_of("temperatures.toml")[mesh]
+    rise = bulk_rise_of_loss(
+        given["power"] * given["mean_friction"] * given["loss_factor"],
+        given["center_distance"],
+        given["face_width"],
+        LUBRICATION_FACTORS[given["lubrication"]],
+    )
+    return float(given["oil_temperature"] + rise)
+
+
+def pair_bulk_temperature(pair: str) -> float:
+    """ISO/TS 6336-22, with the friction and the loss factor of a pair of gears. [degC]"""
+    given, contact = _loaded_pair(pair)
+    rise = bulk_rise_of_loss(
+        contact.input_power * _mean_friction(pair) * ohlendorf_loss_factor(contact.mesh),
+        contact.mesh.center_distance,
+        contact.mesh.face_width,
+        LUBRICATION_FACTORS[given["lubrication"]],
+    )
+    return contact.oil.temperature - KELVIN + rise
+
+
+def pair_flash_temperature(pair: str, line_load: float) -> float:
+    """ISO/TS 6336-22, at the start of the path of contact under a line load in N/m. [K]"""
+    contact = _loaded_pair(pair)[1]
+    mesh, start = contact.mesh, contact.mesh.path_start
+    speed1, speed2 = contact.speed1 * start, contact.speed2 * mesh.curvature2(start)
+    carried = effusivity(**_tables_of("temperatures.toml")["steel"])
+    rise = flash_temperature(
+        _mean_friction(pair),
+        line_load,
+        speed1 - speed2,
+        speed1,
+        speed2,
+        hertz_half_width(
+            line_load, mesh.equivalent_radius(start), contact.flanks.equivalent_modulus
+        ),
+        carried,
+        carried,
+    )
+    return float(rise)
+
+
+@cache
+def _loaded_pair(pair: str) -> tuple[dict[str, Any], MeshContact]:
+    given = _tables_of("temperatures.toml")[pair]
+    return given, mesh_contacts(load_case(given["case"]))["mesh"]
+
+
+def _mean_friction(pair: str) -> float:
+    given, contact = _loaded_pair(pair)
+    radius = pitch_point_radius(contact)
+    return mean_friction(
+        specific_load(contact),
+        pitch_point_sum_speed(contact),
+        radius,
+        contact.oil.dynamic_viscosity,
+        roughness_factor(given["roughness_ra"], radius),
+        contact.oil.lubricant_factor,
+    )
+
+
 FIGURES: dict[str, Callable[..., float]] = {
     function.__name__: function
     for function in (
@@ -250,6 +331,9 @@ FIGURES: dict[str, Callable[..., float]] = {
         planet_bearing_ratio,
         train_efficiency,
         train_ratio,
+        bulk_temperature,
+        pair_bulk_temperature,
+        pair_flash_temperature,
         azimuth_of_gained_rollers,
         mixture_density,
         mixture_viscosity,
