@@ -133,7 +133,8 @@ def loss_map(
     the file states the signs. A train has a map of each of its states. An interrupted map goes on
     where it stopped, as a sweep does.
     """
-    from epicyclic.maps.compute import AXES, map_plan, states_left_out
+    from epicyclic.case.operating import AXES
+    from epicyclic.maps.compute import map_plan, states_left_out
     from epicyclic.sweeps.plan import parse_vary
 
     loaded = load_with(case, changes)

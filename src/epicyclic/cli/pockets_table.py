@@ -52,14 +52,14 @@ def pockets_table(
     VALUES are a,b,c or start:stop:count with a unit. A case whose models.pocketing_table names the
     .nc file reads its pocketing losses from there.
     """
+    from epicyclic.case.operating import AXES
     from epicyclic.sweeps.plan import parse_vary
     from epicyclic.sweeps.pocketing_table import SPEED, TEMPERATURE, make_table_plan
 
     loaded = load_with(case, changes)
     check_ending("-o", output, FORMATS)
     check_values(values)
-    keys = {"speed": SPEED, "temperature": TEMPERATURE}
-    axes = [f"{keys[name]}={text}" for name, text in values.items() if text is not None]
+    axes = [f"{AXES[name]}={text}" for name, text in values.items() if text is not None]
     given = parse_vary(loaded, axes)
     plan = make_table_plan(loaded, given[SPEED], given.get(TEMPERATURE))
     compute(plan, output, runner, table_writer(plan, output), "tables")

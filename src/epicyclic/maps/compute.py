@@ -20,6 +20,7 @@ import numpy as np
 from epicyclic.builders.build import layout_of
 from epicyclic.case.case import Case, PlanetaryCase, TrainCase
 from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.operating import AXES, STATE, STATE_KEY
 from epicyclic.case.wording import written
 from epicyclic.elements.base import HOUSING
 from epicyclic.errors import InputError, Problem
@@ -34,8 +35,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = [
-    "AXES",
-    "STATE",
     "MapPlan",
     "axis_name",
     "coordinates",
@@ -46,15 +45,7 @@ __all__ = [
     "to_map",
 ]
 
-AXES = {
-    "speed": "operation.speed",
-    "torque": "operation.torque",
-    "temperature": "operation.oil_inlet_temperature",
-}
-"""Dimensions that every map has, and their keys; without an oil the last one is missing."""
-STATE = "state"
-"""Dimension of the states of a train that has any."""
-_OWN_AXES = {**AXES, STATE: "operation.state"}
+_OWN_AXES = {**AXES, STATE: STATE_KEY}
 _SHAFT_KEYS = (
     "operation.input",
     "operation.output",
@@ -165,7 +156,7 @@ def map_plan(
         raise InputError(problems, "the map")
     given: dict[str, Iterable[Any]] = {}
     if chosen:
-        given[_OWN_AXES[STATE]] = chosen
+        given[STATE_KEY] = chosen
     if _has_oil(case):
         if temperature is None:
             temperature = [case.inputs()["operation"]["oil_inlet_temperature"]]
@@ -227,7 +218,7 @@ def states_left_out(case: Case, names: Iterable[str] | None = None) -> dict[str,
     left_out = {}
     for name in case.states if names is None else names:
         try:
-            case.updated({_OWN_AXES[STATE]: name})
+            case.updated({STATE_KEY: name})
         except InputError as error:
             left_out[name] = error.problems[0].allowed
     return left_out

@@ -17,24 +17,21 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
+from epicyclic.case.operating import OPERATING, STATE
 from epicyclic.case.wording import one_line, sentence
 from epicyclic.errors import InputError, Problem
 from epicyclic.maps.cycle_source import Source, open_source
-from epicyclic.units import CELSIUS, NEWTON_METRE, RPM, SECOND, Quantity
+from epicyclic.units import SECOND, Quantity
 
 __all__ = ["SHARE", "TIME", "Cycle", "Piece", "open_cycle"]
 
 Array = NDArray[np.float64]
 
 TIME, DURATION, SHARE = "time", "duration", "share"
-STATE = "state"
-"""Column of the states of a train: text."""
 _WEIGHTINGS = (TIME, DURATION, SHARE)
 _OPTIONAL = ("temperature", STATE)
 _QUANTITIES: dict[str, Quantity | None] = {
-    "speed": RPM,
-    "torque": NEWTON_METRE,
-    "temperature": CELSIUS,
+    **{name: part.quantity for name, part in OPERATING.items()},
     STATE: None,
     TIME: SECOND,
     DURATION: SECOND,

@@ -18,18 +18,20 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.operating import STATE
 from epicyclic.case.wording import sentence, written
 from epicyclic.errors import InputError, Problem
-from epicyclic.maps.compute import STATE, map_plan, to_map
+from epicyclic.maps.compute import map_plan, to_map
 from epicyclic.maps.cycle import Cycle, Piece, open_cycle
 from epicyclic.maps.interpolation_error import (
     Deviation,
     Sample,
+    further_values,
     leave_out,
-    map_case,
     solve_sample,
 )
 from epicyclic.maps.lookup import Lookup, loss_power, make_lookup
+from epicyclic.maps.tables import map_case
 from epicyclic.sweeps.runner import HERE, Progress, Runner
 from epicyclic.units import (
     CELSIUS,
@@ -264,7 +266,7 @@ def make_duty(
     """The result of `duty_cycle`, its error measured at the points that were drawn."""
     import xarray as xr
 
-    case = map_case(data)
+    case = map_case(data, further_values(data))
     results = []
     for totals, sample in zip(sums.totals, sums.samples, strict=True):
         error = (

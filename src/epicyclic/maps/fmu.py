@@ -24,9 +24,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from epicyclic.case.operating import STATE
 from epicyclic.case.wording import one_line
 from epicyclic.errors import EpicyclicError, Problem
-from epicyclic.maps.compute import STATE
 from epicyclic.maps.lookup import Lookup, make_lookup, slack
 from epicyclic.maps.tables import stated
 from epicyclic.units import CELSIUS, RPM, format_number

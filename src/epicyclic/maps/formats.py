@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from epicyclic.case.operating import AXES, STATE
 from epicyclic.errors import InputError, Problem
 from epicyclic.maps import fmu, simscape, simulation, tables, workbook
-from epicyclic.maps.compute import AXES, STATE
 from epicyclic.sweeps.dataset import check_place, whole_file
 
 if TYPE_CHECKING:

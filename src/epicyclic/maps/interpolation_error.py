@@ -11,18 +11,16 @@ PODC 2007, 225). A cycle of no more points than the sample is summed exactly.
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.case.case import Case, load_case
-from epicyclic.errors import InputError
-from epicyclic.maps.compute import AXES, STATE
+from epicyclic.case.case import Case
+from epicyclic.case.operating import AXES, OPERATING, STATE, STATE_KEY
 from epicyclic.maps.lookup import Lookup
 from epicyclic.sweeps.plan import PointList
 from epicyclic.sweeps.runner import HERE, Runner
@@ -30,7 +28,7 @@ from epicyclic.sweeps.runner import HERE, Runner
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Deviation", "Sample", "leave_out", "map_case", "solve_sample"]
+__all__ = ["Deviation", "Sample", "further_values", "leave_out", "solve_sample"]
 
 Array = NDArray[np.float64]
 _SEED = 0
@@ -85,18 +83,13 @@ class Sample:
         return rows, -np.expm1(-rows[:, -1] * threshold)
 
 
-def map_case(data: xr.Dataset) -> Case | None:
-    """The case of which `data` is the map, None if it cannot be read."""
-    try:
-        tables: Mapping[str, Any] = json.loads(data.attrs["case"])
-        further = {
-            str(values.attrs["case_key"]): _written(values)
-            for name, values in data.coords.items()
-            if "case_key" in values.attrs and name not in (*AXES, STATE)
-        }
-        return load_case(tables).updated(further)
-    except (ValueError, TypeError, InputError):
-        return None
+def further_values(data: xr.Dataset) -> dict[str, Any]:
+    """The keys of the axes of a map beyond its own, which have one value each, and these."""
+    return {
+        str(values.attrs["case_key"]): _written(values)
+        for name, values in data.coords.items()
+        if "case_key" in values.attrs and name not in (*AXES, STATE)
+    }
 
 
 def _written(values: xr.DataArray) -> Any:
@@ -104,9 +97,6 @@ def _written(values: xr.DataArray) -> Any:
     value, unit = values.values.ravel()[0], values.attrs.get("units", "1")
     number = value.item() if isinstance(value, np.generic) else value
     return number if isinstance(number, str) or unit == "1" else f"{number!r} {unit}"
-
-
-_UNITS = {"speed": "rpm", "torque": "N*m", "temperature": "degC"}
 
 
 def solve_sample(case: Case, lookup: Lookup, sample: Sample, runner: Runner = HERE) -> Deviation:
@@ -137,10 +127,10 @@ def _changes(lookup: Lookup, row: Sequence[float]) -> dict[str, str]:
     """The keys that make a case of a point of a cycle."""
     point = dict(zip(lookup.names, row, strict=False))
     changes = {
-        AXES[name]: f"{point[name]!r} {unit}" for name, unit in _UNITS.items() if name in point
+        part.key: part.text(point[name]) for name, part in OPERATING.items() if name in point
     }
     if STATE in point:
-        changes[f"operation.{STATE}"] = lookup.states[round(point[STATE]) - 1]
+        changes[STATE_KEY] = lookup.states[round(point[STATE]) - 1]
     return changes
 
 

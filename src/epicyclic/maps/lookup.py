@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.case.operating import AXES, STATE
 from epicyclic.errors import InputError, Problem
-from epicyclic.maps.compute import AXES, STATE
 from epicyclic.maps.tables import check_gaps, check_map, driven_problem
 from epicyclic.units import RPM, WATT
 

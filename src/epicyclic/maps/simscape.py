@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epicyclic.maps.compute import STATE
+from epicyclic.case.operating import STATE
 from epicyclic.maps.tables import stated
 from epicyclic.units import CELSIUS, RPM, format_number
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from epicyclic.case.case import Case, load_case
 from epicyclic.case.wording import one_line, sentence
 from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.dataset import to_table
@@ -19,6 +21,8 @@ __all__ = [
     "check_gaps",
     "check_map",
     "driven_problem",
+    "map_case",
+    "map_inputs",
     "read_netcdf",
     "stated",
     "statements",
@@ -49,6 +53,21 @@ def statements(data: xr.Dataset) -> dict[str, str]:
         name.replace("_", " "): one_line(str(data.attrs.get(name, "")), _LONGEST_STATEMENT)
         for name in _STATED
     }
+
+
+def map_inputs(data: xr.Dataset) -> dict[str, Any]:
+    """The inputs of a map, as a case file has them."""
+    inputs: dict[str, Any] = json.loads(data.attrs["case"])
+    return inputs
+
+
+def map_case(data: xr.Dataset, changes: Mapping[str, Any] | None = None) -> Case | None:
+    """The case of a map with `changes`; None if it is none of this version."""
+    try:
+        case = load_case(map_inputs(data))
+        return case.updated(changes) if changes else case
+    except (ValueError, TypeError, InputError):
+        return None
 
 
 def stated(data: xr.Dataset, axes: Sequence[str] = ("speed", "torque")) -> dict[str, str]:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from epicyclic.case.operating import STATE
 from epicyclic.errors import Problem
-from epicyclic.maps.compute import STATE
 from epicyclic.maps.tables import statements
 from epicyclic.status import Status
 

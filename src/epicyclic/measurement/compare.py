@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from epicyclic.builders.notes import NOT_INCLUDED
 from epicyclic.case.case import Case
+from epicyclic.case.operating import OPERATING
 from epicyclic.errors import InputError, Problem
 from epicyclic.losses.validity import OUT_OF_RANGE
 from epicyclic.measurement.deviations import AS_GIVEN, CALIBRATED, ErrorFigures, all_errors
@@ -94,10 +95,12 @@ class MeasuredComparison:
         labels = {
             name: list(text) for name, text in self.measured.labels.items() if name not in own
         }
-        units = {"speed": "rpm", "torque": "N*m", "temperature": "degC"}
-        conditions = {f"{name} [{units[name]}]": v for name, v in self.measured.conditions.items()}
+        conditions = {
+            f"{name} [{OPERATING[name].unit}]": values
+            for name, values in self.measured.conditions.items()
+        }
         columns: dict[str, Any] = {"line": self.measured.lines} | conditions
-        columns |= {name: text for name, text in labels.items() if name not in units}
+        columns |= {name: text for name, text in labels.items() if name not in OPERATING}
         columns |= {"component": self.measured.component, "measured [W]": self.measured.loss}
         if self.measured.uncertainty is not None:
             columns["uncertainty [W]"] = self.measured.uncertainty

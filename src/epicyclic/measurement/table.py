@@ -17,26 +17,19 @@ from epicyclic.case.case import Case, TrainCase
 from epicyclic.case.fields import is_array, is_text, quantity_of
 from epicyclic.case.keys import field_at, known_keys
 from epicyclic.case.nearest import did_you_mean, misspelt
+from epicyclic.case.operating import AXES, OPERATING, STATE, STATE_KEY
 from epicyclic.case.values import parse_value
 from epicyclic.case.wording import one_line, sentence
 from epicyclic.errors import InputError, Problem
 from epicyclic.measurement.files import Grid
 from epicyclic.units import WATT, Quantity, format_number
 
-__all__ = ["CONDITIONS", "Measurements", "loss_names", "parse_measurements"]
+__all__ = ["Measurements", "loss_names", "parse_measurements"]
 
 FloatArray = NDArray[np.float64]
 
-CONDITIONS = {
-    "speed": "operation.speed",
-    "torque": "operation.torque",
-    "temperature": "operation.oil_inlet_temperature",
-}
-"""Columns that every table has, and their keys; that of the oil only where losses need one."""
-_STATE = {"state": "operation.state"}
-"""Column that a table of a train with states may have."""
-_OWN = (*CONDITIONS, "loss", "uncertainty", "component")
-_EXAMPLES = {"speed": "rpm", "torque": "N*m", "temperature": "degC", "loss": "W"}
+_OWN = (*AXES, "loss", "uncertainty", "component")
+_EXAMPLES = {name: part.unit for name, part in OPERATING.items()} | {"loss": WATT.display}
 _HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 _PERCENT = "%"
 _NUMBER_WITH_UNIT = re.compile(r"[+-]?[\d.,]+(?:[eE][+-]?\d+)?\s*(?![eE][+-]?\d)[^\d\s.,].*")
@@ -173,12 +166,12 @@ def parse_measurements(grid: Grid, case: Case, component: str = "total") -> Meas
 def _conditions(case: Case) -> dict[str, str]:
     """The conditions that a table of a case must have, and their keys."""
     given = isinstance(case, TrainCase) and not case.computed
-    return {key: name for key, name in CONDITIONS.items() if not (given and key == "temperature")}
+    return {key: name for key, name in AXES.items() if not (given and key == "temperature")}
 
 
 def _states(case: Case) -> dict[str, str]:
     """The column of states and its key, of a train that has any."""
-    return _STATE if isinstance(case, TrainCase) and case.states else {}
+    return {STATE: STATE_KEY} if isinstance(case, TrainCase) and case.states else {}
 
 
 def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
@@ -212,7 +205,7 @@ def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
         Problem(name, "", "is missing among the columns.", f"Add a column {name} [{unit}].")
         for name, unit in _EXAMPLES.items()
         if name not in columns
-        and (name in own or name not in CONDITIONS)
+        and (name in own or name not in AXES)
         and not any(misspelt(key, [name]) for key in taken)
     ]
     return columns
@@ -328,7 +321,7 @@ def _values(
 ) -> tuple[Any, ...]:
     """The cells as a case file has them."""
     if quantity_of(annotation, metadata) is not None:
-        if column.name not in CONDITIONS:
+        if column.name not in AXES:
             _numbers(column, quantity_of(annotation, metadata), problems)
         return tuple(_with_unit(column, cell) for cell in column.cells)
     if column.unit not in ("", "1"):
@@ -361,7 +354,7 @@ def _refused(
     """What the case refuses of the keys that rows set, apart from its operating point."""
     first: dict[str, int] = {}
     for row, change in enumerate(changes):
-        keys = {key: value for key, value in change.items() if key not in CONDITIONS.values()}
+        keys = {key: value for key, value in change.items() if key not in AXES.values()}
         first.setdefault(repr(keys), row)
     problems = []
     for row in first.values():

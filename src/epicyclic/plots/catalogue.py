@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 from epicyclic.analysis.shapes import gear_shapes
 from epicyclic.errors import InputError, Problem
+from epicyclic.maps.tables import map_case
 from epicyclic.plots.bearing import plot_roller_loads, plot_roller_profile
 from epicyclic.plots.drawing import plot_gear_set, plot_teeth
 from epicyclic.plots.loss_map import map_at, plot_map, plot_map_lines, plot_map_parts
@@ -28,7 +29,6 @@ from epicyclic.plots.mesh import (
 from epicyclic.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.plots.power_flow import SLIDE, plot_power_flow
 from epicyclic.plots.style import PANEL, styled_figure
-from epicyclic.records.maps import map_case
 from epicyclic.records.record import ResultRecord, set_of, sets_of
 
 __all__ = ["PLOTS", "Panel", "Plot", "available", "figure_of", "panels_of"]

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from epicyclic.case.operating import OPERATING
 from epicyclic.measurement.compare import MeasuredComparison
 from epicyclic.measurement.deviations import AS_GIVEN, CALIBRATED
 from epicyclic.plots.style import COLOURS, styled_figure
@@ -26,7 +27,6 @@ SERIES_GAP = 0.012
 """Distance between series of residuals, over the range of the axis. [1]"""
 MARKERS = "osD^vP"
 """One for each group, beside its colour; for print without colours."""
-AXES = {"speed": "speed, rpm", "torque": "torque, N·m", "temperature": "oil temperature, °C"}
 _FADED = {"color": "0.6", "mfc": "none", "ls": "none", "ms": 5, "zorder": 1}
 
 
@@ -34,7 +34,7 @@ def measured_figure(comparison: MeasuredComparison) -> Figure:
     """Parity, and residuals over speed, torque and temperature."""
     with styled_figure(2, 2, _title(comparison)) as (figure, axes):
         plot_parity(comparison, axes[0, 0])
-        for name, ax in zip(AXES, axes.flat[1:], strict=True):
+        for name, ax in zip(OPERATING, axes.flat[1:], strict=True):
             if name in comparison.measured.conditions:
                 plot_residuals(comparison, name, ax)
             else:
@@ -83,7 +83,9 @@ def plot_residuals(comparison: MeasuredComparison, over: str, ax: Axes) -> Axes:
         x = where[members] + gap * (number - (len(series) - 1) / 2)
         ax.errorbar(x, error, yerr=_bars(comparison, members, style), **style)
     ax.axhline(0.0, color="black", lw=0.9)
-    ax.set(title=f"Residuals over {over}", xlabel=AXES[over], ylabel="computed − measured, W")
+    part = OPERATING[over]
+    label = f"{part.label}, {unit_text(part.unit)}"
+    ax.set(title=f"Residuals over {over}", xlabel=label, ylabel="computed − measured, W")
     if values.size == 1:
         ax.set(xticks=values, xlim=(values[0] - 0.5, values[0] + 0.5))
     else:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from epicyclic.case.operating import AXES
 from epicyclic.errors import Problem
 
 if TYPE_CHECKING:
@@ -73,7 +74,6 @@ _PLACES = {
     "station_position",
     "period_angle",
 }
-_OPERATING = ("speed", "torque", "temperature")
 _MAP_NUMBERS = ("torque_loss", "total", "efficiency")
 _MAP_TEXTS = ("status", "message", "warnings")
 
@@ -99,7 +99,7 @@ def field_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
 def map_problems(data: xr.Dataset) -> Iterator[Problem]:
     """What plots and reports would miss in a loss map."""
     dims = data["torque_loss"].dims
-    for axis in _OPERATING:
+    for axis in AXES:
         if axis == "temperature" and axis not in data.coords:
             continue  # a train whose losses are all given has no oil
         if axis not in dims:

@@ -14,8 +14,8 @@ import jinja2
 import xarray as xr
 from markupsafe import Markup
 
+from epicyclic.maps.tables import map_inputs
 from epicyclic.plots.catalogue import Stored, available
-from epicyclic.records.maps import map_inputs
 from epicyclic.records.record import ResultRecord
 from epicyclic.report.drawings import draw
 from epicyclic.report.map_page import map_key_figures, map_line, map_sections

@@ -11,9 +11,9 @@ import numpy as np
 import xarray as xr
 
 from epicyclic.analysis.methods import methods_of
-from epicyclic.maps.tables import statements
+from epicyclic.case.operating import AXES
+from epicyclic.maps.tables import map_case, map_inputs, statements
 from epicyclic.plots.loss_map import map_at
-from epicyclic.records.maps import map_case, map_inputs
 from epicyclic.report.inputs import input_tables
 from epicyclic.report.page import (
     Cell,
@@ -41,7 +41,7 @@ MOST_COLUMNS = 9
 
 def map_line(data: xr.Dataset) -> str:
     """Which points the map has, in one line."""
-    axes = [name for name in ("speed", "torque", "temperature") if name in data.dims]
+    axes = [name for name in AXES if name in data.dims]
     spans = [f"{name} {_span(data[name])}" for name in axes]
     return f"at the {data.attrs['reference_shaft']}: {', '.join(spans)}"
 
@@ -97,11 +97,7 @@ def _span(axis: xr.DataArray) -> str:
 def _further(data: xr.Dataset) -> str:
     """Which values of further keys the tables and figures are for."""
     point = map_at(data)
-    further = [
-        f"{name} = {point[name].item()}"
-        for name in data.dims
-        if name not in ("speed", "torque", "temperature")
-    ]
+    further = [f"{name} = {point[name].item()}" for name in data.dims if name not in AXES]
     return f"Tables and figures are for {', '.join(further)}." if further else ""
 
 

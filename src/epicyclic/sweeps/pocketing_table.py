@@ -14,6 +14,7 @@ import numpy as np
 from epicyclic.analysis.pocket_details import mesh_duties
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
+from epicyclic.case.operating import AXES
 from epicyclic.elements.pocket_flow import POCKETING_SOURCE, flow_family, pocketing_method
 from epicyclic.errors import InputError, Problem
 from epicyclic.lubricant.properties import MixtureState
@@ -39,8 +40,7 @@ __all__ = [
     "table_dataset",
 ]
 
-SPEED = "operation.speed"
-TEMPERATURE = "operation.oil_inlet_temperature"
+SPEED, TEMPERATURE = AXES["speed"], AXES["temperature"]
 
 _PER_OCTAVE = 256
 """Numbers in each doubling at which a flow may be solved; few of them are. Fewer leave gaps."""

@@ -1,0 +1,39 @@
+"""The operating point, as maps, cycles, measurements and their figures call its parts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from epicyclic.units import CELSIUS, NEWTON_METRE, RPM, Quantity
+
+__all__ = ["AXES", "OPERATING", "STATE", "STATE_KEY", "OperatingValue"]
+
+
+@dataclass(frozen=True, slots=True)
+class OperatingValue:
+    """A part of the operating point: its key in a case, its name in print, its quantity."""
+
+    key: str
+    label: str
+    quantity: Quantity
+
+    @property
+    def unit(self) -> str:
+        """Of columns and axes."""
+        return self.quantity.display
+
+    def text(self, value: float) -> str:
+        """A `value` in that unit, as a case file has it."""
+        return f"{value!r} {self.unit}"
+
+
+OPERATING = {
+    "speed": OperatingValue("operation.speed", "speed", RPM),
+    "torque": OperatingValue("operation.torque", "torque", NEWTON_METRE),
+    "temperature": OperatingValue("operation.oil_inlet_temperature", "oil temperature", CELSIUS),
+}
+"""By the name of the axis of a map and of the column of a table."""
+AXES = {name: part.key for name, part in OPERATING.items()}
+"""Key of each; a train whose losses are all given has no temperature."""
+STATE, STATE_KEY = "state", "operation.state"
+"""Axis, column and key of the states of a train that has any."""
