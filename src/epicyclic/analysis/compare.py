@@ -6,9 +6,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from epicyclic.analysis.sets_of import build_computed, set_cases
+from epicyclic.analysis.sets_of import build_computed
 from epicyclic.analysis.solve import solve
 from epicyclic.builders.models import friction_of, friction_settings, resolve_models
+from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.elements.base import LOAD_DEPENDENT
 from epicyclic.losses.friction import FRICTION_MODELS

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.analysis.datasets import Variable, variable
-from epicyclic.analysis.sets_of import build_computed, set_cases
+from epicyclic.analysis.sets_of import build_computed
 from epicyclic.builders.built import mesh_key
 from epicyclic.builders.notes import load_notes
+from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case
 from epicyclic.elements.gear_mesh import MeshDuty, contact_under, distribute_load
 from epicyclic.errors import InputError, Problem

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from epicyclic.analysis.sets_of import set_cases
 from epicyclic.builders.build import build
 from epicyclic.builders.models import friction_of, resolve_models, rolling_of
+from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.listed_set import ListedCase
 from epicyclic.elements.gear_mesh import OHLENDORF_SOURCE

@@ -31,7 +31,7 @@ from epicyclic.pocketing.geometry import (
     pocket_geometry,
     pocket_outlines,
 )
-from epicyclic.pocketing.similarity import flow_figures
+from epicyclic.pocketing.similarity import FLOW_NUMBERS, flow_figures
 from epicyclic.units import (
     BAR,
     CUBIC_MILLIMETRE,
@@ -376,11 +376,11 @@ def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Vari
     numbers: dict[str, tuple[float, str, Quantity]] = {
         "power": (flow.power, "power, from the work at the boundaries", WATT),
         "power_from_flow": (flow.power_from_flow, "power, from the energy balance", WATT),
-        "power_difference": (flow.difference, "energy balance over work, less 1", NUMBER),
+        "power_difference": (flow.difference, *FLOW_NUMBERS["difference"]),
         "mass_error": (flow.mass_error, "mass lost in a period over mass that came in", NUMBER),
         "periods": (flow.periods, "mesh periods until the flow repeated", NUMBER),
         "sound_speed": (flow.sound_speed, "speed of sound of the mixture", METRE_PER_SECOND),
-        "speed_max": (flow.speed_max, "fastest flow through any opening", METRE_PER_SECOND),
+        "speed_max": (flow.speed_max, *FLOW_NUMBERS["speed_max"]),
         "ambient_pressure": (fluids.pressure, "ambient pressure", BAR),
         "speed": (
             abs(duty.speed1),

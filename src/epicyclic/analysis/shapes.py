@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from epicyclic.analysis.datasets import variable
-from epicyclic.analysis.sets_of import set_cases
 from epicyclic.builders.build import build as build_machine
 from epicyclic.builders.built import mesh_key
+from epicyclic.builders.train import set_cases
 from epicyclic.case import build
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable

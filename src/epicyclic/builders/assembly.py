@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
 from epicyclic.builders.built import Built, mesh_key
 from epicyclic.builders.models import resolve_models
 from epicyclic.builders.notes import case_notes, general_notes
-from epicyclic.builders.train import set_case
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
-from epicyclic.case.listed_set import ListedCase
+from epicyclic.builders.train import set_cases
+from epicyclic.case.case import Case
 from epicyclic.case.train import TrainCase
 from epicyclic.elements.base import HOUSING, Loss
 from epicyclic.elements.figures import BearingFigures, MeshFigures
-from epicyclic.elements.gear_set import GearSet, GearSetResult
+from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.elements.load_sharing import SHARING_METHODS
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.validity import ValidityFlag
@@ -160,24 +159,13 @@ def _sources(terms: Iterable[LossTerm], methods: Methods) -> tuple[str, ...]:
 
 
 def _models(case: Case, built: Built) -> Iterator[tuple[str, str]]:
-    for key, own in _set_cases(case, built.sets):
+    for key, own in set_cases(case, built.sets):
         for name, model in resolve_models(own).items():
             yield mesh_key(key, name), model
 
 
-def _set_cases(
-    case: Case, sets: Mapping[str, GearSet]
-) -> Iterator[tuple[str, PlanetaryCase | GearPairCase | ListedCase]]:
-    """The computed sets of a case, each as a case of its own."""
-    if not isinstance(case, TrainCase):
-        yield "", case
-        return
-    for key in sets:
-        yield key, set_case(case, key)
-
-
 def _set_notes(case: Case, built: Built, solution: Solution) -> Iterator[str]:
-    for key, own in _set_cases(case, built.sets):
+    for key, own in set_cases(case, built.sets):
         found = solution.results[key]
         assert isinstance(found, GearSetResult)
         turning = {

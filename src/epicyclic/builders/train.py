@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
 from epicyclic.builders.built import Built
 from epicyclic.builders.listed_set import listed_element
-from epicyclic.builders.models import fluids_of
+from epicyclic.builders.models import SetCase, fluids_of
 from epicyclic.builders.pair import PAIR_MEMBERS, pair_element
 from epicyclic.builders.planetary import MEMBERS, planetary_element
 from epicyclic.builders.shafts import shaft_layouts
-from epicyclic.case.case import GearPairCase, PlanetaryCase
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.train import TrainCase
@@ -24,7 +24,7 @@ from epicyclic.machine.machine import Operation
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Layout
 
-__all__ = ["build_train", "set_case", "train_layout"]
+__all__ = ["build_train", "set_cases", "train_layout"]
 
 
 def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:
@@ -102,7 +102,16 @@ def _distances(case: TrainCase) -> dict[str, int]:
     return found
 
 
-def set_case(case: TrainCase, name: str) -> PlanetaryCase | GearPairCase | ListedCase:
+def set_cases(case: Case, sets: Iterable[str]) -> Iterator[tuple[str, SetCase]]:
+    """Name and case of each of `sets`; a single set is its own, without a name."""
+    if not isinstance(case, TrainCase):
+        yield "", case
+        return
+    for name in sets:
+        yield name, set_case(case, name)
+
+
+def set_case(case: TrainCase, name: str) -> SetCase:
     """A set or pair of a train as a case of its own, with the oil and surroundings of the train."""
     table = case.sets[name]
     if isinstance(table, ListedSet):

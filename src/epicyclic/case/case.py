@@ -35,6 +35,7 @@ from epicyclic.case.plain import plain
 from epicyclic.case.reading import read_file
 from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.train import TrainCase
+from epicyclic.case.train_tables import StateTable
 from epicyclic.case.validation import tables_of
 from epicyclic.case.wording import one_line, written
 from epicyclic.errors import InputError, Problem
@@ -51,7 +52,21 @@ __all__ = [
 ]
 
 
-class PlanetaryCase(CaseTable):
+class _SetTables(CaseTable):
+    """What a set or pair has in common with a train, and with a set of a train."""
+
+    @property
+    def states(self) -> dict[str, StateTable]:
+        """There is one only, without a name."""
+        return {}
+
+    @property
+    def computed(self) -> bool:
+        """No loss is given."""
+        return True
+
+
+class PlanetaryCase(_SetTables):
     """A planetary gear set with its oil, surroundings and operating point."""
 
     kind: Literal["planetary"]
@@ -77,7 +92,7 @@ class PlanetaryCase(CaseTable):
     losses: PlanetaryLosses = PlanetaryLosses()
 
 
-class GearPairCase(CaseTable):
+class GearPairCase(_SetTables):
     """A pair of gears on parallel axes with its oil, surroundings and operating point."""
 
     kind: Literal["gear_pair"]

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
+from types import GenericAlias
 from typing import TYPE_CHECKING, Any, Literal, Self, cast
 
 from pydantic import Field, PrivateAttr, create_model
@@ -209,8 +210,7 @@ class _TrainTables(CaseTable):
 
 
 _ELEMENTS: dict[str, Any] = {
-    name: (dict[str, kind.table], {})  # type: ignore[name-defined]
-    for name, kind in ELEMENT_KINDS.items()
+    name: (GenericAlias(dict, (str, kind.table)), {}) for name, kind in ELEMENT_KINDS.items()
 }
 if TYPE_CHECKING:
     TrainCase = _TrainTables

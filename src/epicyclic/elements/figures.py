@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.planet_bearing import RollerLoads
+from epicyclic.pocketing.similarity import FLOW_NUMBERS
 from epicyclic.units import (
-    BAR,
     CELSIUS,
     DEGREE,
     GIGAPASCAL,
@@ -111,12 +111,10 @@ class MeshFigures:
     loss_factor: float = figure("loss factor H_V (Ohlendorf)", NUMBER)
     transmission_error_range: float = figure("loaded transmission error, peak to peak", MICROMETRE)
     mesh_stiffness: float = figure("mean mesh stiffness at this load", NEWTON_PER_UM)
-    pocket_pressure_max: float = figure("highest pressure in the pockets, above ambient", BAR)
-    pocket_pressure_min: float = figure("lowest pressure in the pockets, above ambient", BAR)
-    pocket_speed_max: float = figure("fastest flow out of or into a pocket", METRE_PER_SECOND)
-    pocket_power_difference: float = figure(
-        "pocketing loss: energy balance over work, less 1", NUMBER
-    )
+    pocket_pressure_max: float = figure(*FLOW_NUMBERS["pressure_max"])
+    pocket_pressure_min: float = figure(*FLOW_NUMBERS["pressure_min"])
+    pocket_speed_max: float = figure(*FLOW_NUMBERS["speed_max"])
+    pocket_power_difference: float = figure(*FLOW_NUMBERS["difference"])
     pocket_interpolation_error: float = figure(
         "pocketing loss: largest error of its interpolation", NUMBER
     )

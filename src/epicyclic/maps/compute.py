@@ -149,7 +149,7 @@ def map_plan(
     problems += [_shaft_key(key) for key in further if key in _SHAFT_KEYS]
     chosen, found = _states(case, states)
     problems += found
-    if temperature is not None and not _has_oil(case):
+    if temperature is not None and not case.computed:
         allowed = "has no effect: every loss of the train is given."
         problems.append(Problem("temperature", "", allowed, "Leave it out."))
     if problems:
@@ -157,7 +157,7 @@ def map_plan(
     given: dict[str, Iterable[Any]] = {}
     if chosen:
         given[STATE_KEY] = chosen
-    if _has_oil(case):
+    if case.computed:
         if temperature is None:
             temperature = [case.inputs()["operation"]["oil_inlet_temperature"]]
         given[AXES["temperature"]] = temperature
@@ -181,7 +181,7 @@ def _shaft_key(key: str) -> Problem:
 
 def _states(case: Case, chosen: Iterable[Any] | None) -> tuple[list[str], list[Problem]]:
     """The states of a map, and what is wrong with those that were chosen."""
-    known = list(case.states) if isinstance(case, TrainCase) else []
+    known = list(case.states)
     if not known:
         if chosen is None:
             return [], []
@@ -213,8 +213,6 @@ def _unable(name: str, reason: str) -> Problem:
 
 def states_left_out(case: Case, names: Iterable[str] | None = None) -> dict[str, str]:
     """Those of the states `names`, by default all, in which a train cannot run, and why."""
-    if not isinstance(case, TrainCase):
-        return {}
     left_out = {}
     for name in case.states if names is None else names:
         try:
@@ -242,10 +240,6 @@ def _drives_others(case: Case) -> bool:
     if isinstance(case, TrainCase):
         return bool(case.operation.speeds)
     return isinstance(case, PlanetaryCase) and case.operation.second_input is not None
-
-
-def _has_oil(case: Case) -> bool:
-    return not isinstance(case, TrainCase) or case.computed
 
 
 def _prepared(axis: Axis, turns_alone: bool) -> Axis:

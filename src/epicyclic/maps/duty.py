@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.case.case import Case, TrainCase
+from epicyclic.case.case import Case
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.operating import STATE
 from epicyclic.case.wording import sentence, written
@@ -160,10 +160,10 @@ def cycle_map(
     speeds = _crowded(*cycle.ranges["speed"], _SPEEDS)
     torques = _crowded(*cycle.ranges["torque"], _TORQUES)
     temperatures, states = celsius, None
-    if isinstance(case, TrainCase) and case.states:
+    if case.states:
         _check_states(cycle, tuple(case.states))
         states = [name for name in case.states if name in cycle.states]
-    if isinstance(case, TrainCase) and not case.computed:
+    if not case.computed:
         pass  # without an oil its temperature has no effect
     elif "temperature" in cycle.ranges:
         low, high = cycle.ranges["temperature"]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic.builders.build import layout_of
-from epicyclic.case.case import Case, TrainCase
+from epicyclic.case.case import Case
 from epicyclic.case.fields import is_array, is_text, quantity_of
 from epicyclic.case.keys import field_at, known_keys
 from epicyclic.case.nearest import did_you_mean, misspelt
@@ -165,13 +165,12 @@ def parse_measurements(grid: Grid, case: Case, component: str = "total") -> Meas
 
 def _conditions(case: Case) -> dict[str, str]:
     """The conditions that a table of a case must have, and their keys."""
-    given = isinstance(case, TrainCase) and not case.computed
-    return {key: name for key, name in AXES.items() if not (given and key == "temperature")}
+    return {key: name for key, name in AXES.items() if case.computed or key != "temperature"}
 
 
 def _states(case: Case) -> dict[str, str]:
     """The column of states and its key, of a train that has any."""
-    return {STATE: STATE_KEY} if isinstance(case, TrainCase) and case.states else {}
+    return {STATE: STATE_KEY} if case.states else {}
 
 
 def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:

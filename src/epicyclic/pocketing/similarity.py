@@ -19,8 +19,16 @@ from epicyclic.geometry.tools import Tool
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.fluid import PocketFlow, PocketModel, pocket_flow
 from epicyclic.pocketing.geometry import PocketGeometry, pocket_geometry
+from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT, Quantity
 
-__all__ = ["FlowFamily", "FlowFigures", "flow_figures", "from_scaled", "scaled_figures"]
+__all__ = [
+    "FLOW_NUMBERS",
+    "FlowFamily",
+    "FlowFigures",
+    "flow_figures",
+    "from_scaled",
+    "scaled_figures",
+]
 
 Floats = NDArray[np.float64]
 
@@ -66,6 +74,16 @@ class FlowFigures:
     nodes: int = 0
     error: float = math.nan
     file: str = ""
+
+
+FLOW_NUMBERS: dict[str, tuple[str, Quantity]] = {
+    "power": ("pocketing loss of one mesh", WATT),
+    "pressure_max": ("highest pressure in the pockets, above ambient", BAR),
+    "pressure_min": ("lowest pressure in the pockets, above ambient", BAR),
+    "speed_max": ("fastest flow out of or into a pocket", METRE_PER_SECOND),
+    "difference": ("pocketing loss: energy balance over work, less 1", NUMBER),
+}
+"""Label and quantity of the numbers of `FlowFigures`."""
 
 
 @dataclass(frozen=True, slots=True)

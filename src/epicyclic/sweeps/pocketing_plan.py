@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
@@ -26,11 +26,11 @@ from epicyclic.case.plain import plain
 from epicyclic.case.wording import sentence, written
 from epicyclic.elements.gear_mesh import MeshDuty
 from epicyclic.errors import InputError, Problem
-from epicyclic.pocketing.fluid import PocketFlow
+from epicyclic.pocketing.similarity import flow_figures
 from epicyclic.status import Status
 from epicyclic.sweeps.journal import Row
 from epicyclic.sweeps.runner import Plan, guarded
-from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT, Quantity
+from epicyclic.units import NUMBER, Quantity
 
 __all__ = ["NUMBERS", "PARAMETERS", "STUDIES", "StudyAxis", "StudyPlan", "make_study"]
 
@@ -101,22 +101,14 @@ LEVELS = ("speed", "helix-angle", "face-width")
 """Parameters that have curves or panels."""
 
 
-NUMBERS: dict[str, tuple[str, Quantity, Callable[[PocketFlow], float]]] = {
-    "pocketing_loss": ("pocketing loss of one mesh", WATT, lambda flow: flow.power),
-    "power_difference": ("energy balance over work, less 1", NUMBER, lambda flow: flow.difference),
-    "pressure_max": (
-        "highest pressure above ambient",
-        BAR,
-        lambda flow: float(flow.pressure.max()),
-    ),
-    "pressure_min": ("lowest pressure above ambient", BAR, lambda flow: float(flow.pressure.min())),
-    "speed_max": (
-        "fastest flow through any opening",
-        METRE_PER_SECOND,
-        lambda flow: flow.speed_max,
-    ),
+NUMBERS = {
+    "pocketing_loss": "power",
+    "power_difference": "difference",
+    "pressure_max": "pressure_max",
+    "pressure_min": "pressure_min",
+    "speed_max": "speed_max",
 }
-"""What is kept of the flow of a point: label, unit, and how to read it."""
+"""What is kept of the flow of a point, and which of the `FLOW_NUMBERS` it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +182,8 @@ class StudyPlan(Plan):
     def _solve(self, index: int) -> Row:
         flow = solve_variant(self.case, self.duty, self.points[index])
         warning = "" if flow.periodic else "the flow does not repeat; the loss is a mean"
-        numbers = {name: value(flow) for name, (_, _, value) in NUMBERS.items()}
+        figures = flow_figures(flow)
+        numbers = {name: getattr(figures, own) for name, own in NUMBERS.items()}
         return Row(str(Status.CONVERGED), warnings=warning, numbers=numbers)
 
     def variants(self, name: str) -> Iterator[PocketVariant]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from epicyclic.analysis.datasets import variable
 from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.pocketing.similarity import FLOW_NUMBERS
 from epicyclic.results.result import versions
 from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.pocketing_plan import (
@@ -96,9 +97,9 @@ def _dataset(plan: StudyPlan, name: str, rows: Rows, own: list[int]) -> xr.Datas
     if "speed" in coordinates:
         coordinates["speed"][-1]["long_name"] = f"speed of the {_member(plan)}"
     variables: dict[str, Any] = {}
-    for key, (label, quantity, _) in NUMBERS.items():
+    for key, figure in NUMBERS.items():
         values = rows.numbers(key)[own].reshape(shape)
-        variables[key] = variable(dims, values, label, quantity)
+        variables[key] = variable(dims, values, *FLOW_NUMBERS[figure])
     for key, label in (
         ("status", "how the point ended"),
         ("message", "why the point failed"),

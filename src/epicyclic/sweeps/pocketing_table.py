@@ -18,7 +18,7 @@ from epicyclic.case.operating import AXES
 from epicyclic.elements.pocket_flow import POCKETING_SOURCE, flow_family, pocketing_method
 from epicyclic.errors import InputError, Problem
 from epicyclic.lubricant.properties import MixtureState
-from epicyclic.pocketing.similarity import FlowFamily, FlowFigures
+from epicyclic.pocketing.similarity import FLOW_NUMBERS, FlowFamily, FlowFigures
 from epicyclic.pocketing.stored import ATTRIBUTE, store
 from epicyclic.pocketing.table import FlowTable, make_tables
 from epicyclic.results.result import versions
@@ -26,7 +26,6 @@ from epicyclic.status import Status
 from epicyclic.sweeps.journal import Row, Rows
 from epicyclic.sweeps.plan import SweepPlan, make_plan
 from epicyclic.sweeps.runner import Plan, Progress, Runner, guarded
-from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,14 +44,6 @@ SPEED, TEMPERATURE = AXES["speed"], AXES["temperature"]
 _PER_OCTAVE = 256
 """Numbers in each doubling at which a flow may be solved; few of them are. Fewer leave gaps."""
 _DRIVERS = (1, 2)
-_FIGURES = {
-    "power": ("pocketing loss of one mesh", WATT),
-    "pressure_max": ("highest pressure in the pockets, above ambient", BAR),
-    "pressure_min": ("lowest pressure in the pockets, above ambient", BAR),
-    "speed_max": ("fastest flow out of or into a pocket", METRE_PER_SECOND),
-    "difference": ("pocketing loss: energy balance over work, less 1", NUMBER),
-}
-"""Attributes of `FlowFigures`."""
 
 
 def pocketing_table(
@@ -273,17 +264,17 @@ def table_dataset(plan: TablePlan, rows: Rows) -> xr.Dataset:
         "temperature": _coordinate("temperature", temperature.coordinate, temperature.unit),
     }
     both = (len(meshes), len(_DRIVERS))
-    values = np.full((len(_FIGURES), *both, *plan.places.shape), math.nan)
-    flat = values.reshape(len(_FIGURES), len(families), plan.places.size)
+    values = np.full((len(FLOW_NUMBERS), *both, *plan.places.shape), math.nan)
+    flat = values.reshape(len(FLOW_NUMBERS), len(families), plan.places.size)
     for flow in plan.flows:
         figures = _figures(flow, tables.get(flow.family))
         if figures is not None:
             flat[:, families.index(flow.family), flow.index] = [
-                unit.to_display(getattr(figures, name)) for name, (_, unit) in _FIGURES.items()
+                unit.to_display(getattr(figures, name)) for name, (_, unit) in FLOW_NUMBERS.items()
             ]
     variables: dict[str, Any] = {
         name: (tuple(coordinates), array, {"long_name": label, "units": unit.display or "1"})
-        for array, (name, (label, unit)) in zip(values, _FIGURES.items(), strict=True)
+        for array, (name, (label, unit)) in zip(values, FLOW_NUMBERS.items(), strict=True)
     }
     errors = rows.numbers("error").reshape(both)
     about = {"long_name": "largest error of the power, interpolated", "units": "1"}
