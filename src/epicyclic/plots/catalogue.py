@@ -30,6 +30,7 @@ from epicyclic.plots.pockets import plot_life_with_scale, plot_power, plot_volum
 from epicyclic.plots.power_flow import SLIDE, plot_power_flow
 from epicyclic.plots.style import PANEL, styled_figure
 from epicyclic.records.record import ResultRecord, set_of, sets_of
+from epicyclic.results.result import in_words
 
 __all__ = ["PLOTS", "Panel", "Plot", "available", "figure_of", "panels_of"]
 
@@ -96,16 +97,11 @@ def _of_group(
             return []
         found = stored.group(group)
         return [
-            Panel(_words(name) if len(found) > 1 else "", partial(draw, data, *more))
+            Panel(in_words(name) if len(found) > 1 else "", partial(draw, data, *more))
             for name, data in found.items()
         ]
 
     return panels
-
-
-def _words(name: str) -> str:
-    """A mesh or bearing in words, that of a train with its set: ``"planets: sun mesh"``."""
-    return name.replace("_", " ").replace(".", ": ")
 
 
 def _gears_of(stored: Stored) -> Mapping[str, xr.Dataset]:
@@ -119,7 +115,7 @@ def _gears_of(stored: Stored) -> Mapping[str, xr.Dataset]:
 def _gear_set(stored: Stored) -> list[Panel]:
     """The gears of a set, or of every set of a train."""
     return [
-        Panel(_words(name), partial(plot_gear_set, gears))
+        Panel(in_words(name), partial(plot_gear_set, gears))
         for name, gears in sets_of(_gears_of(stored)).items()
     ]
 
@@ -129,7 +125,7 @@ def _teeth(stored: Stored) -> list[Panel]:
         return []
     gears, views = sets_of(stored.group("gears")), stored.group("views")
     return [
-        Panel(_words(key) if len(views) > 1 else "", partial(plot_teeth, view, gears[name]))
+        Panel(in_words(key) if len(views) > 1 else "", partial(plot_teeth, view, gears[name]))
         for key, view in views.items()
         for name in (set_of(key),)
     ]
@@ -161,7 +157,7 @@ def _pocket_pressure(stored: Stored) -> list[Panel]:
     if not isinstance(stored, ResultRecord):
         return []
     return [
-        Panel(_words(name), partial(plot_life_with_scale, data, "pressure", kind))
+        Panel(in_words(name), partial(plot_life_with_scale, data, "pressure", kind))
         for name, data in stored.group("pockets").items()
         for kind in range(data.sizes["tooth"])
     ]

@@ -28,9 +28,9 @@ from epicyclic.report.train_page import (
     model_key,
     part_tables,
     train_losses,
-    words,
 )
 from epicyclic.report.train_tables import users_text
+from epicyclic.results.result import in_words
 from epicyclic.units import format_number, unit_text
 
 __all__ = ["key_figures", "operation_line", "result_sections"]
@@ -247,7 +247,7 @@ def _gears(record: ResultRecord, drawings: Drawings) -> Iterator[Row]:
     drawn = drawings.get("gear-set", ())
     for number_of, (name, gears) in enumerate(sets_of(record.group("gears")).items()):
         picture = (Gallery((drawn[number_of],)),) if number_of < len(drawn) else ()
-        title = f"Gears of {words(name)}" if name else "Gears"
+        title = f"Gears of {in_words(name)}" if name else "Gears"
         yield Row((*picture, _gears_table(title, gears)))
 
 
@@ -285,7 +285,7 @@ def _meshes(record: ResultRecord) -> Iterator[Table]:
     for key, figures in record.result.meshes.items():
         sets.setdefault(set_of(key), {})[key] = figures
     for name, meshes in sets.items():
-        title = f"Meshes of {words(name)}" if name else "Figures of the meshes"
+        title = f"Meshes of {in_words(name)}" if name else "Figures of the meshes"
         yield _figures_table(record, title, "meshes", meshes)
 
 
@@ -306,7 +306,7 @@ def _figures_table(
         rows.append((Cell(label_of(record, first, key)), *cells, unit))
     heads = (name.rpartition(".")[2].replace("_", " ") for name in parts)
     if len(set(map(set_of, parts))) > 1:
-        heads = (words(name) for name in parts)
+        heads = (in_words(name) for name in parts)
     return Table(("", *heads, "unit"), tuple(rows), title)
 
 

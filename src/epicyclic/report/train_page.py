@@ -11,16 +11,12 @@ from epicyclic.records.record import ResultRecord
 from epicyclic.report.page import Cell, Drawings, Gallery, Item, Row, Table, gallery, number
 from epicyclic.report.shown import shown
 from epicyclic.report.train_tables import circulation_text, locking_text, part_head
+from epicyclic.results.result import in_words
 from epicyclic.units import unit_text
 
-__all__ = ["label_of", "model_key", "part_tables", "train_losses", "words"]
+__all__ = ["label_of", "model_key", "part_tables", "train_losses"]
 
 _TITLES = {"bearing": "Shaft bearings", "seal": "Seals", "drag": "Other drags"}
-
-
-def words(key: str) -> str:
-    """A key of a train in words: ``"P1: sun mesh"``."""
-    return key.replace("_", " ").replace(".", ": ")
 
 
 def model_key(key: str) -> str:
@@ -58,7 +54,7 @@ def _sums(result: ResultContents) -> Table:
     columns = kinds if len(kinds) > 1 else []
     rows = [
         (
-            Cell(words(stage)),
+            Cell(in_words(stage)),
             *(
                 number(own[kind], "", text=f"{own[kind]:z.1f}") if kind in own else Cell("")
                 for kind in columns
@@ -87,7 +83,7 @@ def _shafts(result: ResultContents) -> Table:
         joined = f"with {', '.join(others)}" if others else ""
         rows.append(
             (
-                Cell(words(name)),
+                Cell(in_words(name)),
                 number(member.speed.value, f"members.{name}.speed", 6),
                 number(member.torque.value, f"members.{name}.torque", 6),
                 number(member.power.value, f"members.{name}.power", 7),
@@ -114,7 +110,7 @@ def _rolling(result: ResultContents) -> Table:
     for key, power in result.rolling_power.items():
         share = f"{abs(power) / entering:z.1%}" if entering else ""
         cells = [
-            Cell(words(key)),
+            Cell(in_words(key)),
             number(abs(power), f"rolling_power.{key}", text=f"{abs(power):z.1f}"),
             Cell(share, about="number"),
         ]
@@ -138,7 +134,7 @@ def _clutches(result: ResultContents) -> Table:
 
 def _terms(result: ResultContents) -> Table:
     rows = tuple(
-        (Cell(words(name)), *_shares(result, watts, f"losses.{name}"), Cell(result.groups[name]))
+        (Cell(in_words(name)), *_shares(result, watts, f"losses.{name}"), Cell(result.groups[name]))
         for name, watts in result.losses.items()
         if name not in result.not_included
     )
@@ -159,13 +155,13 @@ def part_tables(record: ResultRecord) -> Iterator[Table]:
         )
         rows = tuple(
             (
-                Cell(words(key.rpartition(".")[0])),
+                Cell(in_words(key.rpartition(".")[0])),
                 _loss(result, key.rpartition(".")[0]),
                 *(number(part[name].value, f"parts.{key}.{name}") for name in names),
             )
             for key, part in parts.items()
         )
-        yield Table(("", "loss, W", *heads), rows, _TITLES.get(kind, words(kind)))
+        yield Table(("", "loss, W", *heads), rows, _TITLES.get(kind, in_words(kind)))
 
 
 def _loss(result: ResultContents, stage: str) -> Cell:

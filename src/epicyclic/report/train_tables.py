@@ -24,7 +24,7 @@ from epicyclic.report.result_parts import (
     side_by_side,
 )
 from epicyclic.report.shown import MISSING, shown
-from epicyclic.results.result import Result, Train
+from epicyclic.results.result import Result, Train, in_words
 from epicyclic.units import NEWTON_METRE, RPM, format_number, unit_text
 
 if TYPE_CHECKING:
@@ -75,9 +75,9 @@ def train_tables(result: Result, train: Train) -> list[RenderableType]:
     if any(name not in train.rolling for name in result.losses):
         parts.append(_terms(result))
     for stage, meshes in _by_stage(result.meshes).items():
-        parts.append(meshes_table(f"Meshes of {_words(stage)}", meshes))
+        parts.append(meshes_table(f"Meshes of {in_words(stage)}", meshes))
     if result.bearings:
-        bearings = {_words(key): figures(item) for key, item in result.bearings.items()}
+        bearings = {in_words(key): figures(item) for key, item in result.bearings.items()}
         parts.append(side_by_side("Planet bearings", bearings))
     return parts + list(_parts(result))
 
@@ -107,9 +107,10 @@ def circulation_text(rolling: Mapping[str, float], input_power: float) -> str:
     if not most or not input_power:
         return ""
     largest = max(most, key=lambda key: most[key])
+    names, verb = ", ".join(map(in_words, most)), "pass" if len(most) > 1 else "passes"
     return (
-        f"Power circulates: {', '.join(map(_words, most))} {'pass' if len(most) > 1 else 'passes'} "
-        f"more than enters, {_words(largest)} {shown(most[largest] / input_power, 3)} times as "
+        f"Power circulates: {names} {verb} "
+        f"more than enters, {in_words(largest)} {shown(most[largest] / input_power, 3)} times as "
         "much."
     )
 
@@ -126,14 +127,10 @@ def users_text(names: Iterable[str]) -> str:
         owner, _, term = name.rpartition(".")
         sets.setdefault(owner, []).append(term.replace("_", " "))
     parts = (
-        f"{_words(owner)}: {', '.join(terms)}" if owner else ", ".join(terms)
+        f"{in_words(owner)}: {', '.join(terms)}" if owner else ", ".join(terms)
         for owner, terms in sets.items()
     )
     return "; ".join(parts)
-
-
-def _words(key: str) -> str:
-    return key.replace("_", " ").replace(".", ": ")
 
 
 def _losses(result: Result) -> Table:
@@ -155,7 +152,7 @@ def _losses(result: Result) -> Table:
 
     for stage, own in sums.items():
         cells = [f"{own[kind]:z.1f}" if kind in own else "" for kind in columns]
-        table.add_row(_words(stage), *cells, *ending(sum(own.values())))
+        table.add_row(in_words(stage), *cells, *ending(sum(own.values())))
     table.add_section()
     totals = [sum(own.get(kind, 0.0) for own in sums.values()) for kind in columns]
     cells = [f"{watts:z.1f}" for watts in totals]
@@ -200,7 +197,7 @@ def _rolling(result: Result, train: Train) -> RenderableType:
         share = f"{abs(power) / entering:z.1%}" if entering else ""
         loss = (f"{losses[key]:z.1f}" if key in losses else "",) if losses else ()
         mark = "circulates" if entering and _circulates(power, entering) else ""
-        table.add_row(_words(key), f"{abs(power):z.1f}", share, *loss, mark)
+        table.add_row(in_words(key), f"{abs(power):z.1f}", share, *loss, mark)
     sentence = circulation_text(train.rolling, entering)
     return Group(table, Text(sentence)) if sentence else table
 
@@ -223,7 +220,7 @@ def _terms(result: Result) -> Table:
             table.add_section()
         last = stage
         if not term.left_out:
-            table.add_row(_words(term.name), *share_cells(result, term.watts), term.group)
+            table.add_row(in_words(term.name), *share_cells(result, term.watts), term.group)
     return table
 
 
@@ -252,7 +249,7 @@ def _parts(result: Result) -> Iterator[Table]:
         table = number_table(_TITLES.get(kind.__name__, "Other parts"), "", "loss W", *heads)
         for name, part in parts.items():
             cells = (shown(one.value) for one in figures(part))
-            table.add_row(_words(name), f"{stages[name]:z.1f}", *cells)
+            table.add_row(in_words(name), f"{stages[name]:z.1f}", *cells)
         yield table
 
 

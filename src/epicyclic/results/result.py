@@ -37,6 +37,7 @@ __all__ = [
     "PowerFlow",
     "Result",
     "Train",
+    "in_words",
     "number_fields",
     "versions",
 ]
@@ -457,7 +458,9 @@ class NumberField:
 def number_fields(layout: Layout) -> tuple[NumberField, ...]:
     """The numbers that every result of a layout has."""
     watt = WATT.display
-    fields = [NumberField(name, _words(name), watt, partial(_loss, name)) for name in layout.losses]
+    fields = [
+        NumberField(name, in_words(name), watt, partial(_loss, name)) for name in layout.losses
+    ]
     fields += [
         NumberField("load_dependent", "load-dependent loss", watt, lambda it: it.load_dependent),
         NumberField(
@@ -513,13 +516,14 @@ def _train_fields(layout: Layout) -> Iterator[NumberField]:
     for name in layout.rolling:
         yield NumberField(
             f"{name}_rolling_power",
-            f"{_words(name)}: rolling power",
+            f"{in_words(name)}: rolling power",
             WATT.display,
             partial(_rolling, name),
         )
 
 
-def _words(name: str) -> str:
+def in_words(name: str) -> str:
+    """A key of a train in words: ``"P1: sun mesh"``."""
     return name.replace("_", " ").replace(".", ": ")
 
 
