@@ -191,6 +191,12 @@ class LineContacts:
         number: FloatArray = self.line_load / (self.flanks.equivalent_modulus * self.radius)
         return number
 
+    @property
+    def moes_load(self) -> FloatArray:
+        """M = W/sqrt(2 U), the load parameter of Moes. Theory (R8). [1]"""
+        parameter: FloatArray = self.load_number / np.sqrt(2 * self.speed_number)
+        return parameter
+
     @cached_property
     def minimum_film(self) -> FloatArray:
         """h_min of the smooth contact (Pan and Hamrock). Theory (C10). [m]"""

@@ -73,12 +73,6 @@ class MixedEhlRolling:
         return density
 
 
-def moes_load(contact: MeshContact) -> FloatArray:
-    """M = W/sqrt(2 U), the load parameter of Moes. Theory (R8). [1]"""
-    parameter: FloatArray = contact.load_number / np.sqrt(2 * contact.speed_number)
-    return parameter
-
-
 class GoksemHargreaves:
     """Rolling force of both surfaces of a smooth, fully flooded contact, times u_r.
 
@@ -103,7 +97,6 @@ class GoksemHargreaves:
             200.0,
             NUMBER,
             "numerical solutions of the smooth line contact",
-            moes_load,
         ),
         Range("film_ratio", "film ratio", 1.0, None, NUMBER, "the formula is for full films"),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -20,6 +21,7 @@ __all__ = [
     "Row",
     "Section",
     "Table",
+    "aligned",
     "gallery",
     "number",
 ]
@@ -54,6 +56,11 @@ def number(value: float | None, key: str, digits: int = 4, text: str = "") -> Ce
     if value is None:
         return Cell(MISSING)
     return Cell(text or shown(value, digits), value, key)
+
+
+def aligned(text: str) -> Cell:
+    """A cell of `text` that is aligned as numbers are."""
+    return Cell(text, math.nan)
 
 
 @dataclass(frozen=True, slots=True)

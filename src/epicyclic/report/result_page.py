@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 
 import xarray as xr
@@ -20,6 +19,7 @@ from epicyclic.report.page import (
     Row,
     Section,
     Table,
+    aligned,
     gallery,
     number,
 )
@@ -27,6 +27,7 @@ from epicyclic.report.train_page import (
     label_of,
     model_key,
     part_tables,
+    share_row,
     train_losses,
 )
 from epicyclic.report.train_tables import users_text
@@ -162,23 +163,13 @@ def _losses(result: ResultContents) -> Table:
             if name in result.not_included:
                 rows.append((words, Cell("not included"), Cell(""), Cell("")))
             else:
-                rows.append((words, *_shares(result, watts, f"losses.{name}")))
+                rows.append((words, *share_row(result, watts, f"losses.{name}")))
         key = group.replace("-", "_")
         strong.append(len(rows))
-        rows.append((Cell(group), *_shares(result, getattr(result, key), key)))
+        rows.append((Cell(group), *share_row(result, getattr(result, key), key)))
     strong.append(len(rows))
-    rows.append((Cell("total"), *_shares(result, result.total, "total")))
+    rows.append((Cell("total"), *share_row(result, result.total, "total")))
     return Table(("", "loss, W", "of total", "of input"), tuple(rows), strong=frozenset(strong))
-
-
-def _shares(result: ResultContents, watts: float, key: str) -> tuple[Cell, Cell, Cell]:
-    of_total = f"{watts / result.total:z.1%}" if result.total else ""
-    of_input = f"{watts / result.input_power:z.3%}" if result.input_power else ""
-    return _watts(watts, key), _aligned(of_total), _aligned(of_input)
-
-
-def _aligned(text: str) -> Cell:
-    return Cell(text, math.nan)
 
 
 def _validity_lead(result: ResultContents) -> str:
@@ -200,7 +191,7 @@ def _validity(result: ResultContents) -> tuple[Table | Listing, ...]:
                 Cell(_limits(flag.low, flag.high), about="nowrap"),
                 Cell(unit_text(flag.unit)),
                 Cell(f"{flag.use.role.replace('_', ' ')} {flag.use.model}, {flag.use.where}"),
-                _aligned("under 1%" if flag.share < 0.01 else f"{flag.share:.0%}"),
+                aligned("under 1%" if flag.share < 0.01 else f"{flag.share:.0%}"),
                 Cell(flag.source),
             )
             for flag in sorted(result.validity, key=lambda flag: -flag.share)

@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from epicyclic.elements.figures import Figure, MeshFigures, figures
+from epicyclic.records.contents import ResultContents
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.results.result import Result
 from epicyclic.units import unit_text
@@ -50,7 +51,7 @@ def number_table(title: str, *columns: str) -> Table:
     return table
 
 
-def share_cells(result: Result, watts: float) -> tuple[str, str, str]:
+def share_cells(result: Result | ResultContents, watts: float) -> tuple[str, str, str]:
     """Power, share of the total loss, share of the input power."""
     of_total = f"{watts / result.total:z.1%}" if result.total else ""
     of_input = f"{watts / result.input_power:z.3%}" if result.input_power else ""

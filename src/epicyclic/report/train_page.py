@@ -8,13 +8,24 @@ from epicyclic.analysis.train_losses import LOSS_KINDS, loss_sums
 from epicyclic.plots.power_flow import contents_flow
 from epicyclic.records.contents import Measure, ResultContents
 from epicyclic.records.record import ResultRecord
-from epicyclic.report.page import Cell, Drawings, Gallery, Item, Row, Table, gallery, number
+from epicyclic.report.page import (
+    Cell,
+    Drawings,
+    Gallery,
+    Item,
+    Row,
+    Table,
+    aligned,
+    gallery,
+    number,
+)
+from epicyclic.report.result_parts import share_cells
 from epicyclic.report.shown import shown
 from epicyclic.report.train_tables import circulation_text, locking_text, part_head
 from epicyclic.results.result import in_words
 from epicyclic.units import unit_text
 
-__all__ = ["label_of", "model_key", "part_tables", "train_losses"]
+__all__ = ["label_of", "model_key", "part_tables", "share_row", "train_losses"]
 
 _TITLES = {"bearing": "Shaft bearings", "seal": "Seals", "drag": "Other drags"}
 
@@ -39,11 +50,11 @@ def train_losses(result: ResultContents, drawings: Drawings) -> tuple[Item, ...]
     return tuple(items)
 
 
-def _shares(result: ResultContents, watts: float, key: str) -> tuple[Cell, Cell, Cell]:
-    of_total = f"{watts / result.total:z.1%}" if result.total else ""
-    of_input = f"{watts / result.input_power:z.3%}" if result.input_power else ""
-    sum_of = number(watts, key, text=f"{watts:z.1f}")
-    return sum_of, Cell(of_total, about="number"), Cell(of_input, about="number")
+def share_row(result: ResultContents, watts: float, key: str) -> tuple[Cell, Cell, Cell]:
+    """Power, share of the total loss, share of the input power."""
+    text, *shares = share_cells(result, watts)
+    of_total, of_input = map(aligned, shares)
+    return number(watts, key, text=text), of_total, of_input
 
 
 def _sums(result: ResultContents) -> Table:
@@ -59,13 +70,13 @@ def _sums(result: ResultContents) -> Table:
                 number(own[kind], "", text=f"{own[kind]:z.1f}") if kind in own else Cell("")
                 for kind in columns
             ),
-            *_shares(result, sum(own.values()), f"stages.{stage}"),
+            *share_row(result, sum(own.values()), f"stages.{stage}"),
         )
         for stage, own in sums.items()
     ]
     totals = [sum(own.get(kind, 0.0) for own in sums.values()) for kind in columns]
     whole = (number(watts, "", text=f"{watts:z.1f}") for watts in totals)
-    rows.append((Cell("total"), *whole, *_shares(result, result.total, "total")))
+    rows.append((Cell("total"), *whole, *share_row(result, result.total, "total")))
     head = ("", *columns, "total", "of total", "of input")
     strong = frozenset([len(rows) - 1])
     note = locking_text(result.input, result.output) if result.self_locking else ""
@@ -112,7 +123,7 @@ def _rolling(result: ResultContents) -> Table:
         cells = [
             Cell(in_words(key)),
             number(abs(power), f"rolling_power.{key}", text=f"{abs(power):z.1f}"),
-            Cell(share, about="number"),
+            aligned(share),
         ]
         if losses:
             watts = result.losses.get(key)
@@ -134,7 +145,11 @@ def _clutches(result: ResultContents) -> Table:
 
 def _terms(result: ResultContents) -> Table:
     rows = tuple(
-        (Cell(in_words(name)), *_shares(result, watts, f"losses.{name}"), Cell(result.groups[name]))
+        (
+            Cell(in_words(name)),
+            *share_row(result, watts, f"losses.{name}"),
+            Cell(result.groups[name]),
+        )
         for name, watts in result.losses.items()
         if name not in result.not_included
     )

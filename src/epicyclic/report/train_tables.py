@@ -109,9 +109,8 @@ def circulation_text(rolling: Mapping[str, float], input_power: float) -> str:
     largest = max(most, key=lambda key: most[key])
     names, verb = ", ".join(map(in_words, most)), "pass" if len(most) > 1 else "passes"
     return (
-        f"Power circulates: {names} {verb} "
-        f"more than enters, {in_words(largest)} {shown(most[largest] / input_power, 3)} times as "
-        "much."
+        f"Power circulates: {names} {verb} more than enters, {in_words(largest)} "
+        f"{shown(most[largest] / input_power, 3)} times as much."
     )
 
 
