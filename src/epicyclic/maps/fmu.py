@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from epicyclic.case.operating import STATE
+from epicyclic.case.operating import PLANE, STATE
 from epicyclic.case.wording import one_line
 from epicyclic.errors import EpicyclicError, Problem
 from epicyclic.maps.lookup import Lookup, make_lookup, slack
@@ -153,7 +153,7 @@ def _si_axes(lookup: Lookup) -> list[Any]:
 def _start(names: Sequence[str], axes: Sequence[Any]) -> list[float]:
     """Rest without torque, or what of the map is next to it; lowest temperature, first state."""
     return [
-        float(np.clip(0, axis[0], axis[-1])) if name in ("speed", "torque") else float(axis[0])
+        float(np.clip(0, axis[0], axis[-1])) if name in PLANE else float(axis[0])
         for name, axis in zip(names, axes, strict=True)
     ]
 

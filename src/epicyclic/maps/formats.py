@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from epicyclic.case.operating import AXES, STATE
+from epicyclic.case.operating import AXES, PLANE, STATE
 from epicyclic.errors import InputError, Problem
 from epicyclic.maps import fmu, simscape, simulation, tables, workbook
 from epicyclic.sweeps.dataset import check_place, whole_file
@@ -50,7 +50,6 @@ class Format:
     each_state: bool = False
 
 
-_PLANE = ("speed", "torque")
 _SPACE = (*AXES, STATE)
 
 FORMATS = {
@@ -60,20 +59,20 @@ FORMATS = {
     "excel": Format(".xlsx", "Excel workbook", workbook.write_workbook, workbook.workbook_problems),
     "matlab": Format(".mat", "MATLAB", workbook.write_matlab),
     "vecto": Format(
-        ".vtlm", "VECTO", simulation.write_vecto, simulation.vecto_problems, _PLANE, each_state=True
+        ".vtlm", "VECTO", simulation.write_vecto, simulation.vecto_problems, PLANE, each_state=True
     ),
     "modelica": Format(
         ".mo",
         "Modelica",
         simulation.write_modelica,
         simulation.modelica_problems,
-        _PLANE,
+        PLANE,
         each_state=True,
     ),
     "simscape": Format(".m", "Simscape and Simulink", simscape.write_simscape, axes=_SPACE),
     "fmu": Format(".fmu", "FMI 2.0", fmu.write_fmu, fmu.fmu_problems, _SPACE),
     "gem": Format(
-        "", "EPA GEM", simulation.write_gem, simulation.gem_problems, _PLANE, each_state=True
+        "", "EPA GEM", simulation.write_gem, simulation.gem_problems, PLANE, each_state=True
     ),
 }
 

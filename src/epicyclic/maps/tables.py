@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from epicyclic.case.case import Case, load_case
+from epicyclic.case.operating import PLANE, STATE
 from epicyclic.case.wording import one_line, sentence
 from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.dataset import to_table
@@ -70,7 +71,7 @@ def map_case(data: xr.Dataset, changes: Mapping[str, Any] | None = None) -> Case
         return None
 
 
-def stated(data: xr.Dataset, axes: Sequence[str] = ("speed", "torque")) -> dict[str, str]:
+def stated(data: xr.Dataset, axes: Sequence[str] = PLANE) -> dict[str, str]:
     """The statements of a map, and the values of its axes beyond `axes`, which have one each."""
     single = {
         str(name): f"{data[name].values[0]} {data[name].attrs.get('units', '')}".strip()
@@ -94,7 +95,7 @@ def check_map(data: xr.Dataset, source: str = "the map") -> None:
     """Raise `InputError` unless `data` is a loss map."""
     coords = getattr(data, "coords", ())
     # what a map needs not have it has as an axis, or not at all
-    axes = ["speed", "torque", *(name for name in ("temperature", "state") if name in coords)]
+    axes = [*PLANE, *(name for name in ("temperature", STATE) if name in coords)]
     lacks = [name for name in _NEEDED if name not in getattr(data, "attrs", ())]
     variables = getattr(data, "data_vars", ())
     lacks += [name for name in ("torque_loss", "total") if name not in variables]

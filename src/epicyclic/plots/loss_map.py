@@ -6,12 +6,12 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from epicyclic.case.operating import PLANE
 from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of
 from epicyclic.units import unit_text
 
 __all__ = ["map_at", "plot_map", "plot_map_lines", "plot_map_parts"]
 
-OPERATING = ("speed", "torque")
 LEVELS = 7
 MOST_LINES = 5
 LOSS_SUMS = ("load_dependent", "load_independent", "total", "input_power")
@@ -23,7 +23,7 @@ def map_at(data: xr.Dataset, **values: object) -> xr.Dataset:
 
     The values chosen are left as scalar coordinates.
     """
-    others = {dim: 0 for dim in data.dims if dim not in (*OPERATING, *values)}
+    others = {dim: 0 for dim in data.dims if dim not in (*PLANE, *values)}
     return data.sel(values).isel(others)
 
 
@@ -39,7 +39,7 @@ def plot_map(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     if min(values.shape) < 2 or not np.isfinite(values).any():
         longest = "torque" if data.sizes["torque"] > data.sizes["speed"] else "speed"
         return plot_map_lines(data, name, longest, ax)
-    speed, torque = (data[axis].to_numpy() for axis in OPERATING)
+    speed, torque = (data[axis].to_numpy() for axis in PLANE)
     field = ax.pcolormesh(
         speed, torque, values, shading="gouraud", cmap=COLOUR_MAP, rasterized=True
     )

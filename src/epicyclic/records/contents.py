@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, Self, get_args
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, model_validator
 from pydantic_core import from_json
 
+from epicyclic.case.operating import AXES
 from epicyclic.elements.base import HOUSING
 
 __all__ = ["MapContents", "Measure", "Member", "RecordContents", "ResultContents", "Validity"]
@@ -61,7 +62,7 @@ Kind = Literal["planetary", "gear_pair", "train"]
 Group = Literal["load-dependent", "load-independent"]
 Inputs = Annotated[dict[str, Any], AfterValidator(_with_operation)]
 Versions = Annotated[dict[str, str], AfterValidator(_with_own)]
-_OPERATION = ("speed", "torque", "oil_inlet_temperature")
+_OPERATION = tuple(key.rpartition(".")[2] for key in AXES.values())
 _OPERATION_OF_TRAIN = ("speed", "torque", "input", "output")
 
 

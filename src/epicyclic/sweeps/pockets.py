@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from epicyclic.analysis.solve import pocket_flow_numbers
+from epicyclic.case.operating import AXES, STATE_KEY
 from epicyclic.errors import InputError
 from epicyclic.pocketing.similarity import FlowFamily
 from epicyclic.pocketing.table import FlowTables, make_tables
@@ -17,16 +18,16 @@ if TYPE_CHECKING:
 __all__ = ["flow_tables"]
 
 _LIKE_SPEED = (
-    "operation.state",
-    "operation.speed",
+    STATE_KEY,
+    AXES["speed"],
     "operation.second_speed",
-    "operation.oil_inlet_temperature",
+    AXES["temperature"],
     "surroundings.pressure",
 )
 """Keys that change the number of a flow, but not its family."""
 _FEWEST = 8
 """Values of these keys for which a table is made: few flows are solved as soon."""
-_TORQUE = "operation.torque"
+_TORQUE = AXES["torque"]
 """Only its sign matters to the pockets."""
 
 
