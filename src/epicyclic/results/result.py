@@ -491,7 +491,7 @@ def number_fields(layout: Layout) -> tuple[NumberField, ...]:
     fields += [
         NumberField(
             f"{node}_temperature",
-            f"temperature of the {_words(node)}",
+            f"temperature of the {in_words(node)}",
             CELSIUS.display,
             partial(_temperature, node),
         )
