@@ -14,6 +14,7 @@ from epicyclic.builders.assembly import assemble
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
 from epicyclic.elasticity.loaded_mesh import LoadedMesh
+from epicyclic.elements.base import OIL
 from epicyclic.elements.gear_mesh import elastic_loads, load_mesh
 from epicyclic.elements.pocket_flow import flow_numbers
 from epicyclic.errors import ConvergenceError
@@ -21,6 +22,9 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.pocketing.similarity import FlowFamily
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Result
+
+WARMER = 60.0
+"""How much warmer than its inlet the oil may be for tables to hold the flow through pockets. [K]"""
 
 __all__ = ["loaded_meshes", "mesh_contacts", "pocket_flow_numbers", "solve"]
 
@@ -57,11 +61,19 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
 
 
 def pocket_flow_numbers(case: Case) -> tuple[tuple[FlowFamily, float], ...]:
-    """Family and number of the flow through the pockets of every mesh whose loss is included."""
+    """Family and number of the flow through the pockets of every mesh whose loss is included.
+
+    Where the oil warms up, also the number in oil that is warmer by `WARMER`.
+    """
     built = build(case)
     if built.known_fluids is None:
         return ()
-    return tuple(flow_numbers(tuple(built.mean_duties().values()), built.fluids))
+    duties = tuple(built.mean_duties().values())
+    fluids = [built.fluids]
+    if built.thermal is not None and OIL in built.thermal.start:
+        around = built.fluids.oil.temperature
+        fluids.append(built.thermal.fluids(dict.fromkeys(built.thermal.start, around + WARMER)))
+    return tuple(number for each in fluids for number in flow_numbers(duties, each))
 
 
 def mesh_contacts(case: Case) -> dict[str, MeshContact]:

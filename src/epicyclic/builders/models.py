@@ -24,6 +24,7 @@ from epicyclic.losses.friction.user import FrictionMap
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.losses.rolling import ROLLING_MODELS, MixedEhlRolling, RollingModel
 from epicyclic.oilmodel.model import OilModel, read_oil_model
+from epicyclic.pocketing.memory import FlowMemory
 from epicyclic.pocketing.table import FlowTables
 
 __all__ = [
@@ -176,6 +177,7 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
     """How the losses of each mesh of a case are computed, by the key of the mesh."""
     choices, friction, rolling = loss_choices(case), friction_of(case), rolling_of(case)
     file = case.models.pocketing_table
+    memory = None if case.models.temperatures == "inlet" else FlowMemory()
     return {
         key: MeshModels(
             friction=friction,
@@ -193,6 +195,7 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
                 end_length=case.models.pocket_end_length,
                 file=None if file is None else case.folder / file,
                 tables=flow_tables,
+                memory=memory,
             ),
         )
         for key in _before("_pocketing", choices)

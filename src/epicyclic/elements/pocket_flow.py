@@ -13,6 +13,7 @@ from epicyclic.elements.fluids import Fluids
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow, PocketModel
+from epicyclic.pocketing.memory import FlowMemory
 from epicyclic.pocketing.similarity import FlowFamily, FlowFigures
 from epicyclic.pocketing.stored import stored_table
 from epicyclic.pocketing.table import FlowTables
@@ -57,6 +58,8 @@ class PocketSettings:
         Of a stored table.
     tables : mapping of FlowFamily to FlowTable
         Tables that the points of a sweep share.
+    memory : FlowMemory or None
+        Flows of this very case at other temperatures, while they settle.
     """
 
     include: bool
@@ -67,6 +70,7 @@ class PocketSettings:
     end_length: float
     file: Path | None = None
     tables: FlowTables = field(default_factory=dict, hash=False, compare=False)
+    memory: FlowMemory | None = field(default=None, hash=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,11 +158,19 @@ def mesh_flows(duties: Sequence[MeshDuty], fluids: Fluids) -> Mapping[str, MeshF
         figures = _stored_figures(settings, request)
         if figures is None and request[0] in settings.tables:
             figures = settings.tables[request[0]].figures(*request[1:])
+        if figures is None and settings.memory is not None:
+            figures = settings.memory.figures(*request)
         if figures is None:
             direct[duty.key] = request
         else:
             flows[duty.key] = MeshFlow(figures)
-    return flows | dict(zip(direct, _solve_all(tuple(direct.values())), strict=True))
+    solved = dict(zip(direct, _solve_all(tuple(direct.values())), strict=True))
+    for duty in duties:
+        memory = duty.models.pockets.memory
+        figures = solved[duty.key].figures if duty.key in solved else None
+        if memory is not None and figures is not None:
+            memory.add(*direct[duty.key], figures)
+    return flows | solved
 
 
 def _request(duty: MeshDuty, fluids: Fluids) -> _Request:
