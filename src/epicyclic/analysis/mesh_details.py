@@ -11,17 +11,19 @@ from numpy.typing import NDArray
 
 from epicyclic.analysis.datasets import Variable, variable
 from epicyclic.analysis.sets_of import build_computed
-from epicyclic.builders.built import mesh_key
 from epicyclic.builders.notes import load_notes
 from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case
+from epicyclic.elements.base import joined_key
+from epicyclic.elements.fluids import Fluids
 from epicyclic.elements.gear_mesh import MeshDuty, contact_under, distribute_load
 from epicyclic.errors import InputError, Problem
 from epicyclic.losses.load_distribution import LineLoads
-from epicyclic.lubricant.properties import OilState
+from epicyclic.losses.mesh_warmth import flash_temperatures
 from epicyclic.units import (
     DEGREE,
     GIGAPASCAL,
+    KELVIN,
     METRE_PER_SECOND,
     MICROMETRE,
     MILLIMETRE,
@@ -80,16 +82,16 @@ def mesh_details(case: Case) -> dict[str, xr.Dataset]:
     notes = {name: load_notes(own) for name, own in set_cases(case, built.sets)}
     state = built.state()
     return {
-        key: _details(case.title, key, duty, fluids.oil, notes[name])
+        key: _details(case.title, key, duty, fluids, notes[name])
         for name, own in built.sets.items()
         for duty in own.loaded_duties(state)
-        for key in (mesh_key(name, duty.key),)
+        for key in (joined_key(name, duty.key),)
         if not name or duty.torque1 != 0
     }
 
 
 def _details(
-    title: str, key: str, duty: MeshDuty, oil: OilState, notes: tuple[str, ...]
+    title: str, key: str, duty: MeshDuty, fluids: Fluids, notes: tuple[str, ...]
 ) -> xr.Dataset:
     import xarray as xr
 
@@ -104,7 +106,7 @@ def _details(
         ),
         "face_position": _points(lines.face_position, "position across the face", MILLIMETRE),
         **_loads(loads, mesh.face_width),
-        **_contact(duty, oil, loads),
+        **_contact(duty, key, fluids, loads),
     }
     coordinates = {
         "roll_angle": variable(
@@ -165,9 +167,9 @@ def _loads(loads: LineLoads, face_width: float) -> dict[str, Variable]:
     }
 
 
-def _contact(duty: MeshDuty, oil: OilState, loads: LineLoads) -> dict[str, Variable]:
+def _contact(duty: MeshDuty, key: str, fluids: Fluids, loads: LineLoads) -> dict[str, Variable]:
     """What pressure and motion add."""
-    contact = contact_under(duty, loads, oil)
+    contact = contact_under(duty, loads, fluids.at(key), fluids.oil)
     loaded = (loads.lines.length > 0) & (loads.line_load > 0)
 
     def spread(values: FloatArray) -> FloatArray:
@@ -175,14 +177,17 @@ def _contact(duty: MeshDuty, oil: OilState, loads: LineLoads) -> dict[str, Varia
         field[loaded] = values
         return field
 
-    film = friction = np.full(contact.line_load.shape, math.nan)
+    film = friction = flash = np.full(contact.line_load.shape, math.nan)
     if duty.speed1 != 0:
-        film, friction = contact.film_ratio, duty.models.friction.coefficient(contact)
+        model = duty.models.friction
+        film, friction = contact.film_ratio, model.coefficient(contact.seen_by(model))
+        flash = flash_temperatures(contact, friction, duty.gears.materials)
     power = friction * contact.line_load * np.abs(contact.sliding_speed)
     return {
         "hertz_pressure": _points(spread(contact.hertz_pressure), "contact pressure", GIGAPASCAL),
         "sliding_speed": _points(spread(contact.sliding_speed), "sliding speed", METRE_PER_SECOND),
         "film_ratio": _points(spread(film), "film ratio", NUMBER),
         "friction_coefficient": _points(spread(friction), "coefficient of friction", NUMBER),
+        "flash_temperature": _points(spread(flash), "flash temperature", KELVIN),
         "friction_power": _points(spread(power), "friction power per length", WATT_PER_MM),
     }

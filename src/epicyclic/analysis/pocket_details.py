@@ -14,8 +14,8 @@ from scipy.integrate import cumulative_trapezoid
 from epicyclic.analysis.datasets import Variable, variable
 from epicyclic.analysis.sets_of import build_computed
 from epicyclic.builders.build import build
-from epicyclic.builders.built import mesh_key
 from epicyclic.case.case import Case
+from epicyclic.elements.base import joined_key
 from epicyclic.elements.fluids import Fluids
 from epicyclic.elements.gear_mesh import MeshDuty
 from epicyclic.elements.pocket_flow import pocket_notes, solve_pockets
@@ -91,7 +91,7 @@ def pocket_details(case: Case, meshes: Collection[str] | None = None) -> dict[st
     found = {}
     for name, own in built.sets.items():
         for duty in own.mean_duties(built.state()):
-            key = mesh_key(name, duty.key)
+            key = joined_key(name, duty.key)
             if meshes is not None and key not in meshes:
                 continue
             try:

@@ -12,7 +12,7 @@ __all__ = ["build_computed"]
 
 
 def build_computed(case: Case) -> tuple[Built, Fluids]:
-    """The machine of a case, and its oil.
+    """The machine of a case, and its oil at the temperatures that settle.
 
     Raises
     ------
@@ -28,4 +28,6 @@ def build_computed(case: Case) -> tuple[Built, Fluids]:
             "Give a set its gears (module, face widths, roughness) in place of its efficiency.",
         )
         raise InputError([problem], case.source)
-    return built, built.fluids
+    if built.thermal is None:
+        return built, built.fluids
+    return built, built.solve().solution.state.fluids

@@ -14,11 +14,11 @@ import numpy as np
 
 from epicyclic.analysis.datasets import variable
 from epicyclic.builders.build import build as build_machine
-from epicyclic.builders.built import mesh_key
 from epicyclic.builders.train import set_cases
 from epicyclic.case import build
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable
+from epicyclic.elements.base import joined_key
 from epicyclic.elements.gear_mesh import MeshDuty
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
@@ -58,7 +58,7 @@ def gear_shapes(case: Case) -> dict[str, xr.Dataset]:
         in ``attrs["units"]``.
     """
     return {
-        mesh_key(prefix, name): shape
+        joined_key(prefix, name): shape
         for prefix, own, duties in _drawn_sets(case)
         for name, shape in _set_shapes(own, duties).items()
     }
@@ -77,7 +77,7 @@ def mesh_views(case: Case) -> dict[str, xr.Dataset]:
         where contact begins and ends; ``pressure_angle`` of the line of action.
     """
     return {
-        mesh_key(prefix, duty.key): _view(duty.mesh)
+        joined_key(prefix, duty.key): _view(duty.mesh)
         for prefix, _, duties in _drawn_sets(case)
         for duty in duties
     }

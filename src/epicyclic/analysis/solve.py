@@ -82,7 +82,10 @@ def mesh_contacts(case: Case) -> dict[str, MeshContact]:
     Of a planetary set both meshes of the most loaded planet.
     """
     built, fluids = build_computed(case)
-    contacts = {key: load_mesh(duty, fluids.oil) for key, duty in built.loaded_duties().items()}
+    contacts = {
+        key: load_mesh(duty, fluids.at(key), fluids.oil)
+        for key, duty in built.loaded_duties().items()
+    }
     return {key: contact for key, contact in contacts.items() if contact is not None}
 
 

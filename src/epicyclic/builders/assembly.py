@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
-from epicyclic.builders.built import Built, mesh_key
+from epicyclic.builders.built import Built
 from epicyclic.builders.models import resolve_models
 from epicyclic.builders.notes import case_notes, general_notes
 from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case
 from epicyclic.case.train import TrainCase
-from epicyclic.elements.base import HOUSING, Loss
+from epicyclic.elements.base import HOUSING, Loss, joined_key
 from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.elements.load_sharing import SHARING_METHODS
@@ -117,7 +117,7 @@ def _losses(solution: Solution) -> Iterator[tuple[str, Loss]]:
     yield from solution.given.items()
     for key, result in solution.results.items():
         for name, loss in result.losses.items():
-            yield mesh_key(key, name), loss
+            yield joined_key(key, name), loss
 
 
 def _term(name: str, loss: Loss) -> LossTerm:
@@ -129,7 +129,7 @@ def _term(name: str, loss: Loss) -> LossTerm:
 def _figures(solution: Solution) -> Iterator[tuple[str, Any]]:
     for key, result in solution.results.items():
         for name, item in result.figures.items():
-            yield mesh_key(key, name) if name else key, item
+            yield joined_key(key, name) if name else key, item
 
 
 def _flags(solution: Solution) -> Iterator[ValidityFlag]:
@@ -146,9 +146,9 @@ def _methods(built: Built) -> Iterator[tuple[str, tuple[str, str]]]:
     """How the load along the teeth and between planets is found, for each set."""
     for key, own in built.sets.items():
         distribution = LOAD_DISTRIBUTIONS[own.meshes[0].models.load_distribution]
-        yield mesh_key(key, "load_distribution"), (distribution.title, distribution.source)
+        yield joined_key(key, "load_distribution"), (distribution.title, distribution.source)
         if own.sharing is not None:
-            yield mesh_key(key, "load_sharing"), SHARING_METHODS[own.sharing.method]
+            yield joined_key(key, "load_sharing"), SHARING_METHODS[own.sharing.method]
 
 
 def _sources(terms: Iterable[LossTerm], methods: Methods) -> tuple[str, ...]:
@@ -161,7 +161,7 @@ def _sources(terms: Iterable[LossTerm], methods: Methods) -> tuple[str, ...]:
 def _models(case: Case, built: Built) -> Iterator[tuple[str, str]]:
     for key, own in set_cases(case, built.sets):
         for name, model in resolve_models(own).items():
-            yield mesh_key(key, name), model
+            yield joined_key(key, name), model
 
 
 def _set_notes(case: Case, built: Built, solution: Solution) -> Iterator[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from epicyclic.elements.base import State
+from epicyclic.elements.base import State, joined_key
 from epicyclic.elements.fluids import Fluids
 from epicyclic.elements.gear_mesh import MeshDuty
 from epicyclic.elements.gear_set import GearSet
@@ -15,7 +15,7 @@ from epicyclic.machine.settle import Settled, ThermalModel, isothermal, settle
 from epicyclic.machine.solve import lossless_state, solve_machine
 from epicyclic.results.result import Layout
 
-__all__ = ["Built", "mesh_key"]
+__all__ = ["Built"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,7 @@ class Built:
         """The meshes of the planet that carries most, of every set, by their keys."""
         state = self.state()
         return {
-            mesh_key(name, duty.key): duty
+            joined_key(name, duty.key): duty
             for name, own in self.sets.items()
             for duty in own.loaded_duties(state)
         }
@@ -72,7 +72,7 @@ class Built:
         """The meshes of a planet that carries its mean share, of every set, by their keys."""
         state = self.state()
         return {
-            mesh_key(name, duty.key): duty
+            joined_key(name, duty.key): duty
             for name, own in self.sets.items()
             for duty in own.mean_duties(state)
         }
@@ -81,12 +81,7 @@ class Built:
         """Load on the bearing of a planet that carries its mean share, of every set."""
         state = self.state()
         return {
-            mesh_key(name, key): load
+            joined_key(name, key): load
             for name, own in self.sets.items()
             for key, load in own.mean_loads(state).items()
         }
-
-
-def mesh_key(name: str, mesh: str) -> str:
-    """Key of a mesh in the results: that of its set before it, if the set has one."""
-    return f"{name}.{mesh}" if name else mesh

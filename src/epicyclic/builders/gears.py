@@ -10,12 +10,7 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.tools import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus
 
-__all__ = ["gear_mesh", "node_key"]
-
-
-def node_key(key: str, name: str) -> str:
-    """Thermal node of a gear or pin: with the name of its set before it in a train."""
-    return f"{key}.{name}" if key else name
+__all__ = ["gear_mesh"]
 
 
 def gear_mesh(

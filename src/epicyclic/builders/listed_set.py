@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from epicyclic.builders.gears import gear_mesh, node_key
+from epicyclic.builders.gears import gear_mesh
 from epicyclic.builders.models import loss_choices, mesh_models
 from epicyclic.builders.planetary import planet_bearing
 from epicyclic.case import build
@@ -20,7 +20,7 @@ from epicyclic.case.listed_set import (
     positions_of,
 )
 from epicyclic.case.train_shape import CARRIER
-from epicyclic.elements.base import HOUSING
+from epicyclic.elements.base import HOUSING, joined_key
 from epicyclic.elements.disc import Disc
 from epicyclic.elements.gear_mesh import GearMesh
 from epicyclic.elements.gear_set import GearSet, Planet, PlanetMesh
@@ -83,7 +83,7 @@ def _meshes(
             mesh,
             (tables[one], tables[two]),
             bodies=(bodies[shape.bodies[one]], bodies[shape.bodies[two]]),
-            nodes=(node_key(key, shape.bodies[one]), node_key(key, shape.bodies[two])),
+            nodes=(joined_key(key, shape.bodies[one]), joined_key(key, shape.bodies[two])),
             tools=(tools[one], tools[two]),
             misalignment=table.misalignment,
             models=models[drawn.key],
@@ -124,7 +124,7 @@ def _planets(key: str, case: ListedCase, bodies: Mapping[str, str]) -> Iterator[
             bearing=planet_bearing(case, bearing),
             no_bearing=f"the case has no bearing of {body}",
             tilts=case.models.planet_tilt == "coupled",
-            nodes=(node_key(key, body), node_key(key, f"{body}_pin")),
+            nodes=(joined_key(key, body), joined_key(key, f"{body}_pin")),
         )
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from epicyclic.builders.built import Built
-from epicyclic.builders.gears import gear_mesh, node_key
+from epicyclic.builders.gears import gear_mesh
 from epicyclic.builders.models import fluids_of, loss_choices, mesh_models
 from epicyclic.case import build
 from epicyclic.case.case import GearPairCase
-from epicyclic.elements.base import HOUSING
+from epicyclic.elements.base import HOUSING, joined_key
 from epicyclic.elements.disc import Disc
 from epicyclic.elements.gear_set import GearSet, Reference
 from epicyclic.geometry.cutting import mated_tools
@@ -83,7 +83,7 @@ def pair_element(
                 mesh,
                 tables,
                 bodies=(bodies["pinion"], bodies["gear"]),
-                nodes=(node_key(key, "pinion"), node_key(key, "gear")),
+                nodes=(joined_key(key, "pinion"), joined_key(key, "gear")),
                 tools=mated_tools(mesh, (case.pinion.tool_tip_radius, case.gear.tool_tip_radius)),
                 misalignment=case.mesh.misalignment,
                 models=mesh_models(case, flow_tables)["mesh"],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from epicyclic.builders.built import Built
-from epicyclic.builders.gears import gear_mesh, node_key
+from epicyclic.builders.gears import gear_mesh
 from epicyclic.builders.models import (
     bearing_model,
     fitted_rolling,
@@ -18,7 +18,7 @@ from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.model_tables import Numerics
 from epicyclic.case.part_tables import PlanetBearing as BearingTable
-from epicyclic.elements.base import HOUSING
+from epicyclic.elements.base import HOUSING, joined_key
 from epicyclic.elements.disc import Disc, ThrustBearing
 from epicyclic.elements.gear_mesh import GearMesh
 from epicyclic.elements.gear_set import GearSet, Planet, PlanetMesh, Reference
@@ -150,7 +150,7 @@ def _meshes(
             sun_mesh,
             (case.sun, case.planet),
             bodies=(bodies["sun"], bodies["planet"]),
-            nodes=(node_key(key, "sun"), node_key(key, "planet")),
+            nodes=(joined_key(key, "sun"), joined_key(key, "planet")),
             tools=(sun, planet),
             misalignment=case.sun_mesh.misalignment,
             models=models["sun_mesh"],
@@ -160,7 +160,7 @@ def _meshes(
             ring_mesh,
             (case.planet, case.ring),
             bodies=(bodies["planet"], bodies["ring"]),
-            nodes=(node_key(key, "planet"), node_key(key, "ring")),
+            nodes=(joined_key(key, "planet"), joined_key(key, "ring")),
             tools=(planet, ring),
             misalignment=case.ring_mesh.misalignment,
             models=models["ring_mesh"],
@@ -192,7 +192,7 @@ def _planet(key: str, case: PlanetaryCase, body: str) -> Planet:
         bearing=planet_bearing(case, case.planet_bearing),
         no_bearing="the case has no [planet_bearing]",
         tilts=case.models.planet_tilt == "coupled",
-        nodes=(node_key(key, "planet"), node_key(key, "pin")),
+        nodes=(joined_key(key, "planet"), joined_key(key, "pin")),
     )
 
 

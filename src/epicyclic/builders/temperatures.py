@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from itertools import chain
 
 from epicyclic.builders.models import fluids_of
 from epicyclic.case.case import Case
 from epicyclic.case.thermal_tables import HousingTable, ThermalTable
-from epicyclic.elements.base import OIL
+from epicyclic.elements.base import OIL, joined_key
 from epicyclic.elements.fluids import Fluids, fluids_at, oil_at, oil_flags
 from epicyclic.elements.gear_set import GearSet
 from epicyclic.elements.shaft_bearing import ShaftBearing
@@ -21,6 +20,7 @@ from epicyclic.machine.flank import FlankModel
 from epicyclic.machine.heat_network import Change, HeatSettings, Housing, NetworkModel
 from epicyclic.machine.machine import Machine
 from epicyclic.machine.settle import ThermalModel
+from epicyclic.results.result import in_words
 from epicyclic.thermal.bulk import LUBRICATION_FACTORS
 from epicyclic.thermal.fluid import Fluid, air, mixture, oil_conductivity, oil_heat_capacity
 
@@ -44,7 +44,7 @@ def thermal_model(case: Case, machine: Machine) -> ThermalModel | None:
     if kind == "flank":
         factor = LUBRICATION_FACTORS[table.lubrication]
         return FlankModel(machine, inlet, table.bulk, factor, fluids)
-    settings = _settings(table, machine, inlet)
+    settings = _settings(table, inlet)
     pressure, share = case.surroundings.pressure, case.surroundings.oil_air_ratio
     return NetworkModel(machine, settings, fluids, _media(case.lubricant.oil, pressure, share))
 
@@ -54,8 +54,8 @@ def contact_nodes(machine: Machine) -> dict[str, tuple[str, ...]]:
     found: dict[str, tuple[str, ...]] = {}
     for own in machine.elements:
         if isinstance(own, GearSet):
-            found |= {f"{own.key}.{mesh.key}": mesh.nodes for mesh in own.meshes}
-            found |= {f"{own.key}.{planet.key}": planet.nodes for planet in own.planets}
+            found |= {joined_key(own.key, mesh.key): mesh.nodes for mesh in own.meshes}
+            found |= {joined_key(own.key, planet.key): planet.nodes for planet in own.planets}
         elif isinstance(own, ShaftBearing):
             found[own.key] = (own.key,)
     return found
@@ -94,7 +94,7 @@ def _fluids_at(
 def _flags(oil: Oil, contacts: Mapping[str, float]) -> tuple[ValidityFlag, ...]:
     """Contacts at which the oil leaves its data."""
     return tuple(
-        replace(flag, use=replace(flag.use, where=key.strip(".").replace("_", " ")))
+        replace(flag, use=replace(flag.use, where=in_words(key)))
         for key, temperature in contacts.items()
         for flag in oil_flags(oil, temperature)
     )
@@ -128,14 +128,14 @@ def oil_medium(oil: Oil, temperature: float) -> Fluid:
     )
 
 
-def _settings(table: ThermalTable, machine: Machine, inlet: float) -> HeatSettings:
+def _settings(table: ThermalTable, inlet: float) -> HeatSettings:
     bath = {"dip": table.bath_share, "submerged": 1.0}.get(table.lubrication, 0.0)
     return HeatSettings(
         inlet=inlet,
         outlet=table.oil_outlet_temperature,
         flow=table.oil_flow or 0.0,
         effectiveness=0.0 if table.lubrication in IN_BATH else table.jet_effectiveness,
-        jet_shares=_jet_shares(machine) | table.jet_shares,
+        jet_shares=table.jet_shares,
         bath=bath,
         press_fit=table.press_fit,
         shaft=table.shaft_conductance,
@@ -148,21 +148,6 @@ def _settings(table: ThermalTable, machine: Machine, inlet: float) -> HeatSettin
             name: Change(change.value, change.scale) for name, change in table.conductances.items()
         },
     )
-
-
-def _jet_shares(machine: Machine) -> dict[str, float]:
-    """Each mesh and bearing gets an equal part of the oil, half on each side. Theory (N6)."""
-    weights: dict[str, float] = {}
-    for own in machine.elements:
-        if isinstance(own, GearSet):
-            pairs = [mesh.nodes for mesh in own.meshes]
-            pairs += [planet.nodes for planet in own.planets if planet.bearing]
-            for node in chain.from_iterable(pairs):
-                weights[node] = weights.get(node, 0.0) + own.count
-        elif isinstance(own, ShaftBearing):
-            weights[own.key] = 2.0
-    whole = sum(weights.values())
-    return {node: weight / whole for node, weight in weights.items()}
 
 
 def _housing(table: HousingTable) -> Housing:

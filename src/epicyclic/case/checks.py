@@ -26,6 +26,8 @@ from epicyclic.case.oil_laws import law_problems
 from epicyclic.case.operation_tables import GearPairOperation, PlanetaryOperation
 from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.case.schema import Table
+from epicyclic.case.thermal_checks import check_outlet, check_thermal, check_ways_out
+from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.assembly import are_evenly_spaced
@@ -320,6 +322,16 @@ def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Proble
     ]
 
 
+def _check_ways_out(thermal: ThermalTable, models: GearPairModels) -> list[Problem]:
+    return check_ways_out(thermal, models.temperatures)
+
+
+def _check_outlet(
+    thermal: ThermalTable, operation: PlanetaryOperation | GearPairOperation
+) -> list[Problem]:
+    return check_outlet(thermal, operation.oil_inlet_temperature)
+
+
 _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_operation, ("operation",)),
     (check_planetary, ("gears", "sun", "planet", "ring")),
@@ -330,4 +342,7 @@ _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_load_sharing, ("load_sharing", "sun", "planet", "ring")),
     (_check_friction_table, ("friction_table",)),
     (_check_resolution, ("models", "numerics")),
+    (check_thermal, ("thermal",)),
+    (_check_ways_out, ("thermal", "models")),
+    (_check_outlet, ("thermal", "operation")),
 )

@@ -101,8 +101,8 @@ class ThermalTable(Table):
     )
     jet_shares: dict[str, Number] = Field(
         default={},
-        description="Share of oil_flow that meets a gear or bearing. Default: each mesh an equal "
-        "part, half of it on each gear.",
+        description="Share of oil_flow that meets a gear, pin or bearing; what is left meets the "
+        "others. Default: as much as its heat demands.",
     )
     bath_share: Number = Field(
         default=0.3,

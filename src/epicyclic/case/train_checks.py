@@ -9,8 +9,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.thermal_checks import check_outlet
 from epicyclic.case.train_shape import TrainShape
-from epicyclic.case.train_tables import StateTable
+from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet, StateTable
 from epicyclic.case.wording import written
 from epicyclic.elements.base import HOUSING
 from epicyclic.errors import Problem
@@ -36,10 +37,37 @@ def operation_problems(train: TrainCase, shape: TrainShape) -> list[Problem]:
         for name in getattr(operation, key):
             problems += _shaft_problems(f"operation.{key}.{name}", name, shape)
     problems += _position_problems(train, shape)
+    problems += check_outlet(train.thermal, operation.oil_inlet_temperature)
+    problems += _temperature_problems(train)
     if problems:
         return problems
     problems += _ends_problems(train, shape)
     return problems or _freedom_problems(train, shape)
+
+
+def _temperature_problems(train: TrainCase) -> list[Problem]:
+    """Temperatures follow from losses that are computed, of the whole train."""
+    found = [
+        Problem(
+            f"sets.{name}.models.temperatures",
+            written(table.models.temperatures),
+            f"is a choice for the whole train, which has {written(train.models.temperatures)}.",
+            "Leave it out here, and give models.temperatures of the train.",
+        )
+        for name, table in train.sets.items()
+        if isinstance(table, PlanetarySet | PairSet | ListedSet)
+        and table.models.temperatures not in ("inlet", train.models.temperatures)
+    ]
+    if train.models.temperatures != "inlet" and not train.computed:
+        found.append(
+            Problem(
+                "models.temperatures",
+                written(train.models.temperatures),
+                "needs losses that are computed; all sets have given efficiencies.",
+                'Take "inlet", or give sets their gears in place of efficiencies.',
+            )
+        )
+    return found
 
 
 def state_problems(key: str, state: StateTable, shape: TrainShape) -> list[Problem]:

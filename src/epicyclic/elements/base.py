@@ -22,6 +22,7 @@ __all__ = [
     "ElementResult",
     "Loss",
     "State",
+    "joined_key",
 ]
 
 LOAD_DEPENDENT = "load-dependent"
@@ -30,6 +31,11 @@ HOUSING = "housing"
 """The body that stands still."""
 OIL = "oil"
 """The thermal node of the oil around the gears."""
+
+
+def joined_key(element: str, name: str) -> str:
+    """Key of a part of an element: the element's own before it, if it has one."""
+    return f"{element}.{name}" if element else name
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from epicyclic.elements.base import HOUSING, LOAD_INDEPENDENT, OIL, ElementResult, Loss, State
+from epicyclic.elements.base import (
+    HOUSING,
+    LOAD_INDEPENDENT,
+    OIL,
+    ElementResult,
+    Loss,
+    State,
+    joined_key,
+)
 from epicyclic.elements.disc import Disc, ThrustBearing, disc_loss, thrust_loss
 from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_mesh import GearMesh, MeshDuty, solve_mesh
@@ -345,7 +353,7 @@ class GearSet:
                         planet.bearing,
                         load,
                         planets,
-                        state.fluids.at(f"{self.key}.{planet.key}"),
+                        state.fluids.at(joined_key(self.key, planet.key)),
                         speed,
                     )
                 )
@@ -355,7 +363,7 @@ class GearSet:
                 state.fluids,
                 flows[duty.key],
                 planets,
-                state.fluids.at(f"{self.key}.{duty.key}"),
+                state.fluids.at(joined_key(self.key, duty.key)),
             )
             for duty in duties.values()
         ]

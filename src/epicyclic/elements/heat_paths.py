@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from epicyclic.elements.base import HOUSING, OIL, ElementResult, State
+from epicyclic.elements.base import HOUSING, OIL, ElementResult, State, joined_key
 from epicyclic.elements.figures import BearingFigures
 from epicyclic.elements.gear_set import GearSet, Planet
 from epicyclic.elements.shaft_bearing import ShaftBearing
@@ -17,7 +17,7 @@ from epicyclic.thermal.network import Link
 
 __all__ = ["INLET", "Wetting", "bearing_links", "carrier_node", "gear_set_links"]
 
-INLET = "oil inlet"
+INLET = "oil_inlet"
 """The oil before it meets anything."""
 WIDTH_OF_HEIGHT = 1.2
 """Width of a bearing over the height of its section, if it is not given: an estimate. [1]"""
@@ -124,7 +124,7 @@ def _jet(node: str, wetting: Wetting) -> Iterator[Link]:
     """Oil that comes from the inlet and takes heat of a part along."""
     share = wetting.jet_shares.get(node, 0.0)
     if share and wetting.jet:
-        yield Link(f"{node}-oil jet", node, INLET, share * wetting.jet, JET, ESTIMATE, OIL)
+        yield Link(f"{node}-jet", node, INLET, share * wetting.jet, JET, ESTIMATE, OIL)
 
 
 def _ring_to_housing(own: GearSet, one: _OneGear, wetting: Wetting) -> Iterator[Link]:
@@ -156,7 +156,7 @@ def _planet_to_carrier(
 
 def carrier_node(own: GearSet) -> str:
     """The thermal node of the carrier of a set."""
-    return f"{own.key}.carrier" if own.key else "carrier"
+    return joined_key(own.key, "carrier")
 
 
 def _carrier_to_oil(own: GearSet, state: State, wetting: Wetting) -> Iterator[Link]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -33,6 +33,10 @@ FUNCK = "ISO/TR 14179-2 (Funck 1985), second hand"
 SAME = 1e-11
 """Relative change of temperatures at which conductances and temperatures agree. [1]"""
 MOST_ROUNDS = 200
+LEAST_SHARE = 0.01
+"""Of the oil, for a part without heat, over that for one with all the heat: an estimate. [1]"""
+SMALLEST_HEAT = 1e-6
+"""With which a gearbox without any heat shares its oil evenly. [W]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +119,8 @@ class HeatSettings:
     effectiveness : float
         Of jets. [1]
     jet_shares : mapping of str to float
-        Shares of the flow that meet each node. [1]
+        Shares of the flow that meet some of the nodes; what is left meets the others, as their heat
+        demands. [1]
     bath : float
         Share of the gears that dips into oil. [1]
     press_fit : float
@@ -198,7 +203,7 @@ class NetworkModel:
                 if body != HOUSING:
                     on.setdefault(body, {})[node] = own.key
         return {
-            f"{body} shaft": tuple(nodes)
+            f"{body}_shaft": tuple(nodes)
             for body, nodes in on.items()
             if len(set(nodes.values())) > 1
         }
@@ -221,7 +226,7 @@ class NetworkModel:
             heat[OIL] += heat.pop(HOUSING, 0.0)
         found = dict(temperatures)
         for _ in range(MOST_ROUNDS):
-            network = self.network(temperatures, found, solution, sum(heat.values()))
+            network = self.network(temperatures, found, solution, heat)
             self._check(network)
             new = network.steady(heat)
             moved = max(abs(new[node] - found[node]) / found[node] for node in new)
@@ -247,7 +252,7 @@ class NetworkModel:
         at: Mapping[str, float],
         found: Mapping[str, float],
         solution: Solution,
-        heat: float,
+        heat: Mapping[str, float],
     ) -> Network:
         """The network with the conductances at some temperatures.
 
@@ -259,17 +264,17 @@ class NetworkModel:
             Of the housing, for the heat to the air. [K]
         solution : Solution
             Speeds, and loads of the bearings.
-        heat : float
-            Of all losses, less the power of a cooler. [W]
+        heat : mapping of str to float
+            That arises at each node, less the power of a cooler. [W]
         """
         own = self.settings
         oil, mixture = self.media_at(at[OIL])
-        carried = self._carried(oil, heat)
+        carried = self._carried(oil, sum(heat.values()))
         wetting = Wetting(
             around=oil if own.bath else mixture,
             bath=own.bath,
             jet=own.effectiveness * carried,
-            jet_shares=own.jet_shares,
+            jet_shares=self._jet_shares(heat),
             press_fit=own.press_fit,
         )
         links = [
@@ -283,9 +288,17 @@ class NetworkModel:
         ]
         given = {INLET: own.inlet, AMBIENT: own.ambient, COOLANT: own.coolant}
         met = {node for link in links for node in (link.hot, link.cold, link.target)}
+        strangers = set(own.jet_shares) - set(self.nodes)
+        if strangers:
+            raise _no_such("thermal.jet_shares", "part", strangers, self.nodes)
         unknown = set(own.changes) - {link.key for link in links}
         if unknown:
-            raise _no_such_links(unknown, [link.key for link in links])
+            raise _no_such(
+                "thermal.conductances",
+                "way of the heat",
+                unknown,
+                [link.key for link in links],
+            )
         return Network(
             self.nodes,
             {node: value for node, value in given.items() if node in met},
@@ -298,6 +311,17 @@ class NetworkModel:
         if own.outlet is not None:
             return max(heat, 0.0) / (own.outlet - own.inlet)
         return oil.density * oil.heat_capacity * own.flow
+
+    def _jet_shares(self, heat: Mapping[str, float]) -> dict[str, float]:
+        """The oil goes where the heat arises, unless the user says otherwise. Theory (N6)."""
+        given = self.settings.jet_shares
+        solids = [node for node in heat if node not in (OIL, HOUSING, *given)]
+        whole = sum(heat[node] for node in solids)
+        left = max(0.0, 1 - sum(given.values()))
+        even = LEAST_SHARE * whole + SMALLEST_HEAT
+        weights = {node: heat[node] + even for node in solids}
+        total = sum(weights.values())
+        return dict(given) | {node: left * weight / total for node, weight in weights.items()}
 
     def _of_parts(self, solution: Solution, wetting: Wetting) -> Iterator[Link]:
         housing = self.settings.housing is not None
@@ -320,7 +344,7 @@ class NetworkModel:
 
     def _of_oil(self, carried: float) -> Iterator[Link]:
         if carried:
-            yield Link("oil-oil inlet", OIL, INLET, carried, "flow of oil", "energy balance")
+            yield Link("oil-outflow", OIL, INLET, carried, "flow of oil", "energy balance")
         if self.settings.cooler:
             yield Link("oil-coolant", OIL, COOLANT, self.settings.cooler, "cooler", "given")
 
@@ -362,13 +386,13 @@ def _seats(own: object) -> Iterator[tuple[str, str]]:
         yield from ((body, own.key) for body in own.between)
 
 
-def _no_such_links(unknown: set[str], known: list[str]) -> InputError:
+def _no_such(table: str, noun: str, unknown: Iterable[str], known: Iterable[str]) -> InputError:
     return InputError(
         [
             Problem(
-                f"thermal.conductances.{name}",
+                f"{table}.{name}",
                 "",
-                f"is no way of the heat here; there are {', '.join(known)}.",
+                f"is no {noun} here; there are {', '.join(known)}.",
                 "Take one of these names.",
             )
             for name in sorted(unknown)

@@ -141,9 +141,12 @@ def _runaway(
     temperatures: Mapping[str, float], found: list[tuple[Solution, Answer]]
 ) -> ConvergenceError:
     hottest = max(temperatures, key=lambda node: temperatures[node])
+    reached = f"{hottest.replace('_', ' ')} {CELSIUS.text(temperatures[hottest], 4)}"
+    if OIL in temperatures and hottest != OIL:
+        reached += f", oil {CELSIUS.text(temperatures[OIL], 4)}"
     return ConvergenceError(
-        f"the gearbox runs away: losses and heat find no balance; after {len(found)} passes "
-        f"{hottest} is at {CELSIUS.text(temperatures[hottest], 4)} and the oil at "
-        f"{CELSIUS.text(temperatures.get(OIL, temperatures[hottest]), 4)}. Take more away: "
-        "thermal.oil_flow, thermal.cooler_conductance, a larger [thermal.housing]."
+        "the gearbox runs away: its heat would leave only beyond "
+        f"{CELSIUS.text(HOTTEST, 4)}, up to which losses are computed. After {len(found)} passes "
+        f"the temperatures are: {reached}. Take more heat away (thermal.oil_flow, "
+        "thermal.cooler_conductance, a larger [thermal.housing]), or pass less power."
     )
