@@ -77,6 +77,11 @@ def fluid_notes(case: SetCase) -> tuple[str, ...]:
     if FittedFriction.name in models.values() and fitted_oil_model(case).oil != oil:
         fitted = fitted_oil_model(case).oil.name
         notes.append(f"models.oil_model was fitted for {fitted}, not for {oil.name}.")
+    if case.models.temperatures != "inlet" and friction_of(case).takes_oil_temperature:
+        notes.append(
+            f"models.friction: {models['friction']} was fitted to tests by the temperature of their "
+            "oil: it takes that of the oil around the gears, not that of the flanks."
+        )
     factor = case.lubricant.pressure_viscosity_factor
     if factor != 1:
         notes.append(f"The pressure-viscosity coefficient of the oil is multiplied by {factor:g}.")

@@ -114,6 +114,11 @@ def set_cases(case: Case, sets: Iterable[str]) -> Iterator[tuple[str, SetCase]]:
 def set_case(case: TrainCase, name: str) -> SetCase:
     """A set or pair of a train as a case of its own, with the oil and surroundings of the train."""
     table = case.sets[name]
+    assert isinstance(table, PlanetarySet | PairSet | ListedSet)
+    temperatures = case.models.temperatures
+    if table.models.temperatures != temperatures:
+        models = table.models.model_copy(update={"temperatures": temperatures})
+        table = table.model_copy(update={"models": models})
     if isinstance(table, ListedSet):
         assert case.lubricant is not None
         return ListedCase(
@@ -125,7 +130,6 @@ def set_case(case: TrainCase, name: str) -> SetCase:
             case.contact_solver,
             case.folder,
         )
-    assert isinstance(table, PlanetarySet | PairSet)
     kind = PlanetaryCase if isinstance(table, PlanetarySet) else GearPairCase
     shared: dict[str, Any] = {
         "kind": "planetary" if kind is PlanetaryCase else "gear_pair",

@@ -1,0 +1,214 @@
+"""Temperatures that follow from the losses: limits, balances, symmetry, what is fed with what."""
+
+from __future__ import annotations
+
+import copy
+import math
+
+import pytest
+
+import epicyclic as ep
+from asymmetric import gear_pair, planetary
+
+FLOW = {"models.temperatures": "network", "thermal.oil_flow": "3.7 l/min"}
+HOUSED = {
+    "models.temperatures": "network",
+    "thermal.oil_flow": "2.3 l/min",
+    "thermal.housing.area": "0.37 m^2",
+    "thermal.ambient_temperature": "17 degC",
+}
+TALBOT = "talbot-2012"
+
+
+@pytest.fixture(scope="module")
+def settled():
+    return ep.solve(ep.load_case(planetary()).updated(HOUSED))
+
+
+def leaving(result):
+    """Heat that leaves by every way to a node of given temperature."""
+    ends = set(result.heat.given)
+    return sum(way.watts for way in result.heat.ways if way.into in ends)
+
+
+def test_the_heat_that_leaves_is_the_loss(settled):
+    assert settled.heat.residual < 1e-9
+    assert leaving(settled) == pytest.approx(settled.total, rel=1e-9)
+    assert sum(settled.heat.sources.values()) == pytest.approx(settled.total, rel=1e-12)
+    assert settled.heat.evaluations < 10
+    powers = sum(member.power for member in settled.flow.members.values())
+    assert powers == pytest.approx(settled.total, rel=1e-10)
+
+
+def test_losses_belong_to_the_temperatures_they_lead_to(settled):
+    temperatures = settled.heat.temperatures
+    for key, nodes in (
+        ("sun_mesh", ("sun", "planet")),
+        ("ring_mesh", ("planet", "ring")),
+    ):
+        mean = sum(temperatures[node] for node in nodes) / 2
+        assert settled.meshes[key].contact_temperature == pytest.approx(mean, abs=1e-6)
+    middle = (temperatures["planet"] + temperatures["pin"]) / 2
+    assert settled.bearing.contact_temperature == pytest.approx(middle, abs=1e-6)
+
+
+def test_no_two_parts_are_equally_warm(settled):
+    values = sorted(settled.heat.temperatures.values())
+    assert all(hot - cold > 0.01 for cold, hot in zip(values, values[1:], strict=False))
+
+
+def test_endless_oil_keeps_everything_at_the_inlet_temperature():
+    case = ep.load_case(planetary())
+    flooded = ep.solve(case.updated(FLOW | {"thermal.oil_flow": "1e6 l/min"}))
+    inlet = case.operation.oil_inlet_temperature
+    assert flooded.heat.temperatures["oil"] == pytest.approx(inlet, abs=1e-3)
+    for node in ("sun", "planet", "ring", "pin"):
+        assert flooded.heat.temperatures[node] == pytest.approx(inlet, abs=1e-2)
+    isothermal = ep.solve(case)
+    for name, watts in isothermal.losses.items():
+        assert flooded.losses[name] == pytest.approx(watts, rel=2e-4), name
+
+
+def test_a_measured_outlet_temperature_gives_the_flow():
+    case = ep.load_case(planetary())
+    known = ep.solve(case.updated(FLOW))
+    outlet = f"{known.heat.temperatures['oil']!r} K"
+    changes = {"models.temperatures": "network", "thermal.oil_outlet_temperature": outlet}
+    found = ep.solve(case.updated(changes))
+    assert found.total == pytest.approx(known.total, rel=1e-7)
+    for node, value in known.heat.temperatures.items():
+        assert found.heat.temperatures[node] == pytest.approx(value, abs=1e-5), node
+
+
+def test_flank_rises_by_the_flash_of_its_own_meshes():
+    case = ep.load_case(planetary())
+    result = ep.solve(case.updated({"models.temperatures": "flank", "thermal.lubrication": "dip"}))
+    inlet, count = case.operation.oil_inlet_temperature, case.planet.count
+    sun, ring = (result.meshes[key].flash_temperature_mean for key in ("sun_mesh", "ring_mesh"))
+    rises = {node: value - inlet for node, value in result.heat.temperatures.items()}
+    assert rises == pytest.approx(
+        {
+            "sun": 0.47 * 1.0 * (1 + count) / 2 * sun,
+            "ring": 0.47 * 1.0 * (1 + count) / 2 * ring,
+            "planet": 0.47 * 1.0 * 1.5 * (sun + ring) / 2,
+        },
+        rel=1e-6,
+    )
+    # the planet bearing lies between planet and oil
+    middle = inlet + rises["planet"] / 2
+    assert result.bearing.contact_temperature == pytest.approx(middle, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "friction, changes_it",
+    [("schlenk", False), ("niemann-winter", False), ("benedict-kelley", False), ("mixed-ehl", True)],
+)
+def test_formulas_fitted_by_the_oil_take_the_oil(friction, changes_it):
+    case = ep.load_case(planetary()).updated({"models.friction": friction})
+    cold, warm = ep.solve(case), ep.solve(case.updated({"models.temperatures": "flank"}))
+    told = [note for note in warm.warnings if "by the temperature of their oil" in note]
+    assert bool(told) is not changes_it
+    same = warm.losses["sun_mesh_sliding"] == cold.losses["sun_mesh_sliding"]
+    assert same is not changes_it
+
+
+def test_heat_of_sliding_goes_where_it_is_carried_away():
+    """A gear of a material that takes up heat more readily gets more of it."""
+    tables = planetary()
+    base = ep.solve(ep.load_case(tables).updated(FLOW))
+    changed = copy.deepcopy(tables)
+    changed["sun"]["material"]["thermal_conductivity"] = "390 W/(m*K)"
+    copper = ep.solve(ep.load_case(changed).updated(FLOW))
+    assert copper.heat.sources["sun"] > 1.2 * base.heat.sources["sun"]
+    assert copper.meshes["sun_mesh"].flash_temperature_mean < (
+        0.8 * base.meshes["sun_mesh"].flash_temperature_mean
+    )
+    ring = base.meshes["ring_mesh"].flash_temperature_mean
+    assert copper.meshes["ring_mesh"].flash_temperature_mean == pytest.approx(ring, rel=0.05)
+
+
+def test_exchanged_gears_keep_their_temperatures():
+    tables = gear_pair()
+    exchanged = copy.deepcopy(tables)
+    exchanged["pinion"], exchanged["gear"] = tables["gear"], tables["pinion"]
+    ratio = tables["gear"]["teeth"] / tables["pinion"]["teeth"]
+    one = ep.load_case(tables)
+    torque, speed = one.operation.torque, one.operation.speed
+    turned = ep.load_case(exchanged).updated(
+        {
+            "operation.torque": f"{torque * ratio!r} N*m",
+            "operation.speed": f"{speed / ratio!r} rad/s",
+        }
+    )
+    changes = FLOW | {"losses.mesh_pocketing.include": False}
+    first, second = (ep.solve(case.updated(changes)) for case in (one, turned))
+    for node, other in (("pinion", "gear"), ("gear", "pinion"), ("oil", "oil")):
+        assert second.heat.temperatures[other] == pytest.approx(
+            first.heat.temperatures[node], abs=1e-5
+        )
+
+
+def test_a_train_of_one_set_is_as_warm_as_the_set():
+    tables = ep.load_case("train-eaxle").given()
+    tables["sets"] = {"only": tables["sets"]["pair"]}
+    for key in ("bearings", "seals", "positions", "drags", "states"):
+        tables.pop(key, None)
+    tables["shafts"] = {}
+    tables["operation"] = tables["operation"] | {"input": "only.pinion", "output": "only.gear"}
+    train = ep.solve(ep.load_case(tables).updated(FLOW))
+    case = ep.load_case(tables)
+    own = case.sets["only"]
+    assert {node.removeprefix("only.") for node in train.heat.temperatures} == {
+        "pinion",
+        "gear",
+        "oil",
+    }
+    assert own.pinion.teeth != own.gear.teeth
+    assert leaving(train) == pytest.approx(train.total, rel=1e-9)
+
+
+def test_a_train_balances_its_heat():
+    case = ep.load_case("train-eaxle").updated(HOUSED)
+    result = ep.solve(case)
+    assert result.heat.residual < 1e-9
+    assert leaving(result) == pytest.approx(result.total, rel=1e-9)
+    assert {"motor_front", "pair.pinion", "planets.planet"} < set(result.heat.temperatures)
+
+
+def test_no_way_for_the_heat_is_an_error():
+    case = ep.load_case(TALBOT)
+    with pytest.raises(ep.InputError, match="no way out"):
+        case.updated({"models.temperatures": "network"})
+    dry = {"thermal.jet_effectiveness": 0, "losses.sun_drag.include": True}
+    with pytest.raises(ep.InputError, match=r"heat of ring has no way out"):
+        ep.solve(case.updated(FLOW | dry))
+
+
+def test_a_gearbox_that_runs_away_says_how_hot_it_gets():
+    case = ep.load_case(TALBOT).updated(FLOW | {"thermal.oil_flow": "0.01 l/min"})
+    with pytest.raises(ep.ConvergenceError, match=r"runs away.*oil \d+ degC"):
+        ep.solve(case)
+
+
+def test_oil_outside_its_data_is_told_with_the_temperature():
+    result = ep.solve(ep.load_case(TALBOT).updated(FLOW))
+    told = [text for text in result.warnings if "data of this oil" in text]
+    hottest = max(
+        result.meshes["sun_mesh"].contact_temperature,
+        result.meshes["ring_mesh"].contact_temperature,
+        result.bearing.contact_temperature,
+    )
+    assert len(told) == 1
+    assert f"to {hottest - 273.15:.0f} degC" in told[0]
+
+
+def test_flows_remembered_are_as_good_as_solved():
+    """The pockets' power while the oil warms up, against the flow at the very temperature."""
+    result = ep.solve(ep.load_case(TALBOT).updated(FLOW))
+    oil = result.heat.temperatures["oil"]
+    isothermal = ep.solve(
+        ep.load_case(TALBOT).updated({"operation.oil_inlet_temperature": f"{oil!r} K"})
+    )
+    for name in ("sun_mesh_pocketing", "ring_mesh_pocketing", "sun_drag", "carrier_drag"):
+        assert result.losses[name] == pytest.approx(isothermal.losses[name], rel=1e-5), name
+        assert not math.isnan(result.losses[name])
