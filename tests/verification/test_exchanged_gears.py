@@ -54,3 +54,18 @@ def test_a_pair_with_its_gears_exchanged_loses_the_same(friction):
     for name in ("mesh_sliding", "mesh_rolling", "drag"):
         assert two.losses[name] == pytest.approx(one.losses[name], rel=ROUNDING), name
     assert two.losses["mesh_pocketing"] == pytest.approx(one.losses["mesh_pocketing"], rel=FLOW)
+
+
+def test_a_pair_with_its_gears_exchanged_is_as_warm():
+    changes = {
+        "models.temperatures": "network",
+        "thermal.oil_flow": "3.7 l/min",
+        "losses.mesh_pocketing.include": False,
+    }
+    tables = asymmetric.gear_pair()
+    one, two = (
+        ep.solve(ep.load_case(pair).updated(changes)) for pair in (tables, exchanged(tables))
+    )
+    for node, other in (("pinion", "gear"), ("gear", "pinion"), ("oil", "oil")):
+        assert two.heat.temperatures[other] == pytest.approx(one.heat.temperatures[node], abs=1e-6)
+    assert abs(one.heat.temperatures["pinion"] - one.heat.temperatures["gear"]) > 0.1

@@ -79,8 +79,8 @@ def fluid_notes(case: SetCase) -> tuple[str, ...]:
         notes.append(f"models.oil_model was fitted for {fitted}, not for {oil.name}.")
     if case.models.temperatures != "inlet" and friction_of(case).takes_oil_temperature:
         notes.append(
-            f"models.friction: {models['friction']} was fitted to tests by the temperature of their "
-            "oil: it takes that of the oil around the gears, not that of the flanks."
+            f"models.friction: {models['friction']} was fitted to tests by the temperature of "
+            "their oil: it takes that of the oil around the gears, not that of the flanks."
         )
     factor = case.lubricant.pressure_viscosity_factor
     if factor != 1:

@@ -72,7 +72,7 @@ class _OneGear:
 def gear_set_links(
     own: GearSet, state: State, result: ElementResult, wetting: Wetting
 ) -> Iterator[Link]:
-    """Ways of the heat of a set. Theory (N5), (N6), (N7)."""
+    """Ways of the heat of a set. Theory (W29), (W30), (W31)."""
     planets = {planet.nodes[0]: planet for planet in own.planets}
     for one in _gears(own, planets):
         planet = planets.get(one.node)

@@ -213,7 +213,7 @@ class NetworkModel:
         return self.fluids_at(temperatures)
 
     def answer(self, temperatures: Mapping[str, float], solution: Solution) -> Answer:
-        """Temperatures at which the heat of the losses leaves. Theory (N2).
+        """Temperatures at which the heat of the losses leaves. Theory (W26).
 
         Raises
         ------
@@ -313,7 +313,7 @@ class NetworkModel:
         return oil.density * oil.heat_capacity * own.flow
 
     def _jet_shares(self, heat: Mapping[str, float]) -> dict[str, float]:
-        """The oil goes where the heat arises, unless the user says otherwise. Theory (N6)."""
+        """The oil goes where the heat arises, unless the user says otherwise. Theory (W30)."""
         given = self.settings.jet_shares
         solids = [node for node in heat if node not in (OIL, HOUSING, *given)]
         whole = sum(heat[node] for node in solids)

@@ -104,7 +104,7 @@ def _losses(solution: Solution) -> list[Loss]:
 
 
 def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settled:
-    """Temperatures and losses that agree. Theory (N3).
+    """Temperatures and losses that agree. Theory (W27).
 
     Broyden's method on the temperatures, which starts as the plain repetition of losses and
     temperatures.

@@ -71,7 +71,7 @@ class Network:
     capacities: Mapping[str, float] = field(default_factory=dict[str, float])
 
     def steady(self, heat: Mapping[str, float]) -> dict[str, float]:
-        """Temperatures at which the heat that arises leaves again. Theory (N2).
+        """Temperatures at which the heat that arises leaves again. Theory (W26).
 
         Parameters
         ----------
@@ -94,7 +94,7 @@ class Network:
         return dict(zip(self.nodes, map(float, found), strict=True))
 
     def system(self) -> tuple[FloatArray, FloatArray]:
-        """Matrix A and vector b of C dT/dt = q + b - A T. Theory (N1)."""
+        """Matrix A and vector b of C dT/dt = q + b - A T. Theory (W25)."""
         place = {node: index for index, node in enumerate(self.nodes)}
         matrix = np.zeros((len(self.nodes), len(self.nodes)))
         known = np.zeros(len(self.nodes))
@@ -144,7 +144,7 @@ class Network:
         return tuple(node for node in self.nodes if node not in reached)
 
     def time_constants(self) -> FloatArray:
-        """Of the network with constant heat, from the slowest to the fastest. Theory (N4). [s]
+        """Of the network with constant heat, from the slowest to the fastest. Theory (W28). [s]
 
         Raises
         ------
