@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import itertools
 import math
 
 import pytest
@@ -54,7 +55,7 @@ def test_losses_belong_to_the_temperatures_they_lead_to(settled):
 
 def test_no_two_parts_are_equally_warm(settled):
     values = sorted(settled.heat.temperatures.values())
-    assert all(hot - cold > 0.01 for cold, hot in zip(values, values[1:], strict=False))
+    assert all(hot - cold > 0.01 for cold, hot in itertools.pairwise(values))
 
 
 def test_endless_oil_keeps_everything_at_the_inlet_temperature():
@@ -67,6 +68,16 @@ def test_endless_oil_keeps_everything_at_the_inlet_temperature():
     isothermal = ep.solve(case)
     for name, watts in isothermal.losses.items():
         assert flooded.losses[name] == pytest.approx(watts, rel=2e-4), name
+
+
+def test_a_cooler_takes_its_power_from_the_oil():
+    cooled = HOUSED | {"thermal.cooler_power": "130 W", "thermal.cooler_conductance": "2.9 W/K"}
+    result = ep.solve(ep.load_case(planetary()).updated(cooled))
+    ways = {way.key: way for way in result.heat.ways}
+    assert ways["oil-cooler"].watts == 130.0
+    driven = 2.9 * (result.heat.temperatures["oil"] - 313.15)
+    assert ways["oil-coolant"].watts == pytest.approx(driven, rel=1e-9)
+    assert leaving(result) == pytest.approx(result.total, rel=1e-9)
 
 
 def test_a_measured_outlet_temperature_gives_the_flow():
@@ -100,7 +111,7 @@ def test_flank_rises_by_the_flash_of_its_own_meshes():
 
 
 @pytest.mark.parametrize(
-    "friction, changes_it",
+    ("friction", "changes_it"),
     [
         ("schlenk", False),
         ("niemann-winter", False),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -17,7 +18,7 @@ from epicyclic.elements.heat_paths import (
     gear_set_links,
 )
 from epicyclic.elements.shaft_bearing import ShaftBearing
-from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.errors import InputError, Problem
 from epicyclic.machine.machine import Machine
 from epicyclic.machine.settle import Answer, heat_of
 from epicyclic.machine.solve import Solution
@@ -30,9 +31,11 @@ __all__ = ["AMBIENT", "COOLANT", "Change", "HeatSettings", "Housing", "NetworkMo
 AMBIENT = "air"
 COOLANT = "coolant"
 FUNCK = "ISO/TR 14179-2 (Funck 1985), second hand"
-SAME = 1e-11
-"""Relative change of temperatures at which conductances and temperatures agree. [1]"""
-MOST_ROUNDS = 200
+SAME = 1e-13
+"""Relative error of the temperature of the housing. [1]"""
+WALLS = (1.0, 1e7)
+"""Between which the housing may be while temperatures settle. [K]"""
+POWERED = "oil-cooler"
 LEAST_SHARE = 0.01
 """Of the oil, for a part without heat, over that for one with all the heat: an estimate. [1]"""
 SMALLEST_HEAT = 1e-6
@@ -181,18 +184,25 @@ class NetworkModel:
     @property
     def nodes(self) -> tuple[str, ...]:
         """All nodes of unknown temperature."""
+        carriers = {
+            carrier_node(own): None
+            for own in self.machine.elements
+            if isinstance(own, GearSet) and any(planet.bearing for planet in own.planets)
+        }
+        ends = (OIL,) if self.settings.housing is None else (OIL, HOUSING)
+        return (*self.wetted, *carriers, *self.shafts, *ends)
+
+    @property
+    def wetted(self) -> tuple[str, ...]:
+        """Nodes that oil can be thrown on: gears, pins, bearings of shafts."""
         found: dict[str, None] = {}
         for own in self.machine.elements:
             if isinstance(own, GearSet):
                 found |= dict.fromkeys(node for mesh in own.meshes for node in mesh.nodes)
-                held = [planet for planet in own.planets if planet.bearing]
-                found |= dict.fromkeys(planet.nodes[1] for planet in held)
-                found |= dict.fromkeys(carrier_node(own) for _ in held)
+                found |= dict.fromkeys(planet.nodes[1] for planet in own.planets if planet.bearing)
             elif isinstance(own, ShaftBearing):
                 found[own.key] = None
-        found |= dict.fromkeys(self.shafts)
-        ends = (OIL,) if self.settings.housing is None else (OIL, HOUSING)
-        return (*found, *ends)
+        return tuple(found)
 
     @property
     def shafts(self) -> Mapping[str, tuple[str, ...]]:
@@ -224,51 +234,62 @@ class NetworkModel:
         heat[OIL] = heat.get(OIL, 0.0) - self.settings.cooler_power
         if self.settings.housing is None:
             heat[OIL] += heat.pop(HOUSING, 0.0)
-        found = dict(temperatures)
-        for _ in range(MOST_ROUNDS):
-            network = self.network(temperatures, found, solution, heat)
-            self._check(network)
-            new = network.steady(heat)
-            moved = max(abs(new[node] - found[node]) / found[node] for node in new)
-            found = new
-            if moved <= SAME:
-                break
-        else:
-            raise ConvergenceError(
-                "the temperature of the housing does not settle: check [thermal.housing]."
-            )
+        fixed = self._fixed_links(temperatures[OIL], solution, heat)
+        network = self._with_wall(fixed, self._wall(fixed, heat))
+        found = network.steady(heat)
         whole = sum(map(abs, heat.values()))
         left = max(map(abs, network.residuals(found, heat).values()))
         return Answer(
             temperatures=found,
-            links=network.links,
-            flows=network.flows(found),
+            links=(*network.links, *self._cooler()),
+            flows=network.flows(found) | {POWERED: self.settings.cooler_power},
             given=network.given,
             residual=left / whole if whole else 0.0,
         )
 
-    def network(
-        self,
-        at: Mapping[str, float],
-        found: Mapping[str, float],
-        solution: Solution,
-        heat: Mapping[str, float],
-    ) -> Network:
-        """The network with the conductances at some temperatures.
+    def _wall(self, fixed: Sequence[Link], heat: Mapping[str, float]) -> float:
+        """Temperature of the housing, on which the heat to the air depends. [K]"""
+        from scipy.optimize import brentq
+
+        if self.settings.housing is None:
+            return math.nan
+
+        def off(wall: float) -> float:
+            return self._with_wall(fixed, wall).steady(heat)[HOUSING] - wall
+
+        # the warmer the wall is taken to be, the better it is cooled: one temperature fits
+        return float(brentq(off, *WALLS, xtol=SAME, rtol=SAME))
+
+    def _with_wall(self, fixed: Sequence[Link], wall: float) -> Network:
+        """The network with the housing at a temperature, as far as conductances depend on it."""
+        own = self.settings
+        outside = () if own.housing is None else own.housing.links(wall, own.ambient)
+        links = (*fixed, *map(self._changed, outside))
+        given = {INLET: own.inlet, AMBIENT: own.ambient, COOLANT: own.coolant}
+        met = {node for link in links for node in (link.hot, link.cold, link.target)}
+        met |= {link.target for link in self._cooler()}
+        network = Network(
+            self.nodes, {node: value for node, value in given.items() if node in met}, links
+        )
+        self._check(network)
+        return network
+
+    def _fixed_links(
+        self, around: float, solution: Solution, heat: Mapping[str, float]
+    ) -> tuple[Link, ...]:
+        """All ways of the heat but that to the air.
 
         Parameters
         ----------
-        at : mapping of str to float
-            At which the losses were computed: that of the oil sets its properties. [K]
-        found : mapping of str to float
-            Of the housing, for the heat to the air. [K]
+        around : float
+            Temperature of the oil, for its properties. [K]
         solution : Solution
             Speeds, and loads of the bearings.
         heat : mapping of str to float
             That arises at each node, less the power of a cooler. [W]
         """
         own = self.settings
-        oil, mixture = self.media_at(at[OIL])
+        oil, mixture = self.media_at(around)
         carried = self._carried(oil, sum(heat.values()))
         wetting = Wetting(
             around=oil if own.bath else mixture,
@@ -277,33 +298,14 @@ class NetworkModel:
             jet_shares=self._jet_shares(heat),
             press_fit=own.press_fit,
         )
-        links = [
-            self._changed(link)
-            for link in (
-                *self._of_parts(solution, wetting),
-                *self._of_shafts(),
-                *self._of_oil(carried),
-                *(() if own.housing is None else own.housing.links(found[HOUSING], own.ambient)),
-            )
-        ]
-        given = {INLET: own.inlet, AMBIENT: own.ambient, COOLANT: own.coolant}
-        met = {node for link in links for node in (link.hot, link.cold, link.target)}
-        strangers = set(own.jet_shares) - set(self.nodes)
-        if strangers:
-            raise _no_such("thermal.jet_shares", "part", strangers, self.nodes)
-        unknown = set(own.changes) - {link.key for link in links}
-        if unknown:
-            raise _no_such(
-                "thermal.conductances",
-                "way of the heat",
-                unknown,
-                [link.key for link in links],
-            )
-        return Network(
-            self.nodes,
-            {node: value for node, value in given.items() if node in met},
-            tuple(links),
-        )
+        ways = (*self._of_parts(solution, wetting), *self._of_shafts(), *self._of_oil(carried))
+        return tuple(map(self._changed, ways))
+
+    def _cooler(self) -> tuple[Link, ...]:
+        """A cooler of given power, which no difference of temperatures drives."""
+        if not self.settings.cooler_power:
+            return ()
+        return (Link(POWERED, OIL, COOLANT, math.nan, "cooler of given power", "given"),)
 
     def _carried(self, oil: Fluid, heat: float) -> float:
         """Heat capacity of the flow of oil. [W/K]"""
@@ -315,11 +317,10 @@ class NetworkModel:
     def _jet_shares(self, heat: Mapping[str, float]) -> dict[str, float]:
         """The oil goes where the heat arises, unless the user says otherwise. Theory (W30)."""
         given = self.settings.jet_shares
-        solids = [node for node in heat if node not in (OIL, HOUSING, *given)]
-        whole = sum(heat[node] for node in solids)
+        own = {node: heat.get(node, 0.0) for node in self.wetted if node not in given}
         left = max(0.0, 1 - sum(given.values()))
-        even = LEAST_SHARE * whole + SMALLEST_HEAT
-        weights = {node: heat[node] + even for node in solids}
+        even = LEAST_SHARE * sum(own.values()) + SMALLEST_HEAT
+        weights = {node: watts + even for node, watts in own.items()}
         total = sum(weights.values())
         return dict(given) | {node: left * weight / total for node, weight in weights.items()}
 
@@ -356,6 +357,14 @@ class NetworkModel:
         return replace(link, conductance=change.scale * value)
 
     def _check(self, network: Network) -> None:
+        """Names of the case that are not known here, and heat without a way out, are errors."""
+        strangers = set(self.settings.jet_shares) - set(self.wetted)
+        if strangers:
+            raise _no_such("thermal.jet_shares", "part", strangers, self.wetted)
+        known = [link.key for link in network.links]
+        unknown = set(self.settings.changes) - set(known)
+        if unknown:
+            raise _no_such("thermal.conductances", "way of the heat", unknown, known)
         left = network.cut_off()
         if left:
             raise InputError(
