@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from epicyclic.kernels._jit import kernel
-from epicyclic.kernels.pocket_fluid import density, enthalpy, swelling
+from epicyclic.kernels.pocket_fluid import mixture
 from epicyclic.kernels.pocket_stage import (
     Fields,
     Flags,
@@ -41,8 +41,8 @@ def _excess(q: Floats, volume: Floats, live: Flags, xi: float, excess: Floats) -
         for j in range(q.shape[1]):
             excess[i, j] = 0.0
             if live[i, j] and xi < 1.0:
-                swollen = swelling(q[i, j], xi)
-                excess[i, j] = -volume[i, j] * swollen / (1 + swollen)
+                swelling = mixture(q[i, j], xi)[4]
+                excess[i, j] = -volume[i, j] * swelling / (1 + swelling)
 
 
 @kernel
@@ -351,8 +351,8 @@ def _leave(q: float, volume: float, fluid: Fluid, totals: Floats) -> float:
 
     Theory (Q20).
     """
-    rho, _ = density(q, fluid[0])
-    totals[1] += volume * fluid[1] * (rho * enthalpy(q, fluid[0]) - q)
+    _, rho, _, enthalpy, _ = mixture(q, fluid[0])
+    totals[1] += volume * fluid[1] * (rho * enthalpy - q)
     return volume * rho
 
 

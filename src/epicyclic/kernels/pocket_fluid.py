@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = ["GAMMA", "choking_table", "density", "donor", "enthalpy", "nozzle", "swelling"]
+__all__ = ["GAMMA", "Mixture", "choking_table", "donor", "mixture", "nozzle"]
 
 Floats = NDArray[np.float64]
+Mixture = tuple[float, float, float, float, float]
+"""As from `mixture`."""
 
 GAMMA = 1.4
 """Ratio of the specific heats of air. [1]"""
@@ -25,30 +27,23 @@ CHOKE_END = 16.0
 
 
 @kernel
-def swelling(q: float, xi: float) -> float:
-    """rho_m/rho - 1. Theory (Q8)."""
-    return (1 - xi) * math.expm1(-math.log1p(q) / GAMMA)
+def mixture(q: float, xi: float) -> Mixture:
+    """The mixture at a pressure. Theory (Q8), (Q9).
 
-
-@kernel
-def enthalpy(q: float, xi: float) -> float:
-    """Integral of dp/rho from ambient pressure, over p_a/rho_m. Theory (Q9). [1]"""
-    air = 0.0
-    if xi < 1.0:
-        power = (GAMMA - 1) / GAMMA
-        air = (1 - xi) / power * math.expm1(power * math.log1p(q))
-    return xi * q + air
-
-
-@kernel
-def density(q: float, xi: float) -> tuple[float, float]:
-    """rho/rho_m and its derivative by q. Theory (Q8)."""
+    Returns
+    -------
+    q, rho, slope, enthalpy, swelling : float
+        The pressure; the density over rho_m, and its derivative by q; the integral of dp/rho from
+        ambient pressure, over p_a/rho_m; rho_m/rho - 1.
+    """
     if xi >= 1.0:
-        return 1.0, 0.0
+        return q, 1.0, 0.0, q, 0.0
     log_p = math.log1p(q)
-    swelling = 1 + (1 - xi) * math.expm1(-log_p / GAMMA)
+    swelling = (1 - xi) * math.expm1(-log_p / GAMMA)
     slope = (1 - xi) / GAMMA * math.exp(-log_p * (1 / GAMMA + 1))
-    return 1 / swelling, slope / swelling**2
+    power = (GAMMA - 1) / GAMMA
+    enthalpy = xi * q + (1 - xi) / power * math.expm1(power * log_p)
+    return q, 1 / (1 + swelling), slope / (1 + swelling) ** 2, enthalpy, swelling
 
 
 @kernel
@@ -67,13 +62,12 @@ def choking_table(xi: float) -> Floats:
     guess = 0.53
     for n in range(count):
         p = math.exp(-CHOKE_END + n * CHOKE_STEP)
-        total = enthalpy(p - 1, xi)
+        total = mixture(p - 1, xi)[3]
         low, high = 0.0, 1.0
         for _ in range(60):
             guess = (low + high) / 2
-            throat = guess * p
-            _, slope = density(throat - 1, xi)
-            if enthalpy(throat - 1, xi) + 0.5 / slope > total:
+            _, _, slope, enthalpy, _ = mixture(guess * p - 1, xi)
+            if enthalpy + 0.5 / slope > total:
                 high = guess
             else:
                 low = guess
@@ -97,7 +91,7 @@ def _throat(q: float, choke: Floats) -> tuple[float, float]:
 
 @kernel
 def nozzle(
-    qa: float, qb: float, xi: float, choke: Floats
+    a: Mixture, b: Mixture, xi: float, choke: Floats
 ) -> tuple[float, float, float, float, float, float]:
     """Drop of enthalpy from a to b down to the throat, density there, and their derivatives.
 
@@ -109,49 +103,41 @@ def nozzle(
         Over p_a/rho_m, and over rho_m.
     """
     if choke.size == 0:
-        return _mean_density(qa, qb, xi)
-    if qa < qb:
-        drop, drop_b, drop_a, rho, rho_b, rho_a = _nozzle_down(qb, qa, xi, choke)
+        return _mean_density(a, b)
+    if a[0] < b[0]:
+        drop, drop_b, drop_a, rho, rho_b, rho_a = _nozzle_down(b, a, xi, choke)
         return -drop, -drop_a, -drop_b, rho, rho_a, rho_b
-    return _nozzle_down(qa, qb, xi, choke)
+    return _nozzle_down(a, b, xi, choke)
 
 
 @kernel
-def _mean_density(
-    qa: float, qb: float, xi: float
-) -> tuple[float, float, float, float, float, float]:
+def _mean_density(a: Mixture, b: Mixture) -> tuple[float, float, float, float, float, float]:
     """`nozzle` with the mean density of both sides and no choking. Theory (Q19)."""
-    rho_one, slope_one = density(qa, xi)
-    rho_two, slope_two = density(qb, xi)
-    rho = (rho_one + rho_two) / 2
-    drop = (qa - qb) / rho
-    drop_a = (1 - drop * slope_one / 2) / rho
-    drop_b = (-1 - drop * slope_two / 2) / rho
-    return drop, drop_a, drop_b, rho, slope_one / 2, slope_two / 2
+    rho = (a[1] + b[1]) / 2
+    drop = (a[0] - b[0]) / rho
+    drop_a = (1 - drop * a[2] / 2) / rho
+    drop_b = (-1 - drop * b[2] / 2) / rho
+    return drop, drop_a, drop_b, rho, a[2] / 2, b[2] / 2
 
 
 @kernel
 def _nozzle_down(
-    qa: float, qb: float, xi: float, choke: Floats
+    a: Mixture, b: Mixture, xi: float, choke: Floats
 ) -> tuple[float, float, float, float, float, float]:
     """`nozzle` for a pressure that is not lower at a."""
-    rho_up, _ = density(qa, xi)
-    drop = enthalpy(qa, xi)
+    _, rho_up, _, total, _ = a
+    q, rho, rho_p, enthalpy, _ = b
     if xi < 1.0:
-        throat, slope = _throat(qa, choke)
-        if throat > qb:
-            rho, rho_p = density(throat, xi)
-            drop -= enthalpy(throat, xi)
-            return drop, 1 / rho_up - slope / rho, 0.0, rho, rho_p * slope, 0.0
-    rho, rho_p = density(qb, xi)
-    return drop - enthalpy(qb, xi), 1 / rho_up, -1 / rho, rho, 0.0, rho_p
+        throat, slope = _throat(a[0], choke)
+        if throat > q:
+            _, rho, rho_p, enthalpy, _ = mixture(throat, xi)
+            return total - enthalpy, 1 / rho_up - slope / rho, 0.0, rho, rho_p * slope, 0.0
+    return total - enthalpy, 1 / rho_up, -1 / rho, rho, 0.0, rho_p
 
 
 @kernel
-def donor(u: float, qa: float, qb: float, xi: float) -> tuple[float, float, float]:
+def donor(u: float, a: Mixture, b: Mixture) -> tuple[float, float, float]:
     """Density on the side that the flow comes from, and its derivatives by both pressures."""
     if u > 0.0:
-        rho, slope = density(qa, xi)
-        return rho, slope, 0.0
-    rho, slope = density(qb, xi)
-    return rho, 0.0, slope
+        return a[1], a[2], 0.0
+    return b[1], 0.0, b[2]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
-from epicyclic.kernels.pocket_fluid import GAMMA, density, donor, enthalpy, nozzle, swelling
+from epicyclic.kernels.pocket_fluid import GAMMA, Mixture, donor, mixture, nozzle
 
 __all__ = [
     "Fields",
@@ -49,22 +49,29 @@ NEWTON_TOLERANCE = 1e-9
 def _solve_banded(matrix: Floats, right: Floats, width: int) -> None:
     """Gauss elimination of a banded matrix without pivoting; the solution replaces `right`.
 
-    `matrix[r, width + c - r]` is the element in row r and column c. The rows of the inner loop are
-    views, counted from zero: only so does it become vector instructions.
+    `matrix[r, width + c - r]` is the element in row r and column c, zero in the first and the last
+    diagonal. Rows are taken in pairs, which halves the way to the memory and back. Those of the
+    inner loops are views, counted from zero: only so do they become vector instructions.
     """
     n = right.size
-    for k in range(n):
-        pivot = matrix[k, width]
-        upper = matrix[k, width + 1 : 2 * width + 1]
-        for r in range(k + 1, min(n, k + width + 1)):
-            factor = matrix[r, width + k - r]
-            if factor != 0.0:
-                factor /= pivot
-                start = width + 1 + k - r
-                lower = matrix[r, start : start + width]
-                for c in range(width):
-                    lower[c] -= factor * upper[c]
-                right[r] -= factor * right[k]
+    for k in range(0, n - 1, 2):
+        one, two = matrix[k], matrix[k + 1]
+        factor = two[width - 1] / one[width]
+        upper, lower = one[width + 1 : 2 * width + 1], two[width : 2 * width]
+        for c in range(width):
+            lower[c] -= factor * upper[c]
+        right[k + 1] -= factor * right[k]
+        upper1, upper2 = one[width + 2 : 2 * width + 1], two[width + 1 : 2 * width]
+        for r in range(k + 2, min(n, k + width + 1)):
+            at = width + k - r
+            factor1, factor2 = matrix[r, at], matrix[r, at + 1]
+            if factor1 != 0.0 or factor2 != 0.0:
+                factor1 /= one[width]
+                factor2 = (factor2 - factor1 * one[width + 1]) / two[width]
+                lower = matrix[r, at + 2 : at + width + 1]
+                for c in range(width - 1):
+                    lower[c] = lower[c] - factor1 * upper1[c] - factor2 * upper2[c]
+                right[r] = right[r] - factor1 * right[k] - factor2 * right[k + 1]
     for k in range(n - 1, -1, -1):
         total = right[k]
         for c in range(1, min(width, n - 1 - k) + 1):
@@ -74,7 +81,7 @@ def _solve_banded(matrix: Floats, right: Floats, width: int) -> None:
 
 @kernel
 def number(live: Flags, cell_at: Indices, face_at: Indices) -> tuple[int, int]:
-    """Numbers of the unknowns, slice by slice; how many, and the half-width of their matrix.
+    """Numbers of the unknowns, slice by slice; how many, and `width` as for `_solve_banded`.
 
     Cells and axial faces without a number get -1. A face takes part if a cell beside it is live.
     """
@@ -106,7 +113,7 @@ def number(live: Flags, cell_at: Indices, face_at: Indices) -> tuple[int, int]:
                 width = max(width, own - cell_at[i, j - 1])
             if j < slices and i > 0 and cell_at[i, j] >= 0 and cell_at[i - 1, j] >= 0:
                 width = max(width, cell_at[i, j] - cell_at[i - 1, j])
-    return count, width
+    return count, width + 1
 
 
 @kernel
@@ -160,9 +167,13 @@ def _add_masses(
     q: Floats,
     cell_at: Indices,
     xi: float,
+    states: Floats,
     system: tuple[Floats, Floats, int],
 ) -> float:
-    """Balance of the mass of every cell, but for its openings; the boundary work. Theory (Q14)."""
+    """Balance of the mass of every cell, but for its openings; the boundary work. Theory (Q14).
+
+    The state of the mixture in cell (i, j) goes to `states[i + 1, j + 1]`.
+    """
     volume, growth = shape[0], shape[1]
     matrix, right, width = system
     work = 0.0
@@ -171,13 +182,19 @@ def _add_masses(
             k = cell_at[i, j]
             if k < 0:
                 continue
-            _, slope = density(q[i, j], xi)
-            swollen = swelling(q[i, j], xi) if xi < 1.0 else 0.0
-            excess = -volume[i, j] * swollen / (1 + swollen)
+            state = mixture(q[i, j], xi)
+            states[i + 1, j + 1] = state
+            _, _, slope, _, swelling = state
+            excess = -volume[i, j] * swelling / (1 + swelling)
             right[k] = -(growth[i, j] + excess - excess0[i, j])
             matrix[k, width] += volume[i, j] * slope
             work -= q[i, j] * growth[i, j]
     return work
+
+
+@kernel
+def _state(states: Floats, i: int, j: int) -> Mixture:
+    return states[i, j, 0], states[i, j, 1], states[i, j, 2], states[i, j, 3], states[i, j, 4]
 
 
 @kernel
@@ -221,14 +238,15 @@ def _add_gaps(
     fluid: Fluid,
     fresh: Fresh,
     tau: float,
+    states: Floats,
     system: tuple[Floats, Floats, int],
     rates: Floats,
 ) -> None:
     """Flow through the gaps, whose velocity follows from the pressures at once. Theory (Q16)."""
     gap, gap_reach = shape[3], shape[5]
-    q, _, cross = fields
+    cross = fields[2]
     xi, c2, choke, _ = fluid
-    pockets, slices = q.shape
+    pockets, slices = cell_at.shape
     for i in range(pockets + 1):
         for j in range(slices):
             ka = cell_at[i - 1, j] if i > 0 else -1
@@ -236,23 +254,22 @@ def _add_gaps(
             if (ka < 0 and kb < 0) or gap[i, j] <= 0.0:
                 cross[i, j] = 0.0
                 continue
-            qa = q[i - 1, j] if ka >= 0 else 0.0
-            qb = q[i, j] if kb >= 0 else 0.0
+            a, b = _state(states, i, j + 1), _state(states, i + 1, j + 1)
             inertia = (gap_reach[0, i, j] if ka >= 0 else 0.0) + (
                 gap_reach[1, i, j] if kb >= 0 else 0.0
             )
-            drop, drop_a, drop_b, rho, rho_a, rho_b = nozzle(qa, qb, xi, choke)
-            a = inertia / tau
+            drop, drop_a, drop_b, rho, rho_a, rho_b = nozzle(a, b, xi, choke)
+            inertia /= tau
             if fresh[0][i, j] > 0.0:
-                a *= fresh[2]
-            drive = a * cross0[i, j] + c2 * drop
-            root = math.sqrt(a * a + 2 * abs(drive))
-            u = 2 * drive / (a + root)
+                inertia *= fresh[2]
+            drive = inertia * cross0[i, j] + c2 * drop
+            root = math.sqrt(inertia * inertia + 2 * abs(drive))
+            u = 2 * drive / (inertia + root)
             cross[i, j] = u
             if u * drop < 0.0:
-                rho, rho_a, rho_b = donor(u, qa, qb, xi)
-            lost = u * abs(u) / 2 + a * (u - cross0[i, j])
-            lost += c2 * (enthalpy(qa, xi) - enthalpy(qb, xi) - drop)
+                rho, rho_a, rho_b = donor(u, a, b)
+            lost = u * abs(u) / 2 + inertia * (u - cross0[i, j])
+            lost += c2 * (a[3] - b[3] - drop)
             rates[1] += gap[i, j] * rho * u * lost
             section = tau * gap[i, j]
             outside = _exchange(
@@ -268,25 +285,23 @@ def _add_gaps(
 
 @kernel
 def _axial_drop(
-    ka: int, kb: int, qa: float, qb: float, u: float, fluid: Fluid
-) -> tuple[float, float, float, float, float, float, float]:
-    """Drop of enthalpy along the face, density, their derivatives, and the whole drop.
+    inside: bool, a: Mixture, b: Mixture, u: float, fluid: Fluid
+) -> tuple[float, float, float, float, float, float]:
+    """Drop of enthalpy along the face, density, and their derivatives.
 
     Inside a pocket the specific volume is the mean of both sides; at its ends as `nozzle`.
     """
-    xi, _, choke, _ = fluid
-    whole = enthalpy(qa, xi) - enthalpy(qb, xi)
-    if ka >= 0 and kb >= 0:
-        rho_one, slope_one = density(qa, xi)
-        rho_two, slope_two = density(qb, xi)
+    if inside:
+        _, rho_one, slope_one, enthalpy_one, _ = a
+        _, rho_two, slope_two, enthalpy_two, _ = b
         rho = 2 * rho_one * rho_two / (rho_one + rho_two)
         rho_a = slope_one * (rho / rho_one) ** 2 / 2
         rho_b = slope_two * (rho / rho_two) ** 2 / 2
-        return whole, 1 / rho_one, -1 / rho_two, rho, rho_a, rho_b, whole
-    drop, drop_a, drop_b, rho, rho_a, rho_b = nozzle(qa, qb, xi, choke)
+        return enthalpy_one - enthalpy_two, 1 / rho_one, -1 / rho_two, rho, rho_a, rho_b
+    drop, drop_a, drop_b, rho, rho_a, rho_b = nozzle(a, b, fluid[0], fluid[2])
     if u * drop < 0.0:
-        rho, rho_a, rho_b = donor(u, qa, qb, xi)
-    return drop, drop_a, drop_b, rho, rho_a, rho_b, whole
+        rho, rho_a, rho_b = donor(u, a, b)
+    return drop, drop_a, drop_b, rho, rho_a, rho_b
 
 
 @kernel
@@ -299,16 +314,17 @@ def _add_faces(
     fresh: Fresh,
     shares: Floats,
     tau: float,
+    states: Floats,
     system: tuple[Floats, Floats, int],
     rates: Floats,
 ) -> None:
     """Momentum and flow of every axial face. Theory (Q15)."""
     area, reach = shape[2], shape[4]
-    q, axial, _ = fields
+    axial = fields[1]
     cell_at, face_at = numbers[0], numbers[1]
     c2 = fluid[1]
     matrix, right, width = system
-    pockets, slices = q.shape
+    pockets, slices = cell_at.shape
     for i in range(pockets):
         for j in range(slices + 1):
             k = face_at[i, j]
@@ -316,15 +332,16 @@ def _add_faces(
                 continue
             ka = cell_at[i, j - 1] if j > 0 else -1
             kb = cell_at[i, j] if j < slices else -1
-            qa = q[i, j - 1] if ka >= 0 else 0.0
-            qb = q[i, j] if kb >= 0 else 0.0
+            a, b = _state(states, i + 1, j), _state(states, i + 1, j + 1)
             u = axial[i, j]
-            drop, drop_a, drop_b, rho, rho_a, rho_b, whole = _axial_drop(ka, kb, qa, qb, u, fluid)
-            a = ((reach[0, i, j] if ka >= 0 else 0.0) + (reach[1, i, j] if kb >= 0 else 0.0)) / tau
+            inside = ka >= 0 and kb >= 0
+            drop, drop_a, drop_b, rho, rho_a, rho_b = _axial_drop(inside, a, b, u, fluid)
+            inertia = (reach[0, i, j] if ka >= 0 else 0.0) + (reach[1, i, j] if kb >= 0 else 0.0)
+            inertia /= tau
             if fresh[1][i, j] > 0.0:
-                a *= fresh[2]
+                inertia *= fresh[2]
             head = 0.0
-            matrix[k, width] += a
+            matrix[k, width] += inertia
             if ka >= 0:
                 own, beside = shares[1, i, j - 1] * u, shares[0, i, j - 1] * axial[i, j - 1]
                 head -= (beside * axial[i, j - 1] + own * u) / 2
@@ -343,9 +360,9 @@ def _add_faces(
             elif u > 0.0:
                 head += u**2 / 2
                 matrix[k, width] += u
-            push = a * (u - axial0[i, j])
+            push = inertia * (u - axial0[i, j])
             right[k] = c2 * drop - head - push
-            rates[1] += area[i, j] * rho * u * (head + push + c2 * (whole - drop))
+            rates[1] += area[i, j] * rho * u * (head + push + c2 * (a[3] - b[3] - drop))
             section = tau * area[i, j]
             if ka >= 0:
                 matrix[ka, width + k - ka] += section * rho
@@ -413,7 +430,7 @@ def solve_stage(
     fields : tuple of ndarray
         q, velocities through axial faces and through gaps: first guess, and the solution.
     numbers : tuple
-        From `number`: cells, axial faces, count, half-width.
+        From `number`: cells, axial faces, count, width.
     fluid : tuple
         Oil fraction, p_a/rho_m [m^2/s^2], choking table, whether differences are central; an empty
         table for the mean density of both sides at all openings, without choking.
@@ -435,6 +452,9 @@ def solve_stage(
     """
     excess0, axial0, cross0 = before
     cell_at, _, count, width = numbers
+    pockets, slices = cell_at.shape
+    states = np.zeros((pockets + 2, slices + 2, 5))
+    states[:] = np.array(mixture(0.0, fluid[0]))  # of the surroundings, where no cell is
     matrix = np.zeros((count, 2 * width + 1))
     right = np.zeros(count)
     system = (matrix, right, width)
@@ -442,9 +462,10 @@ def solve_stage(
         matrix[:] = 0.0
         right[:] = 0.0
         rates[:] = 0.0
-        rates[0] = _add_masses(shape, excess0, fields[0], cell_at, fluid[0], system) / tau
-        _add_gaps(shape, cross0, fields, cell_at, fluid, fresh, tau, system, rates)
-        _add_faces(shape, axial0, fields, numbers, fluid, fresh, shares, tau, system, rates)
+        work = _add_masses(shape, excess0, fields[0], cell_at, fluid[0], states, system)
+        rates[0] = work / tau
+        _add_gaps(shape, cross0, fields, cell_at, fluid, fresh, tau, states, system, rates)
+        _add_faces(shape, axial0, fields, numbers, fluid, fresh, shares, tau, states, system, rates)
         _solve_banded(matrix, right, width)
         if not np.isfinite(right).all():
             return -iteration
