@@ -137,28 +137,24 @@ def load_mesh_elastically(
     compliance = mesh_compliance(mesh, body1, body2, positions, segments)
     lines = compliance.lines
     normal = force / math.cos(mesh.gear1.rack.base_helix_angle)
-    not_found = ConvergenceError(
-        f"the load distribution of the {mesh.name} was not found at {normal:.4g} N; use "
-        'models.load_distribution = "uniform".'
-    )
     separation = deviations.separation(mesh, lines)
-    try:
-        with one_thread():
-            forces, approach, stiffness, iterations = solve_all_positions(
-                normal,
-                compliance.influence,
-                compliance.coupling,
-                separation,
-                lines.length,
-                compliance.local_a,
-                compliance.local_b,
-                TOLERANCE,
-                STEPS_PER_SEGMENT * lines.length[0].size,
-            )
-    except np.linalg.LinAlgError as error:
-        raise not_found from error
+    with one_thread():
+        forces, approach, stiffness, iterations = solve_all_positions(
+            normal,
+            compliance.influence,
+            compliance.coupling,
+            separation,
+            lines.length,
+            compliance.local_a,
+            compliance.local_b,
+            TOLERANCE,
+            STEPS_PER_SEGMENT * lines.length[0].size,
+        )
     if iterations.min() < 0:
-        raise not_found
+        raise ConvergenceError(
+            f"the load distribution of the {mesh.name} was not found at {normal:.4g} N; use "
+            'models.load_distribution = "uniform".'
+        )
     line_load = np.divide(forces, lines.length, out=np.zeros_like(forces), where=lines.length > 0)
     for array in (line_load, approach, stiffness):
         array.flags.writeable = False

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,7 @@ def involute(angle: float) -> float:
     return math.tan(angle) - angle
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class BasicRack:
     """What gears that mesh have in common. ISO 21771.
 
@@ -48,7 +49,7 @@ class BasicRack:
         """alpha_n from tan(alpha_n) = tan(alpha_t) cos(beta). Theory (G2). [rad]"""
         return math.atan(math.tan(self.transverse_pressure_angle) * math.cos(self.helix_angle))
 
-    @property
+    @cached_property
     def base_helix_angle(self) -> float:
         """beta_b from tan(beta_b) = tan(beta) cos(alpha_t). Theory (G3). [rad]"""
         return math.atan(math.tan(self.helix_angle) * math.cos(self.transverse_pressure_angle))
@@ -59,7 +60,7 @@ class BasicRack:
         return math.pi * self.transverse_module * math.cos(self.transverse_pressure_angle)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Gear:
     """One gear of a mesh.
 
@@ -93,12 +94,12 @@ class Gear:
     face_width: float
     tip_chamfer: float = 0.0
 
-    @property
+    @cached_property
     def reference_radius(self) -> float:
         """r = z m_t / 2. Theory (G5). [m]"""
         return self.teeth * self.rack.transverse_module / 2
 
-    @property
+    @cached_property
     def base_radius(self) -> float:
         """r_b = r cos(alpha_t). Theory (G6). [m]"""
         return self.reference_radius * math.cos(self.rack.transverse_pressure_angle)

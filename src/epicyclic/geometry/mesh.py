@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
@@ -21,7 +22,7 @@ __all__ = ["Mesh"]
 Real = TypeVar("Real", float, NDArray[np.float64])
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Mesh:
     """Two gears in mesh.
 
@@ -55,13 +56,13 @@ class Mesh:
         """+1 for an external mesh, -1 for an internal one: the sign of member 2 in sums."""
         return -1 if self.internal else 1
 
-    @property
+    @cached_property
     def operating_pressure_angle(self) -> float:
         """alpha_wt from cos(alpha_wt) = (r_b2 +- r_b1)/a. ISO 21771. Theory (G13). [rad]"""
         bases = self.gear2.base_radius + self.side * self.gear1.base_radius
         return math.acos(bases / self.center_distance)
 
-    @property
+    @cached_property
     def operating_radius1(self) -> float:
         """r_w1 = a z1/(z2 +- z1). Theory (G14). [m]"""
         z1, z2 = self.gear1.teeth, self.gear2.teeth
@@ -78,7 +79,7 @@ class Mesh:
         gear = self.gear1
         return math.tan(gear.rack.helix_angle) * self.operating_radius1 / gear.reference_radius
 
-    @property
+    @cached_property
     def line_of_action(self) -> float:
         """Distance of the two points where the line of action touches the base circles. [m]
 
@@ -106,7 +107,7 @@ class Mesh:
         radius: Real = transverse / math.cos(self.gear1.rack.base_helix_angle)
         return radius
 
-    @property
+    @cached_property
     def path_start(self) -> float:
         """Radius of curvature of member 1 where the tip form circle of member 2 is in contact. [m]
 
@@ -114,12 +115,12 @@ class Mesh:
         """
         return self.side * (self.line_of_action - self.gear2.tip_form_involute_length)
 
-    @property
+    @cached_property
     def path_end(self) -> float:
         """Radius of curvature of member 1 at its own tip form circle. Theory (G17). [m]"""
         return self.gear1.tip_form_involute_length
 
-    @property
+    @cached_property
     def pitch_point(self) -> float:
         """Radius of curvature of member 1 at the pitch point. Theory (G18). [m]"""
         return self.operating_radius1 * math.sin(self.operating_pressure_angle)
@@ -129,7 +130,7 @@ class Mesh:
         """Common face width: the smaller one, the other gear reaching beyond it. [m]"""
         return min(self.gear1.face_width, self.gear2.face_width)
 
-    @property
+    @cached_property
     def tip_contact_ratio1(self) -> float:
         """epsilon_1: the path from the pitch point to the tip of member 1, in base pitches. [1]
 
@@ -137,7 +138,7 @@ class Mesh:
         """
         return (self.path_end - self.pitch_point) / self.gear1.rack.transverse_base_pitch
 
-    @property
+    @cached_property
     def tip_contact_ratio2(self) -> float:
         """epsilon_2: the path from the tip of member 2 to the pitch point, in base pitches. [1]
 
@@ -150,7 +151,7 @@ class Mesh:
         """epsilon_alpha = epsilon_1 + epsilon_2. ISO 21771. Theory (G19). [1]"""
         return self.tip_contact_ratio1 + self.tip_contact_ratio2
 
-    @property
+    @cached_property
     def mean_contact_length(self) -> float:
         """Mean over the mesh period of the length of all contact lines. [m]
 
@@ -159,13 +160,13 @@ class Mesh:
         area = self.face_width * self.transverse_contact_ratio
         return area / math.cos(self.gear1.rack.base_helix_angle)
 
-    @property
+    @cached_property
     def overlap_ratio(self) -> float:
         """epsilon_beta = b tan(beta_b)/p_bt. ISO 21771. Theory (G20). [1]"""
         rack = self.gear1.rack
         return self.face_width * math.tan(rack.base_helix_angle) / rack.transverse_base_pitch
 
-    @property
+    @cached_property
     def backlash(self) -> float:
         """Circumferential backlash at the operating circles, transverse. ISO 21771. [m]
 

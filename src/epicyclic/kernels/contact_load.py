@@ -88,6 +88,30 @@ def deflections(
 
 
 @kernel
+def eliminate(system: FloatArray) -> None:
+    """Solve a positive definite system whose right sides are its further columns, in place.
+
+    Gauss elimination without pivoting. The rows of the inner loop are views, counted from zero:
+    only so does it become vector instructions.
+    """
+    n, columns = system.shape
+    for k in range(n):
+        inverse = 1.0 / system[k, k]
+        upper = system[k, k + 1 :]
+        for r in range(k + 1, n):
+            factor = system[r, k] * inverse
+            lower = system[r, k + 1 :]
+            for c in range(columns - k - 1):
+                lower[c] -= factor * upper[c]
+    for side in range(n, columns):
+        for k in range(n - 1, -1, -1):
+            total = system[k, side]
+            for c in range(k + 1, n):
+                total -= system[k, c] * system[c, side]
+            system[k, side] = total / system[k, k]
+
+
+@kernel
 def newton_step(
     force: float,
     forces: FloatArray,
@@ -118,28 +142,28 @@ def newton_step(
         n = index.size
         if n == 0:
             continue
-        jacobian = np.empty((n, n))
-        sides = np.ones((n, 2))
+        jacobian = np.ones((n, n + 2))
         for i in range(n):
             k = index[i]
             for j in range(n):
                 jacobian[i, j] = compliance[line, k, index[j]]
             jacobian[i, i] += slope[line, k]
-            sides[i, 1] = closed[line, k]
-        solved = np.linalg.solve(jacobian, sides)
+            jacobian[i, n + 1] = closed[line, k]
+        eliminate(jacobian)
         for i in range(n):
-            unit[line, index[i]] = solved[i, 0]
-            back[line, index[i]] = solved[i, 1]
+            unit[line, index[i]] = jacobian[i, n]
+            back[line, index[i]] = jacobian[i, n + 1]
     # change P of the total of a line: P = u (D - G P) - h, so that (1 + U G) P = u D - h
     u, h = unit.sum(axis=1), back.sum(axis=1)
-    system = np.eye(lines)
-    sides = np.empty((lines, 2))
+    system = np.zeros((lines, lines + 2))
     for i in range(lines):
-        sides[i, 0] = u[i]
-        sides[i, 1] = h[i]
+        system[i, i] = 1.0
         for j in range(lines):
             system[i, j] += u[i] * coupling[i, j]
-    totals = np.linalg.solve(system, sides)
+        system[i, lines] = u[i]
+        system[i, lines + 1] = h[i]
+    eliminate(system)
+    totals = system[:, lines:]
     stiffness = totals[:, 0].sum()
     approach = (force - forces.sum() + totals[:, 1].sum()) / stiffness
     rim = coupling @ (totals[:, 0] * approach - totals[:, 1])
