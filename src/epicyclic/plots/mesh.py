@@ -28,19 +28,22 @@ FloatArray = NDArray[np.float64]
 
 MAPS = ("line_load", "hertz_pressure", "sliding_speed", "friction_power")
 """Variables drawn over the plane of action."""
+MORE_MAPS = ("film_ratio", "friction_coefficient", "flash_temperature")
 PATH_PLACES = 40
 """Places on the path of contact at which values are taken together."""
 
 
 def mesh_figure(mesh: xr.Dataset) -> Figure:
     """Everything an engineer looks at on one mesh."""
-    with styled_figure(3, 3, str(mesh.attrs["title"])) as (figure, axes):
+    with styled_figure(4, 3, str(mesh.attrs["title"])) as (figure, axes):
         flat = axes.ravel()
         plot_pair_loads(mesh, flat[0])
         plot_transmission_error(mesh, flat[1])
         plot_mesh_stiffness(mesh, flat[2])
-        for ax, name in zip(flat[3:], (*MAPS, "film_ratio", "friction_coefficient"), strict=True):
+        for ax, name in zip(flat[3:10], (*MAPS, *MORE_MAPS), strict=True):
             plot_plane_of_action(mesh, name, ax)
+        for ax, name in zip(flat[10:], ("friction_coefficient", "flash_temperature"), strict=True):
+            plot_along_path(mesh, name, ax)
     return figure
 
 

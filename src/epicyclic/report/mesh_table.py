@@ -18,7 +18,14 @@ from epicyclic.units import unit_text
 __all__ = ["mesh_tables"]
 
 _OVER_PERIOD = ("transmission_error", "mesh_stiffness")
-_EXTREMES = ("line_load", "hertz_pressure", "sliding_speed", "film_ratio", "friction_power")
+_EXTREMES = (
+    "line_load",
+    "hertz_pressure",
+    "sliding_speed",
+    "film_ratio",
+    "friction_power",
+    "flash_temperature",
+)
 _SMALLEST = ("film_ratio",)
 """Of these the smallest value matters."""
 
