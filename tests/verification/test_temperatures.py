@@ -28,7 +28,7 @@ def settled():
 
 def leaving(result):
     """Heat that leaves by every way to a node of given temperature."""
-    ends = set(result.heat.given)
+    ends = {*result.heat.given, "cooler"}
     return sum(way.watts for way in result.heat.ways if way.into in ends)
 
 

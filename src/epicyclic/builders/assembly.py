@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
@@ -12,14 +13,14 @@ from epicyclic.builders.notes import case_notes, general_notes
 from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case
 from epicyclic.case.train import TrainCase
-from epicyclic.elements.base import HOUSING, Loss, joined_key
+from epicyclic.elements.base import HOUSING, OIL, Loss, joined_key
 from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.elements.load_sharing import SHARING_METHODS
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.validity import ValidityFlag
 from epicyclic.machine.flow import stage_torques
-from epicyclic.machine.settle import Settled, heat_of
+from epicyclic.machine.settle import Answer, Settled, heat_of
 from epicyclic.machine.solve import Solution
 from epicyclic.results.heat import HeatBalance, HeatWay
 from epicyclic.results.result import LossTerm, MemberState, PowerFlow, Result, Train
@@ -95,22 +96,28 @@ def _heat(case: Case, built: Built, settled: Settled) -> HeatBalance | None:
         model=case.models.temperatures,
         temperatures=answer.temperatures,
         sources=heat_of(solution),
-        ways=tuple(
-            HeatWay(
-                link.key,
-                link.hot,
-                link.target,
-                link.conductance,
-                (answer.flows or {}).get(link.key, 0.0),
-                link.method,
-                link.source,
-            )
-            for link in answer.links
-        ),
+        ways=tuple(_ways(case, answer)),
         given=answer.given,
         residual=answer.residual,
         evaluations=settled.evaluations,
     )
+
+
+def _ways(case: Case, answer: Answer) -> Iterator[HeatWay]:
+    flows = answer.flows or {}
+    for link in answer.links:
+        yield HeatWay(
+            link.key,
+            link.hot,
+            link.target,
+            link.conductance,
+            flows[link.key],
+            link.method,
+            link.source,
+        )
+    power = case.thermal.cooler_power
+    if answer.links and power:
+        yield HeatWay("oil-cooler", OIL, "cooler", math.nan, power, "given power", "given")
 
 
 def _losses(solution: Solution) -> Iterator[tuple[str, Loss]]:

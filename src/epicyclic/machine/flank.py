@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+from epicyclic.elements.base import OIL
 from epicyclic.elements.figures import MeshFigures
 from epicyclic.elements.fluids import Fluids
 from epicyclic.elements.gear_mesh import GearMesh
@@ -81,7 +82,8 @@ class FlankModel:
             {
                 node: self.oil + rise(sides, solution, self.lubrication_factor)
                 for node, sides in _sides(self.machine).items()
-            }
+            },
+            given={OIL: self.oil},
         )
 
 

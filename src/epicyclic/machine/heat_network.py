@@ -35,7 +35,6 @@ SAME = 1e-13
 """Relative error of the temperature of the housing. [1]"""
 WALLS = (1.0, 1e7)
 """Between which the housing may be while temperatures settle. [K]"""
-POWERED = "oil-cooler"
 LEAST_SHARE = 0.01
 """Of the oil, for a part without heat, over that for one with all the heat: an estimate. [1]"""
 SMALLEST_HEAT = 1e-6
@@ -241,8 +240,8 @@ class NetworkModel:
         left = max(map(abs, network.residuals(found, heat).values()))
         return Answer(
             temperatures=found,
-            links=(*network.links, *self._cooler()),
-            flows=network.flows(found) | {POWERED: self.settings.cooler_power},
+            links=network.links,
+            flows=network.flows(found),
             given=network.given,
             residual=left / whole if whole else 0.0,
         )
@@ -267,7 +266,6 @@ class NetworkModel:
         links = (*fixed, *map(self._changed, outside))
         given = {INLET: own.inlet, AMBIENT: own.ambient, COOLANT: own.coolant}
         met = {node for link in links for node in (link.hot, link.cold, link.target)}
-        met |= {link.target for link in self._cooler()}
         network = Network(
             self.nodes, {node: value for node, value in given.items() if node in met}, links
         )
@@ -300,12 +298,6 @@ class NetworkModel:
         )
         ways = (*self._of_parts(solution, wetting), *self._of_shafts(), *self._of_oil(carried))
         return tuple(map(self._changed, ways))
-
-    def _cooler(self) -> tuple[Link, ...]:
-        """A cooler of given power, which no difference of temperatures drives."""
-        if not self.settings.cooler_power:
-            return ()
-        return (Link(POWERED, OIL, COOLANT, math.nan, "cooler of given power", "given"),)
 
     def _carried(self, oil: Fluid, heat: float) -> float:
         """Heat capacity of the flow of oil. [W/K]"""

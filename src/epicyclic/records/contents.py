@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from datetime import datetime
 from typing import Annotated, Any, Literal, Self, get_args
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 from pydantic_core import from_json
 
 from epicyclic.case.operating import AXES
-from epicyclic.elements.base import HOUSING
+from epicyclic.elements.base import HOUSING, OIL
+from epicyclic.results.heat import HeatBalance, HeatWay
+from epicyclic.units import CELSIUS
 
-__all__ = ["MapContents", "Measure", "Member", "RecordContents", "ResultContents", "Validity"]
+__all__ = [
+    "Heat",
+    "MapContents",
+    "Measure",
+    "Member",
+    "RecordContents",
+    "ResultContents",
+    "Validity",
+]
 
 
 class _Part(BaseModel):
@@ -96,6 +107,74 @@ class Validity(_Part):
     source: str
 
 
+class Degrees(_Part):
+    """A temperature."""
+
+    value: float
+    unit: Literal["degC"]
+
+    @property
+    def kelvin(self) -> float:
+        """In SI. [K]"""
+        scale, offset = CELSIUS.scale_and_offset()
+        return (self.value - offset) / scale
+
+
+class Way(_Part):
+    """Heat from one part to another."""
+
+    hot: str = Field(alias="from")
+    into: str = Field(alias="to")
+    heat: float
+    conductance: float | None
+    method: str
+    source: str
+
+
+class Heat(_Part):
+    """Temperatures and the ways of the heat, `HeatBalance.to_dict`."""
+
+    model: Literal["flank", "network"]
+    temperatures: dict[str, Degrees]
+    given: dict[str, Degrees]
+    sources: dict[str, float]
+    ways: dict[str, Way]
+    residual: float
+    evaluations: int
+
+    @model_validator(mode="after")
+    def _belong_together(self) -> Self:
+        if OIL not in self.temperatures | self.given:
+            raise ValueError("the temperature of the oil is missing")
+        if not {way.hot for way in self.ways.values()} <= self.temperatures.keys():
+            raise ValueError("ways name parts without temperatures")
+        return self
+
+    @property
+    def balance(self) -> HeatBalance:
+        """As the result had it."""
+        return HeatBalance(
+            model=self.model,
+            temperatures={node: it.kelvin for node, it in self.temperatures.items()},
+            sources=self.sources,
+            ways=tuple(
+                HeatWay(
+                    key,
+                    way.hot,
+                    way.into,
+                    math.nan if way.conductance is None else way.conductance,
+                    way.heat,
+                    way.method,
+                    way.source,
+                )
+                for key, way in self.ways.items()
+            ),
+            given={node: it.kelvin for node, it in self.given.items()},
+            residual=self.residual,
+            evaluations=self.evaluations,
+        )
+
+
 class ResultContents(_Part):
     """The JSON form of a result, `epicyclic.Result.to_dict`.
 
@@ -123,6 +202,7 @@ class ResultContents(_Part):
     members: dict[str, Member]
     meshes: dict[str, dict[str, Measure]]
     fluid: dict[str, Measure] | None
+    heat: Heat | None = None
     planet_bearing: dict[str, Measure] | None = None
     planet_angles: Measures = Measures(value=(), unit="deg")
     planet_shares: Measures = Measures(value=(), unit="1")

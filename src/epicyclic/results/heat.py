@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from epicyclic.elements.base import OIL
 from epicyclic.units import CELSIUS
 
 __all__ = ["HeatBalance", "HeatWay"]
@@ -22,7 +24,7 @@ class HeatWay:
     hot, into : str
         Where it comes from and goes to.
     conductance : float
-        [W/K]
+        NaN for a cooler of given power. [W/K]
     watts : float
         Negative if it flows the other way. [W]
     method, source : str
@@ -53,7 +55,8 @@ class HeatBalance:
     ways : tuple of HeatWay
         Empty with ``"flank"``.
     given : mapping of str to float
-        Temperatures that were given: of the oil inlet, the air, a coolant. [K]
+        Temperatures that were given: of the oil inlet, the air, a coolant; of all oil with
+        ``"flank"``. [K]
     residual : float
         Largest heat of a node that does not leave it, over all heat. [1]
     evaluations : int
@@ -67,6 +70,23 @@ class HeatBalance:
     given: Mapping[str, float]
     residual: float
     evaluations: int
+
+    @property
+    def oil(self) -> float:
+        """Temperature of the oil. [K]"""
+        return {**self.given, **self.temperatures}[OIL]
+
+    @property
+    def brought(self) -> dict[str, float]:
+        """Heat that losses bring to each node; what has no temperature of its own is oil. [W]"""
+        heat = {node: self.sources.get(node, 0.0) for node in (*self.temperatures, OIL)}
+        heat[OIL] = sum(self.sources.values()) - sum(heat[node] for node in heat if node != OIL)
+        return heat
+
+    @property
+    def outlets(self) -> tuple[HeatWay, ...]:
+        """The ways that lead out of the gearbox."""
+        return tuple(way for way in self.ways if way.into not in self.temperatures)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers and text, in the units stated beside them."""
@@ -86,7 +106,7 @@ class HeatBalance:
                     "from": way.hot,
                     "to": way.into,
                     "heat": way.watts,
-                    "conductance": way.conductance,
+                    "conductance": None if math.isnan(way.conductance) else way.conductance,
                     "method": way.method,
                     "source": way.source,
                 }
