@@ -15,6 +15,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from epicyclic.analysis.heat import heat_balance, solve_for
     from epicyclic.analysis.mesh_details import mesh_details
     from epicyclic.analysis.pocket_details import pocket_details
     from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
@@ -49,6 +50,7 @@ _HOME = {
     "ResultRecord": "epicyclic.records.record",
     "case_schema": "epicyclic.case.case",
     "characterise_oil": "epicyclic.campaigns.fit",
+    "heat_balance": "epicyclic.analysis.heat",
     "load_case": "epicyclic.exchange.load",
     "compare_measured": "epicyclic.measurement.compare",
     "duty_cycle": "epicyclic.maps.duty",
@@ -65,6 +67,7 @@ _HOME = {
     "report_html": "epicyclic.report.html",
     "save_result": "epicyclic.records.files",
     "solve": "epicyclic.analysis.solve",
+    "solve_for": "epicyclic.analysis.heat",
     "sweep": "epicyclic.sweeps.run",
     "write_map": "epicyclic.maps.formats",
     "write_rexs": "epicyclic.exchange.rexs.exporting",
@@ -85,6 +88,7 @@ __all__ = [
     "characterise_oil",
     "compare_measured",
     "duty_cycle",
+    "heat_balance",
     "load_case",
     "loaded_meshes",
     "loss_map",
@@ -99,6 +103,7 @@ __all__ = [
     "report_html",
     "save_result",
     "solve",
+    "solve_for",
     "sweep",
     "write_map",
     "write_rexs",
