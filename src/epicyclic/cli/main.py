@@ -23,6 +23,7 @@ from epicyclic.cli.exit_codes import (
     EXIT_INTERRUPTED,
     EXIT_NO_SOLUTION,
 )
+from epicyclic.cli.heat import heat
 from epicyclic.cli.listing import cases, init, oils, schema
 from epicyclic.cli.many import loss_map, sweep
 from epicyclic.cli.merge import merge
@@ -59,6 +60,7 @@ COMMANDS = (
     loss_map,
     merge,
     duty,
+    heat,
     mesh,
     pockets,
     pockets_table,

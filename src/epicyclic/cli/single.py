@@ -31,6 +31,7 @@ __all__ = ["check", "friction", "mesh", "run"]
 def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path | None) -> None:
     """Compute the losses of a case and print them by component."""
     from epicyclic.analysis.solve import solve
+    from epicyclic.report.heat_tables import remarks
     from epicyclic.report.tables import result_tables
 
     loaded = load_with(case, changes)
@@ -45,7 +46,7 @@ def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path |
         from epicyclic.records.record import record
 
         save_result(record(loaded, result=result), save)
-    show(lambda: result_tables(result), result.to_json, json_file)
+    show(lambda: result_tables(result, tuple(remarks(loaded, result))), result.to_json, json_file)
 
 
 @contextmanager

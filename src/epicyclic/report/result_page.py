@@ -8,6 +8,7 @@ import xarray as xr
 
 from epicyclic.records.contents import Measure, ResultContents
 from epicyclic.records.record import ResultRecord, set_of, sets_of
+from epicyclic.report.heat_tables import heat_items, ways_items
 from epicyclic.report.inputs import input_tables
 from epicyclic.report.page import (
     Cell,
@@ -84,6 +85,7 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
             train_losses(result, drawings) if result.kind == "train" else own_losses,
         ),
         Section("validity", "Validity", _validity(result), _validity_lead(result)),
+        Section("temperatures", "Temperatures", _heat(result, drawings)),
         Section(
             "gears",
             "Gears",
@@ -139,9 +141,15 @@ _ASSUMPTIONS = (
     "Speed and torque are steady; dynamic loads are not modelled.",
     "Shafts, carrier and housing do not bend; misalignment is that of the case, and of the tilt of "
     "the planets if models.planet_tilt is coupled.",
-    "The oil has its inlet temperature at all contacts.",
     "Inputs in italics, in the tables below, were not given and have their default values.",
 )
+_OIL = {
+    "inlet": "The oil has its inlet temperature at all contacts.",
+    "flank": "The oil has its inlet temperature; in the meshes it is as warm as the gears.",
+    "network": "Oil in contacts is as warm as the mean of the parts that touch, which are of one "
+    "temperature each.",
+}
+"""What is assumed about temperatures."""
 _OF_PLANETS = (
     "Figures of meshes and bearing are those of the most loaded planet; losses are those of all.",
 )
@@ -212,6 +220,16 @@ def _limits(low: float | None, high: float | None) -> str:
 
 def _number(value: float | None) -> str:
     return "" if value is None else format_number(value, 3)
+
+
+def _heat(result: ResultContents, drawings: Drawings) -> tuple[Item, ...]:
+    """Temperatures, and the ways of the heat."""
+    if result.heat is None:
+        return ()
+    heat = result.heat.balance
+    picture = gallery(drawings, "heat-network", wide=True)
+    ways = ways_items(heat) if heat.ways else ()
+    return (*picture, Row(tuple(heat_items(heat))), *ways)
 
 
 def _members(result: ResultContents) -> Table:
@@ -341,7 +359,10 @@ def _methods(result: ResultContents) -> tuple[Table | Listing, ...]:
         for (method, source), names in users.items()
     )
     models = tuple((Cell(model_key(key)), Cell(value)) for key, value in result.models.items())
-    assumptions = _ASSUMPTIONS + (() if result.kind == "gear_pair" else _OF_PLANETS)
+    oil = _OIL["inlet" if result.heat is None else result.heat.model]
+    assumptions = (*_ASSUMPTIONS[:-1], oil, _ASSUMPTIONS[-1]) + (
+        () if result.kind == "gear_pair" else _OF_PLANETS
+    )
     if not models:
         assumptions = (_ASSUMPTIONS[0], _ASSUMPTIONS[-1])
     return (

@@ -13,6 +13,8 @@ from rich.text import Text
 from epicyclic.analysis.compare import FrictionComparison
 from epicyclic.elements.base import LOAD_DEPENDENT, LOAD_INDEPENDENT
 from epicyclic.elements.figures import figures
+from epicyclic.report import page
+from epicyclic.report.heat_tables import heat_items
 from epicyclic.report.result_parts import (
     efficiency_text,
     figure_table,
@@ -25,7 +27,14 @@ from epicyclic.report.train_tables import train_tables, users_text
 from epicyclic.results.result import LossTerm, Result
 from epicyclic.units import DEGREE, NEWTON_METRE, RPM, unit_text
 
-__all__ = ["friction_table", "plain_table", "result_tables", "terminal"]
+__all__ = [
+    "as_on_page",
+    "friction_table",
+    "plain_table",
+    "result_tables",
+    "terminal",
+    "titled",
+]
 
 PIPE_WIDTH = 100
 """Width of tables that do not go to a terminal. [characters]"""
@@ -37,10 +46,19 @@ def terminal() -> Console:
     return console if console.is_terminal else Console(highlight=False, width=PIPE_WIDTH)
 
 
-def result_tables(result: Result) -> RenderableType:
-    """Everything an engineer reads first: losses, figures, warnings, sources."""
-    parts: list[RenderableType] = [Text(result.title or result.kind, style="bold")]
-    parts += _of_set(result) if result.train is None else train_tables(result, result.train)
+def result_tables(result: Result, remarks: Sequence[str] = ()) -> RenderableType:
+    """Everything an engineer reads first: losses, figures, warnings, sources.
+
+    Parameters
+    ----------
+    result : Result
+    remarks : sequence of str
+        On its temperatures.
+    """
+    parts = _of_set(result) if result.train is None else train_tables(result, result.train)
+    if result.heat is not None:
+        parts += map(as_on_page, heat_items(result.heat))
+    parts += remarks
     if result.fluid is not None:
         parts.append(figure_table("Oil", figures(result.fluid)))
     if result.planet_angles:
@@ -51,7 +69,29 @@ def result_tables(result: Result) -> RenderableType:
         parts.append(Text(f"Their shares of the torque: {shares}"))
     parts.append(_methods(result))
     parts += [_list("Warnings", result.warnings), _list("Sources", result.sources)]
-    return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
+    return titled(result.title or result.kind, *parts)
+
+
+def titled(title: str, *parts: RenderableType) -> RenderableType:
+    """Parts with space between them, under a title."""
+    whole = (Text(title, style="bold"), *(Text(it) if isinstance(it, str) else it for it in parts))
+    return Group(*(Padding(part, (0, 0, 1, 0)) for part in whole))
+
+
+def as_on_page(item: page.Table | page.Listing) -> RenderableType:
+    """A table or list of a report, for a terminal."""
+    if isinstance(item, page.Listing):
+        return _list(item.title, item.items)
+    table = plain_table(item.title)
+    for column, head in enumerate(item.head):
+        table.add_column(head, justify="right" if item.is_numeric(column) else "left")
+    for place, row in enumerate(item.rows):
+        strong = place in item.strong
+        last = place + 1 in item.strong
+        table.add_row(
+            *(cell.text for cell in row), style="bold" if strong else "", end_section=last
+        )
+    return Group(table, Text(item.note)) if item.note else table
 
 
 def _of_set(result: Result) -> list[RenderableType]:
