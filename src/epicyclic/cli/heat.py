@@ -88,8 +88,8 @@ def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:
     return titled(
         result.title or result.kind,
         *([] if found is None else [found_text(found)]),
-        *map(as_on_page, heat_items(result.heat)),
-        *map(as_on_page, ways_items(result.heat)),
+        *(as_on_page(item) for item in heat_items(result.heat)),
+        *(as_on_page(item) for item in ways_items(result.heat)),
         *remarks(case, result),
     )
 
