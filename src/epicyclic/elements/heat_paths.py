@@ -13,6 +13,7 @@ from epicyclic.elements.shaft_bearing import ShaftBearing
 from epicyclic.geometry.gear import Gear
 from epicyclic.thermal.convection import dipped_disc, disc_coefficient
 from epicyclic.thermal.fluid import Fluid
+from epicyclic.thermal.housing import SPLASHED_WALL
 from epicyclic.thermal.network import Link
 
 __all__ = ["INLET", "Wetting", "bearing_links", "carrier_node", "gear_set_links"]
@@ -106,18 +107,30 @@ def _gear_to_oil(
     inner = 0.0
     if planet is not None and planet.bearing is not None:
         inner = planet.bearing.bearing.outer_diameter / 2
-    outer = gear.tip_radius
-    if gear.internal or outer <= inner or not speed:
-        return
-    faces = 2 * math.pi * (outer**2 - inner**2)
     if wetting.bath:
-        flanks = 2 * gear.teeth * abs(outer - gear.root_radius) * gear.face_width
-        coefficient = dipped_disc(wetting.around, speed, 2 * outer)
-        conductance, how = wetting.bath * coefficient * (faces + flanks), (BATH, BATH_SOURCE)
+        conductance, how = _in_bath(gear, speed, inner, wetting), (BATH, BATH_SOURCE)
+    elif speed and not gear.internal and gear.tip_radius > inner:
+        coefficient = disc_coefficient(wetting.around, speed, gear.tip_radius, inner)
+        conductance = coefficient * _faces(gear.tip_radius, inner)
+        how = FACES, DISC_SOURCE
     else:
-        coefficient = disc_coefficient(wetting.around, speed, outer, inner)
-        conductance, how = coefficient * faces, (FACES, DISC_SOURCE)
+        return
     yield Link(f"{one.node}-oil", one.node, OIL, one.count * conductance, *how)
+
+
+def _in_bath(gear: Gear, speed: float, inner: float, wetting: Wetting) -> float:
+    """Of the part of faces and flanks that dips; at rest they are splashed as walls are. [W/K]"""
+    outer = max(gear.tip_radius, gear.root_radius)
+    if gear.internal:
+        inner = gear.tip_radius
+    flanks = 2 * gear.teeth * abs(gear.tip_radius - gear.root_radius) * gear.face_width
+    coefficient = max(dipped_disc(wetting.around, speed, 2 * outer), SPLASHED_WALL)
+    return wetting.bath * coefficient * (_faces(outer, min(inner, outer)) + flanks)
+
+
+def _faces(outer: float, inner: float) -> float:
+    """Both faces of a ring. [m^2]"""
+    return 2 * math.pi * (outer**2 - inner**2)
 
 
 def _jet(node: str, wetting: Wetting) -> Iterator[Link]:
@@ -166,10 +179,10 @@ def _carrier_to_oil(own: GearSet, state: State, wetting: Wetting) -> Iterator[Li
     radius = known[0].radius if known else max(planet.pin_radius for planet in own.planets)
     speed = abs(state.speeds[own.carrier])
     node = carrier_node(own)
-    area = 2 * math.pi * radius**2
+    area = _faces(radius, 0.0)
     if wetting.bath:
-        coefficient = wetting.bath * dipped_disc(wetting.around, speed, 2 * radius)
-        how = BATH, BATH_SOURCE
+        dipped = max(dipped_disc(wetting.around, speed, 2 * radius), SPLASHED_WALL)
+        coefficient, how = wetting.bath * dipped, (BATH, BATH_SOURCE)
     else:
         coefficient, how = disc_coefficient(wetting.around, speed, radius), (FACES, DISC_SOURCE)
     yield Link(f"{node}-oil", node, OIL, coefficient * area, *how)

@@ -236,12 +236,13 @@ class NetworkModel:
         fixed = self._fixed_links(temperatures[OIL], solution, heat)
         network = self._with_wall(fixed, self._wall(fixed, heat))
         found = network.steady(heat)
-        whole = sum(map(abs, heat.values()))
+        flows = network.flows(found)
+        whole = max(sum(map(abs, heat.values())), *map(abs, flows.values()))
         left = max(map(abs, network.residuals(found, heat).values()))
         return Answer(
             temperatures=found,
             links=network.links,
-            flows=network.flows(found),
+            flows=flows,
             given=network.given,
             residual=left / whole if whole else 0.0,
         )

@@ -43,7 +43,7 @@ class Answer:
     given : mapping of str to float
         Temperatures of nodes that are given. [K]
     residual : float
-        Largest heat of a node that does not leave it, over all heat. [1]
+        Largest heat of a node that does not leave it, over all heat or the largest flow. [1]
     """
 
     temperatures: Mapping[str, float]
@@ -121,8 +121,9 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
 
     def change(values: FloatArray) -> FloatArray:
         at = dict(zip(nodes, map(float, np.clip(values, COLDEST, HOTTEST)), strict=True))
-        solution = solve_machine(machine, operation, model.fluids(at))
-        answer = model.answer(at, solution)
+        with np.errstate(invalid="warn"):
+            solution = solve_machine(machine, operation, model.fluids(at))
+            answer = model.answer(at, solution)
         found.append((solution, answer))
         return np.array([answer.temperatures[node] for node in nodes]) - values
 

@@ -58,7 +58,7 @@ class HeatBalance:
         Temperatures that were given: of the oil inlet, the air, a coolant; of all oil with
         ``"flank"``. [K]
     residual : float
-        Largest heat of a node that does not leave it, over all heat. [1]
+        Largest heat of a node that does not leave it, over all heat or the largest flow. [1]
     evaluations : int
         Of the losses, until temperatures and losses agreed.
     """
