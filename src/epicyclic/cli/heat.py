@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.options import case_argument, json_option, load_with, set_option
-from epicyclic.cli.output import show
+from epicyclic.cli.options import case_argument, json_option, load_with, plot_option, set_option
+from epicyclic.cli.output import check_ending, draw, show
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -37,12 +38,14 @@ QUANTITIES = (AS_GIVEN, "cooler_power", "oil_flow", "input_power")
 )
 @click.option("--target", metavar="TEMPERATURE", help='Of the oil in the gearbox, as in "90 degC".')
 @json_option
+@plot_option("Draw parts, temperatures and flows of heat (.png, .svg, .pdf).")
 def heat(
     case: str,
     changes: tuple[str, ...],
     quantity: str,
     target: str | None,
     json_file: str | None,
+    plot: Path | None,
 ) -> None:
     """Show how hot all parts get, and where their heat goes.
 
@@ -56,6 +59,8 @@ def heat(
     from epicyclic.analysis.heat import solve_for, with_network
     from epicyclic.analysis.solve import solve
 
+    if plot is not None:
+        check_ending("--plot", plot)
     _check_target(quantity, target)
     stated = load_with(case, changes)
     found = None if target is None else solve_for(stated, quantity, target)
@@ -67,6 +72,11 @@ def heat(
             err=True,
         )
     show(lambda: _tables(solved, result, found), lambda: _json(result, found), json_file)
+    if plot is not None:
+        from epicyclic.plots.heat_network import heat_figure
+
+        assert result.heat is not None
+        draw(heat_figure(result.heat, result.title), plot)
 
 
 def _check_target(quantity: str, target: str | None) -> None:

@@ -17,6 +17,7 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.maps.tables import map_case
 from epicyclic.plots.bearing import plot_roller_loads, plot_roller_profile
 from epicyclic.plots.drawing import plot_gear_set, plot_teeth
+from epicyclic.plots.heat_network import plot_heat_network
 from epicyclic.plots.loss_map import map_at, plot_map, plot_map_lines, plot_map_parts
 from epicyclic.plots.losses import plot_loss_sum, plot_losses
 from epicyclic.plots.mesh import (
@@ -169,6 +170,13 @@ def _power_flow(stored: Stored) -> list[Panel]:
     return _of_result(plot_power_flow)(stored)
 
 
+def _heat(stored: Stored) -> list[Panel]:
+    heat = stored.result.heat if isinstance(stored, ResultRecord) else None
+    if heat is None or not heat.ways:
+        return []
+    return [Panel("", partial(plot_heat_network, heat.balance))]
+
+
 PLOTS: dict[str, Plot] = {
     "gear-set": Plot("What does the gear set look like, to scale?", _gear_set),
     "teeth": Plot("How do the teeth touch, and where is the path of contact?", _teeth),
@@ -178,6 +186,9 @@ PLOTS: dict[str, Plot] = {
         "Where does the power flow, what circulates, what is lost?",
         _power_flow,
         size=SLIDE,
+    ),
+    "heat-network": Plot(
+        "How warm is every part, and where does its heat flow?", _heat, size=SLIDE
     ),
     "line-load": Plot(
         "How is the load distributed over the flanks?",

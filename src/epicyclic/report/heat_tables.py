@@ -77,7 +77,7 @@ def _shared(watts: float, whole: float, key: str) -> tuple[Cell, Cell]:
     return number(watts, key, text=f"{watts:z.1f}"), Cell(share, math.nan)
 
 
-def ways_items(heat: HeatBalance) -> tuple[Table, Listing]:
+def ways_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
     """Every way of the heat, and where its conductance is from."""
     rows = tuple(
         (

@@ -1,0 +1,504 @@
+"""The network of heat: parts in a row, shafts above, oil and housing as rails below, then outside.
+
+Every length is in inches on a slide of 16 to 9.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.colors import Colormap
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyBboxPatch, Polygon, Rectangle
+
+from epicyclic.elements.base import HOUSING, OIL
+from epicyclic.plots.power_flow import SLIDE
+from epicyclic.plots.style import styled_figure
+from epicyclic.results.heat import HeatBalance
+from epicyclic.results.result import in_words
+from epicyclic.units import CELSIUS, format_number, unit_text
+
+__all__ = ["heat_figure", "plot_heat_network"]
+
+INK, SOFT, FLOW, PAPER = "#1a1d21", "#5b6470", "#5b7fa6", "#ffffff"
+COLOURS = "YlOrRd"
+DARKEST = 0.62
+"""Of the scale of colours, so that words stay readable. [1]"""
+LEFT, RIGHT = 0.15, SLIDE[0] - 0.15
+SLOT, BROADEST = 1.45, 2.6
+"""Room for each way out of the oil; of a column at most."""
+BAY, ONLY_BAY = 1.2, 2.4
+"""Room for the way from the oil to the housing; where that is the only one."""
+SHAFTS, OUTSIDE = 6.1, 0.55
+"""Middles of the rows of shafts and of what is outside."""
+WITH_SHAFTS, WITHOUT = (4.5, 2.75, 1.65), (5.4, 3.3, 1.85)
+"""Middles of the rows of parts, oil, and housing."""
+TALL, FLAT = 0.58, 0.22
+"""Half the heights of a part, and of a rail."""
+NARROW = 1.2
+"""Of columns, up to which their words are small."""
+WIDEST, THINNEST = 0.5, 0.015
+"""Of arrows."""
+SMALLEST = 0.5
+"""Heat that is not drawn. [W]"""
+LETTER = 0.0082
+"""Mean width of a letter over its size. [inch/point]"""
+
+
+@dataclass(frozen=True, slots=True)
+class _Flow:
+    """Heat from one node to another."""
+
+    start: str
+    end: str
+    watts: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """What is drawn where.
+
+    Attributes
+    ----------
+    heat : HeatBalance
+    flows : tuple of _Flow
+        Between two nodes one, in its direction.
+    columns : mapping of str to float
+        x of each part.
+    shafts : mapping of str to tuple of str
+        Parts on each shaft.
+    outlets : mapping of str to float
+        x of what takes heat from the oil.
+    edge : float
+        Where the columns end at the right.
+    rows : tuple of float
+        y of parts, oil, and housing.
+    spacing : float
+        Of the columns.
+    scale : float
+        Width of an arrow over its heat. [inch/W]
+    """
+
+    heat: HeatBalance
+    flows: tuple[_Flow, ...]
+    columns: Mapping[str, float]
+    shafts: Mapping[str, tuple[str, ...]]
+    outlets: Mapping[str, float]
+    edge: float
+    rows: tuple[float, float, float]
+    spacing: float
+    scale: float
+
+    @property
+    def width(self) -> float:
+        """Half that of a part."""
+        return (0.34 if self.spacing > NARROW else 0.4) * self.spacing
+
+    @property
+    def has_housing(self) -> bool:
+        """True if heat leaves through the housing."""
+        return HOUSING in self.heat.temperatures
+
+    @property
+    def shell(self) -> tuple[float, float]:
+        """Ends of the housing."""
+        return LEFT, RIGHT - SLOT * len(self.outlets) - (0.1 if self.outlets else 0.0)
+
+    @property
+    def letters(self) -> float:
+        """Size of the font of all flows. [point]"""
+        return 11.0 if self.spacing > NARROW else 8.5
+
+    def broad(self, flow: _Flow) -> float:
+        """Width of an arrow."""
+        return max(THINNEST, flow.watts * self.scale)
+
+    def temperature(self, node: str) -> float | None:
+        """[degC]; None of what has none."""
+        known = {**self.heat.temperatures, **self.heat.given}
+        return CELSIUS.to_display(known[node]) if node in known else None
+
+    def colour(self, node: str) -> tuple[float, ...] | str:
+        """By the temperature."""
+        value = self.temperature(node)
+        if value is None:
+            return PAPER
+        low, high = self.limits()
+        colours: Colormap = mpl.colormaps[COLOURS]
+        place = (value - low) / (high - low) if high > low else 0.0
+        return colours(DARKEST * min(1.0, max(0.0, place)))
+
+    def limits(self) -> tuple[float, float]:
+        """The coldest and the hottest part. [degC]"""
+        known = self.heat.temperatures.values()
+        return CELSIUS.to_display(min(known)), CELSIUS.to_display(max(known))
+
+
+def heat_figure(heat: HeatBalance, title: str) -> Figure:
+    """The network of heat as a figure."""
+    with styled_figure(1, 1, title, panel=SLIDE) as (figure, axes):
+        plot_heat_network(heat, axes[0, 0])
+    return figure
+
+
+def plot_heat_network(heat: HeatBalance, ax: Axes) -> Axes:
+    """How warm every part is, and which heat flows from part to part and outside."""
+    layout = _layout(heat)
+    ax.set_axis_off()
+    ax.set(xlim=(0, SLIDE[0]), ylim=(0, SLIDE[1]))
+    whole = _power(sum(heat.sources.values()))
+    ax.set_title(f"Heat: oil at {_degrees(heat.oil)}, losses {whole}", fontsize=13, x=0.008)
+    parts, rail, shell = layout.rows
+    _rail(ax, layout, OIL, (LEFT, RIGHT), rail)
+    if layout.has_housing:
+        _rail(ax, layout, HOUSING, layout.shell, shell)
+    for shaft, on in layout.shafts.items():
+        across = [layout.columns[part] for part in on]
+        ends = min(across) - layout.width, max(across) + layout.width
+        _rail(ax, layout, shaft, ends, SHAFTS)
+    for part, x in layout.columns.items():
+        _box(ax, layout, part, (x, parts), (layout.width, TALL))
+    for node, (x, y) in _outside(layout).items():
+        _box(ax, layout, node, (x, y), (0.62, 0.36))
+    for flow in layout.flows:
+        _draw(ax, layout, flow)
+    _legend(ax, layout)
+    return ax
+
+
+def _degrees(kelvin: float) -> str:
+    return unit_text(f"{CELSIUS.to_display(kelvin):.1f} {CELSIUS.display}")
+
+
+def _power(watts: float) -> str:
+    large = abs(watts) >= 1e3
+    return f"{format_number(watts / (1e3 if large else 1), 3)} {'kW' if large else 'W'}"
+
+
+# --- where everything stands ----------------------------------------------------------------------
+
+
+def _layout(heat: HeatBalance) -> _Layout:
+    flows = tuple(_flows(heat))
+    shafts: dict[str, tuple[str, ...]] = {
+        node: tuple(_other(flow, node) for flow in _all_flows(heat) if node in _ends(flow))
+        for node in heat.temperatures
+        if node.endswith(" shaft")
+    }
+    parts = [node for node in heat.temperatures if node not in (OIL, HOUSING, *shafts)]
+    outlets = dict.fromkeys(way.into for way in heat.outlets if way.hot == OIL)
+    slots = RIGHT - SLOT * len(outlets)
+    bay = 0.0 if HOUSING not in heat.temperatures else BAY if outlets else ONLY_BAY
+    edge, first = slots - bay, LEFT + 0.2
+    spacing = min(BROADEST, (edge - first) / max(1, len(parts)))
+    start = (first + edge - spacing * len(parts)) / 2
+    most = max((flow.watts for flow in flows), default=0.0)
+    return _Layout(
+        heat=heat,
+        flows=flows,
+        columns={
+            part: start + (place + 0.5) * spacing
+            for place, part in enumerate(_ordered(parts, shafts, flows))
+        },
+        shafts=shafts,
+        outlets={node: slots + (place + 0.5) * SLOT for place, node in enumerate(outlets)},
+        edge=edge,
+        rows=WITH_SHAFTS if shafts else WITHOUT,
+        spacing=spacing,
+        scale=min(WIDEST, 0.5 * spacing) / most if most else 0.0,
+    )
+
+
+def _all_flows(heat: HeatBalance) -> Iterator[_Flow]:
+    """All ways between two nodes as one."""
+    sums: dict[tuple[str, str], float] = {}
+    for way in heat.ways:
+        sums[way.hot, way.into] = sums.get((way.hot, way.into), 0.0) + way.watts
+    for (hot, into), watts in sums.items():
+        yield _Flow(hot, into, watts) if watts >= 0 else _Flow(into, hot, -watts)
+
+
+def _flows(heat: HeatBalance) -> Iterator[_Flow]:
+    return (flow for flow in _all_flows(heat) if flow.watts >= SMALLEST)
+
+
+def _ends(flow: _Flow) -> tuple[str, str]:
+    return flow.start, flow.end
+
+
+def _other(flow: _Flow, node: str) -> str:
+    return flow.end if flow.start == node else flow.start
+
+
+def _ordered(
+    parts: list[str], shafts: Mapping[str, tuple[str, ...]], flows: tuple[_Flow, ...]
+) -> list[str]:
+    """Parts on one shaft, and parts that pass heat to each other, side by side."""
+    joined = {node for flow in flows if {*_ends(flow)} <= {*parts} for node in _ends(flow)}
+    group = {part: part.rpartition(".")[0] for part in parts}
+    group |= {part: shaft for shaft, on in shafts.items() for part in on}
+    first = {name: place for place, name in reversed([*enumerate(group[part] for part in parts)])}
+    on_shaft = {part for on in shafts.values() for part in on}
+    return sorted(
+        parts, key=lambda part: (first[group[part]], part in joined and part not in on_shaft)
+    )
+
+
+def _outside(layout: _Layout) -> dict[str, tuple[float, float]]:
+    """Places of all that is not part of the gearbox."""
+    places = {node: (x, OUTSIDE) for node, x in layout.outlets.items()}
+    around = {way.into for way in layout.heat.outlets if way.hot == HOUSING}
+    return places | dict.fromkeys(around, (sum(layout.shell) / 2, OUTSIDE - 0.1))
+
+
+# --- boxes ----------------------------------------------------------------------------------------
+
+
+def _fit(text: str, room: float, size: float) -> float:
+    """The size of a font at which `text` fits into `room`. [point]"""
+    return min(size, room / (LETTER * max(1, len(text))))
+
+
+def _box(
+    ax: Axes,
+    layout: _Layout,
+    node: str,
+    middle: tuple[float, float],
+    half: tuple[float, float],
+) -> None:
+    """A part with its name, temperature, and the heat of its losses."""
+    (x, y), (width, height) = middle, half
+    is_outside = node not in layout.heat.temperatures
+    ax.add_patch(
+        FancyBboxPatch(
+            (x - width + 0.04, y - height + 0.04),
+            2 * width - 0.08,
+            2 * height - 0.08,
+            boxstyle="round,pad=0.04",
+            fc=layout.colour(node),
+            ec=SOFT,
+            ls="--" if is_outside else "-",
+            lw=0.9,
+            zorder=5,
+        )
+    )
+    lines = list(_lines(layout, node))
+    step = min(0.25, 2 * (height - 0.05) / len(lines))
+    alike = layout.columns if node in layout.columns else (node,)
+    for place, (text, size, weight) in enumerate(lines):
+        size = min(
+            _fit(other, 2 * width - 0.06, size)
+            for each in alike
+            for other, wanted, _ in _lines(layout, each)
+            if wanted == size
+        )
+        ax.text(
+            x,
+            y + (len(lines) / 2 - place - 0.5) * step,
+            text,
+            ha="center",
+            va="center",
+            fontsize=size,
+            fontweight=weight,
+            color=INK,
+            zorder=7,
+        )
+
+
+def _lines(layout: _Layout, node: str) -> Iterator[tuple[str, float, str]]:
+    """Texts of a box with their sizes and weights."""
+    stage, _, name = node.rpartition(".")
+    if stage:
+        yield in_words(stage), 9, "normal"
+    words = in_words(name).split(" ") if node in layout.columns else [in_words(name)]
+    for word in words:
+        yield word, 12.5, "bold"
+    value = layout.temperature(node)
+    if value is not None:
+        yield f"{value:.1f} {unit_text(CELSIUS.display)}", 12, "normal"
+    watts = layout.heat.sources.get(node, 0.0)
+    if watts >= SMALLEST:
+        yield f"+ {_power(watts)}", 9, "normal"
+
+
+def _rail(ax: Axes, layout: _Layout, node: str, ends: tuple[float, float], y: float) -> None:
+    """A node that many others meet, as a bar."""
+    left, right = ends
+    colour, size = layout.colour(node), (right - left, 2 * FLAT)
+    ax.add_patch(Rectangle((left, y - FLAT), *size, fc=colour, ec=SOFT, lw=0.9, zorder=2))
+    value = layout.temperature(node)
+    watts = layout.heat.brought.get(node, 0.0)
+    losses = f"   + {_power(watts)}" if watts >= SMALLEST else ""
+    text = f"{in_words(node)}   {value:.1f} {unit_text(CELSIUS.display)}{losses}"
+    # ways to the housing lead through the rail of the oil
+    start = layout.edge if node == OIL and layout.has_housing else left
+    room = right - start - 0.2
+    ax.text(
+        start + 0.1,
+        y,
+        text,
+        va="center",
+        fontsize=_fit(text, room, 12),
+        fontweight="bold",
+        color=INK,
+        zorder=7,
+    )
+
+
+# --- arrows ---------------------------------------------------------------------------------------
+
+
+def _draw(ax: Axes, layout: _Layout, flow: _Flow) -> None:
+    """The arrow of a flow, by the rows of its ends."""
+    nodes = {*_ends(flow)}
+    part = next((node for node in _ends(flow) if node in layout.columns), None)
+    shaft = next((node for node in _ends(flow) if node in layout.shafts), None)
+    outlet = next((node for node in _ends(flow) if node in layout.outlets), None)
+    parts, rail, shell = layout.rows
+    if part is not None:
+        x = layout.columns[part]
+        if shaft is not None:
+            _upright(ax, layout, flow, x, {part: parts + TALL, shaft: SHAFTS - FLAT})
+        elif OIL in nodes:
+            aside = 0.3 * layout.width if layout.has_housing else 0.0
+            ends = {part: parts - TALL, OIL: rail + FLAT}
+            _upright(ax, layout, flow, x - aside, ends, left=layout.has_housing)
+        elif HOUSING in nodes:
+            at = x + 0.4 * layout.width
+            _bridge(ax, layout, flow, at)
+            ends = {part: parts - TALL, HOUSING: shell + FLAT}
+            _upright(ax, layout, flow, at, ends, middle=(rail + shell) / 2)
+        else:
+            _across(ax, layout, flow)
+    elif outlet is not None:
+        x = layout.outlets[outlet]
+        _upright(ax, layout, flow, x, {OIL: rail - FLAT, outlet: OUTSIDE + 0.36})
+    elif OIL in nodes:
+        x = layout.edge + 0.5
+        _upright(ax, layout, flow, x, {OIL: rail - FLAT, HOUSING: shell + FLAT})
+    else:
+        air = next(node for node in _ends(flow) if node != HOUSING)
+        x, y = _outside(layout)[air]
+        _upright(ax, layout, flow, x, {HOUSING: shell - FLAT, air: y + 0.36})
+
+
+def _upright(
+    ax: Axes,
+    layout: _Layout,
+    flow: _Flow,
+    x: float,
+    ends: Mapping[str, float],
+    *,
+    left: bool = False,
+    middle: float | None = None,
+) -> None:
+    """An upright arrow with its heat beside it, at the left or right, in a middle of its own."""
+    start, tip = ends[flow.start], ends[flow.end]
+    broad = layout.broad(flow)
+    points = [(across, along) for along, across in _arrow(start, tip, x, broad)]
+    ax.add_patch(Polygon(points, closed=True, color=FLOW, lw=0, zorder=4))
+    aside = broad / 2 + 0.06
+    ax.text(
+        x - aside if left else x + aside,
+        max(start, tip) - 0.4 * abs(tip - start) if middle is None else middle,
+        _power(flow.watts),
+        ha="right" if left else "left",
+        va="center",
+        fontsize=layout.letters,
+        color=INK,
+        zorder=6,
+    )
+
+
+def _bridge(ax: Axes, layout: _Layout, flow: _Flow, x: float) -> None:
+    """A gap in the rail of the oil, through which heat reaches the housing."""
+    half = layout.broad(flow) / 2 + 0.05
+    ax.add_patch(
+        Rectangle(
+            (x - half, layout.rows[1] - FLAT - 0.02),
+            2 * half,
+            2 * FLAT + 0.04,
+            color=PAPER,
+            zorder=3,
+        )
+    )
+
+
+def _across(ax: Axes, layout: _Layout, flow: _Flow) -> None:
+    """Heat between two parts: straight to a neighbour, else over those between."""
+    start, end = layout.columns[flow.start], layout.columns[flow.end]
+    sign = 1.0 if end > start else -1.0
+    middle = layout.rows[0]
+    broad = min(layout.broad(flow), TALL)
+    if abs(end - start) < 1.5 * layout.spacing:
+        shapes = [_arrow(start + sign * layout.width, end - sign * layout.width, middle, broad)]
+        y = middle + TALL + 0.1
+    else:
+        low, top = middle + TALL, middle + TALL + 0.25 + broad
+        start, end = start + 0.6 * sign * layout.width, end - 0.6 * sign * layout.width
+        shapes = [
+            _band((start - broad / 2, low), (start + broad / 2, top)),
+            _band((start - sign * broad / 2, top - broad), (end, top)),
+            ((across, along) for along, across in _arrow(top, low, end, broad)),
+        ]
+        y = top + 0.1
+    for corners in shapes:
+        ax.add_patch(Polygon(list(corners), closed=True, color=FLOW, lw=0, zorder=4))
+    ax.text(
+        (start + end) / 2,
+        y,
+        _power(flow.watts),
+        ha="center",
+        va="center",
+        fontsize=layout.letters,
+        color=INK,
+        zorder=6,
+    )
+
+
+def _band(low: tuple[float, float], high: tuple[float, float]) -> Iterator[tuple[float, float]]:
+    """Corners of a rectangle."""
+    yield from (low, (high[0], low[1]), high, (low[0], high[1]))
+
+
+def _arrow(start: float, tip: float, middle: float, broad: float) -> Iterator[tuple[float, float]]:
+    """Corners of an arrow: along, across."""
+    half, reach = broad / 2, max(0.07, 0.8 * broad)
+    length = min(0.45 * abs(tip - start), max(0.13, 0.6 * broad))
+    neck = tip - length if tip > start else tip + length
+    yield from ((start, middle - half), (neck, middle - half), (neck, middle - reach))
+    yield tip, middle
+    yield from ((neck, middle + reach), (neck, middle + half), (start, middle + half))
+
+
+# --- legend ---------------------------------------------------------------------------------------
+
+
+def _legend(ax: Axes, layout: _Layout) -> None:
+    low, high = layout.limits()
+    colours = mpl.colormaps[COLOURS]
+    unit = unit_text(CELSIUS.display)
+    y = 7.2
+    steps = 24
+    for step in range(steps):
+        ax.add_patch(
+            Rectangle(
+                (0.75 + 0.06 * step, y - 0.09),
+                0.065,
+                0.18,
+                color=colours(DARKEST * step / (steps - 1)),
+                lw=0,
+            )
+        )
+    write = partial(ax.text, y=y, va="center", fontsize=10, color=SOFT)
+    write(x=0.68, s=f"{low:.0f}", ha="right")
+    write(x=0.82 + 0.06 * steps, s=f"{high:.0f} {unit}")
+    write(
+        x=3.4,
+        s="arrows: heat, as wide as its power;  + W: heat of losses;  dashed: outside, of given "
+        "temperature",
+    )
