@@ -45,6 +45,8 @@ WIDEST, THINNEST = 0.5, 0.015
 """Of arrows."""
 SMALLEST = 0.5
 """Heat that is not drawn. [W]"""
+SHAFT = "_shaft"
+"""Ends the names of shafts."""
 LETTER = 0.0082
 """Mean width of a letter over its size. [inch/point]"""
 
@@ -187,7 +189,7 @@ def _layout(heat: HeatBalance) -> _Layout:
     shafts: dict[str, tuple[str, ...]] = {
         node: tuple(_other(flow, node) for flow in _all_flows(heat) if node in _ends(flow))
         for node in heat.temperatures
-        if node.endswith(" shaft")
+        if node.endswith(SHAFT)
     }
     parts = [node for node in heat.temperatures if node not in (OIL, HOUSING, *shafts)]
     outlets = dict.fromkeys(way.into for way in heat.outlets if way.hot == OIL)
