@@ -246,7 +246,7 @@ def _ordered(
     first = {name: place for place, name in reversed([*enumerate(group[part] for part in parts)])}
     on_shaft = {part for on in shafts.values() for part in on}
     return sorted(
-        parts, key=lambda part: (first[group[part]], part in joined and part not in on_shaft)
+        parts, key=lambda part: (first[group[part]], (part in joined) != (part in on_shaft))
     )
 
 
@@ -438,20 +438,21 @@ def _across(ax: Axes, layout: _Layout, flow: _Flow) -> None:
     broad = min(layout.broad(flow), TALL)
     if abs(end - start) < 1.5 * layout.spacing:
         shapes = [_arrow(start + sign * layout.width, end - sign * layout.width, middle, broad)]
-        y = middle + TALL + 0.1
+        between, y = (start + end) / 2, middle + TALL + 0.1
     else:
         low, top = middle + TALL, middle + TALL + 0.25 + broad
+        between = start + 0.5 * sign * layout.spacing
         start, end = start + 0.6 * sign * layout.width, end - 0.6 * sign * layout.width
         shapes = [
             _band((start - broad / 2, low), (start + broad / 2, top)),
             _band((start - sign * broad / 2, top - broad), (end, top)),
             ((across, along) for along, across in _arrow(top, low, end, broad)),
         ]
-        y = top + 0.1
+        y = low + 0.12
     for corners in shapes:
         ax.add_patch(Polygon(list(corners), closed=True, color=FLOW, lw=0, zorder=4))
     ax.text(
-        (start + end) / 2,
+        between,
         y,
         _power(flow.watts),
         ha="center",
