@@ -129,7 +129,10 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
 
     start = np.array([model.start[node] for node in nodes])
     try:
-        broyden1(change, start, alpha=1.0, f_tol=AGREEMENT, maxiter=MOST_PASSES, line_search=None)
+        with np.errstate(invalid="ignore"):  # its first check divides infinity by infinity
+            broyden1(
+                change, start, alpha=1.0, f_tol=AGREEMENT, maxiter=MOST_PASSES, line_search=None
+            )
     except NoConvergence:
         raise _runaway(found[-1][1].temperatures, found) from None
     solution, answer = found[-1]
