@@ -90,9 +90,18 @@ def test_json_goes_to_standard_output(call, measured):
     assert content["errors"][0]["count"] == 6
 
 
+def test_load_dependent_losses_as_a_rig_forms_them(call, measured):
+    warm = ["--set", "models.temperatures=network", "--set", "thermal.oil_flow=4 l/min"]
+    arguments = ["talbot-2012", measured, *QUICK, *warm, "--component", "load_dependent"]
+    done = call(*arguments, "--load-dependent", "as-tested")
+    assert done.returncode == 0, done.stderr
+    assert "Load-dependent losses as tested: total loss less that without torque" in done.stdout
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
+        (["--load-dependent", "as-tested"], "none was measured"),
         (["-o", "fitted.toml"], "nothing is calibrated"),
         (["--fit", "planet.roughness", "-o", "fitted.txt"], "must end in .toml"),
         (["--plot", "fit.jpg"], "must end in .png"),

@@ -12,9 +12,14 @@ import pytest
 from scipy.optimize import curve_fit
 
 import epicyclic as ep
+from epicyclic.measurement.files import read_frame
 from epicyclic.measurement.fit import fit_parameters
+from epicyclic.measurement.model import MeasuredPoints
 from epicyclic.measurement.parameters import Parameter
-from epicyclic.measurement.table import Measurements
+from epicyclic.measurement.table import Measurements, parse_measurements
+from epicyclic.sweeps.journal import Row, Rows
+from epicyclic.sweeps.runner import failed_row
+from epicyclic.sweeps.unloaded import with_unloaded
 
 TRUTH = {"mesh_sliding": 1.2, "drag": 0.8}
 KEYS = [f"losses.{name}.factor" for name in TRUTH]
@@ -331,3 +336,105 @@ def test_other_units_mean_the_same(case, tests):
     # factors of 60 and 1000 round
     np.testing.assert_allclose(same.computed, one.computed, rtol=1e-12)
     np.testing.assert_allclose(same.measured.uncertainty, 0.02 * one.measured.loss, rtol=1e-12)
+
+
+def load_dependent_tests():
+    """Load-dependent losses as a table of measurements has them."""
+    rows = [
+        (speed, torque, 60, "load_dependent", 100.0)
+        for speed in (2000, 6000)
+        for torque in (0, 60, 120)
+    ]
+    names = ["speed [rpm]", "torque [N*m]", "temperature [degC]", "component", "loss [W]"]
+    return pd.DataFrame(rows, columns=names)
+
+
+def test_as_tested_at_inlet_temperature_is_what_depends_on_the_load(case):
+    table = load_dependent_tests()
+    computed = ep.compare_measured(case, table).computed
+    tested = ep.compare_measured(case, table, load_dependent="as-tested")
+    # a difference of total losses: rounding of these
+    np.testing.assert_allclose(tested.computed, computed, rtol=1e-12, atol=1e-11)
+    assert tested.computed[0] == 0
+    assert tested.to_dict()["load_dependent"] == "as-tested"
+
+
+@pytest.fixture(scope="module")
+def warm(case):
+    return case.updated({"models.temperatures": "network", "thermal.oil_flow": "1 l/min"})
+
+
+def test_as_tested_is_total_loss_loaded_less_unloaded(warm):
+    table = load_dependent_tests()
+    tested = ep.compare_measured(warm, table, load_dependent="as-tested").computed
+    computed = ep.compare_measured(warm, table).computed
+    for number, row in table.iterrows():
+        point = {
+            "operation.speed": f"{row['speed [rpm]']} rpm",
+            "operation.oil_inlet_temperature": "60 degC",
+        }
+        loaded, unloaded = (
+            ep.solve(warm.updated({**point, "operation.torque": f"{torque} N*m"})).total
+            for torque in (row["torque [N*m]"], 0)
+        )
+        # the text of the table keeps 14 digits
+        assert tested[number] == pytest.approx(loaded - unloaded, rel=1e-9, abs=1e-9)
+    # the loaded oil is hotter and drags less
+    assert (tested[computed > 0] < computed[computed > 0]).all()
+
+
+def test_points_of_equal_speed_share_the_one_without_torque():
+    points = [
+        {"operation.torque": f"{t} N*m", "operation.speed": s} for s in (1, 2) for t in (5, 6)
+    ]
+    everything, unloaded = with_unloaded(points)
+    assert unloaded.tolist() == [4, 4, 5, 5]
+    assert everything[:4] == tuple(points)
+    assert [point["operation.torque"] for point in everything[4:]] == ["0 N*m"] * 2
+    assert [point["operation.speed"] for point in everything[4:]] == [1, 2]
+
+
+def test_other_losses_are_not_touched_by_a_rig(warm):
+    table = load_dependent_tests()
+    table.loc[1, "component"] = "load_independent"
+    table.loc[2, "component"] = "load_dependent + drag"
+    tested = ep.compare_measured(warm, table, load_dependent="as-tested")
+    computed = ep.compare_measured(warm, table)
+    assert tested.computed[1] == computed.computed[1]
+    drag = ep.compare_measured(warm, table.assign(component="drag")).computed
+    every = ep.compare_measured(
+        warm, table.assign(component="load_dependent"), load_dependent="as-tested"
+    ).computed
+    assert tested.computed[2] == pytest.approx(every[2] + drag[2], rel=1e-12)
+
+
+def test_a_point_without_torque_that_fails_is_told(case):
+    table = parse_measurements(read_frame(load_dependent_tests().iloc[1:2]), case)
+    rows = Rows(2)
+    rows.add(0, Row("ok", numbers={"total": 5.0}))
+    rows.add(1, failed_row("runs away"))
+    runner = SimpleNamespace(within=lambda plan: SimpleNamespace(run=lambda plan: rows))
+    (computed,) = MeasuredPoints(case, table, runner, "as-tested").compute({})
+    assert math.isnan(computed.loss[0])
+    assert computed.messages == ("runs away",)
+
+
+@pytest.mark.parametrize(
+    ("options", "key", "word"),
+    [
+        ({"load_dependent": "tested"}, "load_dependent", "neither"),
+        ({"component": "total"}, "load_dependent", "none was measured"),
+        ({"outlet": "80 degC"}, "thermal.oil_outlet_temperature", "without torque"),
+    ],
+)
+def test_what_cannot_be_formed_as_tested_is_refused(case, options, key, word):
+    table = load_dependent_tests()
+    if "component" in options:
+        table = table.assign(component=options["component"])
+    if "outlet" in options:
+        table = table.assign(**{"thermal.oil_outlet_temperature": options["outlet"]})
+    with pytest.raises(ep.InputError) as caught:
+        ep.compare_measured(case, table, load_dependent=options.get("load_dependent", "as-tested"))
+    assert [(problem.key, word in problem.allowed) for problem in caught.value.problems] == [
+        (key, True)
+    ]

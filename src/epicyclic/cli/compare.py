@@ -22,6 +22,7 @@ from epicyclic.errors import InputError, Problem
 if TYPE_CHECKING:
     from epicyclic.measurement.compare import MeasuredComparison
     from epicyclic.sweeps.runner import Runner
+    from epicyclic.sweeps.unloaded import LoadDependent
 
 __all__ = ["compare"]
 
@@ -36,6 +37,13 @@ __all__ = ["compare"]
     default="total",
     help="The loss that was measured, if no column says so: a term, load_dependent, "
     "load_independent, total (default), or several joined by +.",
+)
+@click.option(
+    "--load-dependent",
+    type=click.Choice(["computed", "as-tested"]),
+    default="computed",
+    help="What load-dependent losses are: the sum of their terms (default), or the total loss less "
+    "that without torque, both at the temperatures that they lead to.",
 )
 @click.option("--group", metavar="COLUMN", help="Errors by its values; default: temperature.")
 @click.option(
@@ -65,6 +73,7 @@ def compare(
     measured: Path,
     changes: tuple[str, ...],
     component: str,
+    load_dependent: LoadDependent,
     group: str | None,
     fit: str | None,
     hold_out: str | None,
@@ -93,6 +102,7 @@ def compare(
             loaded,
             measured,
             component=component,
+            load_dependent=load_dependent,
             group=group,
             fit=keys,
             hold_out=hold_out,

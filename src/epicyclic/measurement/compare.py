@@ -27,9 +27,15 @@ from epicyclic.measurement.files import read_frame, read_grid
 from epicyclic.measurement.fit import Fit, fit_parameters
 from epicyclic.measurement.model import Computed, MeasuredPoints
 from epicyclic.measurement.parameters import make_parameters
-from epicyclic.measurement.table import Measurements, parse_measurements
+from epicyclic.measurement.table import (
+    LOAD_DEPENDENT,
+    Measurements,
+    parse_measurements,
+    parts_of,
+)
 from epicyclic.results.result import versions
 from epicyclic.sweeps.runner import Progress, Runner
+from epicyclic.sweeps.unloaded import AS_TESTED, COMPUTED, LoadDependent
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -40,6 +46,7 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 _GROUPS = ("temperature", "state", "speed")
+_OUTLET = "thermal.oil_outlet_temperature"
 _EQUATION = re.compile(r"(?P<column>[^=]+)=(?P<value>.*)")
 
 
@@ -58,6 +65,8 @@ class MeasuredComparison:
         With the fitted values. [W]
     held_out : ndarray of bool, shape (n,)
         Points that the fit did not see.
+    load_dependent : {"computed", "as-tested"}
+        What computed load-dependent losses are.
     group : str
         Column by whose values the errors are given.
     errors : tuple of ErrorFigures
@@ -71,6 +80,7 @@ class MeasuredComparison:
     computed: FloatArray
     calibrated: FloatArray | None
     held_out: BoolArray
+    load_dependent: LoadDependent
     group: str
     errors: tuple[ErrorFigures, ...]
     fit: Fit | None
@@ -115,6 +125,7 @@ class MeasuredComparison:
         content = {
             "title": self.case.title,
             "measurements": self.measured.source,
+            "load_dependent": self.load_dependent,
             "points": self.table().to_dict(orient="records"),
             "errors": [asdict(row) for row in self.errors],
             "error_units": {"bias": "W", "rms": "W", "largest": "W", "others": "1"},
@@ -136,6 +147,7 @@ def compare_measured(
     measured: str | Path | pd.DataFrame,
     *,
     component: str = "total",
+    load_dependent: LoadDependent = COMPUTED,
     group: str | None = None,
     fit: Iterable[str] = (),
     hold_out: str | float | None = None,
@@ -160,6 +172,10 @@ def compare_measured(
     component : str, optional
         The loss that was measured, where no column says so: a term, terms joined by ``+``,
         ``"load_dependent"``, ``"load_independent"`` or ``"total"``.
+    load_dependent : {"computed", "as-tested"}, optional
+        What load-dependent losses are: the sum of those that depend on the load, or, as a test rig
+        finds them, the total loss less that without torque at the same speed and oil inlet
+        temperature, each at its own temperatures.
     group : str, optional
         Column by whose values the errors are given. Default: the temperature, else the state, else
         the speed.
@@ -195,10 +211,15 @@ def compare_measured(
     keys = tuple(dict.fromkeys(fit))
     group = group or next(name for name in _GROUPS if name in table.labels)
     varied = {key for change in table.changes for key in change}
-    _check_options(table, keys, group, hold_out, confidence)
+    problems = [
+        *_option_problems(table, keys, group, hold_out, confidence),
+        *_tested_problems(case, table, load_dependent),
+    ]
+    if problems:
+        raise InputError(problems, "the comparison")
     parameters = make_parameters(case, keys, varied)
     held_out = _held_out(table, hold_out, seed)
-    points = MeasuredPoints(case, table, runner)
+    points = MeasuredPoints(case, table, runner, load_dependent)
     (given,) = points.compute({})
     _check_any(given)
     found = calibrated = None
@@ -215,6 +236,7 @@ def compare_measured(
         computed=given.loss,
         calibrated=None if calibrated is None else calibrated.loss,
         held_out=held_out,
+        load_dependent=load_dependent,
         group=group,
         errors=tuple(all_errors(table, states, held_out, group)),
         fit=found,
@@ -222,32 +244,37 @@ def compare_measured(
     )
 
 
-def _check_options(
+def _option_problems(
     table: Measurements,
     keys: tuple[str, ...],
     group: str,
     hold_out: str | float | None,
     confidence: float,
-) -> None:
-    problems = []
+) -> Iterator[Problem]:
     known = ", ".join(table.labels)
     if group not in table.labels:
-        problems.append(Problem("group", group, "is no column.", f"Columns are {known}."))
+        yield Problem("group", group, "is no column.", f"Columns are {known}.")
     if hold_out is not None and not keys:
-        problems.append(
-            Problem(
-                "hold_out",
-                str(hold_out),
-                "keeps points from a fit, and there is none.",
-                "Name the keys to fit.",
-            )
-        )
+        allowed = "keeps points from a fit, and there is none."
+        yield Problem("hold_out", str(hold_out), allowed, "Name the keys to fit.")
     if not 0 < confidence < 1:
-        problems.append(
-            Problem("confidence", f"{confidence:g}", "must be > 0 and < 1.", "Give 0.95.")
-        )
-    if problems:
-        raise InputError(problems, "the comparison")
+        yield Problem("confidence", f"{confidence:g}", "must be > 0 and < 1.", "Give 0.95.")
+
+
+def _tested_problems(case: Case, table: Measurements, load_dependent: str) -> Iterator[Problem]:
+    if load_dependent == COMPUTED:
+        return
+    key = "load_dependent"
+    if load_dependent != AS_TESTED:
+        allowed = f"is neither {COMPUTED} nor {AS_TESTED}."
+        yield Problem(key, load_dependent, allowed, f"Give {AS_TESTED}.")
+    if not any(LOAD_DEPENDENT in parts_of(component) for component in table.component):
+        allowed = "is about load-dependent losses, and none was measured."
+        yield Problem(key, load_dependent, allowed, f"Name the component {LOAD_DEPENDENT}.")
+    outlets = [case.thermal.oil_outlet_temperature, *(row.get(_OUTLET) for row in table.changes)]
+    if any(outlet is not None for outlet in outlets):
+        allowed = "is not known without torque, where less oil would follow from the same."
+        yield Problem(_OUTLET, "", allowed, "Give thermal.oil_flow in its place.")
 
 
 def _held_out(table: Measurements, hold_out: str | float | None, seed: int) -> BoolArray:

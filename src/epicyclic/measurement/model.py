@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -10,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
-from epicyclic.measurement.table import Measurements
+from epicyclic.measurement.table import LOAD_DEPENDENT, Measurements, parts_of
 from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.plan import PointList
 from epicyclic.sweeps.runner import HERE, Runner
+from epicyclic.sweeps.unloaded import AS_TESTED, COMPUTED, LoadDependent, as_tested, with_unloaded
 
 __all__ = ["Computed", "MeasuredPoints"]
 
@@ -51,27 +53,44 @@ class MeasuredPoints:
     measured : Measurements
     runner : Runner
         With a folder as its journal; its progress starts again with every round.
+    load_dependent : {"computed", "as-tested"}
+        What load-dependent losses are.
     """
 
     case: Case
     measured: Measurements
     runner: Runner = HERE
+    load_dependent: LoadDependent = COMPUTED
 
     def compute(self, *settings: Mapping[str, Any]) -> list[Computed]:
         """The losses for each of several `settings` of keys, all of them in one go."""
         changes = self.measured.changes
-        points = tuple({**_EXACT, **change, **keys} for keys in settings for change in changes)
+        asked = tuple({**_EXACT, **change, **keys} for keys in settings for change in changes)
+        points, unloaded = asked, np.arange(len(asked))
+        if self.load_dependent == AS_TESTED:
+            points, unloaded = with_unloaded(asked)
         plan = PointList(self.case, points)
         rows = self.runner.within(plan).run(plan)
-        count = len(changes)
-        return [self._computed(rows, i) for i in range(0, len(rows), count)]
+        return [self._computed(rows, unloaded, i) for i in range(0, unloaded.size, len(changes))]
 
-    def _computed(self, rows: Rows, first: int) -> Computed:
+    def _computed(self, rows: Rows, unloaded: NDArray[np.intp], first: int) -> Computed:
         """The points of one of the settings, from number `first` on."""
         component = self.measured.component
-        losses = [
-            sum(float(rows.numbers(name.strip())[point]) for name in names.split("+"))
-            for point, names in enumerate(component, first)
-        ]
         own = slice(first, first + len(component))
-        return Computed(np.array(losses), tuple(rows.message[own]), tuple(rows.warnings[own]))
+        losses = np.array(
+            [
+                sum(float(self._loss(rows, unloaded, name)[point]) for name in parts_of(names))
+                for point, names in enumerate(component, first)
+            ]
+        )
+        messages = (
+            rows.message[point] or rows.message[unloaded[point]] * math.isnan(loss)
+            for point, loss in enumerate(losses, first)
+        )
+        return Computed(losses, tuple(messages), tuple(rows.warnings[own]))
+
+    def _loss(self, rows: Rows, unloaded: NDArray[np.intp], name: str) -> FloatArray:
+        """A loss of all points."""
+        if name == LOAD_DEPENDENT and self.load_dependent == AS_TESTED:
+            return as_tested(rows, unloaded)
+        return rows.numbers(name)

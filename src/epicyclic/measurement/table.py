@@ -24,9 +24,12 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.measurement.files import Grid
 from epicyclic.units import WATT, Quantity, format_number
 
-__all__ = ["Measurements", "loss_names", "parse_measurements"]
+__all__ = ["LOAD_DEPENDENT", "Measurements", "loss_names", "parse_measurements", "parts_of"]
 
 FloatArray = NDArray[np.float64]
+
+LOAD_DEPENDENT = "load_dependent"
+"""Sum of the losses that depend on the load, as a component."""
 
 _OWN = (*AXES, "loss", "uncertainty", "component")
 _EXAMPLES = {name: part.unit for name, part in OPERATING.items()} | {"loss": WATT.display}
@@ -75,7 +78,12 @@ class Measurements:
 
 def loss_names(case: Case) -> tuple[str, ...]:
     """Losses of a case that can be measured."""
-    return (*layout_of(case).losses, "load_dependent", "load_independent", "total")
+    return (*layout_of(case).losses, LOAD_DEPENDENT, "load_independent", "total")
+
+
+def parts_of(component: str) -> list[str]:
+    """The losses whose sum was measured."""
+    return [part.strip() for part in component.split("+")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -311,7 +319,7 @@ def _components(
 
 
 def _is_sum_of(names: Iterable[str], text: str) -> bool:
-    parts = [part.strip() for part in text.split("+")]
+    parts = parts_of(text)
     return set(parts) <= set(names) and len(set(parts)) == len(parts)
 
 

@@ -13,6 +13,7 @@ from epicyclic.measurement.deviations import CALIBRATED, ErrorFigures
 from epicyclic.measurement.fit import Fit, FittedParameter
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import plain_table
+from epicyclic.sweeps.unloaded import AS_TESTED
 from epicyclic.units import unit_text
 
 __all__ = ["fitted_comment", "measured_tables"]
@@ -69,6 +70,11 @@ def _legend(comparison: MeasuredComparison) -> str:
         "mean: of the errors; size: mean of their magnitude; most: by magnitude, in W with its "
         "line; %: over the measured loss."
     )
+    if comparison.load_dependent == AS_TESTED:
+        text += (
+            " Load-dependent losses as tested: total loss less that without torque at the same "
+            "speed and oil inlet temperature, each at its own temperatures."
+        )
     if comparison.fit is not None:
         text += f" {CALIBRATED}: with values fitted to these measurements; that is no validation."
     return text

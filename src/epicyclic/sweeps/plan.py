@@ -58,6 +58,7 @@ _OPERATING_TABLES = (
     "models",
     "contact_solver",
     "losses",
+    "thermal",
 )
 
 
