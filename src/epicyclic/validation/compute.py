@@ -8,10 +8,10 @@ from __future__ import annotations
 import itertools
 import math
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from importlib import resources
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +40,7 @@ from epicyclic.thermal.bulk import (
 )
 from epicyclic.thermal.flash import effusivity, flash_temperature
 
-__all__ = ["FIGURES"]
+__all__ = ["FIGURES", "LoadedTests", "loaded_conditions"]
 
 TEST_TORQUES = (250, 500, 750, 1000)
 """Loaded tests: torque on the sun. [N m]"""
@@ -56,19 +56,40 @@ def _case(**changes: object) -> PlanetaryCase:
     return case.updated({key.replace("__", "."): value for key, value in changes.items()})
 
 
-def _tests(temperature: str, finish: str, planets: Iterable[int]) -> list[Result]:
-    """The loaded tests of the dissertation at one temperature and finish."""
+class LoadedTest(Protocol):
+    """What a test of the dissertation under load is about. [W]"""
+
+    @property
+    def input_power(self) -> float: ...
+
+    @property
+    def load_dependent(self) -> float: ...
+
+
+LoadedTests = Callable[[str, str, Iterable[int]], Sequence[LoadedTest]]
+"""Those at a temperature, with a finish and some numbers of planets, torques and speeds rising."""
+
+
+def loaded_conditions(
+    temperature: str, finish: str, planets: Iterable[int]
+) -> list[dict[str, Any]]:
+    """The keys of the case that the loaded tests change."""
     return [
-        solve(
-            _case(
-                operation__oil_inlet_temperature=temperature,
-                operation__torque=f"{torque} N*m",
-                operation__speed=f"{speed} rpm",
-                planet__count=count,
-                planet__roughness=finish,
-            )
-        )
+        {
+            "operation.oil_inlet_temperature": temperature,
+            "operation.torque": f"{torque} N*m",
+            "operation.speed": f"{speed} rpm",
+            "planet.count": count,
+            "planet.roughness": finish,
+        }
         for count, torque, speed in itertools.product(planets, TEST_TORQUES, TEST_SPEEDS)
+    ]
+
+
+def _computed_tests(temperature: str, finish: str, planets: Iterable[int]) -> list[Result]:
+    case = _case()
+    return [
+        solve(case.updated(changes)) for changes in loaded_conditions(temperature, finish, planets)
     ]
 
 
@@ -122,19 +143,22 @@ def mixture_viscosity(temperature: str) -> float:
     return fluids.mixture.dynamic_viscosity * 1e3
 
 
-def branch_slope(temperature: str, finish: str, planets: list[int]) -> float:
+def branch_slope(
+    temperature: str, finish: str, planets: list[int], tests: LoadedTests = _computed_tests
+) -> float:
     """Slope of P_LD/n over P_in/n, a straight line with intercept through all tests. [%]"""
-    results = _tests(temperature, finish, planets)
+    results = tests(temperature, finish, planets)
     counts = np.repeat(planets, len(TEST_TORQUES) * len(TEST_SPEEDS))
     power = np.array([result.input_power for result in results]) / counts
     loss = np.array([result.load_dependent for result in results]) / counts
     return float(100 * np.polyfit(power, loss, 1)[0])
 
 
-def load_dependent_loss(temperature: str, planets: int) -> float:
+def load_dependent_loss(
+    temperature: str, planets: int, tests: LoadedTests = _computed_tests
+) -> float:
     """P_LD at 1000 N m and 4000 rpm. [kW]"""
-    case = _case(operation__oil_inlet_temperature=temperature, planet__count=planets)
-    return solve(case).load_dependent / 1e3
+    return tests(temperature, "shaved", [planets])[-1].load_dependent / 1e3
 
 
 def load_independent_loss(temperature: str, planets: int) -> float:
@@ -143,9 +167,11 @@ def load_independent_loss(temperature: str, planets: int) -> float:
     return solve(case).load_independent / 1e3
 
 
-def mechanical_efficiency(temperature: str, extreme: str) -> float:
+def mechanical_efficiency(
+    temperature: str, extreme: str, tests: LoadedTests = _computed_tests
+) -> float:
     """Extreme of 1 - P_LD/P_in over the 3-planet tests. [%]"""
-    results = _tests(temperature, "shaved", [3])
+    results = tests(temperature, "shaved", [3])
     values = [100 * (1 - result.load_dependent / result.input_power) for result in results]
     return min(values) if extreme == "lowest" else max(values)
 

@@ -1,0 +1,94 @@
+"""The loaded tests at temperatures that follow from the losses."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+from click.testing import CliRunner
+
+import epicyclic as ep
+from epicyclic.cli.main import cli
+from epicyclic.sweeps.journal import Rows
+from epicyclic.sweeps.runner import Runner, failed_row
+from epicyclic.validation import settled
+from epicyclic.validation.compare import published_figures
+from epicyclic.validation.compute import FIGURES
+
+
+@pytest.fixture(scope="module")
+def figures():
+    """Those of the shaved planets at 90 degC, with the oil flow as the only estimate."""
+    content = settled._content()
+    few = {
+        "temperatures": ["90 degC"],
+        "finishes": ["shaved"],
+        "planets": content["planets"],
+        "estimate": content["estimate"][:1],
+    }
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(settled, "_content", lambda: few)
+        return settled.settled_figures(Runner(jobs=1))
+
+
+@pytest.mark.slow
+def test_at_inlet_temperature_they_are_the_figures_of_the_default_comparison(figures):
+    published = [item for item in published_figures() if item["compute"] in settled._OF_TESTS]
+    assert len(published) == 6
+    assert len(figures) == len(published)  # the only slope is a published one
+    for figure, row in zip(published, figures, strict=True):
+        assert row.what == figure["what"]
+        assert row.published == tuple(
+            figure[key] for key in ("value", "low", "high") if key in figure
+        )
+        # differences of total losses: rounding
+        assert row.inlet == pytest.approx(FIGURES[figure["compute"]](**figure["with"]), rel=1e-9)
+
+
+@pytest.mark.slow
+def test_the_range_holds_the_estimate(figures):
+    for row in figures:
+        assert row.low <= row.network <= row.high
+        assert row.low < row.high
+
+
+def test_a_test_that_fails_is_told():
+    def run(plan):
+        rows = Rows(plan.size)
+        rows.add(1, failed_row("the gearbox runs away"))
+        return rows
+
+    with pytest.raises(ep.ConvergenceError, match=r"1 of \d+ tests cannot be .*runs away"):
+        settled.settled_figures(SimpleNamespace(run=run))
+
+
+def test_estimates_say_that_they_are_none_of_the_source():
+    case = ep.load_case("talbot-2012")
+    assert [item.key for item in settled.estimates()] == [
+        "thermal.oil_flow",
+        "thermal.jet_effectiveness",
+    ]
+    for item in settled.estimates():
+        assert item.origin == "not published; plausible range"
+        flow = [
+            case.updated({item.key: value}).inputs()["thermal"][item.key.partition(".")[2]]
+            for value in (item.low, item.value, item.high)
+        ]
+        assert len(set(map(str, flow))) == 3
+
+
+def test_slopes_without_a_published_one_are_shown_too():
+    slopes = [item for item in settled._figures() if item["compute"] == "branch_slope"]
+    conditions = {(item["with"]["temperature"], item["with"]["finish"]) for item in slopes}
+    assert len(conditions) == 6
+    assert sum("source" in item for item in slopes) == 2
+
+
+def test_command_prints_the_table(monkeypatch):
+    row = settled.SettledFigure("slope", "%", (0.75,), 0.71, 0.72, 0.73, 0.7, 0.74)
+    other = settled.SettledFigure("efficiency", "%", (), 99.1, 99.2, 99.3, 99.0, 99.4)
+    monkeypatch.setattr(settled, "settled_figures", lambda runner: (row, other))
+    output = CliRunner().invoke(cli, ["validate", "--temperatures"]).output
+    assert "0.7 to 0.74" in output
+    assert "not published; plausible range" in output
+    assert "no verdict" in output
