@@ -16,8 +16,8 @@ WAYS = st.fixed_dictionaries(
         "thermal.jet_effectiveness": st.floats(0.1, 1),
         "thermal.ambient_temperature": st.floats(-30, 45).map(lambda value: f"{value!r} degC"),
         "thermal.lubrication": st.sampled_from(["spray", "dip", "spray-and-dip", "submerged"]),
-        "operation.torque": st.floats(-400, 400).map(lambda value: f"{value!r} N*m"),
-        "operation.speed": st.floats(-3500, 3500).map(lambda value: f"{value!r} rpm"),
+        "operation.torque": st.floats(-400, 400).map(lambda value: f"{value:.3f} N*m"),
+        "operation.speed": st.floats(-3500, 3500).map(lambda value: f"{value:.2f} rpm"),
     },
     optional={
         "thermal.housing.area": st.floats(0.05, 2).map(lambda value: f"{value!r} m^2"),
