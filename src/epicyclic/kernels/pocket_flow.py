@@ -323,13 +323,14 @@ def _mark_fresh(live: Flags, alive: Flags, fresh: Fresh, step: float) -> None:
 
 @kernel
 def _at(shape: Shape, n: int) -> Shape:
+    """Copies, because arrays that are read-only are of another type to the compiler."""
     return (
-        shape[0][n],
-        shape[1][max(n - 1, 0)],
-        shape[2][n],
-        shape[3][n],
-        shape[4][n],
-        shape[5][n],
+        shape[0][n].copy(),
+        shape[1][max(n - 1, 0)].copy(),
+        shape[2][n].copy(),
+        shape[3][n].copy(),
+        shape[4][n].copy(),
+        shape[5][n].copy(),
     )
 
 

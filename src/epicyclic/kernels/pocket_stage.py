@@ -161,6 +161,17 @@ def kinetic_shares(
 
 
 @kernel
+def _state(states: Floats, i: int, j: int) -> Mixture:
+    return states[i, j, 0], states[i, j, 1], states[i, j, 2], states[i, j, 3], states[i, j, 4]
+
+
+@kernel
+def _keep(states: Floats, i: int, j: int, state: Mixture) -> None:
+    for n in range(5):
+        states[i, j, n] = state[n]
+
+
+@kernel
 def _add_masses(
     shape: Shape,
     excess0: Floats,
@@ -182,19 +193,13 @@ def _add_masses(
             k = cell_at[i, j]
             if k < 0:
                 continue
-            state = mixture(q[i, j], xi)
-            states[i + 1, j + 1] = state
-            _, _, slope, _, swelling = state
+            _keep(states, i + 1, j + 1, mixture(q[i, j], xi))
+            _, _, slope, _, swelling = _state(states, i + 1, j + 1)
             excess = -volume[i, j] * swelling / (1 + swelling)
             right[k] = -(growth[i, j] + excess - excess0[i, j])
             matrix[k, width] += volume[i, j] * slope
             work -= q[i, j] * growth[i, j]
     return work
-
-
-@kernel
-def _state(states: Floats, i: int, j: int) -> Mixture:
-    return states[i, j, 0], states[i, j, 1], states[i, j, 2], states[i, j, 3], states[i, j, 4]
 
 
 @kernel
@@ -454,7 +459,9 @@ def solve_stage(
     cell_at, _, count, width = numbers
     pockets, slices = cell_at.shape
     states = np.zeros((pockets + 2, slices + 2, 5))
-    states[:] = np.array(mixture(0.0, fluid[0]))  # of the surroundings, where no cell is
+    for i in range(pockets + 2):
+        for j in range(slices + 2):
+            _keep(states, i, j, mixture(0.0, fluid[0]))  # the surroundings, where no cell is
     matrix = np.zeros((count, 2 * width + 1))
     right = np.zeros(count)
     system = (matrix, right, width)
