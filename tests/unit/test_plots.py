@@ -13,7 +13,8 @@ from epicyclic.plots.catalogue import PLOTS, available, figure_of, panels_of
 from epicyclic.plots.loss_map import map_at
 
 OF_MAPS = [name for name in PLOTS if "map" in name or name.startswith("loss-over")] + ["loss-parts"]
-OF_RESULTS = [name for name in PLOTS if name not in OF_MAPS]
+OF_HEAT = "heat-network"
+OF_RESULTS = [name for name in PLOTS if name not in (*OF_MAPS, OF_HEAT)]
 
 
 def drawn_texts(figure):

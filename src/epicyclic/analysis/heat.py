@@ -11,15 +11,14 @@ from pydantic_core import PydanticCustomError
 from epicyclic.analysis.solve import solve
 from epicyclic.builders.temperatures import oil_medium
 from epicyclic.case.case import Case
-from epicyclic.case.fields import find_field, quantity_of
-from epicyclic.case.thermal_tables import ThermalTable
+from epicyclic.case.fields import quantity_of
 from epicyclic.case.wording import sentence, written
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.losses.direct import EhlDirect
 from epicyclic.machine.settle import COLDEST, HOTTEST
 from epicyclic.results.heat import HeatBalance
 from epicyclic.results.result import Result, in_words
-from epicyclic.units import CELSIUS, NEWTON_METRE, Quantity
+from epicyclic.units import CELSIUS, NEWTON_METRE, Power, Quantity, Temperature, VolumeFlow
 
 __all__ = [
     "QUANTITIES",
@@ -35,6 +34,7 @@ __all__ = [
     "without_holding",
 ]
 
+NETWORK = {"models.temperatures": "network"}
 TEMPERATURE = "oil temperature"
 """What ranges of formulas call the temperature of a contact."""
 ROLES = {"friction": "sliding", "rolling": "rolling"}
@@ -92,10 +92,14 @@ def with_network(case: Case) -> Case:
     InputError
         If all its losses are given, so that it has no oil.
     """
+    _check_oil(case)
+    return case.updated(NETWORK)
+
+
+def _check_oil(case: Case) -> None:
     if case.lubricant is None:
         allowed = "needs a case that computes losses; all those of this one are given."
         raise InputError([Problem("models.temperatures", "network", allowed, "")], case.source)
-    return case.updated({"models.temperatures": "network"})
 
 
 def hottest(heat: HeatBalance) -> str:
@@ -264,15 +268,15 @@ def solve_for(case: Case, quantity: str, temperature: str | float) -> Found:
         allowed = f"is none of {', '.join(QUANTITIES)}."
         raise InputError([Problem("quantity", written(quantity), allowed, "Name one of them.")])
     target = _temperature(temperature)
-    base = with_network(case)
-    search = QUANTITIES[quantity](base, target)
+    _check_oil(case)
+    search = QUANTITIES[quantity](case, target)
     tried: dict[float, Found | None] = {}
 
     def excess(number: float) -> float:
         if not number and search.start is not None:
             return search.start - target
         if number not in tried:
-            tried[number] = _attempt(base, search, number, target)
+            tried[number] = _attempt(case, search, number, target)
         found = tried[number]
         if found is None:
             is_hot = search.warms or number < search.scale
@@ -301,7 +305,7 @@ def _oil(result: Result) -> float:
 def _temperature(given: str | float) -> float:
     """A temperature given as text or in kelvin. [K]"""
     try:
-        return CELSIUS.parse(f"{given} K" if isinstance(given, int | float) else given)
+        return _unit(Temperature).parse(f"{given} K" if isinstance(given, int | float) else given)
     except PydanticCustomError as error:
         remedy = sentence(str((error.context or {}).get("remedy", "")))
         allowed = sentence(error.message(), capital=False)
@@ -311,7 +315,8 @@ def _temperature(given: str | float) -> float:
 def _attempt(base: Case, search: _Search, number: float, target: float) -> Found | None:
     """The result at a number; None if the gearbox runs away there."""
     value = search.value(number)
-    case = base.updated({search.key: search.unit.exact_text(value), **search.changes})
+    changes = {search.key: search.unit.exact_text(value), **NETWORK, **search.changes}
+    case = base.updated(changes)
     try:
         return Found(search.key, value, search.unit, target, case, solve(case))
     except ConvergenceError:
@@ -353,10 +358,8 @@ def _limit(search: _Search, number: float) -> str:
     return f"with {search.key} = {search.unit.text(search.value(number), 4)}"
 
 
-def _unit(key: str) -> Quantity:
-    found = find_field(ThermalTable, key)
-    assert found is not None
-    unit = quantity_of(*found)
+def _unit(kind: Any) -> Quantity:
+    unit = quantity_of(kind)
     assert unit is not None
     return unit
 
@@ -367,7 +370,7 @@ def _losses(base: Case) -> float:
 
 
 def _cooler_power(base: Case, _: float) -> _Search:
-    unit = _unit("cooler_power")
+    unit = _unit(Power)
     return _Search("thermal.cooler_power", unit, float, _losses(base), warms=False)
 
 
@@ -380,7 +383,7 @@ def _oil_flow(base: Case, target: float) -> _Search:
     rise = max(target - inlet, 1.0)
     return _Search(
         "thermal.oil_flow",
-        _unit("oil_flow"),
+        _unit(VolumeFlow),
         lambda number: 1 / number,
         scale=oil.density * oil.heat_capacity * rise / _losses(base),
         warms=True,

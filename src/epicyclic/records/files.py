@@ -64,7 +64,7 @@ def save_result(result: ResultRecord | Case, path: str | Path) -> None:
         "conventions": "losses in W of the whole gear set, summed over planets; attribute result: "
         "the result as JSON; attribute given: the case as it was given; groups: meshes, planet "
         "bearing, shapes",
-        "result": contents.model_dump_json(exclude_unset=True),
+        "result": contents.model_dump_json(exclude_unset=True, by_alias=True),
         "given": json.dumps(kept.given),
     }
     tree = xr.DataTree.from_dict({"/": kept.numbers.assign_attrs(attributes), **kept.fields})

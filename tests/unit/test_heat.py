@@ -1,0 +1,206 @@
+"""Temperatures of results: balances, what leads to a temperature, tables and the picture."""
+
+from __future__ import annotations
+
+import itertools
+import json
+
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+import epicyclic as ep
+from epicyclic.analysis.heat import beyond_range
+from epicyclic.analysis.solve import solve
+from epicyclic.errors import InputError
+from epicyclic.plots.catalogue import available, figure_of
+from epicyclic.plots.heat_network import heat_figure
+from epicyclic.records.contents import Heat
+from epicyclic.report.heat_tables import heat_items, remarks
+from epicyclic.units import CELSIUS
+from listed_trains import ravigneaux
+
+RUNNING = {
+    "operation.torque": "100 N*m",
+    "operation.speed": "2000 rpm",
+    "losses.mesh_pocketing.include": False,
+}
+FLOW = {"thermal.oil_flow": "2.3 l/min"}
+HOUSING = {"thermal.housing.area": "0.31 m^2"}
+EVERYTHING = {**FLOW, **HOUSING, "thermal.cooler_power": "37 W", "models.temperatures": "network"}
+
+
+def pair(changes):
+    return ep.load_case("talbot-2012-pair", {**RUNNING, **changes})
+
+
+@pytest.fixture(scope="module")
+def everything():
+    return solve(pair(EVERYTHING))
+
+
+def test_heat_of_the_losses_leaves_by_the_outlets(everything):
+    heat = everything.heat
+    assert sum(heat.brought.values()) == pytest.approx(everything.total, rel=1e-12)
+    assert {way.hot for way in heat.outlets} == {"oil", "housing"}
+    assert sum(way.watts for way in heat.outlets) == pytest.approx(everything.total, rel=1e-9)
+
+
+def test_stored_heat_is_that_of_the_result(everything):
+    heat = everything.heat
+    stored = Heat.model_validate(json.loads(everything.to_json())["heat"]).balance
+    assert stored.temperatures == pytest.approx(heat.temperatures, rel=1e-12)
+    assert stored.given == pytest.approx(heat.given, rel=1e-12)
+    assert [way.key for way in stored.ways] == [way.key for way in heat.ways]
+    assert [way.watts for way in stored.ways] == [way.watts for way in heat.ways]
+    assert stored.brought == pytest.approx(heat.brought)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "key", "changes", "celsius"),
+    [
+        ("oil_flow", "thermal.oil_flow", {}, 103.7),
+        ("oil_flow", "thermal.oil_flow", HOUSING, 81.3),
+        ("oil_flow", "thermal.oil_flow", {"thermal.oil_outlet_temperature": "97 degC"}, 93.1),
+        ("cooler_power", "thermal.cooler_power", FLOW, 92.9),
+        ("input_power", "operation.torque", FLOW, 98.3),
+        ("input_power", "operation.torque", {**FLOW, "operation.torque": "-40 N*m"}, 96.1),
+    ],
+)
+def test_what_is_found_leads_back_to_the_temperature(quantity, key, changes, celsius):
+    case = pair(changes)
+    found = ep.solve_for(case, quantity, f"{celsius} degC")
+    again = case.updated(
+        {
+            key: found.unit.exact_text(found.value),
+            **({"thermal.oil_outlet_temperature": None} if quantity == "oil_flow" else {}),
+        }
+    )
+    assert CELSIUS.to_display(ep.heat_balance(again).oil) == pytest.approx(celsius, rel=1e-6)
+    assert found.key == key
+    if quantity == "input_power":
+        assert found.value * case.operation.torque > 0
+
+
+def test_a_temperature_may_be_a_number_of_kelvin():
+    found = ep.solve_for(pair({}), "oil_flow", 371.0)
+    assert found.result.heat.oil == pytest.approx(371.0, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "temperature", "words"),
+    [
+        ("oil_flow", "71 degC", "oil at 71 degC: cannot be reached: with thermal.oil_flow beyond"),
+        ("cooler_power", "150 degC", "with thermal.cooler_power = 0 W it is at 9"),
+        ("input_power", "20 degC", r"with operation.torque = 0 N\*m it is at 90"),
+        ("oil_flow", "hot", "temperature = "),
+        ("oil_flow", 20.0, "temperature = "),
+        ("torque", "90 degC", "is none of cooler_power, oil_flow, input_power"),
+    ],
+)
+def test_what_cannot_be_found_is_an_input_error(quantity, temperature, words):
+    with pytest.raises(InputError, match=words):
+        ep.solve_for(pair(FLOW), quantity, temperature)
+
+
+def test_a_train_of_given_losses_has_no_temperatures():
+    with pytest.raises(InputError, match="needs a case that computes losses"):
+        ep.heat_balance(ep.load_case("train-8hp70"))
+
+
+def test_tables_list_parts_from_the_hottest(everything):
+    temperatures, balance = heat_items(everything.heat)
+    values = [row[1].value for row in temperatures.rows]
+    own = values[: len(everything.heat.temperatures)]
+    assert own == sorted(own, reverse=True)
+    assert balance.rows[-1][2].value == pytest.approx(everything.total)
+
+
+def test_remarks_compare_with_warm_flanks_and_without_holding():
+    case = pair({})
+    cold = solve(case)
+    warm = solve(case.updated({"models.temperatures": "flank"}))
+    hottest = max(warm.heat.temperatures.values())
+    (first,) = remarks(case, cold)
+    assert f"at {CELSIUS.to_display(hottest):.0f} °C" in first
+    assert f"the total would be {warm.total:.0f} W" in first
+    hot = case.updated({"operation.oil_inlet_temperature": "110 degC"})
+    free = solve(hot.updated({"models.oil_beyond_range": "extrapolated"}))
+    result = solve(hot)
+    assert beyond_range(hot, result).share == pytest.approx(1.0)
+    _, second = remarks(hot, result)
+    assert second.startswith("100 % of the load-dependent loss arises in meshes")
+    assert second.endswith(f"without holding the total would be {free.total:.0f} W.")
+
+
+@pytest.mark.parametrize(
+    "changes", [{"operation.torque": "0 N*m"}, {"operation.speed": "0 rpm"}], ids=["load", "motion"]
+)
+def test_without_load_or_motion_there_is_nothing_to_remark(changes):
+    case = pair(changes)
+    assert list(remarks(case, solve(case))) == []
+
+
+def pictures():
+    planetary = {
+        "losses.sun_mesh_pocketing.include": False,
+        "losses.ring_mesh_pocketing.include": False,
+        "numerics.mesh_positions": 4,
+        "thermal.oil_flow": "4 l/min",
+    }
+    axle = {"thermal.oil_flow": "4 l/min", "numerics.mesh_positions": 4}
+    yield "pair", ep.load_case("talbot-2012-pair", {**RUNNING, **FLOW})
+    yield "pair in a housing", ep.load_case("talbot-2012-pair", {**RUNNING, **HOUSING})
+    yield "set", ep.load_case("talbot-2012", planetary)
+    yield "set in a housing", ep.load_case("talbot-2012", planetary | HOUSING)
+    yield "axle", ep.load_case("train-eaxle", axle)
+    yield "axle in a housing", ep.load_case("train-eaxle", axle | HOUSING)
+    yield "Ravigneaux", ep.load_case(ravigneaux(), axle)
+
+
+@pytest.mark.parametrize("name", [name for name, _ in pictures()])
+def test_texts_of_the_picture_are_apart_and_within_it(name):
+    heat = ep.heat_balance(dict(pictures())[name])
+    figure = heat_figure(heat, name)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    (ax,) = figure.axes
+    boxes = {
+        (place, text.get_text()): text.get_window_extent(canvas.get_renderer())
+        for place, text in enumerate(ax.texts)
+    }
+    shown = " ".join(text for _, text in boxes)
+    for node, kelvin in {**heat.temperatures, **heat.given}.items():
+        assert f"{CELSIUS.to_display(kelvin):.1f} °C" in shown, node
+    width, height = canvas.get_width_height()
+    for (_, text), box in boxes.items():
+        assert min(box.x0, box.y0) > -1, text
+        assert box.x1 < width + 1, text
+        assert box.y1 < height + 1, text
+    for (one, first), (other, second) in itertools.combinations(boxes.items(), 2):
+        apart = (
+            first.x1 <= second.x0 + 1
+            or second.x1 <= first.x0 + 1
+            or first.y1 <= second.y0 + 3
+            or second.y1 <= first.y0 + 3
+        )
+        assert apart, (one, other)
+
+
+def test_a_stored_result_has_the_picture_of_its_heat(tmp_path):
+    record = ep.record(pair(EVERYTHING))
+    ep.save_result(record, tmp_path / "warm.nc")
+    stored = ep.open_result(tmp_path / "warm.nc")
+    assert figure_of(stored, "heat-network").axes[0].get_title(loc="left").startswith("Heat: oil")
+    page = ep.report_html(stored)
+    assert "Where the heat leaves" in page
+    assert "Ways of the heat" in page
+    assert 'id="figure-heat-network-1"' in page
+    assert "The oil has its inlet temperature at all contacts." not in page
+
+
+def test_without_a_network_there_is_no_picture_of_it():
+    record = ep.record(pair({"models.temperatures": "flank"}))
+    assert "heat-network" not in available(record)
+    page = ep.report_html(record)
+    assert "heat of losses" in page
+    assert "Where the heat leaves" not in page
