@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import doctest
 import itertools
 import json
 
@@ -9,6 +10,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import epicyclic as ep
+from epicyclic.analysis import heat as analysis
 from epicyclic.analysis.heat import beyond_range
 from epicyclic.analysis.solve import solve
 from epicyclic.errors import InputError
@@ -79,6 +81,12 @@ def test_what_is_found_leads_back_to_the_temperature(quantity, key, changes, cel
     assert found.key == key
     if quantity == "input_power":
         assert found.value * case.operation.torque > 0
+
+
+def test_examples_hold():
+    found = doctest.testmod(analysis)
+    assert found.attempted
+    assert not found.failed
 
 
 def test_a_temperature_may_be_a_number_of_kelvin():

@@ -76,7 +76,7 @@ def heat_balance(case: Case) -> HeatBalance:
     ...     "operation.torque": "100 N*m", "operation.speed": "2000 rpm",
     ...     "thermal.oil_flow": "2 l/min"})
     >>> heat = ep.heat_balance(case)
-    >>> heat.temperatures["pinion"] > heat.oil > heat.given["oil inlet"]
+    >>> heat.temperatures["pinion"] > heat.oil > heat.given["oil_inlet"]
     True
     """
     found = solve(with_network(case)).heat
