@@ -2,7 +2,6 @@
 
 Both are found at one speed and oil inlet temperature, each at the temperatures it settles at. The
 loaded oil is hotter and drags less, so that this is less than the loss that depends on the load.
-Theory (P9).
 """
 
 from __future__ import annotations
@@ -48,6 +47,9 @@ def with_unloaded(points: Sequence[Mapping[str, Any]]) -> tuple[Points, NDArray[
 
 
 def as_tested(rows: Rows, unloaded: NDArray[np.intp]) -> NDArray[np.float64]:
-    """Load-dependent losses of points from `with_unloaded`; NaN where one of two failed. [W]"""
+    """Load-dependent losses of points from `with_unloaded`. Theory (P9).
+
+    NaN where a point or its partner failed. [W]
+    """
     total = rows.numbers("total")
     return total[: unloaded.size] - total[unloaded]
