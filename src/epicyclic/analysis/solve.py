@@ -23,8 +23,9 @@ from epicyclic.pocketing.similarity import FlowFamily
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Result
 
-WARMER = 60.0
-"""How much warmer than its inlet the oil may be for tables to hold the flow through pockets. [K]"""
+WARMER = (30.0, 60.0)
+"""How much warmer than its inlet the oil is where tables are asked for flows through pockets; a table
+is read between two of its flows where one between them was foretold. [K]"""
 
 __all__ = ["loaded_meshes", "mesh_contacts", "pocket_flow_numbers", "solve"]
 
@@ -63,7 +64,7 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
 def pocket_flow_numbers(case: Case) -> tuple[tuple[FlowFamily, float], ...]:
     """Family and number of the flow through the pockets of every mesh whose loss is included.
 
-    Where the oil warms up, also the number in oil that is warmer by `WARMER`.
+    Where the oil warms up, also the numbers in oil that is warmer by `WARMER`.
     """
     built = build(case)
     if built.known_fluids is None:
@@ -72,7 +73,10 @@ def pocket_flow_numbers(case: Case) -> tuple[tuple[FlowFamily, float], ...]:
     fluids = [built.fluids]
     if built.thermal is not None and OIL in built.thermal.start:
         around = built.fluids.oil.temperature
-        fluids.append(built.thermal.fluids(dict.fromkeys(built.thermal.start, around + WARMER)))
+        fluids += [
+            built.thermal.fluids(dict.fromkeys(built.thermal.start, around + rise))
+            for rise in WARMER
+        ]
     return tuple(number for each in fluids for number in flow_numbers(duties, each))
 
 
