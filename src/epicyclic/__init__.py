@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from epicyclic.maps.compute import loss_map
     from epicyclic.maps.duty import duty_cycle
     from epicyclic.maps.formats import write_map
+    from epicyclic.maps.warm_up import warm_up
     from epicyclic.measurement.compare import MeasuredComparison, compare_measured
     from epicyclic.records.files import open_result, save_result
     from epicyclic.records.record import ResultRecord, record
@@ -69,6 +70,7 @@ _HOME = {
     "solve": "epicyclic.analysis.solve",
     "solve_for": "epicyclic.analysis.heat",
     "sweep": "epicyclic.sweeps.run",
+    "warm_up": "epicyclic.maps.warm_up",
     "write_map": "epicyclic.maps.formats",
     "write_rexs": "epicyclic.exchange.rexs.exporting",
 }
@@ -105,6 +107,7 @@ __all__ = [
     "solve",
     "solve_for",
     "sweep",
+    "warm_up",
     "write_map",
     "write_rexs",
 ]

@@ -462,6 +462,9 @@ Volume = Annotated[float, Quantity("a volume", "m^3", "l", low=0.0, high=1e6)]
 VolumeFlow = Annotated[float, Quantity("a flow", "m^3/s", "l/min", low=0.0, high=1e6)]
 Power = Annotated[float, Quantity("a power", "W", "W", low=0.0, high=1e9)]
 Conductance = Annotated[float, Quantity("a thermal conductance", "W/K", "W/K", low=0.0, high=1e7)]
+BodyCapacity = Annotated[
+    float, Quantity("a heat capacity", "J/K", "J/K", low=0.0, high=1e10, open_low=True)
+]
 HeatTransfer = Annotated[
     float,
     Quantity("a heat transfer coefficient", "W/(m^2*K)", "W/(m^2*K)", low=0.0, high=1e6),

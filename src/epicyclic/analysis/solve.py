@@ -24,8 +24,8 @@ from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Result
 
 WARMER = (30.0, 60.0)
-"""How much warmer than its inlet the oil is where tables are asked for flows through pockets; a table
-is read between two of its flows where one between them was foretold. [K]"""
+"""How much warmer than its inlet the oil is where tables are asked for flows through pockets; they
+are read between two of their flows where one between them was foretold. [K]"""
 
 __all__ = ["loaded_meshes", "mesh_contacts", "pocket_flow_numbers", "solve"]
 

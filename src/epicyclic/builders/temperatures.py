@@ -11,6 +11,7 @@ from epicyclic.case.case import Case
 from epicyclic.case.thermal_tables import HousingTable, ThermalTable
 from epicyclic.elements.base import OIL, joined_key
 from epicyclic.elements.fluids import Fluids, fluids_at, oil_at, oil_flags
+from epicyclic.elements.gear_mesh import GearMesh
 from epicyclic.elements.gear_set import GearSet
 from epicyclic.elements.shaft_bearing import ShaftBearing
 from epicyclic.losses.validity import ValidityFlag
@@ -24,7 +25,7 @@ from epicyclic.results.result import in_words
 from epicyclic.thermal.bulk import LUBRICATION_FACTORS
 from epicyclic.thermal.fluid import Fluid, air, mixture, oil_conductivity, oil_heat_capacity
 
-__all__ = ["oil_medium", "thermal_model"]
+__all__ = ["oil_medium", "term_nodes", "thermal_model"]
 
 GRAVITY_TEMPERATURE = 288.75
 """15.6 degC, at which the specific gravity of petroleum is stated. [K]"""
@@ -59,6 +60,34 @@ def contact_nodes(machine: Machine) -> dict[str, tuple[str, ...]]:
         elif isinstance(own, ShaftBearing):
             found[own.key] = (own.key,)
     return found
+
+
+def term_nodes(machine: Machine) -> dict[tuple[str, str], tuple[str, ...]]:
+    """The nodes at whose mean temperature a loss arises, where it is not that of the oil.
+
+    By the keys of element and loss.
+    """
+    nodes = contact_nodes(machine)
+    found: dict[tuple[str, str], tuple[str, ...]] = {}
+    for own in machine.elements:
+        if isinstance(own, GearSet):
+            parts = [(mesh.key, _at_flanks(mesh)) for mesh in own.meshes]
+            parts += [(planet.key, ("mechanical", "viscous")) for planet in own.planets]
+            found |= {
+                (own.key, f"{key}_{name}"): nodes[f"{own.key}.{key}"]
+                for key, names in parts
+                for name in names
+            }
+        elif isinstance(own, ShaftBearing):
+            found |= {(own.key, name): nodes[own.key] for name in own.terms}
+    return found
+
+
+def _at_flanks(mesh: GearMesh) -> tuple[str, ...]:
+    """Losses of a mesh that depend on the temperature of its flanks, and not on the oil's."""
+    if mesh.models.friction.takes_oil_temperature:
+        return ("rolling",)
+    return ("sliding", "rolling")
 
 
 def _fluids_at(
@@ -147,7 +176,17 @@ def _settings(table: ThermalTable, inlet: float) -> HeatSettings:
         changes={
             name: Change(change.value, change.scale) for name, change in table.conductances.items()
         },
+        oil_volume=table.oil_volume,
+        housing_mass=None if table.housing is None else _steel_mass(table.housing),
+        capacity_changes={
+            name: Change(change.value, change.scale) for name, change in table.capacities.items()
+        },
     )
+
+
+def _steel_mass(table: HousingTable) -> float | None:
+    """Steel that stores as much heat as the housing. [kg]"""
+    return None if table.mass is None else table.mass * table.heat_capacity_ratio
 
 
 def _housing(table: HousingTable) -> Housing:

@@ -9,6 +9,7 @@ from pydantic import Field
 from epicyclic.case.schema import Table
 from epicyclic.units import (
     Area,
+    BodyCapacity,
     Conductance,
     HeatTransfer,
     Length,
@@ -22,7 +23,7 @@ from epicyclic.units import (
     as_stated,
 )
 
-__all__ = ["ConductanceTable", "HousingTable", "ThermalTable"]
+__all__ = ["CapacityTable", "ConductanceTable", "HousingTable", "ThermalTable"]
 
 
 class HousingTable(Table):
@@ -73,6 +74,13 @@ class ConductanceTable(Table):
 
     value: Conductance | None = Field(default=None, description="Instead of the computed one.")
     scale: Number = Field(default=1.0, ge=0, le=1000, description="Multiplies it.")
+
+
+class CapacityTable(Table):
+    """What one part stores, for warming up; parts as 'epicyclic warm-up' names them."""
+
+    value: BodyCapacity | None = Field(default=None, description="Instead of the computed one.")
+    scale: Number = Field(default=1.0, gt=0, le=1000, description="Multiplies it.")
 
 
 class ThermalTable(Table):
@@ -132,6 +140,9 @@ class ThermalTable(Table):
     )
     conductances: dict[str, ConductanceTable] = Field(
         default={}, description="Changes to single ways of the heat, by their names."
+    )
+    capacities: dict[str, CapacityTable] = Field(
+        default={}, description="Changes to the heat capacities of single parts, by their names."
     )
     oil_volume: Volume | None = Field(default=None, description="For warming up.")
     housing: HousingTable | None = Field(

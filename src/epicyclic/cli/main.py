@@ -34,6 +34,7 @@ from epicyclic.cli.rexs import rexs
 from epicyclic.cli.show import plot, report
 from epicyclic.cli.single import check, friction, mesh, run
 from epicyclic.cli.validate import validate
+from epicyclic.cli.warm_up import warm_up
 from epicyclic.errors import ConvergenceError, InputError, is_interrupt
 
 __all__ = ["main"]
@@ -61,6 +62,7 @@ COMMANDS = (
     merge,
     duty,
     heat,
+    warm_up,
     mesh,
     pockets,
     pockets_table,

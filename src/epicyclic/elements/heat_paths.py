@@ -15,8 +15,19 @@ from epicyclic.thermal.convection import dipped_disc, disc_coefficient
 from epicyclic.thermal.fluid import Fluid
 from epicyclic.thermal.housing import SPLASHED_WALL
 from epicyclic.thermal.network import Link
+from epicyclic.thermal.solids import Solid
 
-__all__ = ["INLET", "Wetting", "bearing_links", "carrier_node", "gear_set_links"]
+__all__ = [
+    "INLET",
+    "SEAT_LENGTH",
+    "OneGear",
+    "Wetting",
+    "bearing_links",
+    "bearing_width",
+    "carrier_node",
+    "gear_set_links",
+    "gears_of",
+]
 
 INLET = "oil_inlet"
 """The oil before it meets anything."""
@@ -61,12 +72,13 @@ class Wetting:
 
 
 @dataclass(frozen=True, slots=True)
-class _OneGear:
+class OneGear:
     """A gear of a set as heat sees it."""
 
     node: str
     body: str
     gear: Gear
+    material: Solid
     count: int
 
 
@@ -75,7 +87,7 @@ def gear_set_links(
 ) -> Iterator[Link]:
     """Ways of the heat of a set. Theory (W29), (W30), (W31)."""
     planets = {planet.nodes[0]: planet for planet in own.planets}
-    for one in _gears(own, planets):
+    for one in gears_of(own):
         planet = planets.get(one.node)
         reference = own.carrier if planet else HOUSING
         speed = abs(state.speeds[one.body] - state.speeds[reference])
@@ -87,20 +99,22 @@ def gear_set_links(
     yield from _carrier_to_oil(own, state, wetting)
 
 
-def _gears(own: GearSet, planets: dict[str, Planet]) -> Iterator[_OneGear]:
+def gears_of(own: GearSet) -> Iterator[OneGear]:
     """Every gear once, though it may have several mates."""
+    planets = {planet.nodes[0] for planet in own.planets}
     seen: set[tuple[str, str]] = set()
     for mesh in own.meshes:
-        for node, body, gear in zip(
-            mesh.nodes, mesh.bodies, (mesh.mesh.gear1, mesh.mesh.gear2), strict=True
+        gears = mesh.mesh.gear1, mesh.mesh.gear2
+        for node, body, gear, material in zip(
+            mesh.nodes, mesh.bodies, gears, mesh.materials, strict=True
         ):
             if (node, gear.name) not in seen:
                 seen.add((node, gear.name))
-                yield _OneGear(node, body, gear, own.count if node in planets else 1)
+                yield OneGear(node, body, gear, material, own.count if node in planets else 1)
 
 
 def _gear_to_oil(
-    one: _OneGear, speed: float, planet: Planet | None, wetting: Wetting
+    one: OneGear, speed: float, planet: Planet | None, wetting: Wetting
 ) -> Iterator[Link]:
     gear = one.gear
     yield from _jet(one.node, wetting)
@@ -140,7 +154,7 @@ def _jet(node: str, wetting: Wetting) -> Iterator[Link]:
         yield Link(f"{node}-jet", node, INLET, share * wetting.jet, JET, ESTIMATE, OIL)
 
 
-def _ring_to_housing(own: GearSet, one: _OneGear, wetting: Wetting) -> Iterator[Link]:
+def _ring_to_housing(own: GearSet, one: OneGear, wetting: Wetting) -> Iterator[Link]:
     """A ring gear that stands still is pressed into the housing."""
     for discs in own.discs.values():
         for disc in discs:
@@ -190,11 +204,16 @@ def _carrier_to_oil(own: GearSet, state: State, wetting: Wetting) -> Iterator[Li
 
 def bearing_links(own: ShaftBearing, wetting: Wetting) -> Iterator[Link]:
     """A bearing gives its heat off through the seat of its outer ring."""
-    bearing = own.bearing
-    width = bearing.width
-    if not width > 0:  # unknown
-        width = WIDTH_OF_HEIGHT * (bearing.outside_diameter - bearing.bore) / 2
     if HOUSING in own.between:
-        seat = wetting.press_fit * math.pi * bearing.outside_diameter * width
+        area = math.pi * own.bearing.outside_diameter * bearing_width(own)
+        seat = wetting.press_fit * area
         yield Link(f"{own.key}-housing", own.key, HOUSING, seat, SEAT, ESTIMATE)
     yield from _jet(own.key, wetting)
+
+
+def bearing_width(own: ShaftBearing) -> float:
+    """As given, or estimated from the height of the section. [m]"""
+    bearing = own.bearing
+    if bearing.width > 0:
+        return bearing.width
+    return WIDTH_OF_HEIGHT * (bearing.outside_diameter - bearing.bore) / 2

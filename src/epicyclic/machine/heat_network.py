@@ -10,6 +10,12 @@ from typing import Literal
 from epicyclic.elements.base import HOUSING, OIL
 from epicyclic.elements.fluids import Fluids
 from epicyclic.elements.gear_set import GearSet
+from epicyclic.elements.heat_capacities import (
+    OF_SHAFT,
+    STEEL,
+    bearing_capacity,
+    gear_set_capacities,
+)
 from epicyclic.elements.heat_paths import (
     INLET,
     Wetting,
@@ -102,10 +108,14 @@ class Housing:
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What the user does to a conductance: another value [W/K], a factor [1]."""
+    """What the user does to a conductance or capacity: another value [W/K, J/K], a factor [1]."""
 
     value: float | None
     scale: float
+
+    def __call__(self, computed: float) -> float:
+        """What becomes of a computed value."""
+        return self.scale * (computed if self.value is None else self.value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +148,12 @@ class HeatSettings:
     housing : Housing or None
     changes : mapping of str to Change
         By the key of the link.
+    oil_volume : float or None
+        [m^3]
+    housing_mass : float or None
+        Of steel that stores as much as the housing. [kg]
+    capacity_changes : mapping of str to Change
+        By the node.
     """
 
     inlet: float
@@ -154,6 +170,9 @@ class HeatSettings:
     cooler: float
     housing: Housing | None
     changes: Mapping[str, Change]
+    oil_volume: float | None
+    housing_mass: float | None
+    capacity_changes: Mapping[str, Change]
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,10 +248,7 @@ class NetworkModel:
         InputError
             If the heat of a part has no way out.
         """
-        heat = heat_of(solution)
-        heat[OIL] = heat.get(OIL, 0.0) - self.settings.cooler_power
-        if self.settings.housing is None:
-            heat[OIL] += heat.pop(HOUSING, 0.0)
+        heat = self._heat(solution)
         fixed = self._fixed_links(temperatures[OIL], solution, heat)
         network = self._with_wall(fixed, self._wall(fixed, heat))
         found = network.steady(heat)
@@ -246,6 +262,19 @@ class NetworkModel:
             given=network.given,
             residual=left / whole if whole else 0.0,
         )
+
+    def network(self, temperature: float, solution: Solution) -> Network:
+        """The network with oil and housing at one temperature. [K]"""
+        fixed = self._fixed_links(temperature, solution, self._heat(solution))
+        return self._with_wall(fixed, temperature)
+
+    def _heat(self, solution: Solution) -> dict[str, float]:
+        """That arises at each node, less the power of a cooler. [W]"""
+        heat = heat_of(solution)
+        heat[OIL] = heat.get(OIL, 0.0) - self.settings.cooler_power
+        if self.settings.housing is None:
+            heat[OIL] += heat.pop(HOUSING, 0.0)
+        return heat
 
     def _wall(self, fixed: Sequence[Link], heat: Mapping[str, float]) -> float:
         """Temperature of the housing, on which the heat to the air depends. [K]"""
@@ -300,6 +329,36 @@ class NetworkModel:
         ways = (*self._of_parts(solution, wetting), *self._of_shafts(), *self._of_oil(carried))
         return tuple(map(self._changed, ways))
 
+    def capacities(self) -> dict[str, float]:
+        """Heat that each node stores for a kelvin. Theory (N13). [J/K]
+
+        Raises
+        ------
+        InputError
+            With everything that is not known of the oil and the housing.
+        """
+        own = self.settings
+        oil, _ = self.media_at(own.inlet)
+        found: dict[str, float | None] = dict.fromkeys(self.shafts, OF_SHAFT)
+        for element in self.machine.elements:
+            if isinstance(element, GearSet):
+                found |= gear_set_capacities(element)
+            elif isinstance(element, ShaftBearing):
+                found[element.key] = bearing_capacity(element)
+        mass, volume = own.housing_mass, own.oil_volume
+        found[OIL] = oil.density * oil.heat_capacity * volume if volume else None
+        found[HOUSING] = mass * STEEL.heat_capacity if mass else None
+        known = {node: found[node] for node in self.nodes}
+        problems = [_no_such_node(name, known) for name in own.capacity_changes.keys() - known]
+        for node in own.capacity_changes.keys() & known:
+            change, computed = own.capacity_changes[node], known[node]
+            if change.value is not None or computed is not None:
+                known[node] = change(computed or 0.0)
+        problems += [_UNKNOWN_CAPACITY[node] for node, value in known.items() if value is None]
+        if problems:
+            raise InputError(problems)
+        return {node: value for node, value in known.items() if value is not None}
+
     def _carried(self, oil: Fluid, heat: float) -> float:
         """Heat capacity of the flow of oil. [W/K]"""
         own = self.settings
@@ -344,10 +403,7 @@ class NetworkModel:
 
     def _changed(self, link: Link) -> Link:
         change = self.settings.changes.get(link.key)
-        if change is None:
-            return link
-        value = link.conductance if change.value is None else change.value
-        return replace(link, conductance=change.scale * value)
+        return link if change is None else replace(link, conductance=change(link.conductance))
 
     def _check(self, network: Network) -> None:
         """Names of the case that are not known here, and heat without a way out, are errors."""
@@ -386,6 +442,31 @@ def _seats(own: object) -> Iterator[tuple[str, str]]:
             yield own.carrier, carrier_node(own)
     elif isinstance(own, ShaftBearing):
         yield from ((body, own.key) for body in own.between)
+
+
+_UNKNOWN_CAPACITY = {
+    OIL: Problem(
+        "thermal.oil_volume",
+        "",
+        "is not given: how fast the oil warms up depends on it.",
+        'Give it, as "5 l", or thermal.capacities.oil.value.',
+    ),
+    HOUSING: Problem(
+        "thermal.housing.mass",
+        "",
+        "is not given: how fast the housing warms up depends on it.",
+        'Give it, as "40 kg", or thermal.capacities.housing.value.',
+    ),
+}
+
+
+def _no_such_node(name: str, known: Iterable[str]) -> Problem:
+    return Problem(
+        f"thermal.capacities.{name}",
+        "",
+        f"is no part here; there are {', '.join(known)}.",
+        "Take one of these names.",
+    )
 
 
 def _no_such(table: str, noun: str, unknown: Iterable[str], known: Iterable[str]) -> InputError:

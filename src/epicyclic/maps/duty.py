@@ -46,7 +46,18 @@ from epicyclic.units import (
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["MODES", "add_up", "cycle_map", "duty_cycle", "make_duty", "parse_temperatures"]
+__all__ = [
+    "MODES",
+    "add_up",
+    "check_states",
+    "crowded",
+    "cycle_map",
+    "duty_cycle",
+    "make_duty",
+    "parse_temperatures",
+    "point_of",
+    "texts_of",
+]
 
 Array = NDArray[np.float64]
 
@@ -157,11 +168,11 @@ def cycle_map(
     runner: Runner = HERE,
 ) -> xr.Dataset:
     """A map of `case` that covers a cycle."""
-    speeds = _crowded(*cycle.ranges["speed"], _SPEEDS)
-    torques = _crowded(*cycle.ranges["torque"], _TORQUES)
+    speeds = crowded(*cycle.ranges["speed"], _SPEEDS)
+    torques = crowded(*cycle.ranges["torque"], _TORQUES)
     temperatures, states = celsius, None
     if case.states:
-        _check_states(cycle, tuple(case.states))
+        check_states(cycle, tuple(case.states))
         states = [name for name in case.states if name in cycle.states]
     if not case.computed:
         pass  # without an oil its temperature has no effect
@@ -170,22 +181,22 @@ def cycle_map(
         temperatures = tuple(np.unique(np.linspace(low, high, _TEMPERATURES)).tolist())
     plan = map_plan(
         case,
-        _texts(speeds, RPM),
-        _texts(torques, NEWTON_METRE),
-        None if temperatures is None else _texts(temperatures, CELSIUS),
+        texts_of(speeds, RPM),
+        texts_of(torques, NEWTON_METRE),
+        None if temperatures is None else texts_of(temperatures, CELSIUS),
         states=states,
     )
     return to_map(plan, runner.within(plan).run(plan))
 
 
-def _crowded(low: float, high: float, count: int) -> Array:
+def crowded(low: float, high: float, count: int) -> Array:
     """About `count` values from `low` to `high`, and zero, where they crowd."""
     ends = [end for end in (min(low, 0.0), max(high, 0.0)) if end]
     steps = np.linspace(0, 1, (count - 1) // max(len(ends), 1) + 1) ** _CROWDING
-    return np.unique(np.concatenate([[0.0], *(end * steps for end in ends)]))
+    return np.unique(np.concatenate([[0.0], *(end * steps for end in ends)])) + 0.0  # no -0.0
 
 
-def _texts(values: Iterable[float], quantity: Quantity) -> list[str]:
+def texts_of(values: Iterable[float], quantity: Quantity) -> list[str]:
     return [f"{float(value)!r} {quantity.display}" for value in values]
 
 
@@ -245,7 +256,7 @@ def add_up(
     """Go through a checked cycle; raises `InputError` if it leaves the map."""
     lookup = make_lookup(data)
     if len(lookup.states) > 1 or (lookup.states and cycle.states):
-        _check_states(cycle, lookup.states)
+        check_states(cycle, lookup.states)
     totals, drawn = [], []
     for value in _temperatures(lookup, cycle, celsius):
         sample = Sample(samples)
@@ -306,7 +317,7 @@ def _temperatures(
     return (float(axis[0]),)
 
 
-def _check_states(cycle: Cycle, known: tuple[str, ...]) -> None:
+def check_states(cycle: Cycle, known: tuple[str, ...]) -> None:
     """Raise `InputError` unless a cycle has a column of states, all of them `known`."""
     text = ", ".join(known)
     if not cycle.states:
@@ -327,7 +338,7 @@ def _check_states(cycle: Cycle, known: tuple[str, ...]) -> None:
         raise InputError(problems, cycle.source.name)
 
 
-def _point(lookup: Lookup, cycle: Cycle, piece: Piece) -> tuple[Array, ...]:
+def point_of(lookup: Lookup, cycle: Cycle, piece: Piece) -> tuple[Array, ...]:
     """The points of a piece as the axes of the map."""
     point = {"speed": piece.speed, "torque": piece.torque, "temperature": piece.temperature}
     if piece.state is not None and lookup.states:
@@ -352,7 +363,7 @@ def _go_through(
     torque_loss = lookup.total
     done = 0
     for piece in cycle.pieces(celsius):
-        point = _point(lookup, cycle, piece)
+        point = point_of(lookup, cycle, piece)
         corners, weights = lookup.corners(*point)
         loss = loss_power((torque_loss[corners] * weights).sum(axis=0), piece.speed)
         at_shaft = loss_power(piece.torque, piece.speed) * np.sign(piece.speed)

@@ -1,0 +1,92 @@
+"""The command warm-up: temperatures and losses over time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from epicyclic.cli.options import case_argument, load_with, plot_option, set_option
+from epicyclic.cli.output import check_ending, draw
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["warm_up"]
+
+OUTPUTS = (".nc", ".csv", ".parquet")
+
+
+@click.command("warm-up")
+@case_argument
+@set_option
+@click.option("--for", "duration", metavar="TIME", required=True, help='How long, as in "2 h".')
+@click.option(
+    "--from",
+    "start",
+    metavar="TEMPERATURE",
+    help='Of all parts at the start, as in "20 degC"; default: thermal.ambient_temperature.',
+)
+@click.option(
+    "--cycle",
+    metavar="CYCLE",
+    help="A .csv or .parquet file as for 'epicyclic duty', repeated; default: the operating point.",
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Write .nc, .csv or .parquet.",
+)
+@plot_option("Draw temperatures and loss over time to a .png, .svg or .pdf file.")
+def warm_up(
+    case: str,
+    changes: tuple[str, ...],
+    duration: str,
+    start: str | None,
+    cycle: str | None,
+    output: Path | None,
+    plot: Path | None,
+) -> None:
+    """Let a gearbox warm up: temperatures and losses over time.
+
+    Temperatures follow from the network of heat, which needs thermal.oil_volume and, of a housing,
+    thermal.housing.mass.
+    """
+    from epicyclic.cli.progress import progress_bar
+    from epicyclic.maps.warm_up import warm_up as compute
+    from epicyclic.report.tables import terminal
+    from epicyclic.report.warm_up_table import warm_up_tables
+    from epicyclic.sweeps.dataset import check_place
+
+    for option, path, endings in (("-o", output, OUTPUTS), ("--plot", plot, None)):
+        if path is not None:
+            check_ending(option, path, *(() if endings is None else (endings,)))
+            check_place(path)
+    loaded = load_with(case, changes)
+    with progress_bar("warming up") as progress:
+        data = compute(loaded, duration, start, cycle=cycle, progress=progress)
+    if output is not None:
+        _write(data, output)
+    terminal().print(warm_up_tables(data))
+    if plot is not None:
+        from epicyclic.plots.warm_up import warm_up_figure
+
+        draw(warm_up_figure(data), plot)
+
+
+def _write(data: xr.Dataset, output: Path) -> None:
+    from epicyclic.report.warm_up_table import warm_up_rows
+    from epicyclic.sweeps.dataset import whole_file, write_dataset
+
+    if output.suffix == OUTPUTS[0]:
+        write_dataset(data, output)
+        return
+    rows = warm_up_rows(data)
+    with whole_file(output) as file:
+        if output.suffix == OUTPUTS[1]:
+            rows.to_csv(file, index=False)
+        else:
+            rows.to_parquet(file, index=False)

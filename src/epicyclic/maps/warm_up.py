@@ -1,0 +1,493 @@
+"""Warming up: temperatures and losses over time, at a constant operating point or over a cycle."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import PydanticCustomError
+
+from epicyclic.builders.build import build
+from epicyclic.case.case import Case
+from epicyclic.case.fields import quantity_of
+from epicyclic.case.operating import AXES, STATE
+from epicyclic.case.wording import sentence, written
+from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.machine.heat_network import NetworkModel
+from epicyclic.machine.settle import HOTTEST
+from epicyclic.maps.compute import MapPlan, axis_name, held_shaft, map_plan
+from epicyclic.maps.cycle import TIME, Cycle, open_cycle
+from epicyclic.maps.duty import check_states, crowded, point_of, texts_of
+from epicyclic.maps.heat_tables import SPACING, HeatSample, HeatTables, heat_samples
+from epicyclic.maps.lookup import Lookup, loss_power
+from epicyclic.maps.tables import driven_problem
+from epicyclic.pocketing.table import FlowTables
+from epicyclic.results.result import versions
+from epicyclic.sweeps.plan import SweepPlan, make_plan
+from epicyclic.sweeps.runner import Progress
+from epicyclic.thermal.transient import Course
+from epicyclic.units import (
+    CELSIUS,
+    KELVIN,
+    KILOJOULE,
+    NEWTON_METRE,
+    RPM,
+    SECOND,
+    WATT,
+    Quantity,
+    Temperature,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["warm_up"]
+
+Array = NDArray[np.float64]
+
+START = quantity_of(Temperature) or CELSIUS
+DURATION = Quantity("a time", "s", "s", low=0.0, high=1e9, open_low=True)
+HEADROOM = 80.0
+"""By which a gearbox is expected to warm up; and by how much more if it does not do. [K]"""
+SPEEDS, TORQUES = 7, 7
+"""Values of the grid on which the losses of a cycle are solved."""
+MOST_STEPS = 2000
+"""Into which the duration is divided, if a cycle has more rows."""
+TOLERANCE = 1e-3
+"""Of the temperatures in each of these steps. [K]"""
+TIMES = 241
+"""At which the course is told if the operating point is constant."""
+REACHED = 0.9
+"""Part of the way to the end whose time is told. [1]"""
+
+
+def warm_up(
+    case: Case,
+    duration: Any,
+    start_temperature: Any = None,
+    *,
+    cycle: Any = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Temperatures and losses of a gearbox that starts cold.
+
+    Parameters
+    ----------
+    case : PlanetaryCase, GearPairCase or TrainCase
+        Its temperatures follow from the network of heat, whatever ``models.temperatures`` is. It
+        must have ``thermal.oil_volume`` and, if it has a housing, ``thermal.housing.mass``.
+    duration : str
+        As ``"2 h"``.
+    start_temperature : str, optional
+        Of all parts, as ``"20 degC"``. Default: ``thermal.ambient_temperature``.
+    cycle : str, Path, pandas.DataFrame or mapping, optional
+        As for `duty_cycle`, repeated until the end; a column of temperatures is left alone.
+        Default: the operating point of the case.
+    progress : callable, optional
+        As for `sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``time`` [s]: ``temperature`` [degC] of every ``node``, ``loss`` [W] of every
+        ``component``, ``total_loss`` [W], ``efficiency`` [1], and ``energy_lost``,
+        ``energy_given_off`` to the surroundings and ``energy_stored`` [kJ] since the start. Over
+        ``node``: ``heat_capacity`` [J/K], ``settled_temperature`` [degC], and
+        ``time_to_90_percent`` [s] of the way there, NaN if that is not reached. The
+        ``time_constant`` [s] of small changes about it, the slowest first, and the
+        ``energy_lost_settled`` [kJ] of a gearbox that is so warm all the time. NaN if it does not
+        settle.
+
+    Raises
+    ------
+    InputError
+        For a duration or temperature that cannot be read, for what is not known of the oil and the
+        housing, and for a cycle as by `duty_cycle`.
+    ConvergenceError
+        If the gearbox gets so hot that nothing is left to compute.
+    """
+    seconds, start = _parsed(case, duration, start_temperature)
+    warm = case.updated({"models.temperatures": "network"})
+    model = build(warm).thermal
+    assert isinstance(model, NetworkModel)
+    begin = np.full(len(model.capacities()), start)
+    drive = _constant(warm) if cycle is None else _driven(warm, seconds, open_cycle(cycle))
+    own = model.settings
+    low = min(start, own.inlet, own.ambient, own.coolant)
+    high = max(start, own.inlet, own.ambient, own.coolant) + HEADROOM
+    knots = _knots(low, high)
+    samples = _sampled(warm, drive, knots, progress)
+    while True:
+        tables = HeatTables(model, knots, samples)
+        told = _run(tables, drive, begin, seconds, progress)
+        course = told.course
+        mean = tables.transient(*drive.mean)
+        settled = mean.settled(course.temperatures[:, -1])
+        hottest = float(course.temperatures.max())
+        if hottest > HOTTEST:
+            raise _runaway(tables, course)
+        if settled is not None and settled.max() > HOTTEST:
+            settled = None
+        if settled is not None:
+            hottest = max(hottest, float(settled.max()))
+        if hottest <= knots[-1]:
+            return _to_dataset(warm, tables, drive, told, seconds, settled)
+        new = _knots(knots[-1] + SPACING, hottest)
+        samples += _sampled(warm, drive, new, progress)
+        knots += new
+
+
+def _knots(low: float, high: float) -> list[float]:
+    """Temperatures at equal distances from `low` to `high` or beyond. [K]"""
+    return [low + SPACING * number for number in range(1 + math.ceil((high - low) / SPACING))]
+
+
+def _parsed(case: Case, duration: Any, start: Any) -> tuple[float, float]:
+    """Duration [s] and temperature at the start [K]; raises `InputError` for all that is wrong."""
+    if not case.computed:
+        allowed = "has losses that are all given: no temperature follows from them."
+        raise InputError([Problem("case", "", allowed, "Choose one with an oil.")])
+    found, problems = [], []
+    if start is None:
+        start = CELSIUS.exact_text(case.thermal.ambient_temperature)
+    for name, value, quantity in (
+        ("duration", duration, DURATION),
+        ("start temperature", start, START),
+    ):
+        try:
+            found.append(quantity.parse(value))
+        except PydanticCustomError as error:
+            allowed = sentence(error.message(), capital=False)
+            remedy = sentence(str((error.context or {}).get("remedy", "")))
+            problems.append(Problem(name, written(value), allowed, remedy))
+    if case.thermal.oil_outlet_temperature is not None:
+        allowed = "tells the flow of oil in one settled state only."
+        remedy = "Give thermal.oil_flow instead."
+        problems.append(Problem("thermal.oil_outlet_temperature", "", allowed, remedy))
+    if problems:
+        raise InputError(problems)
+    seconds, kelvin = found
+    return seconds, kelvin
+
+
+# --- operation ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """A time in which the operation has one mean.
+
+    Attributes
+    ----------
+    duration : float
+        [s]
+    heating, flowing : array, shape (points,)
+        With which the losses, and the conductances, at the points of the grid add up to their
+        means. [1]
+    coasting : array, shape (points,)
+        The part of `heating` for which power enters at the output, or nowhere. [1]
+    entering, leaving : float
+        Mean power that enters and leaves at the reference shaft; NaN if two are driven. [W]
+    """
+
+    duration: float
+    heating: Array
+    coasting: Array
+    flowing: Array
+    entering: float
+    leaving: float
+
+    def efficiency(self, loss: float, coasting: float) -> float:
+        """Power that leaves over power that enters, from the loss and its coasting part. [1]"""
+        entering = self.entering + self.leaving + coasting
+        return max(0.0, 1 - loss / entering) if entering else math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class _Drive:
+    """What a gearbox does, on a grid of operating points.
+
+    Attributes
+    ----------
+    points : sequence of mapping
+        Keys of the case that each point of the grid changes.
+    steps : tuple of _Step
+        One after the other, repeated.
+    plan : SweepPlan
+        The grid.
+    """
+
+    points: Sequence[Mapping[str, Any]]
+    steps: tuple[_Step, ...]
+    plan: SweepPlan
+
+    @property
+    def mean(self) -> tuple[Array, Array]:
+        """Weights of the heat and of the conductances over all steps."""
+        durations = np.array([step.duration for step in self.steps])
+        shares = durations / durations.sum()
+        heating = shares @ np.array([step.heating for step in self.steps])
+        return heating, shares @ np.array([step.flowing for step in self.steps])
+
+
+def _constant(case: Case) -> _Drive:
+    """The operating point of a case."""
+    built = build(case)
+    operation, one = built.operation, np.ones(1)
+    power = operation.torque * operation.speeds[operation.input] if held_shaft(case) else math.nan
+    coasting = one if power <= 0 else np.zeros(1)
+    step = _Step(1.0, one, coasting, one, max(power, 0.0), max(-power, 0.0))
+    return _Drive([{}], (step,), SweepPlan(case.updated({"models.temperatures": "inlet"})))
+
+
+def _driven(case: Case, seconds: float, cycle: Cycle) -> _Drive:
+    """A cycle: a time series in steps, a histogram as one step. Theory (N16)."""
+    if not held_shaft(case):
+        raise InputError([driven_problem("only one speed and one torque can be looked up")])
+    states: list[str] = []
+    if case.states:
+        check_states(cycle, tuple(case.states))
+        states = [name for name in case.states if name in cycle.states]
+    plan = _plan(case, cycle, states)
+    points = [plan.changes(index) for index in range(plan.size)]
+    for changes in points:
+        del changes[AXES["temperature"]]
+    sizes = {axis_name(axis.key): np.array(axis.coordinate) for axis in plan.axes}
+    del sizes["temperature"]
+    if states:
+        sizes[STATE] = np.arange(1.0, len(states) + 1)
+    shape = tuple(axis.size for axis in sizes.values())
+    grid = Lookup(tuple(sizes), tuple(sizes.values()), tuple(states), (), np.zeros((0, *shape)))
+    return _Drive(points, tuple(_steps(cycle, grid, seconds / MOST_STEPS)), plan)
+
+
+def _plan(case: Case, cycle: Cycle, states: Sequence[str]) -> MapPlan:
+    """The points of the grid, at one temperature."""
+    speeds = crowded(*cycle.ranges["speed"], SPEEDS)
+    torques = crowded(*cycle.ranges["torque"], TORQUES)
+    return map_plan(
+        case.updated({"models.temperatures": "inlet"}),
+        texts_of(speeds, RPM),
+        texts_of(torques, NEWTON_METRE),
+        states=states or None,
+    )
+
+
+def _steps(cycle: Cycle, grid: Lookup, width: float) -> Iterator[_Step]:
+    """Rows of a time series together until they last `width`, those of a histogram all together."""
+    count, nodes = MOST_STEPS + 1, grid.size  # what comes after the end goes into the last
+    duration, entering, leaving = np.zeros((3, count))
+    heating, coasting, flowing = np.zeros((3, count, nodes))
+    begin = 0.0
+    for piece in cycle.pieces():
+        ends = begin + np.cumsum(piece.duration)
+        begin = ends[-1]
+        number = np.zeros(piece.speed.shape, np.intp)
+        if cycle.weighting == TIME:
+            number = np.minimum((ends - piece.duration) / width, MOST_STEPS).astype(np.intp)
+        corners, weights = grid.corners(*point_of(grid, cycle, piece))
+        power = loss_power(piece.torque, piece.speed) * np.sign(piece.speed)
+        turned = loss_power(piece.duration, piece.speed)
+        for sums, amount in (
+            (heating, turned),
+            (coasting, turned * (power <= 0)),
+            (flowing, piece.duration),
+        ):
+            place = (corners + nodes * number).ravel()
+            sums += np.bincount(place, (weights * amount).ravel(), sums.size).reshape(sums.shape)
+        for sums, amount in (
+            (duration, piece.duration),
+            (entering, np.maximum(power, 0) * piece.duration),
+            (leaving, np.maximum(-power, 0) * piece.duration),
+        ):
+            sums += np.bincount(number, amount, count)
+    # losses over the speed are nearer to straight lines than losses
+    speeds = grid.axes[grid.names.index("speed")]
+    per_speed = loss_power(np.ones_like(speeds), speeds)
+    speeds_of_nodes = np.broadcast_to(per_speed[:, None], grid.torques.shape[1:]).ravel()
+    for row in np.flatnonzero(duration[:MOST_STEPS]):
+        yield _Step(
+            duration[row],
+            heating[row] / duration[row] / speeds_of_nodes,
+            coasting[row] / duration[row] / speeds_of_nodes,
+            flowing[row] / duration[row],
+            float(entering[row] / duration[row]),
+            float(leaving[row] / duration[row]),
+        )
+
+
+def _sampled(
+    case: Case, drive: _Drive, knots: list[float], progress: Progress | None
+) -> list[list[HeatSample]]:
+    """The grid solved at some temperatures."""
+    key = AXES["temperature"]
+    tables: FlowTables = {}
+    stated = [knot for knot in knots if CELSIUS.to_display(knot) <= (START.high or math.inf)]
+    if stated:  # no case has hotter oil
+        (axis,) = make_plan(drive.plan.case, {key: texts_of(stated, KELVIN)}).axes
+        others = tuple(other for other in drive.plan.axes if other.key != key)
+        plan = replace(drive.plan, axes=(*others, axis))
+        tables = plan.prepared(range(plan.size), None).flow_tables
+    done, whole = itertools.count(1), len(knots) * len(drive.points)
+
+    def told() -> None:
+        if progress is not None:
+            progress(next(done), whole)
+
+    return heat_samples(case, drive.points, knots, tables, told)
+
+
+# --- over time ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Told:
+    """A course, with what is lost on it; arrays over time come last.
+
+    Attributes
+    ----------
+    course : Course
+    losses : array, shape (terms, t)
+        [W]
+    efficiency : array, shape (t,)
+        [1]
+    """
+
+    course: Course
+    losses: Array
+    efficiency: Array
+
+
+def _run(
+    tables: HeatTables, drive: _Drive, begin: Array, seconds: float, progress: Progress | None
+) -> _Told:
+    """The steps of a drive, repeated until the end."""
+    if len(drive.steps) == 1:
+        (step,) = drive.steps
+        times = seconds * np.linspace(0, 1, TIMES) ** 2  # it is fastest at the beginning
+        course = tables.transient(step.heating, step.flowing).integrate(begin, times)
+        rows = [_lost(tables, step, values) for values in course.temperatures.T]
+        return _told(course, rows)
+    ends, temperatures, energies = [0.0], [begin], [np.zeros(2)]
+    rows = [_lost(tables, drive.steps[0], begin)]
+    for step in itertools.cycle(drive.steps):
+        end = min(ends[-1] + step.duration, seconds)
+        transient = tables.transient(step.heating, step.flowing)
+        part = transient.integrate(temperatures[-1], np.array([ends[-1], end]), TOLERANCE)
+        ends.append(end)
+        temperatures.append(part.temperatures[:, -1])
+        energies.append(energies[-1] + [part.gained[-1], part.given_off[-1]])
+        rows.append(_lost(tables, step, temperatures[-1]))
+        if progress is not None:
+            progress(round(end), round(seconds))
+        if end >= seconds:
+            break
+    gained, given_off = np.transpose(energies)
+    course = Course(np.array(ends), np.transpose(temperatures), gained, given_off)
+    return _told(course, rows)
+
+
+def _lost(tables: HeatTables, step: _Step, temperatures: Array) -> tuple[Array, float]:
+    """Every loss [W], and the efficiency."""
+    heat, _ = tables.heat(step.heating).read(temperatures)
+    coasting, _ = tables.heat(step.coasting).read(temperatures)
+    return tables.losses(heat), step.efficiency(float(heat.sum()), float(coasting.sum()))
+
+
+def _told(course: Course, rows: Sequence[tuple[Array, float]]) -> _Told:
+    losses, efficiencies = zip(*rows, strict=True)
+    return _Told(course, np.transpose(losses), np.array(efficiencies))
+
+
+def _runaway(tables: HeatTables, course: Course) -> ConvergenceError:
+    row = int(np.argmax(course.temperatures.max(axis=0) > HOTTEST))
+    node = list(tables.capacities)[int(course.temperatures[:, row].argmax())]
+    return ConvergenceError(
+        f"the gearbox runs away: within {SECOND.text(course.times[row], 3)} {node} gets hotter "
+        f"than {CELSIUS.text(HOTTEST, 4)}. Take more heat away: thermal.oil_flow, "
+        "thermal.cooler_conductance, a larger [thermal.housing]."
+    )
+
+
+def _to_dataset(
+    case: Case,
+    tables: HeatTables,
+    drive: _Drive,
+    told: _Told,
+    seconds: float,
+    settled: Array | None,
+) -> xr.Dataset:
+    import xarray as xr
+
+    course = told.course
+    nodes = list(tables.capacities)
+    heating, flowing = drive.mean
+    ends = np.full(len(nodes), math.nan) if settled is None else settled
+    constants = (
+        ends if settled is None else tables.transient(heating, flowing).time_constants(settled)
+    )
+    settled_loss = tables.heat(heating).read(ends)[0].sum()
+    capacities = np.array(list(tables.capacities.values()))
+    stored = capacities @ (course.temperatures - course.temperatures[:, :1])
+    _, zero = CELSIUS.scale_and_offset()
+    kilo, _ = KILOJOULE.scale_and_offset()
+    over, each = ("time",), ("node",)
+    kelvin, energy, watts = CELSIUS.display, KILOJOULE.display, WATT.display
+    table = (
+        ("temperature", ("time", "node"), course.temperatures.T + zero, kelvin, "temperature"),
+        ("loss", ("time", "component"), told.losses.T, watts, "power loss"),
+        ("total_loss", over, told.losses.sum(axis=0), watts, "power loss of all components"),
+        ("efficiency", over, told.efficiency, "1", "efficiency"),
+        ("energy_lost", over, course.gained * kilo, energy, "energy lost since the start"),
+        ("energy_given_off", over, course.given_off * kilo, energy,
+         "energy given off to oil inlet, coolant and air since the start"),
+        ("energy_stored", over, stored * kilo, energy, "energy stored since the start"),
+        ("heat_capacity", each, capacities, "J/K", "heat capacity"),
+        ("settled_temperature", each, ends + zero, kelvin, "temperature in the settled state"),
+        ("time_to_90_percent", each, _times_reached(course, ends), SECOND.display,
+         "time to 90 % of the way to the settled state"),
+        ("time_constant", ("order",), constants, SECOND.display,
+         "time constant of small changes about the settled state"),
+        ("energy_lost_settled", (), settled_loss * seconds * kilo, energy,
+         "energy lost if it were in the settled state from the start"),
+    )  # fmt: skip
+    coords = {
+        "time": (over, course.times, {"long_name": "time", "units": SECOND.display}),
+        "node": nodes,
+        "component": list(tables.terms),
+    }
+    used = versions()
+    return xr.Dataset(
+        {
+            name: (dims, values, {"long_name": label, "units": unit})
+            for name, dims, values, unit, label in table
+        },
+        coords,
+        {
+            "title": case.title,
+            "source": f"epicyclic {used['epicyclic']}",
+            "versions": json.dumps(used),
+            "case": json.dumps(case.inputs()),
+            "temperatures_of_the_tables": ", ".join(CELSIUS.text(it, 4) for it in tables.knots),
+        },
+    )
+
+
+def _times_reached(course: Course, ends: Array) -> Array:
+    """When each node has come `REACHED` of the way from its start to the end; NaN if never. [s]"""
+    start = course.temperatures[:, 0]
+    way = (course.temperatures - start[:, None]) / np.where(ends == start, np.nan, ends - start)[
+        :, None
+    ]
+    first = [np.argmax(row >= REACHED) if (row >= REACHED).any() else 0 for row in way]
+    found = [
+        np.interp(REACHED, row[at - 1 : at + 1], course.times[at - 1 : at + 1]) if at else math.nan
+        for row, at in zip(way, first, strict=True)
+    ]
+    return np.array(found)

@@ -1,0 +1,261 @@
+"""How temperatures get to where they settle: heat that arises, flows and is stored over time.
+
+Losses and conductances are curves over temperature. Each is read at the temperature of nodes of its
+own: the loss of a mesh at the mean of its two gears, drag at that of the oil.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.errors import ConvergenceError
+from epicyclic.thermal.network import Link
+
+__all__ = ["Course", "Curves", "Source", "Transient"]
+
+FloatArray = NDArray[np.float64]
+
+TOLERANCE = 1e-6
+"""Of the temperatures, in each step of the integration. [K]"""
+LEAST_RELATIVE = 1e-12
+"""No tolerance beside that. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A part of a loss that heats one node.
+
+    Attributes
+    ----------
+    term : str
+        The loss.
+    into : str
+        The node.
+    at : tuple of str
+        Nodes at whose mean temperature the loss arises.
+    """
+
+    term: str
+    into: str
+    at: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Curves:
+    """Quantities over temperature; beyond the last knots they stay as they are there.
+
+    Attributes
+    ----------
+    knots : array, shape (k,)
+        Rising. [K]
+    coefficients : array, shape (4, k - 1, n)
+        Of the powers of the distance from the knot below, the highest first.
+    weights : array, shape (n, nodes)
+        With which the temperatures of the nodes make the one of each quantity. [1]
+    """
+
+    knots: FloatArray
+    coefficients: FloatArray
+    weights: FloatArray
+
+    def read(self, temperatures: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Values, and their slopes over the temperature of each. Theory (N15)."""
+        own = self.weights @ temperatures
+        held = np.clip(own, self.knots[0], self.knots[-1])
+        below = np.clip(np.searchsorted(self.knots, held) - 1, 0, self.knots.size - 2)
+        step = held - self.knots[below]
+        c3, c2, c1, c0 = self.coefficients[:, below, np.arange(own.size)]
+        slopes = (3 * c3 * step + 2 * c2) * step + c1
+        return ((c3 * step + c2) * step + c1) * step + c0, np.where(held == own, slopes, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """Temperatures over time, and the energies that make them.
+
+    Attributes
+    ----------
+    times : array, shape (t,)
+        [s]
+    temperatures : array, shape (nodes, t)
+        [K]
+    gained, given_off : array, shape (t,)
+        Energy that arose, and that left for nodes of given temperature. [J]
+    """
+
+    times: FloatArray
+    temperatures: FloatArray
+    gained: FloatArray
+    given_off: FloatArray
+
+
+class _Ways(NamedTuple):
+    """Where heat comes from and goes to, as matrices."""
+
+    into: FloatArray
+    """From sources to nodes."""
+    drives: FloatArray
+    """From temperatures of nodes to differences along links, ..."""
+    known: FloatArray
+    """... and the part of given temperatures. [K]"""
+    moves: FloatArray
+    """From flows to nodes."""
+    leaves: FloatArray
+    """From flows to all nodes of given temperature."""
+    taken: FloatArray
+    """From nodes by a cooler. [W]"""
+    inertia: FloatArray
+    """[J/K]"""
+
+
+@dataclass(frozen=True)
+class Transient:
+    """Nodes that store heat. Theory (N10).
+
+    Attributes
+    ----------
+    capacities : mapping of str to float
+        Of the nodes, in their order. [J/K]
+    given : mapping of str to float
+        Nodes of given temperature. [K]
+    sources : tuple of Source
+    heat : Curves
+        Of each source. [W]
+    links : tuple of Link
+        Their own conductances do not matter.
+    conductance : Curves
+        Of each link. [W/K]
+    taken : mapping of str to float
+        Heat that leaves nodes at all times: that of a cooler. [W]
+    """
+
+    capacities: Mapping[str, float]
+    given: Mapping[str, float]
+    sources: Sequence[Source]
+    heat: Curves
+    links: Sequence[Link]
+    conductance: Curves
+    taken: Mapping[str, float]
+
+    @cached_property
+    def _ways(self) -> _Ways:
+        place = {node: index for index, node in enumerate(self.capacities)}
+        nodes, links = len(place), len(self.links)
+        ways = _Ways(
+            into=np.zeros((nodes, len(self.sources))),
+            drives=np.zeros((links, nodes)),
+            known=np.zeros(links),
+            moves=np.zeros((nodes, links)),
+            leaves=np.zeros(links),
+            taken=np.array([self.taken.get(node, 0.0) for node in place]),
+            inertia=np.array(list(self.capacities.values())),
+        )
+        for column, source in enumerate(self.sources):
+            ways.into[place[source.into], column] = 1.0
+        for row, link in enumerate(self.links):
+            for node, sign in ((link.hot, 1.0), (link.cold, -1.0)):
+                if node in place:
+                    ways.drives[row, place[node]] += sign
+                else:
+                    ways.known[row] += sign * self.given[node]
+            for node, sign in ((link.hot, -1.0), (link.target, 1.0)):
+                if node in place:
+                    ways.moves[place[node], row] += sign
+                else:
+                    ways.leaves[row] += sign
+        return ways
+
+    def rates(self, temperatures: FloatArray) -> tuple[FloatArray, float, float]:
+        """Rise of the temperatures [K/s], heat that arises and heat that leaves [W]."""
+        ways = self._ways
+        heat, _ = self.heat.read(temperatures)
+        conductance, _ = self.conductance.read(temperatures)
+        flows = conductance * (ways.drives @ temperatures + ways.known)
+        stored = ways.into @ heat - ways.taken + ways.moves @ flows
+        left = float(ways.leaves @ flows + ways.taken.sum())
+        return stored / ways.inertia, float(heat.sum()), left
+
+    def slopes(self, temperatures: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """What `rates` gives, over each of the temperatures."""
+        ways = self._ways
+        _, slope = self.heat.read(temperatures)
+        heat = slope[:, None] * self.heat.weights
+        conductance, slope = self.conductance.read(temperatures)
+        driven = ways.drives @ temperatures + ways.known
+        flows = conductance[:, None] * ways.drives
+        flows += (slope * driven)[:, None] * self.conductance.weights
+        stored = ways.into @ heat + ways.moves @ flows
+        return stored / ways.inertia[:, None], heat.sum(axis=0), ways.leaves @ flows
+
+    def integrate(
+        self, start: FloatArray, times: FloatArray, tolerance: float = TOLERANCE
+    ) -> Course:
+        """The course from temperatures `start` at the first of `times`. Theory (N10).
+
+        Parameters
+        ----------
+        start : array, shape (nodes,)
+            [K]
+        times : array, shape (t,)
+            Rising. [s]
+        tolerance : float
+            Error of the temperatures in each step. [K]
+
+        Raises
+        ------
+        ConvergenceError
+            If the integration does not reach the end.
+        """
+        from scipy.integrate import solve_ivp
+
+        count = start.size
+
+        def rates(_: float, values: FloatArray) -> FloatArray:
+            rise, gained, left = self.rates(values[:count])
+            return np.append(rise, [gained, left])
+
+        def slopes(_: float, values: FloatArray) -> FloatArray:
+            found = np.zeros((count + 2, count + 2))
+            found[:count, :count], found[count, :count], found[-1, :count] = self.slopes(
+                values[:count]
+            )
+            return found
+
+        done = solve_ivp(
+            rates,
+            (times[0], times[-1]),
+            np.append(start, [0.0, 0.0]),
+            method="Radau",
+            t_eval=times,
+            jac=slopes,
+            rtol=LEAST_RELATIVE,
+            atol=np.append(np.full(count, tolerance), 2 * [tolerance * self._ways.inertia.sum()]),
+        )
+        if not done.success:
+            raise ConvergenceError(f"the course of the temperatures has no end: {done.message}")
+        return Course(done.t, done.y[:count], done.y[count], done.y[-1])
+
+    def settled(self, guess: FloatArray) -> FloatArray | None:
+        """Temperatures that stay as they are; None if there are none near the guess. [K]"""
+        from scipy.optimize import root
+
+        done = root(
+            lambda values: self.rates(values)[0], guess, jac=lambda values: self.slopes(values)[0]
+        )
+        return done.x if done.success else None
+
+    def time_constants(self, temperatures: FloatArray) -> FloatArray:
+        """Of small changes about some temperatures, from the slowest. Theory (N17). [s]
+
+        Infinite where they grow.
+        """
+        rise, _, _ = self.slopes(temperatures)
+        rates = -np.linalg.eigvals(rise).real
+        with np.errstate(divide="ignore"):
+            return np.sort(np.where(rates > 0, 1 / rates, np.inf))[::-1]
