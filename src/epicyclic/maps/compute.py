@@ -62,6 +62,13 @@ _SUMS = (
     "ratio",
     "power_ratio",
 )
+_TEMPERATURES = {
+    "inlet": "everything is at the temperature of the oil inlet",
+    "flank": "temperature is that of the oil; flanks are as hot as their own losses make them",
+    "network": "temperature is that of the oil inlet; the oil in the gearbox and all parts are as "
+    "hot as the losses make them in the long run",
+}
+"""What the axis of temperatures means, by ``models.temperatures``."""
 _CREEP = 1e-9
 """Speed that stands for slow motion; losses over speed have reached their limit by then. [rpm]"""
 
@@ -300,9 +307,10 @@ def _one_ratio(ratio: xr.DataArray) -> xr.DataArray:
 
 
 def _kept_variables(layout: Layout) -> list[str]:
-    """Losses, their sums, efficiency, ratios, and speeds and torques of the members."""
+    """Losses, their sums, efficiency, ratios, speeds and torques of members, temperatures."""
     kept = {*layout.losses, *_SUMS}
     kept |= {f"{name}_{what}" for name in layout.members for what in ("speed", "torque")}
+    kept |= {f"{node}_temperature" for node in layout.nodes}
     return [item.key for item in number_fields(layout) if item.key in kept]
 
 
@@ -351,6 +359,7 @@ def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:
         "zero_speed": "powers are 0; torque loss, torques and efficiency are the limits of slow "
         "motion in positive direction, without friction of rest",
         "zero_torque": "efficiency has no value; the torque loss is that of the drag",
+        "temperatures": _TEMPERATURES[plan.case.models.temperatures],
         "conventions": "losses in W of the whole gear set, summed over planets; efficiency: power "
         "that leaves over power that enters, 0 if the loss takes all of it",
         "pocketing": given["pocketing"],

@@ -41,6 +41,7 @@ _STATED = (
     "torque_loss_definition",
     "zero_speed",
     "zero_torque",
+    "temperatures",
     "conventions",
 )
 _LONGEST_STATEMENT = 1000

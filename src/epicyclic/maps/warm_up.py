@@ -129,18 +129,17 @@ def warm_up(
         course = told.course
         mean = tables.transient(*drive.mean)
         settled = mean.settled(course.temperatures[:, -1])
-        hottest = float(course.temperatures.max())
-        if hottest > HOTTEST:
-            raise _runaway(tables, course)
         if settled is not None and settled.max() > HOTTEST:
             settled = None
-        if settled is not None:
-            hottest = max(hottest, float(settled.max()))
-        if hottest <= knots[-1]:
-            return _to_dataset(warm, tables, drive, told, seconds, settled)
-        new = _knots(knots[-1] + SPACING, hottest)
+        hottest = float(np.max([course.temperatures.max(), *([] if settled is None else settled)]))
+        if min(hottest, HOTTEST) <= knots[-1]:
+            break
+        new = _knots(knots[-1] + SPACING, min(hottest, HOTTEST))
         samples += _sampled(warm, drive, new, progress)
         knots += new
+    if hottest > HOTTEST:
+        raise _runaway(tables, course)
+    return _to_dataset(warm, tables, drive, told, seconds, settled)
 
 
 def _knots(low: float, high: float) -> list[float]:
