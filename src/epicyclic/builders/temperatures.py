@@ -74,7 +74,7 @@ def term_nodes(machine: Machine) -> dict[tuple[str, str], tuple[str, ...]]:
             parts = [(mesh.key, _at_flanks(mesh)) for mesh in own.meshes]
             parts += [(planet.key, ("mechanical", "viscous")) for planet in own.planets]
             found |= {
-                (own.key, f"{key}_{name}"): nodes[f"{own.key}.{key}"]
+                (own.key, f"{key}_{name}"): nodes[joined_key(own.key, key)]
                 for key, names in parts
                 for name in names
             }

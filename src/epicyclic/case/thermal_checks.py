@@ -6,6 +6,9 @@ from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.errors import Problem
 from epicyclic.units import CELSIUS
 
+ROUNDING = 1e-9
+"""Of shares that add up to 1. [1]"""
+
 __all__ = ["check_outlet", "check_thermal", "check_ways_out"]
 
 
@@ -32,7 +35,7 @@ def check_thermal(thermal: ThermalTable) -> list[Problem]:
                 )
             )
     whole = sum(thermal.jet_shares.values())
-    if not problems and whole > 1:
+    if not problems and whole > 1 + ROUNDING:
         problems.append(
             Problem(
                 "thermal.jet_shares",

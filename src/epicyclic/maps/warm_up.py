@@ -18,6 +18,8 @@ from epicyclic.case.case import Case
 from epicyclic.case.fields import quantity_of
 from epicyclic.case.operating import AXES, STATE
 from epicyclic.case.wording import sentence, written
+from epicyclic.elements.base import OIL
+from epicyclic.elements.heat_paths import INLET
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.machine.heat_network import NetworkModel
 from epicyclic.machine.settle import HOTTEST
@@ -113,7 +115,7 @@ def warm_up(
         If the gearbox gets so hot that nothing is left to compute.
     """
     seconds, start = _parsed(case, duration, start_temperature)
-    warm = case.updated({"models.temperatures": "network"})
+    warm = _with_fixed_jets(case.updated({"models.temperatures": "network"}))
     model = build(warm).thermal
     assert isinstance(model, NetworkModel)
     begin = np.full(len(model.capacities()), start)
@@ -140,6 +142,25 @@ def warm_up(
     if hottest > HOTTEST:
         raise _runaway(tables, course)
     return _to_dataset(warm, tables, drive, told, seconds, settled)
+
+
+def _with_fixed_jets(case: Case) -> Case:
+    """The oil meets all parts as it does in the settled state of the case: nozzles do not move."""
+    try:
+        answer = build(case).solve().answer
+    except ConvergenceError:  # it runs away: the oil goes where the heat arises
+        return case
+    jets = {
+        link.hot: link.conductance
+        for link in answer.links
+        if link.cold == INLET and link.target == OIL
+    }
+    whole = sum(jets.values())
+    if not whole:
+        return case
+    return case.updated(
+        {"thermal.jet_shares": {node: share / whole for node, share in jets.items()}}
+    )
 
 
 def _knots(low: float, high: float) -> list[float]:
