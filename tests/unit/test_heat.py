@@ -136,7 +136,7 @@ def test_remarks_compare_with_warm_flanks_and_without_holding():
     result = solve(hot)
     assert beyond_range(hot, result).share == pytest.approx(1.0)
     _, second = remarks(hot, result)
-    assert second.startswith("100 % of the load-dependent loss arises in meshes")
+    assert second.startswith("100 % of the load-dependent loss arises in contacts")
     assert second.endswith(f"without holding the total would be {free.total:.0f} W.")
 
 

@@ -37,7 +37,7 @@ __all__ = [
 NETWORK = {"models.temperatures": "network"}
 TEMPERATURE = "oil temperature"
 """What ranges of formulas call the temperature of a contact."""
-ROLES = {"friction": "sliding", "rolling": "rolling"}
+ROLES = {"friction": "sliding", "rolling": "rolling", "bearing": "mechanical"}
 """Models whose oil is held in their range, with the losses that they compute."""
 CLOSE = 1e-6
 """Difference to the wanted temperature that counts as none. [K]"""

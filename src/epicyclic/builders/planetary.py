@@ -225,6 +225,7 @@ def planet_bearing(
         palmgren_coefficient=palmgren_coefficient(table),
         viscous_factor=VISCOUS_FACTOR_PER_ROW * table.rows if factor is None else factor,
         conductivity=table.material.thermal_conductivity,
+        oil_held=case.models.oil_beyond_range == "held",
     )
 
 

@@ -12,7 +12,7 @@ from pydantic_core import PydanticUndefined
 
 from epicyclic import library
 from epicyclic.case.case import GearPairCase, PlanetaryCase
-from epicyclic.case.fields import choices_of, entry_of, quantity_of, table_of
+from epicyclic.case.fields import choices_of, dict_value, entry_of, quantity_of, table_of
 
 __all__ = ["COMMENT_COLUMN", "TableWriter", "case_template", "case_text", "toml_key", "toml_value"]
 
@@ -43,7 +43,7 @@ _TRAIN_STATES = """
 # friction = "schlenk"                 # 'epicyclic friction CASE' compares them
 """
 COMMENT_COLUMN = 44
-_SPELT_OUT = ("micro_geometry", "micro_geometry_ring_side", "topography", "oil")
+_SPELT_OUT = ("micro_geometry", "micro_geometry_ring_side", "topography", "oil", "housing")
 """Tables within a table whose keys are listed."""
 
 
@@ -130,6 +130,8 @@ class TableWriter:
             return [_line(f"{full} = {toml_value(given)}", about)]
         if subtable is None:
             return [_line(f"# {full} = {_default(field)}", about)]
+        if dict_value(field.annotation) is not None:
+            return [_line(f"# {full} = {{ NAME = {_keys_of(subtable)} }}", about)]
         if key == "losses":
             return [_line(f"# {name} = {{ include = true, factor = 1.0 }}", "")]
         if isinstance(field.default, str):
@@ -146,6 +148,12 @@ class TableWriter:
 
 def _line(text: str, about: str) -> str:
     return f"{text.ljust(COMMENT_COLUMN - 1)} # {about}" if about else text
+
+
+def _keys_of(table: type[BaseModel]) -> str:
+    """The keys of a table on one line, with their defaults."""
+    shown = [f"{name} = {_default(field)}" for name, field in table.model_fields.items()]
+    return f"{{ {', '.join(shown)} }}"
 
 
 def _about(field: FieldInfo) -> str:

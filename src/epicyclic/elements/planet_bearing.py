@@ -55,6 +55,8 @@ class PlanetBearing:
         f0 of the whole bearing. [1]
     conductivity : float
         Thermal, of races and rollers. [W/(m K)]
+    oil_held : bool
+        False to continue the model mixed-ehl beyond its oil.
     """
 
     bearing: RollerBearing
@@ -62,6 +64,7 @@ class PlanetBearing:
     palmgren_coefficient: float
     viscous_factor: float
     conductivity: float
+    oil_held: bool = True
 
     @property
     def method(self) -> tuple[str, str]:
@@ -114,7 +117,7 @@ def solve_bearing(
     if isinstance(own.model, FittedRolling):
         loss = fitted_rolling_loss(bearing, loads, speed, oil, own.model)
     elif own.model == "mixed-ehl":
-        loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil)
+        loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil, oil_held=own.oil_held)
     else:
         watts = palmgren_loss(own.palmgren_coefficient, load.force, bearing.pitch_diameter, speed)
         loss = BearingLoss(watts, palmgren_flags(bearing, loads, speed))

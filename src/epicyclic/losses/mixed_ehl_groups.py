@@ -11,6 +11,7 @@ is flagged.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -36,6 +37,7 @@ __all__ = [
     "VISCOSITY_RANGE",
     "beyond_data",
     "held_in_table",
+    "without_oil",
 ]
 
 FloatArray = NDArray[np.float64]
@@ -93,6 +95,7 @@ _HELD = {
 }
 
 
+Limits = Mapping[str, tuple[float | None, float | None]]
 _OIL = (VISCOSITY_RANGE.name, PRESSURE_VISCOSITY_RANGE.name)
 
 
@@ -101,9 +104,12 @@ def held_in_table(contact: LineContacts, *, oil_held: bool = True) -> LineContac
 
     Without `oil_held` viscosity and pressure-viscosity stay as they are: the formula goes on.
     """
-    if oil_held:
-        return contact.held(_HELD)
-    return contact.held({name: limits for name, limits in _HELD.items() if name not in _OIL})
+    return contact.held(_HELD if oil_held else without_oil(_HELD))
+
+
+def without_oil(limits: Limits) -> Limits:
+    """Limits of conditions but for those of the oil."""
+    return {name: pair for name, pair in limits.items() if name not in _OIL}
 
 
 def beyond_data(contact: LineContacts, held: LineContacts) -> FloatArray:

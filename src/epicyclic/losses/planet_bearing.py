@@ -23,6 +23,7 @@ from epicyclic.losses.mixed_ehl_groups import (
     PRESSURE_VISCOSITY_RANGE,
     VISCOSITY_RANGE,
     beyond_data,
+    without_oil,
 )
 from epicyclic.losses.validity import (
     ModelUse,
@@ -305,7 +306,12 @@ def _start(bearing: RollerBearing, load: FloatArray) -> FloatArray:
 
 
 def mixed_ehl_rolling_loss(
-    bearing: RollerBearing, loads: RollerLoads, speed: float, oil: OilState
+    bearing: RollerBearing,
+    loads: RollerLoads,
+    speed: float,
+    oil: OilState,
+    *,
+    oil_held: bool = True,
 ) -> BearingLoss:
     """P_mb = w sum P_WD over the loaded slices. Talbot (2012), Eq. 3.5 and 3.6. [W]
 
@@ -313,12 +319,13 @@ def mixed_ehl_rolling_loss(
 
     As printed, one evaluation for each loaded slice; with the radius of the outer race, the
     reading that reproduces the published effects of roughness and size. Conditions outside
-    Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`.
+    Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`. Without
+    `oil_held` the formula is continued beyond its oil.
     """
     contacts = _outer_contacts(bearing, loads, speed, oil)
     if contacts is None:
         return BearingLoss(0.0)
-    held = contacts.held(_HELD)
+    held = contacts.held(_HELD if oil_held else without_oil(_HELD))
     density = needle_rolling_loss_at(
         held.hertz_pressure,
         held.rolling_speed,

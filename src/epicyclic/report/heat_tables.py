@@ -169,8 +169,8 @@ def _beyond_text(beyond: BeyondRange, free: Result | str) -> str:
     low, high = (format_number(limit) for limit in (beyond.low, beyond.high))
     unit = unit_text(CELSIUS.display)
     text = (
-        f"{100 * beyond.share:.0f} % of the load-dependent loss arises in meshes where the oil is "
-        f"hotter than the range of its formula ({low} to {high} {unit}), whose oil is held at "
+        f"{100 * beyond.share:.0f} % of the load-dependent loss arises in contacts whose oil is "
+        f"hotter than the range of its formula ({low} to {high} {unit}), where it is held at "
         f"{high} {unit}; without holding "
     )
     if isinstance(free, str):
