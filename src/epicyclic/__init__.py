@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from epicyclic.maps.compute import loss_map
     from epicyclic.maps.duty import duty_cycle
     from epicyclic.maps.formats import write_map
+    from epicyclic.maps.lumped import with_temperature_state
     from epicyclic.maps.warm_up import warm_up
     from epicyclic.measurement.compare import MeasuredComparison, compare_measured
     from epicyclic.records.files import open_result, save_result
@@ -71,6 +72,7 @@ _HOME = {
     "solve_for": "epicyclic.analysis.heat",
     "sweep": "epicyclic.sweeps.run",
     "warm_up": "epicyclic.maps.warm_up",
+    "with_temperature_state": "epicyclic.maps.lumped",
     "write_map": "epicyclic.maps.formats",
     "write_rexs": "epicyclic.exchange.rexs.exporting",
 }
@@ -108,6 +110,7 @@ __all__ = [
     "solve_for",
     "sweep",
     "warm_up",
+    "with_temperature_state",
     "write_map",
     "write_rexs",
 ]

@@ -10,6 +10,7 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
+from scipy.integrate import solve_ivp
 
 import epicyclic as ep
 from epicyclic.maps import fmu
@@ -159,3 +160,84 @@ def test_the_how_to_runs(tmp_path, monkeypatch):
     exec(code, names)
     assert 0.9 < names["result"]["efficiency"][-1] < 1
     assert [path.name for path in tmp_path.iterdir()] == ["loss_map.fmu"]
+
+
+STORES = {
+    "thermal.oil_volume": "1 l",
+    "thermal.lubrication": "dip",
+    "thermal.housing": {"area": "0.3 m^2", "mass": "8 kg"},
+}
+
+
+@pytest.fixture(scope="module")
+def heated(tmp_path_factory):
+    """A map whose temperature follows from its losses, and its FMU."""
+    changes = STORES | {"losses.mesh_pocketing.include": False, "operation.torque": "60 N*m"}
+    case = ep.load_case("talbot-2012-pair").updated(changes)
+    data = ep.loss_map(
+        case,
+        ["0 rpm", "1500 rpm", "3000 rpm"],
+        ["0 N*m", "50 N*m", "100 N*m"],
+        ["10 degC", "40 degC", "70 degC", "110 degC"],
+        jobs=1,
+    )
+    data = ep.with_temperature_state(data, case)
+    place = tmp_path_factory.mktemp("heated") / "heated.fmu"
+    ep.write_map(data, place)
+    return data, place
+
+
+def test_the_temperature_of_an_fmu_follows_from_its_losses(heated):
+    data, place = heated
+    lookup = make_lookup(data)
+    capacity, conductance = data.attrs["lumped_heat_capacity"], data.attrs["lumped_conductance"]
+    speed, torque, around = 2500.0, np.array([20.0, 90.0]), 283.15
+
+    def rise(time, kelvin):
+        point = (np.array([speed]), torque[[int(time >= 1200)]], kelvin - 273.15)
+        nodes, weights = lookup.corners(*point)
+        loss = loss_power((lookup.total[nodes] * weights).sum(axis=0), np.array([speed]))
+        return (loss - conductance * (kelvin - around)) / capacity
+
+    times = np.arange(0, 2401, 60.0)
+    first = solve_ivp(rise, (0, 1200), [290.0], t_eval=times[:21], rtol=1e-9, max_step=10)
+    then = solve_ivp(
+        rise, (1200, 2400), first.y[:, -1], t_eval=times[21:], rtol=1e-9, max_step=10
+    )  # fmt: skip
+    wanted = np.append(first.y[0], then.y[0])
+
+    table = np.zeros(4, [(name, float) for name in ("time", "speed", "torque")])
+    table["time"] = [0, 1200, 1200, 2400]
+    table["speed"], table["torque"] = speed * np.pi / 30, np.repeat(torque, 2)
+    result = fmpy.simulate_fmu(
+        place,
+        input=table,
+        start_values={"temperature": 290.0, "surroundings_temperature": around},
+        stop_time=2400,
+        step_size=60,
+        output_interval=60,
+    )
+    assert result["temperature"] == pytest.approx(wanted, abs=1e-3)
+    assert wanted[-1] - wanted[0] > 5
+    assert validate_fmu(place) == []
+    description = fmpy.read_model_description(place, validate_model_structure=True)
+    assert description.modelExchange is None
+
+
+def test_a_lumped_gearbox_settles_as_its_network_does(heated):
+    data, _ = heated
+    changes = STORES | {"losses.mesh_pocketing.include": False, "operation.torque": "60 N*m"}
+    case = ep.load_case("talbot-2012-pair").updated(changes | {"models.temperatures": "network"})
+    result = ep.solve(case)
+    rise = result.heat.temperatures["oil"] - data.attrs["surroundings_temperature"]
+    assert data.attrs["surroundings_temperature"] == pytest.approx(293.15)
+    assert data.attrs["lumped_conductance"] * rise == pytest.approx(result.total, rel=1e-6)
+
+
+def test_a_temperature_state_needs_temperatures_of_the_oil(heated):
+    data, _ = heated
+    case = ep.load_case("talbot-2012-pair").updated(STORES)
+    with pytest.raises(ep.InputError, match="two or more"):
+        ep.with_temperature_state(data.isel(temperature=[0]), case)
+    with pytest.raises(ep.InputError, match="oil_volume"):
+        ep.with_temperature_state(data, case.updated({"thermal.oil_volume": None}))

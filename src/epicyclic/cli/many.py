@@ -115,6 +115,12 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
     "-o", "--output", required=True, type=click.Path(path_type=Path), help="File of the map."
 )
 @click.option("--format", "name", metavar="NAME", help="Default: by the ending of the file.")
+@click.option(
+    "--temperature-state",
+    "heated",
+    is_flag=True,
+    help="Of an FMU: its temperature follows from its losses.",
+)
 @shard_option
 @runner_options
 def loss_map(
@@ -124,6 +130,7 @@ def loss_map(
     vary: tuple[str, ...],
     output: Path,
     name: str | None,
+    heated: bool,
     runner: Runner,
     **values: str | None,
 ) -> None:
@@ -134,23 +141,35 @@ def loss_map(
     where it stopped, as a sweep does.
     """
     from epicyclic.case.operating import AXES
-    from epicyclic.maps.compute import map_plan, states_left_out
+    from epicyclic.maps.compute import coordinates, map_plan, states_left_out
+    from epicyclic.maps.lumped import check_axis, lumped
     from epicyclic.sweeps.plan import parse_vary
 
     loaded = load_with(case, changes)
     check_values(values)
     chosen = None if states is None else [name.strip() for name in states.split(",")]
+    own = lumped(loaded) if heated else None
+    if heated:  # the map holds the losses of a gearbox that is as hot as its oil
+        loaded = loaded.updated({"models.temperatures": "inlet"})
     axes = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]
     given, further = parse_vary(loaded, axes), parse_vary(loaded, vary)
     speed, torque = given[AXES["speed"]], given[AXES["torque"]]
     plan = map_plan(loaded, speed, torque, given.get(AXES["temperature"]), further, chosen)
     for state, reason in ({} if chosen else states_left_out(loaded)).items():
         click.echo(f"State {state} is left out: it {reason}", err=True)
-    compute(plan, output, runner, map_writer(plan, output, name), format=name)
+    if heated:
+        check_axis(len(coordinates(plan)["temperature"]))
+    write = map_writer(plan, output, name, own)
+    compute(plan, output, runner, write, format=name, lumped=own)
 
 
-def map_writer(plan: MapPlan, output: Path, format: str | None = None) -> Write:
-    """Writes a map; raises `InputError` if it cannot."""
+def map_writer(
+    plan: MapPlan,
+    output: Path,
+    format: str | None = None,
+    lumped: Mapping[str, float] | None = None,
+) -> Write:
+    """Writes a map, with the attributes `lumped`; raises `InputError` if it cannot."""
     from epicyclic.maps.compute import coordinates, held_shaft, to_map
     from epicyclic.maps.formats import check_map_output, files_of_map, write_map
 
@@ -159,7 +178,7 @@ def map_writer(plan: MapPlan, output: Path, format: str | None = None) -> Write:
     files = ", ".join(map(str, files_of_map(output, chosen, axes).values()))
 
     def write(rows: Rows) -> str:
-        write_map(to_map(plan, rows), output, format)
+        write_map(to_map(plan, rows).assign_attrs(lumped or {}), output, format)
         return points_written(rows, files)
 
     return write

@@ -1,6 +1,7 @@
 /* Losses of a gear set from its loss map, as an FMU for Model Exchange and Co-Simulation (FMI 2.0).
  *
- * The outputs follow from the inputs at once, by linear interpolation; there are no states. The
+ * The outputs follow from the inputs at once, by linear interpolation. There are no states, but for
+ * the temperature of an FMU that is HEATED by its losses: that one is integrated in fmi2DoStep. The
  * numbers are in map_data.h. Nothing of a C library is needed.
  */
 
@@ -9,10 +10,13 @@
 
 enum { SPEED, TORQUE }; /* temperature and state follow, where the map has them */
 enum { TORQUE_LOSS = AXES, POWER_LOSS, EFFICIENCY, FIRST_COMPONENT };
-enum { REALS = FIRST_COMPONENT + COMPONENTS };
+enum { OWN_TEMPERATURE = FIRST_COMPONENT + COMPONENTS, REALS = OWN_TEMPERATURE + HEATED };
+
+#define STEP 0.05 /* of the integration at most, over the time constant */
 
 typedef struct {
-    double input[AXES];
+    double input[AXES]; /* if HEATED that of TEMPERATURE is the temperature of the surroundings */
+    double temperature; /* of the gearbox, if HEATED */
     const fmi2CallbackFunctions *callbacks;
     fmi2String name;
 } Instance;
@@ -77,11 +81,16 @@ static int bracket(int axis, double value, double *part) {
     return low;
 }
 
+/* Where on an axis of the map it is. */
+static double coordinate(const Instance *it, int axis) {
+    return HEATED && axis == TEMPERATURE ? it->temperature : it->input[axis];
+}
+
 static int is_inside(const Instance *it) {
     for (int axis = 0; axis < AXES; axis++) {
         double low = axis_values[axis][0] - slack[axis];
         double high = axis_values[axis][axis_sizes[axis] - 1] + slack[axis];
-        double value = it->input[axis];
+        double value = coordinate(it, axis);
         if (!(value >= low && value <= high)) {
             return 0;
         }
@@ -108,7 +117,7 @@ static void evaluate(const Instance *it, double *values) {
     double torque_loss = 0;
     for (int axis = 0; axis < AXES; axis++) {
         values[axis] = it->input[axis];
-        low[axis] = bracket(axis, place(axis, it->input[axis]), &part[axis]);
+        low[axis] = bracket(axis, place(axis, coordinate(it, axis)), &part[axis]);
     }
     for (int component = 0; component < COMPONENTS; component++) {
         double sum = 0;
@@ -130,6 +139,33 @@ static void evaluate(const Instance *it, double *values) {
     values[TORQUE_LOSS] = torque_loss;
     values[POWER_LOSS] = torque_loss * speed;
     values[EFFICIENCY] = efficiency(it->input[SPEED], it->input[TORQUE], torque_loss);
+    if (HEATED) {
+        values[OWN_TEMPERATURE] = it->temperature;
+    }
+}
+
+/* --- the temperature -------------------------------------------------------------------------- */
+
+/* Rise of the temperature in a second, at a temperature. */
+static double rise(const Instance *it, double temperature) {
+    double all[REALS];
+    Instance there = *it;
+    there.temperature = temperature;
+    evaluate(&there, all);
+    return (all[POWER_LOSS] - CONDUCTANCE * (temperature - it->input[TEMPERATURE])) / CAPACITY;
+}
+
+/* The classical method of Runge and Kutta, with the inputs as they are. */
+static void warm_up(Instance *it, double step) {
+    int count = (int)(step * CONDUCTANCE / CAPACITY / STEP) + 1;
+    double h = step / count;
+    for (int i = 0; i < count; i++) {
+        double k1 = rise(it, it->temperature);
+        double k2 = rise(it, it->temperature + h / 2 * k1);
+        double k3 = rise(it, it->temperature + h / 2 * k2);
+        double k4 = rise(it, it->temperature + h * k3);
+        it->temperature += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    }
 }
 
 /* --- creation and life ------------------------------------------------------------------------ */
@@ -150,6 +186,9 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
 fmi2Status fmi2Reset(fmi2Component c) {
     for (int axis = 0; axis < AXES; axis++) {
         ((Instance *)c)->input[axis] = start[axis];
+    }
+    if (HEATED) {
+        ((Instance *)c)->temperature = start[TEMPERATURE];
     }
     return fmi2OK;
 }
@@ -222,10 +261,13 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference refs[], size_t 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference refs[], size_t count,
                        const fmi2Real values[]) {
     for (size_t i = 0; i < count; i++) {
-        if (refs[i] >= AXES) {
+        if (refs[i] < AXES) {
+            ((Instance *)c)->input[refs[i]] = values[i];
+        } else if (HEATED && refs[i] == OWN_TEMPERATURE) {
+            ((Instance *)c)->temperature = values[i];
+        } else {
             return fail(c, "Only inputs can be set.");
         }
-        ((Instance *)c)->input[refs[i]] = values[i];
     }
     return fmi2OK;
 }
@@ -284,6 +326,9 @@ UNABLE(fmi2GetStringStatus, const fmi2StatusKind kind, fmi2String *value)
 /* --- simulation ------------------------------------------------------------------------------- */
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_return) {
+    if (c && HEATED) {
+        warm_up(c, step);
+    }
     return c ? fmi2OK : fmi2Error;
 }
 

@@ -28,6 +28,7 @@ from epicyclic.case.operating import PLANE, STATE
 from epicyclic.case.wording import one_line
 from epicyclic.errors import EpicyclicError, Problem
 from epicyclic.maps.lookup import Lookup, make_lookup, slack
+from epicyclic.maps.lumped import CAPACITY, CONDUCTANCE, SURROUNDINGS
 from epicyclic.maps.tables import stated
 from epicyclic.units import CELSIUS, RPM, format_number
 
@@ -60,6 +61,7 @@ _UNITS = {
     "torque": ("N.m", None),
     "temperature": ("K", "degC"),
     STATE: ("1", None),
+    SURROUNDINGS: ("K", "degC"),
     "torque_loss": ("N.m", None),
     "power_loss": ("W", None),
     "efficiency": ("1", None),
@@ -84,10 +86,12 @@ def write_fmu(data: xr.Dataset, path: Path) -> None:
     """FMI 2.0 with binaries for Windows, Linux and macOS on x86-64, and the sources."""
     lookup = make_lookup(data)
     # the same map makes the same FMU
-    guid = str(uuid.uuid5(uuid.NAMESPACE_OID, lookup.torques.tobytes().hex() + data.attrs["case"]))
+    lumped = _lumped(data)
+    content = lookup.torques.tobytes().hex() + data.attrs["case"] + str(lumped or "")
+    guid = str(uuid.uuid5(uuid.NAMESPACE_OID, content))
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        _write_sources(folder / "sources", lookup, guid)
+        _write_sources(folder / "sources", lookup, guid, lumped)
         _compile(folder)
         _write_description(folder / "modelDescription.xml", data, lookup, guid)
         _write_documentation(folder / "documentation", data)
@@ -100,18 +104,26 @@ def write_fmu(data: xr.Dataset, path: Path) -> None:
 # --- code -----------------------------------------------------------------------------------------
 
 
-def _write_sources(folder: Path, lookup: Lookup, guid: str) -> None:
+def _lumped(data: xr.Dataset) -> dict[str, float]:
+    """What a temperature that follows from the losses needs; nothing if it is an input."""
+    names = (CAPACITY, CONDUCTANCE, SURROUNDINGS)
+    return {name: float(data.attrs[name]) for name in names if name in data.attrs}
+
+
+def _write_sources(folder: Path, lookup: Lookup, guid: str, lumped: Mapping[str, float]) -> None:
     """The program, the numbers of the map, and the header files of the standard."""
     folder.mkdir()
     code = files("epicyclic.maps").joinpath("fmu.c").read_text(encoding="utf-8")
     (folder / f"{_MODEL}.c").write_text(code, encoding="utf-8")
-    (folder / "map_data.h").write_text("\n".join(_map_data(lookup, guid)) + "\n", encoding="utf-8")
+    (folder / "map_data.h").write_text(
+        "\n".join(_map_data(lookup, guid, lumped)) + "\n", encoding="utf-8"
+    )
     for header in _HEADERS:
         text = files("fmpy").joinpath("c-code", header).read_text(encoding="utf-8")
         (folder / header).write_text(text, encoding="utf-8")
 
 
-def _map_data(lookup: Lookup, guid: str) -> Iterator[str]:
+def _map_data(lookup: Lookup, guid: str, lumped: Mapping[str, float]) -> Iterator[str]:
     """Lines of C that define the map, in SI units."""
     axes = _si_axes(lookup)
     counts = {
@@ -119,8 +131,12 @@ def _map_data(lookup: Lookup, guid: str) -> Iterator[str]:
         "NODES": lookup.size,
         "COMPONENTS": len(lookup.components),
         "STATE": lookup.names.index(STATE) if STATE in lookup.names else -1,
+        "TEMPERATURE": lookup.names.index("temperature") if lumped else 0,
+        "HEATED": int(bool(lumped)),
     }
     yield f'#define GUID "{guid}"'
+    for name, key in (("CAPACITY", CAPACITY), ("CONDUCTANCE", CONDUCTANCE)):
+        yield f"#define {name} {lumped.get(key, 1.0)!r}"
     yield f"enum {{ {', '.join(f'{name} = {count}' for name, count in counts.items())} }};"
     for name, axis in zip(lookup.names, axes, strict=True):
         yield f"static const double {name}_axis[] = {{{_numbers(axis)}}};"
@@ -128,7 +144,7 @@ def _map_data(lookup: Lookup, guid: str) -> Iterator[str]:
     yield f"static const double *const axis_values[] = {{{names}}};"
     yield f"static const int axis_sizes[] = {{{', '.join(str(axis.size) for axis in axes)}}};"
     yield f"static const double slack[] = {{{_numbers([slack(axis) for axis in axes])}}};"
-    yield f"static const double start[] = {{{_numbers(_start(lookup.names, axes))}}};"
+    yield f"static const double start[] = {{{_numbers(_start(lookup.names, axes, lumped))}}};"
     yield "static const double torque_losses[][NODES] = {"
     for torques in lookup.torques:
         yield f"    {{{_numbers(torques.ravel())}}},"
@@ -150,8 +166,16 @@ def _si_axes(lookup: Lookup) -> list[Any]:
     return list(axes.values())
 
 
-def _start(names: Sequence[str], axes: Sequence[Any]) -> list[float]:
-    """Rest without torque, or what of the map is next to it; lowest temperature, first state."""
+def _start(names: Sequence[str], axes: Sequence[Any], lumped: Mapping[str, float]) -> list[float]:
+    """Rest without torque, or what of the map is next to it; lowest temperature, first state.
+
+    A temperature that follows from the losses starts as that of the surroundings.
+    """
+    if lumped:
+        axes = [
+            np.array([lumped[SURROUNDINGS]]) if name == "temperature" else axis
+            for name, axis in zip(names, axes, strict=True)
+        ]
     return [
         float(np.clip(0, axis[0], axis[-1])) if name in PLANE else float(axis[0])
         for name, axis in zip(names, axes, strict=True)
@@ -201,6 +225,7 @@ def _write_description(path: Path, data: xr.Dataset, lookup: Lookup, guid: str) 
     variables = _variables(data, lookup)
     inputs = [item for item in variables if item.causality == "input"]
     outputs = [Unknown(variable=item, dependencies=inputs) for item in variables[len(inputs) :]]
+    exchange = ModelExchange(modelIdentifier=_MODEL, completedIntegratorStepNotNeeded=True)
     description = ModelDescription(
         fmiVersion="2.0",
         modelName=_MODEL,
@@ -208,7 +233,8 @@ def _write_description(path: Path, data: xr.Dataset, lookup: Lookup, guid: str) 
         description=f"Losses of a gear set, from a loss map: {one_line(data.attrs['title'])}",
         version=metadata.version("epicyclic"),
         generationTool=data.attrs.get("source", "epicyclic"),
-        modelExchange=ModelExchange(modelIdentifier=_MODEL, completedIntegratorStepNotNeeded=True),
+        # its temperature is integrated inside
+        modelExchange=None if _lumped(data) else exchange,
         coSimulation=CoSimulation(
             modelIdentifier=_MODEL, canHandleVariableCommunicationStepSize=True
         ),
@@ -216,7 +242,7 @@ def _write_description(path: Path, data: xr.Dataset, lookup: Lookup, guid: str) 
         unitDefinitions=_units(),
         modelVariables=variables,
         outputs=outputs,
-        initialUnknowns=outputs,
+        initialUnknowns=[item for item in outputs if item.variable.initial == "calculated"],
     )
     write_model_description(description, path)
 
@@ -225,15 +251,21 @@ def _variables(data: xr.Dataset, lookup: Lookup) -> list[Any]:
     """Inputs, outputs in the order of the program, and whether a point is inside of the map."""
     from fmpy.model_description import ModelVariable
 
-    axes = _si_axes(lookup)
+    axes, lumped = _si_axes(lookup), _lumped(data)
     about = {
-        name: text.format(shaft=data.attrs["reference_shaft"])
+        SURROUNDINGS if lumped and name == "temperature" else name: text.format(
+            shaft=data.attrs["reference_shaft"]
+        )
         for name, text in _ABOUT.items()
         if name in lookup.names or name not in ("temperature", STATE)
     }
     if lookup.states:
         about[STATE] += f": {_states_text(data)}"
     about |= {name: f"loss: {name.replace('_', ' ')}" for name in lookup.components}
+    if lumped:
+        about[SURROUNDINGS] = "temperature of what takes up the heat"
+        about["temperature"] = "temperature of the gearbox, which follows from its losses"
+    start = _start(lookup.names, axes, lumped)
     variables = []
     for number, (name, text) in enumerate(about.items()):
         unit, shown = _UNITS.get(name, _UNITS["power_loss"])
@@ -250,10 +282,13 @@ def _variables(data: xr.Dataset, lookup: Lookup) -> list[Any]:
         )
         if number < len(axes):
             variable.causality, variable.initial = "input", None
-            variable.start = repr(_start(lookup.names, axes)[number])
+            variable.start = repr(start[number])
+        if number < len(axes) and name != SURROUNDINGS:
             variable.min, variable.max = (repr(float(axes[number][end])) for end in (0, -1))
         if name == STATE:
             variable.variability = "discrete"
+        if lumped and name == "temperature":
+            variable.initial, variable.start = "exact", repr(lumped[SURROUNDINGS])
         variables.append(variable)
     inside = ModelVariable(
         name=_INSIDE,
