@@ -330,7 +330,7 @@ class NetworkModel:
         return tuple(map(self._changed, ways))
 
     def capacities(self) -> dict[str, float]:
-        """Heat that each node stores for a kelvin. Theory (N13). [J/K]
+        """Heat that each node stores for a kelvin. Theory (W35). [J/K]
 
         Raises
         ------
