@@ -23,7 +23,7 @@ from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
 from epicyclic.case.case import GearPairCase, PlanetaryCase
-from epicyclic.case.fields import choices_of, entry_of, quantity_of, table_of
+from epicyclic.case.fields import choices_of, dict_value, entry_of, quantity_of, table_of
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.units import Quantity
 
@@ -56,6 +56,12 @@ def keys_of_schema() -> dict[str, str]:
 def _fields(table: type[BaseModel]) -> Iterator[tuple[str, str]]:
     for name, field in table.model_fields.items():
         inner = table_of(field.annotation)
+        if dict_value(field.annotation) is not None:  # of names that the user has
+            if inner is None:
+                yield name, ""
+            else:
+                yield from ((f"{name}.NAME.{key}", default) for key, default in _fields(inner))
+            continue
         if inner is not None and name not in WITH_PAGES_OF_THEIR_OWN + DESCRIBED_ELSEWHERE:
             yield from ((f"{name}.{key}", default) for key, default in _fields(inner))
             continue
