@@ -212,11 +212,14 @@ def check_ranges(
     flags = []
     for item in ranges:
         value = np.atleast_1d(np.asarray(values[item.name], dtype=float))
+        if not value.size:
+            continue
         scale, offset = item.unit.scale_and_offset()
+        low, high = (float(end) * scale + offset for end in (value.min(), value.max()))
+        if not (_outside(low, item) or _outside(high, item)):
+            continue
         shown = value * scale + offset
         outside = _outside(shown, item)
-        if not outside.any():
-            continue
         weights = np.broadcast_to(np.asarray(weight, dtype=float), value.shape)
         total = float(weights.sum())
         share = float(weights[outside].sum()) / total if total > 0 else 1.0
@@ -224,8 +227,8 @@ def check_ranges(
             ValidityFlag(
                 use,
                 item.label,
-                float(shown.min()),
-                float(shown.max()),
+                low,
+                high,
                 item.low,
                 item.high,
                 item.unit.display,
@@ -248,11 +251,9 @@ def check_contacts(
     return flags
 
 
-def _outside(shown: FloatArray, item: Range) -> NDArray[np.bool_]:
+def _outside(shown: Any, item: Range) -> Any:
+    """Whether a number, or each of an array, lies outside a range. Both in display units."""
     slack = 1e-9 * max(abs(limit) for limit in (item.low, item.high) if limit is not None)
-    outside = np.zeros(shown.shape, dtype=bool)
-    if item.low is not None:
-        outside |= shown < item.low - slack
-    if item.high is not None:
-        outside |= shown > item.high + slack
-    return outside
+    below = False if item.low is None else shown < item.low - slack
+    above = False if item.high is None else shown > item.high + slack
+    return below | above
