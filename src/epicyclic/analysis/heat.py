@@ -43,6 +43,8 @@ CLOSE = 1e-6
 """Difference to the wanted temperature that counts as none. [K]"""
 STILL = 1e-3
 """Change of a temperature below which more of a quantity has no effect. [K]"""
+EXPECTED = 8
+"""Settled states that a search mostly takes. [1]"""
 MOST_STEPS, STEP = 6, 4.0
 """In search of a temperature on the other side of the wanted one: how many, how far. [1]"""
 
@@ -234,7 +236,13 @@ class _Search:
     changes: Mapping[str, None] = field(default_factory=dict[str, None])
 
 
-def solve_for(case: Case, quantity: str, temperature: str | float) -> Found:
+def solve_for(
+    case: Case,
+    quantity: str,
+    temperature: str | float,
+    *,
+    progress: Callable[[int, int], object] | None = None,
+) -> Found:
     """The cooling, flow or power with which the oil has a temperature.
 
     Parameters
@@ -245,6 +253,8 @@ def solve_for(case: Case, quantity: str, temperature: str | float) -> Found:
         and comes back at the inlet temperature; ``"input_power"``: torque at the given speed.
     temperature : str or float
         Of the oil in the gearbox: text with a unit, or in kelvin.
+    progress : callable, optional
+        Called with the number of settled states found, and of those expected.
 
     Returns
     -------
@@ -277,6 +287,8 @@ def solve_for(case: Case, quantity: str, temperature: str | float) -> Found:
             return search.start - target
         if number not in tried:
             tried[number] = _attempt(case, search, number, target)
+            if progress is not None:
+                progress(len(tried), max(EXPECTED, len(tried) + 1))
         found = tried[number]
         if found is None:
             is_hot = search.warms or number < search.scale

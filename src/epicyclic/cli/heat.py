@@ -57,13 +57,17 @@ def heat(
     epicyclic heat talbot-2012 --solve oil_flow --target "100 degC"
     """
     from epicyclic.analysis.heat import solve_for, with_network
+    from epicyclic.cli.progress import progress_bar
     from epicyclic.analysis.solve import solve
 
     if plot is not None:
         check_ending("--plot", plot)
     _check_target(quantity, target)
     stated = load_with(case, changes)
-    found = None if target is None else solve_for(stated, quantity, target)
+    found = None
+    if target is not None:
+        with progress_bar("settled states") as progress:
+            found = solve_for(stated, quantity, target, progress=progress)
     solved = with_network(stated) if found is None else found.case
     result = solve(solved) if found is None else found.result
     if stated.models.temperatures != "network":
