@@ -57,8 +57,8 @@ def heat(
     epicyclic heat talbot-2012 --solve oil_flow --target "100 degC"
     """
     from epicyclic.analysis.heat import solve_for, with_network
-    from epicyclic.cli.progress import progress_bar
     from epicyclic.analysis.solve import solve
+    from epicyclic.cli.progress import progress_bar
 
     if plot is not None:
         check_ending("--plot", plot)
