@@ -120,7 +120,7 @@ def test_losses_act_on_the_bodies_of_their_own_elements_even_if_one_name_begins_
     }
     tables["shafts"]["in"] = ["S.p_p"]
     built = build(ep.load_case(tables))
-    losses = built.solve().results["S"].losses
+    losses = built.solve().solution.results["S"].losses
     carrier = "out"
     assert losses["p_bearing_mechanical"].between == ("S.p", carrier)
     assert losses["p_bearing_bearing_mechanical"].between == ("S.p_bearing", carrier)

@@ -74,7 +74,7 @@ def test_pair_on_fixed_axes_has_the_losses_of_the_pair():
         assert one[f"pinion_gear_mesh_{kind}"].watts == two[f"mesh_{kind}"].watts
     drags = one["pinion_drag"].watts + one["gear_drag"].watts
     assert drags == pytest.approx(two["drag"].watts, rel=1e-14)
-    results = [built.solve().results["S"].losses for built in (listed, pair)]
+    results = [built.solve().solution.results["S"].losses for built in (listed, pair)]
     sliding = results[0]["pinion_gear_mesh_sliding"].watts / results[1]["mesh_sliding"].watts
     assert 1 - 3e-4 < sliding < 1
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -212,14 +214,14 @@ def check_ranges(
     flags = []
     for item in ranges:
         value = np.atleast_1d(np.asarray(values[item.name], dtype=float))
-        if not value.size:
+        low, high = _bounds(item)
+        if not value.size or (low <= value.min() and value.max() <= high):
+            continue
+        outside = (value < low) | (value > high)
+        if not outside.any():  # no numbers
             continue
         scale, offset = item.unit.scale_and_offset()
-        low, high = (float(end) * scale + offset for end in (value.min(), value.max()))
-        if not (_outside(low, item) or _outside(high, item)):
-            continue
         shown = value * scale + offset
-        outside = _outside(shown, item)
         weights = np.broadcast_to(np.asarray(weight, dtype=float), value.shape)
         total = float(weights.sum())
         share = float(weights[outside].sum()) / total if total > 0 else 1.0
@@ -227,8 +229,8 @@ def check_ranges(
             ValidityFlag(
                 use,
                 item.label,
-                low,
-                high,
+                float(shown.min()),
+                float(shown.max()),
                 item.low,
                 item.high,
                 item.unit.display,
@@ -251,9 +253,11 @@ def check_contacts(
     return flags
 
 
-def _outside(shown: Any, item: Range) -> Any:
-    """Whether a number, or each of an array, lies outside a range. Both in display units."""
+@lru_cache(maxsize=1024)
+def _bounds(item: Range) -> tuple[float, float]:
+    """Limits of a range in SI, with room for rounding."""
     slack = 1e-9 * max(abs(limit) for limit in (item.low, item.high) if limit is not None)
-    below = False if item.low is None else shown < item.low - slack
-    above = False if item.high is None else shown > item.high + slack
-    return below | above
+    scale, offset = item.unit.scale_and_offset()
+    low = -math.inf if item.low is None else (item.low - slack - offset) / scale
+    high = math.inf if item.high is None else (item.high + slack - offset) / scale
+    return low, high

@@ -14,6 +14,7 @@ mixture density      by volume; mixture viscosity by mass (Cicchitti et al. 1960
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -155,11 +156,18 @@ def _kinematic_viscosity(oil: Oil, temperature: float) -> float:
 
 def extrapolated_viscosity(oil: Oil, temperature: float) -> float:
     """ASTM D341 between neighbouring points, and beyond the outermost two. Theory (L1). [m^2/s]"""
-    points = sorted(oil.kinematic_viscosity, key=lambda point: point.temperature)
-    log_t = [math.log10(point.temperature) for point in points]
-    ordinate = [math.log10(math.log10(point.value / MM2_PER_S + D341_OFFSET)) for point in points]
-    y = _piecewise_line(math.log10(temperature), log_t, ordinate)
+    y = _piecewise_line(math.log10(temperature), *_viscosity_points(oil))
     return float((10 ** (10 ** min(y, LARGEST_EXPONENT)) - D341_OFFSET) * MM2_PER_S)
+
+
+@lru_cache(maxsize=64)
+def _viscosity_points(oil: Oil) -> tuple[list[float], list[float]]:
+    """Logarithm of the temperature, and ordinate of D341, of the points of an oil. Theory (L1)."""
+    points = sorted(oil.kinematic_viscosity, key=lambda point: point.temperature)
+    return (
+        [math.log10(point.temperature) for point in points],
+        [math.log10(math.log10(point.value / MM2_PER_S + D341_OFFSET)) for point in points],
+    )
 
 
 def _thermoviscosity(oil: Oil, temperature: float) -> float:
@@ -194,6 +202,12 @@ def roelands_slope(mu: float) -> float:
 
 def _roelands_index(oil: Oil, law: RoelandsLaw, temperature: float) -> float:
     """z, linear between the points of `law` and constant beyond them. Theory (L5)."""
+    return float(np.interp(temperature, *_roelands_points(oil, law)))
+
+
+@lru_cache(maxsize=64)
+def _roelands_points(oil: Oil, law: RoelandsLaw) -> tuple[list[float], list[float]]:
+    """Temperatures and indices z of the points of an oil. Theory (L5)."""
     points = sorted(law.point, key=lambda point: point.temperature)
     index = [
         point.value
@@ -202,11 +216,11 @@ def _roelands_index(oil: Oil, law: RoelandsLaw, temperature: float) -> float:
         )
         for point in points
     ]
-    return float(np.interp(temperature, [point.temperature for point in points], index))
+    return [point.temperature for point in points], index
 
 
 def _piecewise_line(x: float, xs: list[float], ys: list[float]) -> float:
     """Straight lines through the points, the outermost ones continued beyond them."""
-    upper = min(max(1, int(np.searchsorted(xs, x))), len(xs) - 1)
+    upper = min(max(1, bisect_left(xs, x)), len(xs) - 1)
     slope = (ys[upper] - ys[upper - 1]) / (xs[upper] - xs[upper - 1])
     return ys[upper] + slope * (x - xs[upper])

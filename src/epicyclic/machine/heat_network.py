@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 from epicyclic.elements.base import HOUSING, OIL
@@ -175,7 +176,7 @@ class HeatSettings:
     capacity_changes: Mapping[str, Change]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class NetworkModel:
     """Heat flows between all parts of a machine, the oil and the surroundings.
 
@@ -199,7 +200,7 @@ class NetworkModel:
         """Everything at the temperature of the oil inlet. [K]"""
         return dict.fromkeys(self.nodes, self.settings.inlet)
 
-    @property
+    @cached_property
     def nodes(self) -> tuple[str, ...]:
         """All nodes of unknown temperature."""
         carriers = {
@@ -210,7 +211,7 @@ class NetworkModel:
         ends = (OIL,) if self.settings.housing is None else (OIL, HOUSING)
         return (*self.wetted, *carriers, *self.shafts, *ends)
 
-    @property
+    @cached_property
     def wetted(self) -> tuple[str, ...]:
         """Nodes that oil can be thrown on: gears, pins, bearings of shafts."""
         found: dict[str, None] = {}
@@ -222,7 +223,7 @@ class NetworkModel:
                 found[own.key] = None
         return tuple(found)
 
-    @property
+    @cached_property
     def shafts(self) -> Mapping[str, tuple[str, ...]]:
         """Nodes of shafts that join parts of more than one element, with the nodes on them."""
         on: dict[str, dict[str, str]] = {}

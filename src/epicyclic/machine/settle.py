@@ -21,7 +21,7 @@ __all__ = ["Answer", "Settled", "ThermalModel", "heat_of", "isothermal", "settle
 
 FloatArray = NDArray[np.float64]
 
-AGREEMENT = 1e-7
+AGREEMENT = 1e-6
 """Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
 MOST_PASSES = 40
 COLDEST, HOTTEST = 200.0, 770.0
