@@ -371,8 +371,7 @@ class GearSet:
         losses, figures, flags = branch.losses, branch.figures, branch.flags
         for planet, bearing in zip(self.planets, bearings, strict=True):
             losses |= {
-                name: self._inside(_in_bearing(loss, planet, self.carrier))
-                for name, loss in bearing.losses.items()
+                name: self._in_bearing(loss, planet) for name, loss in bearing.losses.items()
             }
             flags += bearing.flags
             if bearing.figures is not None:
@@ -387,14 +386,22 @@ class GearSet:
         """Losses of a mesh where they act: sliding is a share of its power, the rest brakes the
         driven gear against the carrier.
         """
+        if self.reference is not None:
+            return {name: self._inside(loss) for name, loss in losses.items()}
         mesh = duty.gears
         driven = mesh.bodies[1] if self._drives(mesh, state) else mesh.bodies[0]
-        placed = {
-            name: replace(loss, between=(driven, self.carrier)) for name, loss in losses.items()
+        sliding, own = f"{mesh.key}_sliding", f"{self.key}.{mesh.key}"
+        return {
+            name: replace(loss, between=(driven, self.carrier), mesh=own if name == sliding else "")
+            for name, loss in losses.items()
         }
-        sliding = f"{mesh.key}_sliding"
-        placed[sliding] = replace(losses[sliding], mesh=f"{self.key}.{mesh.key}")
-        return {name: self._inside(loss) for name, loss in placed.items()}
+
+    def _in_bearing(self, loss: Loss, planet: Planet) -> Loss:
+        """A loss of a planet bearing where it acts; that of the rollers heats planet and pin."""
+        between = (planet.body, self.carrier) if self.reference is None else self.reference.between
+        if loss.group == LOAD_INDEPENDENT:
+            return replace(loss, between=between)
+        return replace(loss, between=between, heat=tuple((node, 0.5) for node in planet.nodes))
 
     def _inside(self, loss: Loss) -> Loss:
         """A loss between moving parts of the set where the set has all of them act."""
@@ -434,14 +441,6 @@ def _summed(branches: Sequence[_Branch]) -> dict[str, Loss]:
         )
         for name, loss in branches[0].losses.items()
     }
-
-
-def _in_bearing(loss: Loss, planet: Planet, carrier: str) -> Loss:
-    """A loss of a planet bearing where it acts; that of the rollers heats planet and pin alike."""
-    placed = replace(loss, between=(planet.body, carrier))
-    if loss.group == LOAD_INDEPENDENT:
-        return placed
-    return replace(placed, heat=tuple((node, 0.5) for node in planet.nodes))
 
 
 def _mean_heat(losses: Sequence[Loss]) -> tuple[tuple[str, float], ...]:

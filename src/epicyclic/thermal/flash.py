@@ -81,8 +81,9 @@ def flash_temperature(
     """
     carried = effusivity1 * np.sqrt(np.abs(speed1)) + effusivity2 * np.sqrt(np.abs(speed2))
     heat = friction * line_load * np.abs(sliding_speed)
-    heat, scale = np.broadcast_arrays(heat, carried * np.sqrt(half_width))
-    rise: FloatArray = np.divide(heat, scale, out=np.zeros(scale.shape), where=scale > 0)
+    scale = carried * np.sqrt(half_width)
+    out = np.zeros(np.broadcast(heat, scale).shape)
+    rise: FloatArray = np.divide(heat, scale, out=out, where=scale > 0)
     return math.sqrt(2 / math.pi) * rise
 
 
@@ -108,7 +109,7 @@ def heat_share(
     0.667
     """
     into1 = effusivity1 * np.sqrt(np.abs(speed1))
-    into1, total = np.broadcast_arrays(into1, into1 + effusivity2 * np.sqrt(np.abs(speed2)))
-    at_rest = np.full(total.shape, effusivity1 / (effusivity1 + effusivity2))
+    total = into1 + effusivity2 * np.sqrt(np.abs(speed2))
+    at_rest = np.full(np.shape(total), effusivity1 / (effusivity1 + effusivity2))
     share: FloatArray = np.divide(into1, total, out=at_rest, where=total > 0)
     return share
