@@ -26,7 +26,6 @@ from epicyclic.losses.validity import ModelUse, ValidityFlag
 
 __all__ = ["GearSet", "GearSetResult", "LossChoice", "Planet", "PlanetMesh", "Reference"]
 
-_Drags = tuple[dict[str, Loss], tuple[ValidityFlag, ...]]
 
 ROUNDING = 1e-12
 """Torques as small as this, relatively, are the rounding of a difference. [1]"""
@@ -142,6 +141,15 @@ class Planet:
 
 
 @dataclass(frozen=True, slots=True)
+class _Idle:
+    """What follows from the speeds; flows through pockets also by which gears drive."""
+
+    drags: dict[str, Loss]
+    flags: tuple[ValidityFlag, ...]
+    flows: dict[tuple[bool, ...], Mapping[str, MeshFlow]]
+
+
+@dataclass(frozen=True, slots=True)
 class GearSetResult(ElementResult):
     """Losses, figures and flags of a set; figures of meshes and bearings of its most loaded planet.
 
@@ -203,22 +211,22 @@ class GearSet:
 
     def evaluate(self, state: State) -> GearSetResult:
         """Losses, figures and flags in a state."""
-        drags, drag_flags = self._known_drags(state)
-        torques = self._torques(state, drags)
+        idle = self._known_idle(state)
+        torques = self._torques(state, idle.drags)
         shares = self.shares(state, torques)
-        flows = mesh_flows(self.duties(state, torques, 1 / self.count), state.fluids)
+        flows = self._flows(state, torques, idle)
         branches = [
             self._branch(state, torques, share, shares.count(share), flows)
             for share in sorted(set(shares), reverse=True)
         ]
-        found = drags | {
+        found = idle.drags | {
             name: _with_choice(loss, self.choices[name]) for name, loss in _summed(branches).items()
         }
         first = branches[0]
         return GearSetResult(
             losses={name: found[name] for name in self.choices},
             figures=first.figures,
-            flags=_widest(branches) + drag_flags,
+            flags=_widest(branches) + idle.flags,
             notes=first.notes,
             shares=shares if self.planets else (),
         )
@@ -236,13 +244,13 @@ class GearSet:
             *((planet.key, BearingFigures) for planet in self.planets if planet.bearing),
         )
 
-    def idle(self, state: State) -> _Drags:
+    def idle(self, state: State) -> _Idle:
         """Losses that depend on the speeds only, and their flags."""
         return self._drags(state)
 
     def loads(self, state: State) -> Mapping[str, float]:
         """Torque at the first gear of each mesh, all planets together. [N m]"""
-        return self._torques(state, self._known_drags(state)[0])
+        return self._torques(state, self._known_idle(state).drags)
 
     @property
     def count(self) -> int:
@@ -251,7 +259,7 @@ class GearSet:
 
     def loaded_duties(self, state: State) -> tuple[MeshDuty, ...]:
         """The meshes of the planet that carries most, misaligned if it tilts."""
-        torques = self._torques(state, self._known_drags(state)[0])
+        torques = self._torques(state, self._known_idle(state).drags)
         share = max(self.shares(state, torques))
         duties = {duty.key: duty for duty in self.duties(state, torques, share)}
         for planet in self.planets:
@@ -261,7 +269,7 @@ class GearSet:
 
     def mean_duties(self, state: State) -> tuple[MeshDuty, ...]:
         """The meshes of a planet that carries its mean share."""
-        torques = self._torques(state, self._known_drags(state)[0])
+        torques = self._torques(state, self._known_idle(state).drags)
         return self.duties(state, torques, 1 / self.count)
 
     def mean_loads(self, state: State) -> dict[str, PlanetLoad]:
@@ -308,11 +316,21 @@ class GearSet:
             torques[key] = 0.0 if abs(whole) <= ROUNDING * abs(added) else whole
         return torques
 
-    def _known_drags(self, state: State) -> _Drags:
-        found: _Drags | None = state.idle.get(self.key)
+    def _flows(
+        self, state: State, torques: Mapping[str, float], idle: _Idle
+    ) -> Mapping[str, MeshFlow]:
+        """Flow through the pockets of each mesh, under the mean load of its planets."""
+        duties = self.duties(state, torques, 1 / self.count)
+        driving = tuple(duty.drives1 for duty in duties)
+        if driving not in idle.flows:
+            idle.flows[driving] = mesh_flows(duties, state.fluids)
+        return idle.flows[driving]
+
+    def _known_idle(self, state: State) -> _Idle:
+        found: _Idle | None = state.idle.get(self.key)
         return self._drags(state) if found is None else found
 
-    def _drags(self, state: State) -> _Drags:
+    def _drags(self, state: State) -> _Idle:
         """Losses that do not depend on planets, as the user wants them, where they act."""
         losses = {
             name: Loss(LOAD_INDEPENDENT, left_out=reason) for name, reason in self.missing.items()
@@ -324,10 +342,11 @@ class GearSet:
         if self.thrust is not None:
             losses["thrust_bearing_viscous"], found = thrust_loss(self.thrust, state)
             flags += found
-        return {
+        placed = {
             name: self._placed(_with_choice(loss, self.choices[name]))
             for name, loss in losses.items()
-        }, flags
+        }
+        return _Idle(placed, flags, {})
 
     def _branch(
         self,

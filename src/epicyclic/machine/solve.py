@@ -18,7 +18,7 @@ from epicyclic.machine.machine import Machine, Operation
 
 __all__ = ["Solution", "effects_of", "lossless_state", "solve_machine"]
 
-AGREEMENT = 1e-10
+AGREEMENT = 5e-10
 """Relative change of each load from one pass to the next at which torques and losses agree. [1]"""
 ROUNDING = 1e-14
 """Change, relative to the largest load, that is rounding. [1]"""
