@@ -80,6 +80,22 @@ def test_a_cooler_takes_its_power_from_the_oil():
     assert leaving(result) == pytest.approx(result.total, rel=1e-9)
 
 
+@pytest.mark.parametrize("coefficient", [12.0, 350.0])
+def test_the_coefficient_of_part_1_is_that_from_oil_to_air(coefficient):
+    part_1 = {
+        "models.temperatures": "network",
+        "thermal.oil_flow": "1.9 l/min",
+        "thermal.housing.method": "iso-14179-1",
+        "thermal.housing.area": "0.43 m^2",
+        "thermal.housing.coefficient": f"{coefficient} W/(m^2*K)",
+    }
+    result = ep.solve(ep.load_case(planetary()).updated(part_1))
+    ways = {way.key: way.watts for way in result.heat.ways}
+    driven = coefficient * 0.43 * (result.heat.temperatures["oil"] - 293.15)
+    assert ways["housing-air"] == pytest.approx(driven, rel=1e-9)
+    assert ways["oil-housing"] == pytest.approx(driven, rel=1e-9)
+
+
 def test_a_measured_outlet_temperature_gives_the_flow():
     case = ep.load_case(planetary())
     known = ep.solve(case.updated(FLOW))

@@ -38,6 +38,8 @@ __all__ = ["AMBIENT", "COOLANT", "Change", "HeatSettings", "Housing", "NetworkMo
 AMBIENT = "air"
 COOLANT = "coolant"
 FUNCK = "ISO/TR 14179-2 (Funck 1985), second hand"
+LEAST_INSIDE = 10.0
+"""Conductance from oil to wall over that from oil to air, at least, by ISO/TR 14179-1. [1]"""
 SAME = 1e-13
 """Relative error of the temperature of the housing. [1]"""
 WALLS = (1.0, 1e7)
@@ -96,7 +98,9 @@ class Housing:
         inside = self.inner_coefficient * self.inner_area
         if self.method == "iso-14179-1":
             whole = self.coefficient * self.area
-            outside = whole * inside / (inside - whole) if inside > whole else 1e3 * whole
+            # the coefficient is that of both ways together, whatever the wall adds
+            inside = max(inside, LEAST_INSIDE * whole)
+            outside = whole * inside / (inside - whole)
             how = "coefficient from oil to air", "ISO/TR 14179-1, second hand"
         else:
             outside = self.outside(wall, air) * self.area
