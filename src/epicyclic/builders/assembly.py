@@ -18,7 +18,7 @@ from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.elements.load_sharing import SHARING_METHODS
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
-from epicyclic.losses.validity import ValidityFlag
+from epicyclic.losses.validity import SomeFlags, ValidityFlag
 from epicyclic.machine.flow import stage_torques
 from epicyclic.machine.settle import Answer, Settled, heat_of
 from epicyclic.machine.solve import Solution
@@ -46,7 +46,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
     figures = dict(_figures(solution))
     methods = dict(_methods(built))
     fluids = None if built.known_fluids is None else solution.state.fluids
-    flags = () if fluids is None else fluids.flags
+    flags: SomeFlags = () if fluids is None else fluids.flags
     sharing = built.sets[""].sharing if "" in built.sets else None
     return Result(
         title=case.title,
@@ -63,7 +63,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         },
         fluid=None if fluids is None else fluids.figures,
         models=dict(_models(case, built)),
-        flags=flags + tuple(_flags(solution)),
+        flags=(*flags, *_flags(solution)),
         notes=(
             *general_notes(terms, flow.input_power, flow.efficiency),
             *_train_notes(case, solution),

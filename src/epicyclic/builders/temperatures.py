@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 
 from epicyclic.builders.models import fluids_of
 from epicyclic.case.case import Case
@@ -14,7 +15,7 @@ from epicyclic.elements.fluids import Fluids, fluids_at, oil_at, oil_flags
 from epicyclic.elements.gear_mesh import GearMesh
 from epicyclic.elements.gear_set import GearSet
 from epicyclic.elements.shaft_bearing import ShaftBearing
-from epicyclic.losses.validity import ValidityFlag
+from epicyclic.losses.validity import Flags, ValidityFlag
 from epicyclic.lubricant.oil import Oil
 from epicyclic.lubricant.properties import mixture_state, oil_state
 from epicyclic.machine.flank import FlankModel
@@ -113,7 +114,7 @@ def _fluids_at(
         )
         return replace(
             fluids,
-            flags=fluids.flags + _flags(oil, found),
+            flags=fluids.flags + Flags(partial(_flags, oil, found)),
             contacts={key: oil_at(oil, value, factor) for key, value in found.items()},
         )
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from epicyclic.elements.fluids import Fluids
 from epicyclic.losses.shaft_bearing import BearingLoad
-from epicyclic.losses.validity import ValidityFlag
+from epicyclic.losses.validity import SomeFlags
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -112,7 +112,7 @@ class ElementResult:
         By the last part of their keys, ``"sun_mesh_sliding"``, ``"friction"``.
     figures : mapping of str to dataclass
         Labelled numbers for the user, by what they describe: ``"sun_mesh"``.
-    flags : tuple of ValidityFlag
+    flags : Flags or tuple of ValidityFlag
         Models used outside their ranges.
     notes : tuple of str
         What else the user must know.
@@ -120,7 +120,7 @@ class ElementResult:
 
     losses: Mapping[str, Loss]
     figures: Mapping[str, DataclassInstance] = field(default_factory=dict[str, Any])
-    flags: tuple[ValidityFlag, ...] = ()
+    flags: SomeFlags = ()
     notes: tuple[str, ...] = ()
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from epicyclic.elements.figures import FluidFigures
-from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
+from epicyclic.losses.validity import ModelUse, Range, SomeFlags, ValidityFlag, check_ranges
 from epicyclic.lubricant.oil import Oil
 from epicyclic.lubricant.properties import (
     MixtureState,
@@ -39,7 +39,7 @@ class Fluids:
     mixture : MixtureState
     pressure : float
         Ambient. [Pa]
-    flags : tuple of ValidityFlag
+    flags : Flags or tuple of ValidityFlag
     contacts : mapping of str to OilState
         Oil at the contacts whose temperature differs, by the keys of meshes and bearings.
     """
@@ -47,7 +47,7 @@ class Fluids:
     oil: OilState
     mixture: MixtureState
     pressure: float
-    flags: tuple[ValidityFlag, ...]
+    flags: SomeFlags
     contacts: Mapping[str, OilState] = field(default_factory=dict[str, OilState], hash=False)
 
     def at(self, contact: str) -> OilState:

@@ -32,7 +32,7 @@ from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS, LineLoads, Me
 from epicyclic.losses.mesh import MeshLoss, local_loss, loss_factor_loss, ohlendorf_loss_factor
 from epicyclic.losses.mesh_warmth import MeshWarmth, mesh_warmth
 from epicyclic.losses.rolling import RollingModel
-from epicyclic.losses.validity import ValidityFlag
+from epicyclic.losses.validity import SomeFlags
 from epicyclic.lubricant.properties import OilState
 from epicyclic.pocketing.similarity import FlowFigures
 from epicyclic.thermal.solids import Solid
@@ -186,7 +186,7 @@ class MeshOutcome:
 
     losses: dict[str, Loss]
     figures: MeshFigures
-    flags: tuple[ValidityFlag, ...]
+    flags: SomeFlags
     notes: tuple[str, ...]
 
 

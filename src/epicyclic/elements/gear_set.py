@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from epicyclic.elements.base import (
@@ -22,7 +23,7 @@ from epicyclic.elements.load_sharing import LoadSharing, planet_shares
 from epicyclic.elements.planet_bearing import PlanetBearing, missing_bearing, solve_bearing
 from epicyclic.elements.planet_load import PlanetContact, PlanetLoad, planet_load, tilt_planet
 from epicyclic.elements.pocket_flow import MeshFlow, mesh_flows
-from epicyclic.losses.validity import ModelUse, ValidityFlag
+from epicyclic.losses.validity import Flags, ModelUse, SomeFlags, ValidityFlag
 
 __all__ = ["GearSet", "GearSetResult", "LossChoice", "Planet", "PlanetMesh", "Reference"]
 
@@ -168,7 +169,7 @@ class _Branch:
 
     losses: dict[str, Loss]
     figures: dict[str, Any]
-    flags: tuple[ValidityFlag, ...]
+    flags: SomeFlags
     notes: tuple[str, ...]
 
 
@@ -226,7 +227,7 @@ class GearSet:
         return GearSetResult(
             losses={name: found[name] for name in self.choices},
             figures=first.figures,
-            flags=_widest(branches) + idle.flags,
+            flags=Flags(partial(_widest, branches)) + idle.flags,
             notes=first.notes,
             shares=shares if self.planets else (),
         )

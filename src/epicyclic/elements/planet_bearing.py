@@ -22,7 +22,7 @@ from epicyclic.losses.planet_bearing import (
     palmgren_loss,
     roller_loads,
 )
-from epicyclic.losses.validity import ValidityFlag
+from epicyclic.losses.validity import SomeFlags
 from epicyclic.losses.viscous import (
     VISCOUS_METHOD,
     VISCOUS_SOURCE,
@@ -82,7 +82,7 @@ class BearingOutcome:
 
     losses: dict[str, Loss]
     figures: BearingFigures | None = None
-    flags: tuple[ValidityFlag, ...] = ()
+    flags: SomeFlags = ()
 
 
 def missing_bearing(key: str, reason: str) -> BearingOutcome:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -20,7 +21,7 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.friction.base import FrictionModel
 from epicyclic.losses.rolling import RollingModel
-from epicyclic.losses.validity import ModelUse, ValidityFlag, check_contacts
+from epicyclic.losses.validity import Flags, ModelUse, SomeFlags, ValidityFlag, check_contacts
 
 __all__ = ["MeshLoss", "local_loss", "loss_factor_loss", "ohlendorf_loss_factor"]
 
@@ -39,14 +40,14 @@ class MeshLoss:
         Coefficient of friction, weighted with the sliding power of the load. [1]
     friction : ndarray, shape (n,)
         Coefficient of friction at every point. [1]
-    flags : tuple of ValidityFlag
+    flags : Flags or tuple of ValidityFlag
     """
 
     sliding: float
     rolling: float
     mean_friction: float
     friction: FloatArray = field(default_factory=lambda: np.zeros(0))
-    flags: tuple[ValidityFlag, ...] = ()
+    flags: SomeFlags = ()
 
 
 def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingModel) -> MeshLoss:
@@ -65,8 +66,10 @@ def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingMo
         rolling=float(local_rolling.sum()),
         mean_friction=sliding / float(sliding_power.sum()),
         friction=coefficient,
-        flags=_flags("friction", friction, own, local_sliding)
-        + _flags("rolling", rolling, contact, local_rolling),
+        flags=Flags(
+            partial(_flags, "friction", friction, own, local_sliding),
+            partial(_flags, "rolling", rolling, contact, local_rolling),
+        ),
     )
 
 
@@ -87,7 +90,7 @@ def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
         rolling=0.0,
         mean_friction=mean,
         friction=coefficient,
-        flags=_flags("friction", friction, own, local_sliding),
+        flags=Flags(partial(_flags, "friction", friction, own, local_sliding)),
     )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,8 +26,10 @@ from epicyclic.losses.mixed_ehl_groups import (
     without_oil,
 )
 from epicyclic.losses.validity import (
+    Flags,
     ModelUse,
     Range,
+    SomeFlags,
     ValidityFlag,
     check_contacts,
     check_ranges,
@@ -234,7 +236,7 @@ class BearingLoss:
     """Rolling loss of one bearing and its flags."""
 
     loss: float
-    flags: tuple[ValidityFlag, ...] = ()
+    flags: SomeFlags = ()
 
 
 @lru_cache(maxsize=1024)
@@ -337,7 +339,8 @@ def mixed_ehl_rolling_loss(
     )
     local = bearing.slice_width * density * beyond_data(contacts, held)
     use = ModelUse("bearing", "mixed-ehl", "planet bearing")
-    return BearingLoss(float(local.sum()), check_contacts(use, NEEDLE_RANGES, contacts, local))
+    look = partial(check_contacts, use, NEEDLE_RANGES, contacts, local)
+    return BearingLoss(float(local.sum()), Flags(look))
 
 
 def fitted_rolling_loss(

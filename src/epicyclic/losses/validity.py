@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NamedTuple, TypeVar
@@ -17,9 +17,11 @@ __all__ = [
     "OF_THIS_PACKAGE",
     "OUT_OF_RANGE",
     "SMALLEST_SHOWN_SHARE",
+    "Flags",
     "ModelUse",
     "Range",
     "RegressionFluid",
+    "SomeFlags",
     "ValidityFlag",
     "check_ranges",
     "describe_flags",
@@ -141,6 +143,31 @@ class ValidityFlag:
     unit: str
     share: float
     source: str
+
+
+class Flags:
+    """Flags that are looked for when somebody reads them.
+
+    Most answers of an element are steps on the way to the last one, of which alone anybody does.
+    """
+
+    __slots__ = ("_looks",)
+
+    def __init__(self, *looks: Callable[[], Iterable[ValidityFlag]]) -> None:
+        self._looks = looks
+
+    def __iter__(self) -> Iterator[ValidityFlag]:
+        for look in self._looks:
+            yield from look()
+
+    def __add__(self, other: Flags | tuple[ValidityFlag, ...]) -> Flags:
+        return Flags(self.__iter__, other.__iter__)
+
+    def __radd__(self, other: tuple[ValidityFlag, ...]) -> Flags:
+        return Flags(other.__iter__, self.__iter__)
+
+
+SomeFlags = Flags | tuple[ValidityFlag, ...]
 
 
 def held_in_range(value: Real, item: Range) -> Real:
