@@ -67,5 +67,5 @@ def test_a_pair_with_its_gears_exchanged_is_as_warm():
         ep.solve(ep.load_case(pair).updated(changes)) for pair in (tables, exchanged(tables))
     )
     for node, other in (("pinion", "gear"), ("gear", "pinion"), ("oil", "oil")):
-        assert two.heat.temperatures[other] == pytest.approx(one.heat.temperatures[node], abs=1e-5)
+        assert two.heat.temperatures[other] == pytest.approx(one.heat.temperatures[node], abs=1e-4)
     assert abs(one.heat.temperatures["pinion"] - one.heat.temperatures["gear"]) > 0.1

@@ -48,9 +48,9 @@ def test_losses_belong_to_the_temperatures_they_lead_to(settled):
         ("ring_mesh", ("planet", "ring")),
     ):
         mean = sum(temperatures[node] for node in nodes) / 2
-        assert settled.meshes[key].contact_temperature == pytest.approx(mean, abs=1e-5)
+        assert settled.meshes[key].contact_temperature == pytest.approx(mean, abs=1e-4)
     middle = (temperatures["planet"] + temperatures["pin"]) / 2
-    assert settled.bearing.contact_temperature == pytest.approx(middle, abs=1e-5)
+    assert settled.bearing.contact_temperature == pytest.approx(middle, abs=1e-4)
 
 
 def test_no_two_parts_are_equally_warm(settled):
@@ -104,7 +104,7 @@ def test_a_measured_outlet_temperature_gives_the_flow():
     found = ep.solve(case.updated(changes))
     assert found.total == pytest.approx(known.total, rel=1e-7)
     for node, value in known.heat.temperatures.items():
-        assert found.heat.temperatures[node] == pytest.approx(value, abs=1e-5), node
+        assert found.heat.temperatures[node] == pytest.approx(value, abs=1e-4), node
 
 
 def test_flank_rises_by_the_flash_of_its_own_meshes():
@@ -123,7 +123,7 @@ def test_flank_rises_by_the_flash_of_its_own_meshes():
     )
     # the planet bearing lies between planet and oil
     middle = inlet + rises["planet"] / 2
-    assert result.bearing.contact_temperature == pytest.approx(middle, abs=1e-5)
+    assert result.bearing.contact_temperature == pytest.approx(middle, abs=1e-4)
 
 
 @pytest.mark.parametrize(

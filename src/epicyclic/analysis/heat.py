@@ -39,7 +39,7 @@ TEMPERATURE = "oil temperature"
 """What ranges of formulas call the temperature of a contact."""
 ROLES = {"friction": "sliding", "rolling": "rolling", "bearing": "mechanical"}
 """Models whose oil is held in their range, with the losses that they compute."""
-CLOSE = 1e-6
+CLOSE = 1e-5
 """Difference to the wanted temperature that counts as none. [K]"""
 STILL = 1e-3
 """Change of a temperature below which more of a quantity has no effect. [K]"""

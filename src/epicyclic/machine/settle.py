@@ -13,7 +13,7 @@ from epicyclic.elements.base import OIL, Loss
 from epicyclic.elements.fluids import Fluids
 from epicyclic.errors import ConvergenceError
 from epicyclic.machine.machine import Machine, Operation
-from epicyclic.machine.solve import Solution, solve_machine
+from epicyclic.machine.solve import Solution, solve_machine, start_of
 from epicyclic.thermal.network import Link
 from epicyclic.units import CELSIUS
 
@@ -21,7 +21,7 @@ __all__ = ["Answer", "Settled", "ThermalModel", "heat_of", "isothermal", "settle
 
 FloatArray = NDArray[np.float64]
 
-AGREEMENT = 1e-6
+AGREEMENT = 3e-5
 """Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
 MOST_PASSES = 40
 COLDEST, HOTTEST = 200.0, 770.0
@@ -117,12 +117,13 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     from scipy.optimize import NoConvergence, broyden1
 
     nodes = tuple(model.start)
+    unheated = start_of(machine, operation)
     found: list[tuple[Solution, Answer]] = []
 
     def change(values: FloatArray) -> FloatArray:
         at = dict(zip(nodes, map(float, np.clip(values, COLDEST, HOTTEST)), strict=True))
         with np.errstate(invalid="warn"):
-            solution = solve_machine(machine, operation, model.fluids(at))
+            solution = solve_machine(machine, operation, model.fluids(at), unheated)
             answer = model.answer(at, solution)
         found.append((solution, answer))
         return np.array([answer.temperatures[node] for node in nodes]) - values

@@ -11,12 +11,12 @@ from epicyclic.elements.fluids import Fluids
 from epicyclic.errors import ConvergenceError
 from epicyclic.machine.answers import Answer, distance
 from epicyclic.machine.balance import Balance, Friction, balance, drives_first
-from epicyclic.machine.directions import find_directions
+from epicyclic.machine.directions import Directions, find_directions
 from epicyclic.machine.forces import forces_of
 from epicyclic.machine.kinematics import speeds_of
 from epicyclic.machine.machine import Machine, Operation
 
-__all__ = ["Solution", "effects_of", "lossless_state", "solve_machine"]
+__all__ = ["Solution", "Start", "effects_of", "lossless_state", "solve_machine", "start_of"]
 
 AGREEMENT = 5e-10
 """Relative change of each load from one pass to the next at which torques and losses agree. [1]"""
@@ -127,23 +127,63 @@ def _lossless(machine: Machine, operation: Operation, speeds: Mapping[str, float
     return balance(machine, operation, speeds, dict.fromkeys(ones, True), ones)
 
 
-def solve_machine(machine: Machine, operation: Operation, fluids: Fluids | None) -> Solution:
+@dataclass(frozen=True, slots=True)
+class Start:
+    """What a solution starts from, whatever the oil.
+
+    Attributes
+    ----------
+    speeds : mapping of str to float
+        Of all bodies. [rad/s]
+    lossless : Balance
+    directions : Directions
+        With the given efficiencies.
+    ratio : float or None
+        Speed of the input over that of the output. [1]
+    """
+
+    speeds: Mapping[str, float]
+    lossless: Balance
+    directions: Directions
+    ratio: float | None
+
+
+def start_of(machine: Machine, operation: Operation) -> Start:
+    """Speeds, torques without losses, and the directions of the rolling powers."""
+    speeds = speeds_of(machine, operation.speeds)
+    lossless = _lossless(machine, operation, speeds)
+    efficiencies = {row.key: row.efficiency for row in machine.rows}
+    directions = find_directions(machine, operation, speeds, lossless, efficiencies)
+    ratio = _ratio(operation, speeds)
+    if directions.jammed:  # it stands still, whatever the speeds were meant to be
+        speeds = dict.fromkeys(speeds, 0.0)
+    return Start(speeds, lossless, directions, ratio)
+
+
+def solve_machine(
+    machine: Machine, operation: Operation, fluids: Fluids | None, start: Start | None = None
+) -> Solution:
     """Torques and losses that agree.
 
     Theory (T5), (T6).
+
+    Parameters
+    ----------
+    machine, operation
+    fluids : Fluids or None
+        None if every loss is given.
+    start : Start, optional
+        As from `start_of`, for solutions that differ in the oil only.
 
     Raises
     ------
     ConvergenceError
         If losses and torques do not agree after `MOST_PASSES`.
     """
-    speeds = speeds_of(machine, operation.speeds)
-    lossless = _lossless(machine, operation, speeds)
+    if start is None:
+        start = start_of(machine, operation)
+    speeds, lossless, directions = start.speeds, start.lossless, start.directions
     efficiencies: Mapping[str, float] = {row.key: row.efficiency for row in machine.rows}
-    directions = find_directions(machine, operation, speeds, lossless, efficiencies)
-    ratio = _ratio(operation, speeds)
-    if directions.jammed:  # it stands still, whatever the speeds were meant to be
-        speeds = dict.fromkeys(speeds, 0.0)
     drives = directions.drives
     tried: list[Mapping[str, bool]] = []
     while drives not in tried and len(tried) < MOST_BRANCHES:
@@ -162,7 +202,7 @@ def solve_machine(machine: Machine, operation: Operation, fluids: Fluids | None)
         results=last.results,
         given=_given_losses(machine, last.balance),
         drivers=_drivers(lossless, speeds),
-        ratio=ratio,
+        ratio=start.ratio,
         self_locking=directions.locking,
         jammed=directions.jammed,
         unique=last.balance.unique,
