@@ -289,7 +289,7 @@ class Quantity:
         number, _, unit = text.partition(" ")
         if _convert(float(number), unit, self.si) == value:
             return text
-        return f"{value!r} {self.si}"
+        return f"{float(value)!r} {self.si}"  # those of numpy would write their type
 
     def describe(self) -> str:
         """What is allowed, in words: ``"a length > 0 mm"``."""

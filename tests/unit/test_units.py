@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 
+import numpy as np
 import pytest
 from pydantic_core import PydanticCustomError
 
@@ -225,3 +226,9 @@ def test_the_registry_needs_no_writable_home(monkeypatch):
     monkeypatch.setattr(pint, "UnitRegistry", no_cache)
     fresh = registry.__wrapped__()
     assert fresh.Quantity(1, "Nm").to("N*m").magnitude == 1.0
+
+
+def test_numbers_of_numpy_are_written_as_any_other():
+    flow = np.float64(7.816660531630488e-06)
+    text = Quantity("a flow", "m^3/s", "l/min").exact_text(flow)
+    assert Quantity("a flow", "m^3/s", "l/min").parse(text) == float(flow)
