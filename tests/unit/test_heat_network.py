@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from epicyclic.thermal.network import Link, Network
@@ -18,7 +17,6 @@ GEARBOX = Network(
         Link("oil-housing", "oil", "housing", 23.0),
         Link("housing-air", "housing", "air", 5.5),
     ),
-    capacities={"sun": 900.0, "planet": 1300.0, "oil": 8100.0, "housing": 15200.0},
 )
 HEAT = {"sun": 210.0, "planet": 340.0, "oil": 95.0}
 
@@ -58,30 +56,3 @@ def test_heat_without_a_way_out_is_named():
         ),
     )
     assert dead_end.cut_off() == ("sun", "planet", "pin")
-
-
-def test_one_node_has_its_time_constant():
-    single = Network(
-        ("oil",), {"air": 293.0}, (Link("oil-air", "oil", "air", 17.3),), {"oil": 8211.0}
-    )
-    assert single.time_constants() == pytest.approx([8211.0 / 17.3], rel=1e-12)
-
-
-def test_the_slowest_time_constant_is_that_of_the_decay():
-    from scipy.integrate import solve_ivp
-
-    slowest = GEARBOX.time_constants()[0]
-    matrix, known = GEARBOX.system()
-    inertia = np.array([GEARBOX.capacities[node] for node in GEARBOX.nodes])
-    steady = np.array([GEARBOX.steady(HEAT)[node] for node in GEARBOX.nodes])
-    heat = GEARBOX.sources(HEAT)
-
-    def rate(_, found):
-        return (heat + known - matrix @ found) / inertia
-
-    late = [8 * slowest, 9 * slowest]
-    path = solve_ivp(
-        rate, (0, late[1]), steady - 20.0, t_eval=late, method="BDF", rtol=1e-10, atol=1e-10
-    )
-    left = path.y - steady[:, None]
-    assert left[:, 1] / left[:, 0] == pytest.approx(np.exp(-1.0), rel=1e-3)

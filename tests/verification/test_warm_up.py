@@ -8,7 +8,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.builders.build import build
-from epicyclic.thermal.network import Link, Network
+from epicyclic.thermal.network import Link
 from epicyclic.thermal.transient import Curves, Source, Transient
 
 CAPACITY, CONDUCTANCE, AIR = 5000.0, 12.5, 293.15
@@ -30,7 +30,7 @@ def flat(value, nodes):
 
 def one_node(watts=100.0):
     link = Link("oil-air", "oil", "air", CONDUCTANCE)
-    transient = Transient(
+    return Transient(
         {"oil": CAPACITY},
         {"air": AIR},
         (Source("drag", "oil", ("oil",)),),
@@ -39,13 +39,11 @@ def one_node(watts=100.0):
         flat(CONDUCTANCE, 1),
         {},
     )
-    return transient, Network(("oil",), {"air": AIR}, (link,), {"oil": CAPACITY})
 
 
 def test_one_node_has_the_time_constant_capacity_over_conductance():
-    transient, network = one_node()
+    transient = one_node()
     constant = CAPACITY / CONDUCTANCE
-    assert network.time_constants() == pytest.approx([constant], rel=1e-12)
     assert transient.time_constants(np.array([AIR])) == pytest.approx([constant], rel=1e-12)
     course = transient.integrate(np.array([AIR]), np.array([0.0, constant / 2, constant]))
     rise = 100.0 / CONDUCTANCE * (1 - np.exp([0, -0.5, -1.0]))
@@ -56,7 +54,7 @@ def test_one_node_has_the_time_constant_capacity_over_conductance():
 
 
 def test_one_node_keeps_the_energy():
-    transient, _ = one_node()
+    transient = one_node()
     course = transient.integrate(np.array([AIR + 50]), np.linspace(0, 1000, 11))
     stored = CAPACITY * (course.temperatures[0] - AIR - 50)
     assert course.gained == pytest.approx(100.0 * course.times, rel=1e-9)

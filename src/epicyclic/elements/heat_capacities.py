@@ -25,12 +25,10 @@ CARRIER_FILL = 0.5
 """Steel in the disc that a carrier describes; the rest is windows and planets: an estimate. [1]"""
 BEARING_FILL = 0.7
 """Steel in the ring between bore and outside of a rolling bearing: an estimate. [1]"""
-RIM = 3.0
-"""Rim of a ring gear whose outside is not known, from root to outside. [normal modules]"""
 
 
 def gear_set_capacities(own: GearSet) -> dict[str, float]:
-    """Of every gear, all planets together, of pins and carrier. Theory (W33), (W34). [J/K]"""
+    """Of every gear, all planets together, of pins and carrier. Theory (W32), (W33). [J/K]"""
     bores = {
         planet.nodes[0]: planet.bearing.bearing.outer_diameter / 2
         for planet in own.planets
@@ -55,7 +53,7 @@ def gear_set_capacities(own: GearSet) -> dict[str, float]:
 
 
 def bearing_capacity(own: ShaftBearing) -> float:
-    """Of both rings and the rollers. Theory (W34). [J/K]"""
+    """Of both rings and the rollers. Theory (W33). [J/K]"""
     bearing = own.bearing
     area = math.pi / 4 * (bearing.outside_diameter**2 - bearing.bore**2)
     return _stored(STEEL, BEARING_FILL * area * bearing_width(own))
@@ -66,9 +64,10 @@ def _stored(solid: Solid, volume: float) -> float:
 
 
 def _outside(own: GearSet, one: OneGear) -> float:
-    """Radius of the outside of a ring gear. [m]"""
-    known = [disc.radius for discs in own.discs.values() for disc in discs if disc.body == one.body]
-    return max(known, default=one.gear.root_radius + RIM * one.gear.rack.normal_module)
+    """Radius of the outside of a ring gear, which its disc has. [m]"""
+    return max(
+        disc.radius for discs in own.discs.values() for disc in discs if disc.body == one.body
+    )
 
 
 def _carrier_volume(own: GearSet) -> float:

@@ -1,4 +1,4 @@
-"""Nodes that heat flows between: where their temperatures settle, and how they get there.
+"""Nodes that heat flows between, and the temperatures at which they settle.
 
 A link takes heat from its hot node in proportion to the difference of two temperatures and brings
 it to a third node, which mostly is the cold one. Oil that a jet throws on a gear is the exception:
@@ -8,7 +8,7 @@ it arrives with the temperature of the inlet, and leaves with its heat for the o
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,14 +61,11 @@ class Network:
     given : mapping of str to float
         Nodes of given temperature. [K]
     links : tuple of Link
-    capacities : mapping of str to float
-        Of the nodes, for their way to the steady state. [J/K]
     """
 
     nodes: tuple[str, ...]
     given: Mapping[str, float]
     links: tuple[Link, ...]
-    capacities: Mapping[str, float] = field(default_factory=dict[str, float])
 
     def steady(self, heat: Mapping[str, float]) -> dict[str, float]:
         """Temperatures at which the heat that arises leaves again. Theory (W26).
@@ -142,16 +139,3 @@ class Network:
             grows = not found <= reached
             reached |= found
         return tuple(node for node in self.nodes if node not in reached)
-
-    def time_constants(self) -> FloatArray:
-        """Of the network with constant heat, from the slowest to the fastest. Theory (W28). [s]
-
-        Raises
-        ------
-        KeyError
-            If a node has no capacity.
-        """
-        matrix, _ = self.system()
-        inertia = np.array([self.capacities[node] for node in self.nodes])
-        rates = np.linalg.eigvals(matrix / inertia[:, None])
-        return np.sort(1 / rates.real)[::-1]
