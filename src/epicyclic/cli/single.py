@@ -70,8 +70,8 @@ def check(case: str, changes: tuple[str, ...]) -> None:
     loaded = load_with(case, changes)
     click.echo(f"{case}: a sound {loaded.kind} case.")
     if loaded.kind == "train":
+        from epicyclic.report.state_tables import state_tables
         from epicyclic.report.tables import terminal
-        from epicyclic.report.train_tables import state_tables
 
         terminal().print(state_tables(loaded))
 

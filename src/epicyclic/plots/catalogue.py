@@ -30,7 +30,8 @@ from epicyclic.plots.mesh import (
 from epicyclic.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.plots.power_flow import SLIDE, plot_power_flow
 from epicyclic.plots.style import PANEL, styled_figure
-from epicyclic.records.record import ResultRecord, set_of, sets_of
+from epicyclic.records.contents import set_of
+from epicyclic.records.record import ResultRecord, sets_of
 from epicyclic.results.result import in_words
 
 __all__ = ["PLOTS", "Panel", "Plot", "available", "figure_of", "panels_of"]

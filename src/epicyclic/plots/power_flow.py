@@ -13,12 +13,12 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyBboxPatch, Polygon, Rectangle
 
-from epicyclic.analysis.train_flow import Line, Link, TrainFlow, flow_of
 from epicyclic.plots.style import COLOURS
 from epicyclic.records.contents import ResultContents
+from epicyclic.records.power_flow import Line, Link, TrainFlow, power_flow
 from epicyclic.units import NEWTON_METRE, RPM, format_number, unit_text
 
-__all__ = ["SLIDE", "contents_flow", "plot_power_flow"]
+__all__ = ["SLIDE", "plot_power_flow"]
 
 SLIDE = (13.33, 7.5)
 """Width and height. [inch]"""
@@ -95,42 +95,9 @@ class _Layout:
         return [link for link in links if link.members and abs(link.torque) > NO_POWER * most]
 
 
-def contents_flow(result: ResultContents) -> TrainFlow:
-    """The power flow of a stored result, `train_flow` of the result itself."""
-    speeds = {
-        name: (member.speed.value or 0.0) / RPM.to_display(1.0)
-        for name, member in result.members.items()
-    }
-    torques = {name: member.torque.value or 0.0 for name, member in result.members.items()}
-    if result.kind != "train":
-        stage = "gear set" if result.kind == "planetary" else "gear pair"
-        powers = {name: member.power.value or 0.0 for name, member in result.members.items()}
-        return flow_of(
-            speeds,
-            torques,
-            {stage: torques},
-            {stage: result.total},
-            ends=(
-                max(powers, key=lambda key: powers[key]),
-                min(powers, key=lambda key: powers[key]),
-            ),
-            shafts={name: (f"{stage}.{name}",) for name in torques},
-        )
-    return flow_of(
-        speeds,
-        torques,
-        result.stage_torques,
-        result.stages,
-        clutches=result.clutches,
-        rolling=result.rolling_power,
-        ends=(result.input, result.output),
-        shafts=result.inputs.get("shafts", {}),
-    )
-
-
 def plot_power_flow(result: ResultContents, ax: Axes) -> Axes:
     """Which power each set takes from which shaft, what circulates, what is lost where."""
-    flow = contents_flow(result)
+    flow = power_flow(result)
     ax.set_axis_off()
     ax.set(xlim=(0, SLIDE[0]), ylim=(0, SLIDE[1]))
     ax.set_title(f"Power flow: {_headline(result)}", fontsize=13, x=0.008)

@@ -12,6 +12,7 @@ from pydantic_core import from_json
 from epicyclic.case.operating import AXES
 from epicyclic.elements.base import HOUSING, OIL
 from epicyclic.results.heat import HeatBalance, HeatWay
+from epicyclic.results.result import Result
 from epicyclic.units import CELSIUS
 
 __all__ = [
@@ -22,6 +23,8 @@ __all__ = [
     "RecordContents",
     "ResultContents",
     "Validity",
+    "contents_of",
+    "set_of",
 ]
 
 
@@ -249,6 +252,16 @@ class ResultContents(_Part):
             for names in shafts.values()
         ):
             raise ValueError("inputs.shafts must be lists of members")
+
+
+def contents_of(result: Result) -> ResultContents:
+    """A result as a file would keep it, so that what is made of either is the same."""
+    return ResultContents.model_validate_json(result.to_json())
+
+
+def set_of(key: str) -> str:
+    """The set to which a mesh, gear or bearing belongs; empty if there is one set only."""
+    return key.rpartition(".")[0]
 
 
 class RecordContents(_Part):

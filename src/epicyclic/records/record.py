@@ -16,13 +16,13 @@ from epicyclic.analysis.solve import solve
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
 from epicyclic.losses.planet_bearing import RollerBearing
-from epicyclic.records.contents import ResultContents
+from epicyclic.records.contents import ResultContents, contents_of, set_of
 from epicyclic.results.result import Result
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["ResultRecord", "record", "set_of", "sets_of"]
+__all__ = ["ResultRecord", "record", "sets_of"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,6 +57,11 @@ class ResultRecord:
         """Of the case, or what kind of gears it is."""
         return self.result.title or self.result.kind.replace("_", " ")
 
+    @property
+    def labels(self) -> dict[str, str]:
+        """What every number of the result is called, by its key."""
+        return {str(key): number.attrs["long_name"] for key, number in self.numbers.items()}
+
     def group(self, name: str) -> dict[str, xr.Dataset]:
         """The fields whose path begins with `name`, by the rest of it."""
         return {
@@ -85,8 +90,7 @@ def record(case: Case, *, result: Result | None = None) -> ResultRecord:
         As for `solve`.
     """
     result = solve(case) if result is None else result
-    # as a file would keep it, so that reports of both are the same
-    contents = ResultContents.model_validate_json(result.to_json())
+    contents = contents_of(result)
     fields = {"gears": gear_shapes(case), "views": mesh_views(case)}
     fields["bearings"] = {
         key: bearing_details(_bearing_of(case, key), figures.loads)
@@ -123,11 +127,6 @@ def _bearing_of(case: Case, key: str) -> RollerBearing:
     found = next(one.bearing for one in build(case).sets[name].planets if one.key == planets)
     assert found is not None
     return found.bearing
-
-
-def set_of(key: str) -> str:
-    """The set to which a mesh, gear or bearing belongs; empty if there is one set only."""
-    return key.rpartition(".")[0]
 
 
 def sets_of(fields: Mapping[str, xr.Dataset]) -> dict[str, dict[str, xr.Dataset]]:

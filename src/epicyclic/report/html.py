@@ -20,7 +20,8 @@ from epicyclic.records.record import ResultRecord
 from epicyclic.report.drawings import draw
 from epicyclic.report.map_page import map_key_figures, map_line, map_sections
 from epicyclic.report.page import Drawings
-from epicyclic.report.result_page import key_figures, operation_line, result_sections
+from epicyclic.report.result_page import result_sections
+from epicyclic.report.result_tables import key_figures, operation_line
 
 __all__ = ["report_html"]
 

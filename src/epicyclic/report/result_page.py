@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 
 import xarray as xr
 
-from epicyclic.records.contents import Measure, ResultContents
-from epicyclic.records.record import ResultRecord, set_of, sets_of
+from epicyclic.records.contents import ResultContents
+from epicyclic.records.record import ResultRecord, sets_of
 from epicyclic.report.heat_tables import heat_items, ways_items
 from epicyclic.report.inputs import input_tables
 from epicyclic.report.page import (
@@ -15,7 +15,6 @@ from epicyclic.report.page import (
     Drawings,
     Gallery,
     Item,
-    KeyFigure,
     Listing,
     Row,
     Section,
@@ -24,65 +23,37 @@ from epicyclic.report.page import (
     gallery,
     number,
 )
-from epicyclic.report.train_page import (
-    label_of,
-    model_key,
-    part_tables,
-    share_row,
-    train_losses,
+from epicyclic.report.result_tables import (
+    bearing_tables,
+    losses_table,
+    members_table,
+    mesh_tables,
+    oil_table,
+    planets_table,
+    users_text,
 )
-from epicyclic.report.train_tables import users_text
+from epicyclic.report.train_tables import (
+    clutches_table,
+    part_tables,
+    rolling_table,
+    shafts_table,
+    sums_table,
+    terms_table,
+)
 from epicyclic.results.result import in_words
 from epicyclic.units import format_number, unit_text
 
-__all__ = ["key_figures", "operation_line", "result_sections"]
-
-
-def key_figures(result: ResultContents) -> list[KeyFigure]:
-    """What a reader looks for first."""
-    efficiency = result.efficiency
-    text = "" if efficiency is None else f"{100 * efficiency:.3f}"
-    ratio = [KeyFigure("ratio", number(result.ratio, "ratio", 5))]
-    return [
-        *(ratio if result.kind == "train" else ()),
-        KeyFigure("efficiency", number(efficiency, "efficiency", text=text), "%" if text else ""),
-        KeyFigure("total loss", _watts(result.total, "total"), "W"),
-        KeyFigure("load-dependent", _watts(result.load_dependent, "load_dependent"), "W"),
-        KeyFigure("load-independent", _watts(result.load_independent, "load_independent"), "W"),
-        KeyFigure("input power", _watts(result.input_power / 1e3, "", 2), "kW"),
-    ]
-
-
-def operation_line(result: ResultContents) -> str:
-    """The operating point in one line."""
-    operation = result.inputs["operation"]
-    words = [f"{operation['speed']}, {operation['torque']}"]
-    if "output" in operation:
-        words.insert(0, f"{operation['input']} to {operation['output']}")
-    elif "input" in operation:
-        words.insert(0, f"input {operation['input']}")
-    if operation.get("state"):
-        words.insert(0, f"state {operation['state']}")
-    if operation.get("fixed"):
-        words.append(f"{operation['fixed']} fixed")
-    if "oil_inlet_temperature" in operation:
-        words.append(f"oil at {operation['oil_inlet_temperature']}")
-    return unit_text(", ".join(words))
+__all__ = ["result_sections"]
 
 
 def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
     """All chapters for which the record has content."""
-    result = record.result
-    own_losses: tuple[Item, ...] = (
-        Row((_losses(result), *gallery(drawings, "losses"))),
-        Row((_members(result), *gallery(drawings, "loss-sum"))),
-        *gallery(drawings, "power-flow", wide=True),
-    )
+    result, labels = record.result, record.labels
     sections = [
         Section(
             "losses",
             "Losses",
-            train_losses(result, drawings) if result.kind == "train" else own_losses,
+            (_train_losses if result.kind == "train" else _losses)(result, drawings),
         ),
         Section("validity", "Validity", _validity(result), _validity_lead(result)),
         Section("temperatures", "Temperatures", _heat(result, drawings)),
@@ -92,14 +63,14 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
             (
                 *_gears(record, drawings),
                 *gallery(drawings, "teeth"),
-                *_planets(result),
+                *planets_table(result),
             ),
         ),
         Section(
             "load",
             "Load on the teeth",
             (
-                *_meshes(record),
+                *mesh_tables(result, labels),
                 *gallery(drawings, "line-load", "pressure", "pair-load"),
                 *gallery(drawings, "transmission-error", "stiffness"),
             ),
@@ -116,11 +87,7 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
             gallery(drawings, "pocket-pressure", "pocket-volume", "pocket-power"),
             _POCKET_LEAD,
         ),
-        Section(
-            "oil",
-            "Oil",
-            () if result.fluid is None else (_measures(record, "fluid", "", result.fluid),),
-        ),
+        Section("oil", "Oil", tuple(oil_table(result, labels))),
         Section("methods", "Methods and assumptions", _methods(result)),
         Section("inputs", "Inputs", tuple(input_tables(result.inputs, record.given)), _INPUT_LEAD),
         Section("versions", "Versions", (_versions(result),)),
@@ -128,10 +95,6 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
     return [section for section in sections if section.items]
 
 
-_FLOW_NOTE = (
-    "Speeds are positive in one common sense of rotation; torques act on the gear set from "
-    "outside; positive power enters."
-)
 _DIAMETERS = ("reference_diameter", "base_diameter", "tip_diameter", "root_diameter")
 _POCKET_LEAD = (
     "A pocket is named after the member whose tooth is in a space of the other. Lines from dark "
@@ -156,28 +119,24 @@ _OF_PLANETS = (
 _INPUT_LEAD = "Values in italics were not given: they are defaults."
 
 
-def _watts(value: float, key: str, digits: int = 1) -> Cell:
-    return number(value, key, text=f"{value:z.{digits}f}")
+def _losses(result: ResultContents, drawings: Drawings) -> tuple[Item, ...]:
+    return (
+        Row((losses_table(result), *gallery(drawings, "losses"))),
+        Row((members_table(result), *gallery(drawings, "loss-sum"))),
+        *gallery(drawings, "power-flow", wide=True),
+    )
 
 
-def _losses(result: ResultContents) -> Table:
-    rows: list[tuple[Cell, ...]] = []
-    strong = []
-    for group in dict.fromkeys(result.groups.values()):
-        for name, watts in result.losses.items():
-            if result.groups[name] != group:
-                continue
-            words = Cell(name.replace("_", " "))
-            if name in result.not_included:
-                rows.append((words, Cell("not included"), Cell(""), Cell("")))
-            else:
-                rows.append((words, *share_row(result, watts, f"losses.{name}")))
-        key = group.replace("-", "_")
-        strong.append(len(rows))
-        rows.append((Cell(group), *share_row(result, getattr(result, key), key)))
-    strong.append(len(rows))
-    rows.append((Cell("total"), *share_row(result, result.total, "total")))
-    return Table(("", "loss, W", "of total", "of input"), tuple(rows), strong=frozenset(strong))
+def _train_losses(result: ResultContents, drawings: Drawings) -> tuple[Item, ...]:
+    """Power flow, sums, shafts, rolling powers, every single loss."""
+    return (
+        *gallery(drawings, "power-flow", wide=True),
+        sums_table(result),
+        Row((*gallery(drawings, "losses"), *gallery(drawings, "loss-sum"))),
+        shafts_table(result),
+        Row((rolling_table(result), *clutches_table(result))),
+        *terms_table(result),
+    )
 
 
 def _validity_lead(result: ResultContents) -> str:
@@ -232,25 +191,6 @@ def _heat(result: ResultContents, drawings: Drawings) -> tuple[Item, ...]:
     return (*picture, Row(tuple(heat_items(heat))), *ways)
 
 
-def _members(result: ResultContents) -> Table:
-    rows = tuple(
-        (
-            Cell(name),
-            number(member.speed.value, f"members.{name}.speed", 6),
-            number(member.torque.value, f"members.{name}.torque", 6),
-            number(member.power.value, f"members.{name}.power", 7),
-        )
-        for name, member in result.members.items()
-    )
-    first = next(iter(result.members.values()))
-    units = (first.speed.unit, first.torque.unit, first.power.unit)
-    heads = (
-        f"{name}, {unit_text(unit)}"
-        for name, unit in zip(("speed", "torque", "power"), units, strict=True)
-    )
-    return Table(("", *heads), rows, "Power flow", note=_FLOW_NOTE)
-
-
 def _gears(record: ResultRecord, drawings: Drawings) -> Iterator[Row]:
     """Each set to scale beside the teeth and diameters of its gears."""
     drawn = drawings.get("gear-set", ())
@@ -271,81 +211,15 @@ def _gears_table(title: str, gears: Mapping[str, xr.Dataset]) -> Table:
     return Table(("", *gears, "unit"), tuple(rows), title)
 
 
-def _planets(result: ResultContents) -> tuple[Table, ...]:
-    if not result.planet_angles.value:
-        return ()
-    rows = tuple(
-        (
-            Cell(f"{place + 1}"),
-            number(angle, f"planet_angles.{place}", 7),
-            number(share, f"planet_shares.{place}", 4, f"{share:.2%}"),
-        )
-        for place, (angle, share) in enumerate(
-            zip(result.planet_angles.value, result.planet_shares.value, strict=True)
-        )
-    )
-    unit = unit_text(result.planet_angles.unit)
-    return (Table(("planet", f"angle, {unit}", "share of the torque"), rows, "Planets"),)
-
-
-def _meshes(record: ResultRecord) -> Iterator[Table]:
-    """Figures of the meshes of each set side by side."""
-    sets: dict[str, dict[str, dict[str, Measure]]] = {}
-    for key, figures in record.result.meshes.items():
-        sets.setdefault(set_of(key), {})[key] = figures
-    for name, meshes in sets.items():
-        title = f"Meshes of {in_words(name)}" if name else "Figures of the meshes"
-        yield _figures_table(record, title, "meshes", meshes)
-
-
-def _figures_table(
-    record: ResultRecord, title: str, place: str, parts: Mapping[str, Mapping[str, Measure]]
-) -> Table:
-    """Figures of parts of one kind side by side."""
-    keys = dict.fromkeys(key for figures in parts.values() for key in figures)
-    rows = []
-    for key in keys:
-        found = {name: figures[key] for name, figures in parts.items() if key in figures}
-        first = next(iter(found))
-        cells = (
-            number(found[name].value, f"{place}.{name}.{key}") if name in found else Cell("")
-            for name in parts
-        )
-        unit = Cell(unit_text(found[first].unit))
-        rows.append((Cell(label_of(record, first, key)), *cells, unit))
-    heads = (name.rpartition(".")[2].replace("_", " ") for name in parts)
-    if len(set(map(set_of, parts))) > 1:
-        heads = (in_words(name) for name in parts)
-    return Table(("", *heads, "unit"), tuple(rows), title)
-
-
 def _bearings(record: ResultRecord, drawings: Drawings) -> tuple[str, tuple[Item, ...]]:
     """Title and content of the chapter on bearings; of a train also those of shafts, and seals."""
-    result = record.result
-    rollers = gallery(drawings, "roller-loads", "roller-pressure")
-    if result.kind != "train":
-        figures = result.planet_bearing
-        if figures is None:
-            return "Planet bearing", ()
-        table = _measures(record, "planet_bearing", "planet_bearing", figures)
-        return "Planet bearing", (*rollers, table)
-    items: list[Item] = [*rollers]
-    if result.bearings:
-        items.append(_figures_table(record, "Planet bearings", "bearings", result.bearings))
-    items += part_tables(record)
-    return "Bearings and seals", tuple(items)
-
-
-def _measures(record: ResultRecord, key: str, prefix: str, figures: Mapping[str, Measure]) -> Table:
-    rows = tuple(
-        (
-            Cell(label_of(record, prefix or key, name)),
-            number(measure.value, f"{key}.{name}"),
-            Cell(unit_text(measure.unit)),
-        )
-        for name, measure in figures.items()
+    result, labels = record.result, record.labels
+    parts: tuple[Item, ...] = (
+        *gallery(drawings, "roller-loads", "roller-pressure"),
+        *bearing_tables(result, labels),
+        *part_tables(result, labels),
     )
-    return Table(("", "value", "unit"), rows)
+    return "Bearings and seals" if result.kind == "train" else "Planet bearing", parts
 
 
 def _methods(result: ResultContents) -> tuple[Table | Listing, ...]:
@@ -358,7 +232,7 @@ def _methods(result: ResultContents) -> tuple[Table | Listing, ...]:
         (Cell(users_text(names)), Cell(method), Cell(source))
         for (method, source), names in users.items()
     )
-    models = tuple((Cell(model_key(key)), Cell(value)) for key, value in result.models.items())
+    models = tuple((Cell(_model_key(key)), Cell(value)) for key, value in result.models.items())
     oil = _OIL["inlet" if result.heat is None else result.heat.model]
     assumptions = (*_ASSUMPTIONS[:-1], oil, _ASSUMPTIONS[-1]) + (
         () if result.kind == "gear_pair" else _OF_PLANETS
@@ -370,6 +244,12 @@ def _methods(result: ResultContents) -> tuple[Table | Listing, ...]:
         *((Table(("key of the case", "model used"), models, "Models"),) if models else ()),
         Listing(assumptions, "Assumptions"),
     )
+
+
+def _model_key(key: str) -> str:
+    """The key of the case that chooses a model: ``"sets.P1.models.friction"``."""
+    name, dot, model = key.rpartition(".")
+    return f"sets.{name}.models.{model}" if dot else f"models.{key}"
 
 
 def _versions(result: ResultContents) -> Table:

@@ -3,29 +3,41 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
+from rich import box
+from rich.columns import Columns
 from rich.console import Console, Group, RenderableType
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
 from epicyclic.analysis.compare import FrictionComparison
-from epicyclic.elements.base import LOAD_DEPENDENT, LOAD_INDEPENDENT
-from epicyclic.elements.figures import figures
+from epicyclic.records.contents import ResultContents, contents_of
 from epicyclic.report import page
 from epicyclic.report.heat_tables import heat_items
-from epicyclic.report.result_parts import (
-    efficiency_text,
-    figure_table,
-    meshes_table,
-    number_table,
-    plain_table,
-    share_cells,
+from epicyclic.report.result_tables import (
+    Labels,
+    bearing_tables,
+    key_figures,
+    losses_table,
+    members_table,
+    mesh_tables,
+    oil_table,
+    operation_line,
+    planets_table,
+    users_text,
 )
-from epicyclic.report.train_tables import train_tables, users_text
-from epicyclic.results.result import LossTerm, Result
-from epicyclic.units import DEGREE, NEWTON_METRE, RPM, unit_text
+from epicyclic.report.train_tables import (
+    clutches_table,
+    locking_text,
+    part_tables,
+    rolling_table,
+    shafts_table,
+    sums_table,
+    terms_table,
+)
+from epicyclic.results.result import Result, number_fields
 
 __all__ = [
     "as_on_page",
@@ -36,6 +48,10 @@ __all__ = [
     "titled",
 ]
 
+FEW_COLUMNS = 5
+"""That leave room for names on one line."""
+SHORT_NAME = 16
+"""That stays on one line beside any number of columns. [characters]"""
 PIPE_WIDTH = 100
 """Width of tables that do not go to a terminal. [characters]"""
 
@@ -55,21 +71,38 @@ def result_tables(result: Result, remarks: Sequence[str] = ()) -> RenderableType
     remarks : sequence of str
         On its temperatures.
     """
-    parts = _of_set(result) if result.train is None else train_tables(result, result.train)
+    contents = contents_of(result)
+    labels = {field.key: field.label for field in number_fields(result.layout)}
+    parts: list[RenderableType] = [_headline(contents)]
+    parts += map(as_on_page, _tables(contents, labels))
     if result.heat is not None:
         parts += map(as_on_page, heat_items(result.heat))
     parts += remarks
-    if result.fluid is not None:
-        parts.append(figure_table("Oil", figures(result.fluid)))
-    if result.planet_angles:
-        angles = ", ".join(f"{DEGREE.to_display(angle):z.4f}" for angle in result.planet_angles)
-        parts.append(Text(f"Planets at {angles} {DEGREE.display}"))
-    if len(set(result.planet_shares)) > 1:
-        shares = ", ".join(f"{share:.2%}" for share in result.planet_shares)
-        parts.append(Text(f"Their shares of the torque: {shares}"))
-    parts.append(_methods(result))
-    parts += [_list("Warnings", result.warnings), _list("Sources", result.sources)]
-    return titled(result.title or result.kind, *parts)
+    parts += map(as_on_page, (*oil_table(contents, labels), *planets_table(contents)))
+    parts += [_methods(contents), _list("Warnings", contents.warnings)]
+    return titled(result.title or result.kind, *parts, _list("Sources", contents.sources))
+
+
+def _headline(contents: ResultContents) -> Group:
+    """Operating point and key figures."""
+    found = [f"{one.label} {one.cell.text} {one.unit}".rstrip() for one in key_figures(contents)]
+    lines: list[RenderableType] = [Text(operation_line(contents)), Columns(found, padding=(0, 3))]
+    if contents.self_locking:
+        lines.append(Text(locking_text(contents.input, contents.output), style="bold"))
+    return Group(*lines)
+
+
+def _tables(contents: ResultContents, labels: Labels) -> Iterator[page.Table]:
+    """Losses and figures of a set or train."""
+    if contents.kind == "train":
+        yield from (sums_table(contents), shafts_table(contents), rolling_table(contents))
+        yield from clutches_table(contents)
+        yield from terms_table(contents)
+    else:
+        yield from (losses_table(contents), members_table(contents))
+    yield from mesh_tables(contents, labels)
+    yield from bearing_tables(contents, labels)
+    yield from part_tables(contents, labels)
 
 
 def titled(title: str, *parts: RenderableType) -> RenderableType:
@@ -84,67 +117,30 @@ def as_on_page(item: page.Table | page.Listing) -> RenderableType:
         return _list(item.title, item.items)
     table = plain_table(item.title)
     for column, head in enumerate(item.head):
-        table.add_column(head, justify="right" if item.is_numeric(column) else "left")
+        whole = column == 0 and (len(item.head) <= FEW_COLUMNS or _longest(item) <= SHORT_NAME)
+        table.add_column(
+            head, justify="right" if item.is_numeric(column) else "left", no_wrap=whole
+        )
     for place, row in enumerate(item.rows):
         strong = place in item.strong
-        last = place + 1 in item.strong
         table.add_row(
-            *(cell.text for cell in row), style="bold" if strong else "", end_section=last
+            *(cell.text for cell in row),
+            style="bold" if strong else "",
+            end_section=strong or item.strong == {place + 1},
         )
     return Group(table, Text(item.note)) if item.note else table
 
 
-def _of_set(result: Result) -> list[RenderableType]:
-    """What only a single set states."""
-    parts: list[RenderableType] = [_losses(result), _members(result)]
-    parts.append(meshes_table("Meshes", result.meshes))
-    if result.bearing is not None:
-        parts.append(figure_table("Planet bearing", figures(result.bearing)))
-    return parts
-
-
-def _losses(result: Result) -> Table:
-    table = number_table("Losses of the gear set", "", "W", "of total", "of input")
-    for group in (LOAD_DEPENDENT, LOAD_INDEPENDENT):
-        for term in result.terms:
-            if term.group == group:
-                table.add_row(term.name.replace("_", " "), *_share_cells(result, term))
-        watts = result.load_dependent if group == LOAD_DEPENDENT else result.load_independent
-        table.add_row(group, *share_cells(result, watts), style="bold", end_section=True)
-    table.add_row("total", *share_cells(result, result.total), style="bold", end_section=True)
-    table.add_row("input power", f"{result.input_power:z.1f}", "", "")
-    table.add_row("efficiency", efficiency_text(result), "", "")
-    return table
-
-
-def _share_cells(result: Result, term: LossTerm) -> tuple[str, str, str]:
-    if term.left_out:
-        return "not included", "", ""
-    return share_cells(result, term.watts)
-
-
-def _methods(result: Result) -> Group:
+def _methods(contents: ResultContents) -> Group:
     """Which method computed which terms, each method once."""
     users: dict[str, list[str]] = {}
-    for term in result.terms:
-        if not term.left_out:
-            users.setdefault(term.method, []).append(term.name)
-    for what, method in result.load_methods.items():
-        users.setdefault(method, []).append(what)
+    for name, method in contents.methods.items():
+        users.setdefault(method, []).append(name)
     return _list("Methods", [f"{users_text(names)}: {how}" for how, names in users.items()])
 
 
-def _members(result: Result) -> Table:
-    units = f"speed {unit_text(RPM.display)}", f"torque {unit_text(NEWTON_METRE.display)}"
-    table = number_table("Power flow (into the gear set)", "", *units, "power W")
-    for name, member in result.flow.members.items():
-        table.add_row(
-            name,
-            f"{RPM.to_display(member.speed):z.1f}",
-            f"{NEWTON_METRE.to_display(member.torque):z.2f}",
-            f"{member.power:z.1f}",
-        )
-    return table
+def _longest(item: page.Table) -> int:
+    return max((len(row[0].text) for row in item.rows), default=0)
 
 
 def _list(title: str, items: Sequence[str]) -> Group:
@@ -152,6 +148,27 @@ def _list(title: str, items: Sequence[str]) -> Group:
         return Group(Text(f"{title}: none"))
     lines = [Padding(Text(f"• {item}"), (0, 0, 0, 2)) for item in items]
     return Group(Text(title, style="bold"), *lines)
+
+
+def plain_table(title: str) -> Table:
+    """An empty table in the style of the package."""
+    return Table(
+        title=title,
+        title_justify="left",
+        title_style="bold",
+        header_style="",
+        box=box.SIMPLE_HEAD,
+        pad_edge=False,
+    )
+
+
+def number_table(title: str, *columns: str) -> Table:
+    """An empty table of names, in its first column, and numbers."""
+    table = plain_table(title)
+    for number, column in enumerate(columns):
+        first = number == 0
+        table.add_column(column, justify="left" if first else "right", no_wrap=first)
+    return table
 
 
 def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:

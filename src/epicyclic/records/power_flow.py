@@ -6,9 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from epicyclic.elements.base import HOUSING
-from epicyclic.results.result import Result
+from epicyclic.records.contents import ResultContents
+from epicyclic.units import RPM
 
-__all__ = ["Line", "Link", "Stage", "TrainFlow", "flow_of", "train_flow"]
+__all__ = ["Line", "Link", "Stage", "TrainFlow", "power_flow"]
 
 NO_POWER = 1e-9
 """Power and torque, relative to the largest one, that is none. [1]"""
@@ -123,35 +124,45 @@ class TrainFlow:
         return max((abs(link.circulating) for link in self.links), default=0.0)
 
 
-def train_flow(result: Result) -> TrainFlow:
+def power_flow(result: ResultContents) -> TrainFlow:
     """The power flow of a result; a single set or pair is one stage.
 
     A link circulates what flows in closed loops from stage to stage; the rest leads from where
     power enters to where it leaves or is lost. Where several loops share a link, the split between
     them is one of several possible ones.
     """
-    members = result.flow.members
-    if result.train is None:
-        return flow_of(
-            {name: member.speed for name, member in members.items()},
-            {name: member.torque for name, member in members.items()},
-            {"": {name: member.torque for name, member in members.items()}},
-            {"": result.total},
+    speeds = {
+        name: (member.speed.value or 0.0) / RPM.to_display(1.0)
+        for name, member in result.members.items()
+    }
+    torques = {name: member.torque.value or 0.0 for name, member in result.members.items()}
+    if result.kind != "train":
+        stage = "gear set" if result.kind == "planetary" else "gear pair"
+        powers = {name: member.power.value or 0.0 for name, member in result.members.items()}
+        return _flow(
+            speeds,
+            torques,
+            {stage: torques},
+            {stage: result.total},
+            ends=(
+                max(powers, key=lambda key: powers[key]),
+                min(powers, key=lambda key: powers[key]),
+            ),
+            shafts={name: (f"{stage}.{name}",) for name in torques},
         )
-    train = result.train
-    return flow_of(
-        {name: member.speed for name, member in members.items()},
-        {name: member.torque for name, member in members.items()},
-        train.stages,
-        result.stage_losses,
-        clutches=train.clutches,
-        rolling=train.rolling,
-        ends=(train.input, train.output),
+    return _flow(
+        speeds,
+        torques,
+        result.stage_torques,
+        result.stages,
+        clutches=result.clutches,
+        rolling=result.rolling_power,
+        ends=(result.input, result.output),
         shafts=result.inputs.get("shafts", {}),
     )
 
 
-def flow_of(
+def _flow(
     speeds: Mapping[str, float],
     torques: Mapping[str, float],
     stages: Mapping[str, Mapping[str, float]],

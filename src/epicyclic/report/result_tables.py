@@ -1,0 +1,222 @@
+"""Tables of a result, for pages and terminals: losses, power flow, figures of all parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from epicyclic.records.contents import Measure, ResultContents, set_of
+from epicyclic.report.page import Cell, KeyFigure, Table, aligned, number
+from epicyclic.report.shown import MISSING
+from epicyclic.results.result import in_words
+from epicyclic.units import unit_text
+
+__all__ = [
+    "Labels",
+    "bearing_tables",
+    "key_figures",
+    "label_of",
+    "losses_table",
+    "members_table",
+    "mesh_tables",
+    "oil_table",
+    "operation_line",
+    "planets_table",
+    "share_row",
+    "users_text",
+]
+
+Labels = Mapping[str, str]
+"""What every number of a result is called, by its key."""
+_FLOW_NOTE = (
+    "Speeds are positive in one common sense of rotation; torques act on the gear set from "
+    "outside; positive power enters."
+)
+_NO_CONTACT = f'"{MISSING}": no load or no motion in the mesh.'
+
+
+def key_figures(result: ResultContents) -> list[KeyFigure]:
+    """What a reader looks for first."""
+    efficiency = result.efficiency
+    text = "" if efficiency is None else f"{100 * efficiency:.3f}"
+    ratio = [KeyFigure("ratio", number(result.ratio, "ratio", 5))]
+    rolling = KeyFigure("power ratio", number(result.power_ratio, "power_ratio"))
+    return [
+        *(ratio if result.kind == "train" else ()),
+        KeyFigure("efficiency", number(efficiency, "efficiency", text=text), "%" if text else ""),
+        KeyFigure("total loss", _watts(result.total, "total"), "W"),
+        KeyFigure("load-dependent", _watts(result.load_dependent, "load_dependent"), "W"),
+        KeyFigure("load-independent", _watts(result.load_independent, "load_independent"), "W"),
+        KeyFigure("input power", _watts(result.input_power / 1e3, "", 2), "kW"),
+        *(() if result.power_ratio is None else (rolling,)),
+    ]
+
+
+def operation_line(result: ResultContents) -> str:
+    """The operating point in one line."""
+    operation = result.inputs["operation"]
+    words = [f"{operation['speed']}, {operation['torque']}"]
+    if "output" in operation:
+        words.insert(0, f"{operation['input']} to {operation['output']}")
+    elif "input" in operation:
+        words.insert(0, f"input {operation['input']}")
+    if operation.get("state"):
+        words.insert(0, f"state {operation['state']}")
+    if operation.get("fixed"):
+        words.append(f"{operation['fixed']} fixed")
+    if "oil_inlet_temperature" in operation:
+        words.append(f"oil at {operation['oil_inlet_temperature']}")
+    return unit_text(", ".join(words))
+
+
+def _watts(value: float, key: str, digits: int = 1) -> Cell:
+    return number(value, key, text=f"{value:z.{digits}f}")
+
+
+def share_row(result: ResultContents, watts: float, key: str) -> tuple[Cell, Cell, Cell]:
+    """Power, share of the total loss, share of the input power."""
+    of_total = f"{watts / result.total:z.1%}" if result.total else ""
+    of_input = f"{watts / result.input_power:z.3%}" if result.input_power else ""
+    return _watts(watts, key), aligned(of_total), aligned(of_input)
+
+
+def losses_table(result: ResultContents) -> Table:
+    """The losses of a single set, group by group."""
+    rows: list[tuple[Cell, ...]] = []
+    strong = []
+    for group in dict.fromkeys(result.groups.values()):
+        for name, watts in result.losses.items():
+            if result.groups[name] != group:
+                continue
+            words = Cell(name.replace("_", " "))
+            if name in result.not_included:
+                rows.append((words, Cell("not included"), Cell(""), Cell("")))
+            else:
+                rows.append((words, *share_row(result, watts, f"losses.{name}")))
+        key = group.replace("-", "_")
+        strong.append(len(rows))
+        rows.append((Cell(group), *share_row(result, getattr(result, key), key)))
+    strong.append(len(rows))
+    rows.append((Cell("total"), *share_row(result, result.total, "total")))
+    head = ("", "loss, W", "of total", "of input")
+    return Table(head, tuple(rows), "Losses", frozenset(strong))
+
+
+def members_table(result: ResultContents) -> Table:
+    """Speeds, torques and powers of the members of a single set."""
+    rows = tuple(
+        (
+            Cell(name),
+            number(member.speed.value, f"members.{name}.speed", 6),
+            number(member.torque.value, f"members.{name}.torque", 6),
+            number(member.power.value, f"members.{name}.power", 7),
+        )
+        for name, member in result.members.items()
+    )
+    first = next(iter(result.members.values()))
+    units = (first.speed.unit, first.torque.unit, first.power.unit)
+    heads = (
+        f"{name}, {unit_text(unit)}"
+        for name, unit in zip(("speed", "torque", "power"), units, strict=True)
+    )
+    return Table(("", *heads), rows, "Power flow", note=_FLOW_NOTE)
+
+
+def planets_table(result: ResultContents) -> tuple[Table, ...]:
+    """Where the planets are and how much each carries; nothing without planets."""
+    if not result.planet_angles.value:
+        return ()
+    rows = tuple(
+        (
+            Cell(f"{place + 1}"),
+            number(angle, f"planet_angles.{place}", 7),
+            number(share, f"planet_shares.{place}", 4, f"{share:.2%}"),
+        )
+        for place, (angle, share) in enumerate(
+            zip(result.planet_angles.value, result.planet_shares.value, strict=True)
+        )
+    )
+    unit = unit_text(result.planet_angles.unit)
+    return (Table(("planet", f"angle, {unit}", "share of the torque"), rows, "Planets"),)
+
+
+def mesh_tables(result: ResultContents, labels: Labels) -> Iterable[Table]:
+    """Figures of the meshes of each set side by side."""
+    sets: dict[str, dict[str, dict[str, Measure]]] = {}
+    for key, figures in result.meshes.items():
+        sets.setdefault(set_of(key), {})[key] = figures
+    for name, meshes in sets.items():
+        title = f"Meshes of {in_words(name)}" if name else "Meshes"
+        idle = any(mesh["hertz_pressure_max"].value is None for mesh in meshes.values())
+        yield _side_by_side(labels, title, "meshes", meshes, _NO_CONTACT if idle else "")
+
+
+def bearing_tables(result: ResultContents, labels: Labels) -> Iterable[Table]:
+    """Figures of planet bearings."""
+    if result.planet_bearing is not None:
+        part = "planet_bearing"
+        yield _figure_table(labels, "Planet bearing", part, result.planet_bearing)
+    if result.bearings:
+        yield _side_by_side(labels, "Planet bearings", "bearings", result.bearings)
+
+
+def oil_table(result: ResultContents, labels: Labels) -> Iterable[Table]:
+    """Oil and mixture of a single set."""
+    if result.fluid is not None:
+        yield _figure_table(labels, "Oil", "fluid", result.fluid)
+
+
+def _figure_table(labels: Labels, title: str, part: str, figures: Mapping[str, Measure]) -> Table:
+    """Figures of one part."""
+    rows = tuple(
+        (
+            Cell(label_of(labels, part, name)),
+            number(measure.value, f"{part}.{name}"),
+            Cell(unit_text(measure.unit)),
+        )
+        for name, measure in figures.items()
+    )
+    return Table(("", "value", "unit"), rows, title)
+
+
+def _side_by_side(
+    labels: Labels,
+    title: str,
+    place: str,
+    parts: Mapping[str, Mapping[str, Measure]],
+    note: str = "",
+) -> Table:
+    """Figures of parts of one kind."""
+    keys = dict.fromkeys(key for figures in parts.values() for key in figures)
+    rows = []
+    for key in keys:
+        found = {name: figures[key] for name, figures in parts.items() if key in figures}
+        first = next(iter(found))
+        cells = (
+            number(found[name].value, f"{place}.{name}.{key}") if name in found else Cell("")
+            for name in parts
+        )
+        unit = Cell(unit_text(found[first].unit))
+        rows.append((Cell(label_of(labels, first, key)), *cells, unit))
+    heads = (name.rpartition(".")[2].replace("_", " ") for name in parts)
+    if len(set(map(set_of, parts))) > 1:
+        heads = (in_words(name) for name in parts)
+    return Table(("", *heads, "unit"), tuple(rows), title, note=note)
+
+
+def label_of(labels: Labels, part: str, key: str) -> str:
+    """Label of a figure without the name of its part."""
+    name = f"{part}_{key}"
+    return labels[name].partition(": ")[2] if name in labels else key.replace("_", " ")
+
+
+def users_text(names: Iterable[str]) -> str:
+    """Losses that have one method, those of a set of a train together."""
+    sets: dict[str, list[str]] = {}
+    for name in names:
+        owner, _, term = name.rpartition(".")
+        sets.setdefault(owner, []).append(term.replace("_", " "))
+    parts = (
+        f"{in_words(owner)}: {', '.join(terms)}" if owner else ", ".join(terms)
+        for owner, terms in sets.items()
+    )
+    return "; ".join(parts)
