@@ -1,21 +1,35 @@
-"""Friction models side by side on one case."""
+"""Friction models side by side on one case, and which of them suits it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from epicyclic.analysis.sets_of import build_computed
 from epicyclic.analysis.solve import solve
-from epicyclic.builders.models import friction_of, friction_settings, resolve_models
+from epicyclic.builders.models import (
+    SetCase,
+    fitted_oil_model,
+    friction_of,
+    friction_settings,
+    resolve_models,
+    standing_of,
+)
 from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.elements.base import LOAD_DEPENDENT
+from epicyclic.losses.fitted_or_formula import FittedOrSchlenk
 from epicyclic.losses.friction import FRICTION_MODELS
-from epicyclic.results.result import Result
+from epicyclic.losses.validity import ValidityFlag, range_left, share_text
+from epicyclic.results.result import Result, in_words
 
-__all__ = ["FrictionComparison", "compare_friction"]
+__all__ = ["FrictionComparison", "compare_friction", "recommended"]
+
+MOSTLY = 0.5
+"""Share of the loss outside its range up to which a model made for the oil is preferred. [1]"""
+_OF_ALL_OILS = ("schlenk", "niemann-winter")
+"""Fitted to gear tests with many oils, the one recommended first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +50,14 @@ class FrictionComparison:
         The same by mean friction times Ohlendorf's loss factor. [W]
     flagged : bool
         True if the model was used outside the range in which it was made.
+    reasons : tuple of str
+        Which ranges it leaves, by how much, and with what share of the loss.
+    outside : float
+        Share of the sliding loss outside its range. [1]
+    other_oil : str
+        The fluid that it was made for, if that is not the oil of the case; else empty.
+    standing : str
+        How well it is known to be right.
     """
 
     name: str
@@ -46,6 +68,10 @@ class FrictionComparison:
     sliding: float
     quick: float
     flagged: bool
+    reasons: tuple[str, ...]
+    outside: float
+    other_oil: str
+    standing: str
 
 
 def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
@@ -53,8 +79,8 @@ def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
 
     In a train all sets get the same model; none is chosen if the case chooses several.
 
-    The model ``table`` takes part if the case has a friction table, ``fitted`` and ``ehl-direct``
-    if the case chooses them.
+    The model ``table`` takes part if the case has a friction table, ``fitted-or-schlenk`` if there
+    are fitted models of the oil, ``fitted`` and ``ehl-direct`` if the case chooses them.
 
     Raises
     ------
@@ -65,13 +91,15 @@ def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
     owners = [own for _, own in set_cases(case, built.sets)]
     chosen = {resolve_models(own)["friction"] for own in owners}
     rows = []
-    for name in dict.fromkeys([*FRICTION_MODELS, *sorted(chosen)]):
-        if name == "table" and friction_settings(owners[0]).table is None:
-            continue
+    for name in dict.fromkeys([*_models_for(owners), *sorted(chosen)]):
         local = solve(_with(case, {"friction": name, "mesh": "local"}))
         quick_case = _with(case, {"friction": name, "mesh": "loss-factor"})
         quick = solve(quick_case)
-        model = friction_of(next(own for _, own in set_cases(quick_case, built.sets)))
+        own = next(own for _, own in set_cases(quick_case, built.sets))
+        model = friction_of(own)
+        flags = [flag for flag in local.flags if flag.use.role == "friction"]
+        fluid = model.made_for
+        other = fluid is not None and fluid.key != own.lubricant.oil.friction_regression
         rows.append(
             FrictionComparison(
                 name=name,
@@ -81,12 +109,73 @@ def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
                 mean_friction={key: mesh.friction_mean for key, mesh in local.meshes.items()},
                 sliding=_sliding(local),
                 quick=_sliding(quick),
-                flagged=any(
-                    (flag.use.role, flag.use.model) == ("friction", name) for flag in local.flags
-                ),
+                flagged=bool(flags),
+                reasons=tuple(_reason(flag) for flag in flags),
+                outside=_outside(local, flags),
+                other_oil=fluid.title if other and fluid is not None else "",
+                standing=standing_of(own)["friction"].removeprefix(f"{name}: "),
             )
         )
     return tuple(rows)
+
+
+def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison, str]:
+    """The model that suits the oil and the conditions, and why.
+
+    A model made for the oil comes first, if most of the loss lies where it was made; then the
+    formulas of gear tests, which many oils stand behind; of these the one that leaves its range
+    least.
+    """
+    by_name = {row.name: row for row in rows}
+    own = [by_name[name] for name in ("mixed-ehl", FittedOrSchlenk.name) if name in by_name]
+    own = [row for row in own if not row.other_oil]
+    for row in own:
+        if row.outside <= MOSTLY:
+            how = (
+                "made for this oil" if row.name == "mixed-ehl" else "fitted to contacts of this oil"
+            )
+            return row, f"it was {how}, and {_inside(row)}"
+    general = min((by_name[name] for name in _OF_ALL_OILS), key=lambda row: row.outside)
+    why = "it was fitted to gear tests with many oils"
+    if own:
+        why += f", while {own[0].outside:.0%} of the loss is outside the range of {own[0].name}"
+    else:
+        why += ", and no model was made for this oil ('epicyclic oil characterise' makes one)"
+    return general, f"{why}; {_inside(general)}"
+
+
+def _inside(row: FrictionComparison) -> str:
+    if not row.flagged:
+        return "all of the loss is within its range"
+    return f"{1 - row.outside:.0%} of the loss is within its range"
+
+
+def _models_for(owners: Sequence[SetCase]) -> Iterator[str]:
+    """The models that can be used for every set."""
+    for name in FRICTION_MODELS:
+        if name != "table" or friction_settings(owners[0]).table is not None:
+            yield name
+    fitted = [fitted_oil_model(own) for own in owners]
+    if all(model is not None and "friction" in model.fits for model in fitted):
+        yield FittedOrSchlenk.name
+
+
+def _reason(flag: ValidityFlag) -> str:
+    """``"sun mesh: Hertz pressure 0.1 to 0.4 GPa; range from 0.5 GPa (...), 20 % of the loss"``."""
+    left = range_left([flag]).removeprefix("Out of range: ").removesuffix(".")
+    instead = f", {flag.use.instead} takes over" if flag.use.instead else ""
+    return f"{flag.use.where}: {left}, {share_text(flag.share)} of the loss{instead}"
+
+
+def _outside(result: Result, flags: Sequence[ValidityFlag]) -> float:
+    """Share of the sliding loss of all meshes that is outside some range. [1]"""
+    total, outside = 0.0, 0.0
+    for key in result.meshes:
+        watts = result.losses[f"{key}_sliding"]
+        shares = [flag.share for flag in flags if flag.use.where == in_words(key)]
+        total += watts
+        outside += watts * max(shares, default=0.0)
+    return outside / total if total else 0.0
 
 
 def _with(case: Case, models: Mapping[str, str]) -> Case:

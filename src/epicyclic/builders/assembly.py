@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from epicyclic.builders.built import Built
-from epicyclic.builders.models import resolve_models
+from epicyclic.builders.models import resolve_models, standing_of
 from epicyclic.builders.notes import case_notes, general_notes
 from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case
@@ -63,6 +63,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         },
         fluid=None if fluids is None else fluids.figures,
         models=dict(_models(case, built)),
+        standing=dict(_standing(case, built)),
         flags=(*flags, *_flags(solution)),
         notes=(
             *general_notes(terms, flow.input_power, flow.efficiency),
@@ -169,6 +170,12 @@ def _models(case: Case, built: Built) -> Iterator[tuple[str, str]]:
     for key, own in set_cases(case, built.sets):
         for name, model in resolve_models(own).items():
             yield joined_key(key, name), model
+
+
+def _standing(case: Case, built: Built) -> Iterator[tuple[str, str]]:
+    for key, own in set_cases(case, built.sets):
+        for role, phrase in standing_of(own).items():
+            yield joined_key(key, role), phrase
 
 
 def _set_notes(case: Case, built: Built, solution: Solution) -> Iterator[str]:

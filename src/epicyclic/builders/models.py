@@ -19,10 +19,14 @@ from epicyclic.elements.gear_set import LossChoice
 from epicyclic.elements.pocket_flow import PocketSettings
 from epicyclic.losses.direct import DirectSettings, EhlDirect
 from epicyclic.losses.fitted import FittedFriction, FittedRolling
+from epicyclic.losses.fitted_or_formula import FittedOrGoksem, FittedOrSchlenk
 from epicyclic.losses.friction import FrictionModel, FrictionSettings, friction_model
 from epicyclic.losses.friction.user import FrictionMap
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
+from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN
 from epicyclic.losses.rolling import ROLLING_MODELS, MixedEhlRolling, RollingModel
+from epicyclic.losses.standing import STANDING, standing
+from epicyclic.oilmodel.builtin import builtin_model
 from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.memory import FlowMemory
 from epicyclic.pocketing.table import FlowTables
@@ -40,6 +44,7 @@ __all__ = [
     "mesh_models",
     "resolve_models",
     "rolling_of",
+    "standing_of",
 ]
 
 
@@ -49,10 +54,9 @@ SetCase = PlanetaryCase | GearPairCase | ListedCase
 
 def resolve_models(case: SetCase) -> dict[str, str]:
     """The models of a case by key, ``auto`` replaced by what it stands for."""
-    own = _is_own_fluid(case)
     automatic = {
-        "friction": "mixed-ehl" if own else "schlenk",
-        "rolling": "mixed-ehl" if own else "goksem-hargreaves",
+        "friction": _automatic(case, "friction", FittedOrSchlenk.name, "schlenk"),
+        "rolling": _automatic(case, "rolling_loss", FittedOrGoksem.name, "goksem-hargreaves"),
     }
     keys = ["friction", "rolling", "load_distribution", "mesh", "pocketing", "drag"]
     chosen = {key: str(getattr(case.models, key)) for key in keys}
@@ -71,13 +75,31 @@ def bearing_model(case: PlanetaryCase | ListedCase, bearing: PlanetBearing | Non
     """The model of the loss of a planet bearing, ``auto`` replaced by what it stands for."""
     if case.models.bearing != "auto":
         return case.models.bearing
-    caged = bearing is None or bearing.cage == "caged"
-    return "mixed-ehl" if _is_own_fluid(case) and caged else "palmgren"
+    if bearing is not None and bearing.cage != "caged":
+        return "palmgren"
+    return _automatic(case, "bearing_rolling_loss", FITTED_OR_PALMGREN, "palmgren")
 
 
-def _is_own_fluid(case: SetCase) -> bool:
-    """True for the oil for which the regressions of mixed EHL were made."""
-    return case.lubricant.oil.friction_regression == TALBOT_FLUID.key
+def _automatic(case: SetCase, quantity: str, fitted: str, formula: str) -> str:
+    """The regressions of mixed EHL for their fluid, what was fitted for another, or a formula."""
+    if case.lubricant.oil.friction_regression == TALBOT_FLUID.key:
+        return "mixed-ehl"
+    model = fitted_oil_model(case)
+    return formula if model is None or quantity not in model.fits else fitted
+
+
+def standing_of(case: SetCase) -> dict[str, str]:
+    """The models of friction, rolling loss and bearings, and how well each is known to be right."""
+    models, fitted, form = resolve_models(case), fitted_oil_model(case), case.models.fitted_form
+    if models["mesh"] == "loss-factor":
+        del models["rolling"]
+    return {
+        role: "; ".join(
+            f"{name}: {standing(role, name, fitted, form)}" for name in models[role].split(", ")
+        )
+        for role in STANDING
+        if role in models
+    }
 
 
 def gear_tables(case: SetCase) -> tuple[GearTable, ...]:
@@ -104,8 +126,9 @@ def friction_settings(case: SetCase) -> FrictionSettings:
 def friction_of(case: SetCase) -> FrictionModel:
     """The friction model of a case."""
     name = resolve_models(case)["friction"]
-    if name == FittedFriction.name:
-        return FittedFriction(fitted_oil_model(case), case.models.fitted_form)
+    if name in (FittedFriction.name, FittedOrSchlenk.name):
+        fitted = FittedFriction(_given_oil_model(case), case.models.fitted_form)
+        return fitted if name == FittedFriction.name else FittedOrSchlenk(fitted)
     if name == EhlDirect.name:
         return EhlDirect(_direct_settings(case))
     return friction_model(name, friction_settings(case))
@@ -132,8 +155,9 @@ def _direct_settings(case: SetCase) -> DirectSettings:
 def rolling_of(case: SetCase) -> RollingModel:
     """The rolling-loss model of a case."""
     name = resolve_models(case)["rolling"]
-    if name == FittedRolling.name:
-        return fitted_rolling(case, "rolling_loss")
+    if name in (FittedRolling.name, FittedOrGoksem.name):
+        fitted = fitted_rolling(case, "rolling_loss")
+        return fitted if name == FittedRolling.name else FittedOrGoksem(fitted)
     if name == MixedEhlRolling.name:
         return MixedEhlRolling(case.models.oil_beyond_range == "held")
     return ROLLING_MODELS[name]
@@ -141,13 +165,21 @@ def rolling_of(case: SetCase) -> RollingModel:
 
 def fitted_rolling(case: SetCase, quantity: str) -> FittedRolling:
     """The fitted rolling loss of the teeth or of the bearings of a case."""
-    return FittedRolling(fitted_oil_model(case), case.models.fitted_form, quantity)
+    return FittedRolling(_given_oil_model(case), case.models.fitted_form, quantity)
 
 
-def fitted_oil_model(case: SetCase) -> OilModel:
-    """The file of fitted models that the case names, and was checked to have."""
-    assert case.models.oil_model is not None
-    return read_oil_model(case.folder / case.models.oil_model)
+def fitted_oil_model(case: SetCase) -> OilModel | None:
+    """The fitted models that the case names, or those built in for its oil; None without either."""
+    if case.models.oil_model is not None:
+        return read_oil_model(case.folder / case.models.oil_model)
+    return builtin_model(case.lubricant.oil, case.lubricant.pressure_viscosity_factor)
+
+
+def _given_oil_model(case: SetCase) -> OilModel:
+    """The fitted models of a case that asks for them, and was checked to have them."""
+    model = fitted_oil_model(case)
+    assert model is not None
+    return model
 
 
 def fluids_of(case: Case) -> Fluids:

@@ -22,9 +22,9 @@ from epicyclic.elements.figures import MeshFigures
 from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.geometry.assembly import are_evenly_spaced
 from epicyclic.geometry.gear import Gear
-from epicyclic.losses.fitted import FittedFriction
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
+from epicyclic.oilmodel.builtin import changed_properties
 from epicyclic.results.result import LossTerm
 
 __all__ = ["NOT_INCLUDED", "case_notes", "general_notes", "load_notes"]
@@ -74,9 +74,7 @@ def fluid_notes(case: SetCase) -> tuple[str, ...]:
         for key, (model, fluid) in fluids.items()
         if fluid is not None and fluid.key != oil.friction_regression
     ]
-    if FittedFriction.name in models.values() and fitted_oil_model(case).oil != oil:
-        fitted = fitted_oil_model(case).oil.name
-        notes.append(f"models.oil_model was fitted for {fitted}, not for {oil.name}.")
+    notes += _fitted_notes(case, models)
     if case.models.temperatures != "inlet" and friction_of(case).takes_oil_temperature:
         notes.append(
             f"models.friction: {models['friction']} was fitted to tests by the temperature of "
@@ -86,6 +84,20 @@ def fluid_notes(case: SetCase) -> tuple[str, ...]:
     if factor != 1:
         notes.append(f"The pressure-viscosity coefficient of the oil is multiplied by {factor:g}.")
     return tuple(notes)
+
+
+def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:
+    """On fitted models of another oil, and on those of this name that are not used."""
+    oil, model = case.lubricant.oil, fitted_oil_model(case)
+    uses_fit = any("fitted" in name for name in models.values())
+    if uses_fit and case.models.oil_model is not None and model is not None and model.oil != oil:
+        yield f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}."
+    changed = changed_properties(oil, case.lubricant.pressure_viscosity_factor)
+    if model is None and changed:
+        yield (
+            f"The models built in for {oil.name} are not used, because this oil differs from it in "
+            f"{', '.join(changed)}; 'epicyclic oil characterise' fits models for it."
+        )
 
 
 def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:

@@ -29,7 +29,7 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.tools import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.fitted import FittedRolling
-from epicyclic.losses.planet_bearing import RollerBearing
+from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN, RollerBearing
 from epicyclic.machine.machine import Machine, MeshRow, Operation
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Layout
@@ -215,17 +215,17 @@ def planet_bearing(
     """The planet bearing that `table` describes, with the models of the case."""
     if table is None:
         return None
-    model: str | FittedRolling = bearing_model(case, table)
-    if model == FittedRolling.name:
-        model = fitted_rolling(case, "bearing_rolling_loss")
+    name = bearing_model(case, table)
+    is_fitted = name in (FittedRolling.name, FITTED_OR_PALMGREN)
     factor = table.viscous_factor
     return PlanetBearing(
         bearing=roller_bearing(table, case.numerics),
-        model=model,
+        model=fitted_rolling(case, "bearing_rolling_loss") if is_fitted else name,
         palmgren_coefficient=palmgren_coefficient(table),
         viscous_factor=VISCOUS_FACTOR_PER_ROW * table.rows if factor is None else factor,
         conductivity=table.material.thermal_conductivity,
         oil_held=case.models.oil_beyond_range == "held",
+        palmgren_beyond=name == FITTED_OR_PALMGREN,
     )
 
 

@@ -23,7 +23,7 @@ from epicyclic.case.model_tables import (
     PlanetaryModels,
 )
 from epicyclic.case.oil_laws import law_problems
-from epicyclic.case.operation_tables import GearPairOperation, PlanetaryOperation
+from epicyclic.case.operation_tables import GearPairOperation, Lubricant, PlanetaryOperation
 from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.case.schema import Table
 from epicyclic.case.thermal_checks import check_outlet, check_thermal, check_ways_out
@@ -31,7 +31,8 @@ from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.assembly import are_evenly_spaced
-from epicyclic.oilmodel.model import read_oil_model
+from epicyclic.oilmodel.builtin import builtin_model
+from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.stored import read_stored
 
 __all__ = ["check_bore", "check_cage", "check_rollers", "cross_check"]
@@ -58,7 +59,7 @@ def cross_check(
     models = sections.get("models")
     if isinstance(models, GearPairModels):
         problems += _check_friction_model(models, {*given, *sections})
-        problems += _check_oil_model(models, folder)
+        problems += _check_oil_model(models, folder, sections.get("lubricant"))
         problems += _check_pocketing_table(models, folder)
     solver = sections.get("contact_solver")
     if isinstance(solver, ContactSolver):
@@ -263,36 +264,45 @@ def _check_friction_model(models: GearPairModels, given: Collection[str]) -> lis
     ]
 
 
-def _check_oil_model(models: GearPairModels, folder: Path) -> list[Problem]:
-    """A fitted model needs its file, and in it what is asked of it."""
+def _check_oil_model(
+    models: GearPairModels, folder: Path, lubricant: Table | None
+) -> list[Problem]:
+    """A fitted model needs its file or one built in for the oil, and in it what is asked of it."""
     needed = {"friction": "friction", "rolling": "rolling_loss", "bearing": "bearing_rolling_loss"}
     asked = {
-        key: quantity for key, quantity in needed.items() if getattr(models, key, "") == "fitted"
+        key: quantity
+        for key, quantity in needed.items()
+        if getattr(models, key, "").startswith("fitted")
     }
-    if not asked:
-        return []
-    if models.oil_model is None:
-        return [
-            Problem(
-                f"models.{key}",
-                '"fitted"',
-                "needs a file of fitted models.",
-                "Give models.oil_model, a file of 'epicyclic oil characterise'.",
-            )
-            for key in asked
-        ]
     try:
-        fits = read_oil_model(folder / models.oil_model).fits
+        model = _oil_model(models, folder, lubricant)
     except InputError as error:
         return list(error.problems)
+    if not asked:
+        return []
+    if model is None:
+        remedy = "Give models.oil_model, a file of 'epicyclic oil characterise'."
+        why = "needs a file of fitted models: none is built in for this oil."
+        return [Problem(f"models.{key}", f'"{getattr(models, key)}"', why, remedy) for key in asked]
     problems = []
     for key, quantity in asked.items():
-        forms = [fitted.form for fitted in fits[quantity].forms] if quantity in fits else []
+        forms = (
+            [fitted.form for fitted in model.fits[quantity].forms] if quantity in model.fits else []
+        )
         if models.fitted_form not in forms:
+            given = models.oil_model or f"that of {model.oil.name}"
             allowed = f"has no {quantity.replace('_', ' ')} of the form {models.fitted_form}."
             remedy = f"Choose another models.{key} or models.fitted_form."
-            problems.append(Problem("models.oil_model", models.oil_model, allowed, remedy))
+            problems.append(Problem("models.oil_model", given, allowed, remedy))
     return problems
+
+
+def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> OilModel | None:
+    if models.oil_model is not None:
+        return read_oil_model(folder / models.oil_model)
+    if not isinstance(lubricant, Lubricant):
+        return None
+    return builtin_model(lubricant.oil, lubricant.pressure_viscosity_factor)
 
 
 def _check_pocketing_table(models: GearPairModels, folder: Path) -> list[Problem]:

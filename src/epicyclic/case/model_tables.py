@@ -87,6 +87,7 @@ FrictionName = Literal[
     "constant",
     "table",
     "fitted",
+    "fitted-or-schlenk",
     "ehl-direct",
 ]
 
@@ -188,8 +189,8 @@ class GearPairModels(Table):
 
     friction: FrictionName = Field(
         default="auto",
-        description="auto: mixed-ehl for the fluid it was made for, else schlenk; ehl-direct: the "
-        "contacts of the mesh solved.",
+        description="auto: mixed-ehl for the fluid it was made for, fitted-or-schlenk for an oil "
+        "with fitted models, else schlenk; ehl-direct: the contacts of the mesh solved.",
     )
     constant_friction: Number = Field(
         default=0.04, ge=0, le=1, description="For friction = constant."
@@ -207,14 +208,17 @@ class GearPairModels(Table):
         le=1,
         description="Of separated contact, for matsumoto and doleschel (estimate, as above).",
     )
-    rolling: Literal["auto", "mixed-ehl", "goksem-hargreaves", "fitted"] = Field(
+    rolling: Literal[
+        "auto", "mixed-ehl", "goksem-hargreaves", "fitted", "fitted-or-goksem-hargreaves"
+    ] = Field(
         default="auto",
-        description="auto: mixed-ehl for the fluid it was made for, else goksem-hargreaves.",
+        description="auto: mixed-ehl for the fluid it was made for, fitted-or-goksem-hargreaves "
+        "for an oil with fitted models, else goksem-hargreaves.",
     )
     oil_model: str | None = Field(
         default=None,
-        description="For fitted: the file of 'epicyclic oil characterise', from the folder of the "
-        "case.",
+        description="For fitted and auto: a file of 'epicyclic oil characterise', from the folder "
+        "of the case. Default: the models built in for the oil.",
     )
     fitted_form: Literal["structured", "regression"] = Field(
         default="structured", description="For fitted: which form of the file."
@@ -262,8 +266,10 @@ class GearPairModels(Table):
 class PlanetaryModels(GearPairModels):
     """Which method computes what, with the planet bearing."""
 
-    bearing: Literal["auto", "mixed-ehl", "palmgren", "fitted"] = Field(
-        default="auto", description="auto: mixed-ehl for the fluid it was made for, else palmgren."
+    bearing: Literal["auto", "mixed-ehl", "palmgren", "fitted", "fitted-or-palmgren"] = Field(
+        default="auto",
+        description="auto: of caged rollers mixed-ehl for the fluid it was made for and "
+        "fitted-or-palmgren for an oil with fitted models, else palmgren.",
     )
     bearing_viscous: Literal["harris"] = "harris"
     planet_tilt: Literal["left-out", "coupled"] = Field(

@@ -79,12 +79,22 @@ def check(case: str, changes: tuple[str, ...]) -> None:
 @click.command()
 @case_argument
 @set_option
-def friction(case: str, changes: tuple[str, ...]) -> None:
-    """Compare all friction models on a case, with the spread."""
+@plot_option("Draw the sliding loss with every model to FILE (.png, .svg, .pdf).")
+def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
+    """Compare all friction models on a case: spread, ranges left, and which one suits."""
     from epicyclic.analysis.compare import compare_friction
     from epicyclic.report.tables import friction_table, terminal
 
-    terminal().print(friction_table(compare_friction(load_with(case, changes))))
+    if plot is not None:
+        check_ending("--plot", plot)
+    loaded = load_with(case, changes)
+    with telling_contacts(loaded):
+        rows = compare_friction(loaded)
+    terminal().print(friction_table(rows))
+    if plot is not None:
+        from epicyclic.plots.friction import friction_figure
+
+        draw(friction_figure(rows, loaded.title), plot)
 
 
 @click.command()

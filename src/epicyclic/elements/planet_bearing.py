@@ -57,6 +57,8 @@ class PlanetBearing:
         Thermal, of races and rollers. [W/(m K)]
     oil_held : bool
         False to continue the model mixed-ehl beyond its oil.
+    palmgren_beyond : bool
+        True if Palmgren's coefficient takes over where a fitted loss was not simulated.
     """
 
     bearing: RollerBearing
@@ -65,11 +67,17 @@ class PlanetBearing:
     viscous_factor: float
     conductivity: float
     oil_held: bool = True
+    palmgren_beyond: bool = False
 
     @property
     def method(self) -> tuple[str, str]:
         """How the load-dependent loss is found, and where that is printed."""
         if isinstance(self.model, FittedRolling):
+            if self.palmgren_beyond:
+                return (
+                    f"{self.model.title}, beyond them {PALMGREN_METHOD}",
+                    f"{self.model.source}; {PALMGREN_SOURCE}",
+                )
             return self.model.title, self.model.source
         if self.model == "mixed-ehl":
             return BEARING_METHOD, BEARING_SOURCE
@@ -115,12 +123,12 @@ def solve_bearing(
     bearing = own.bearing
     loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
     if isinstance(own.model, FittedRolling):
-        loss = fitted_rolling_loss(bearing, loads, speed, oil, own.model)
+        beyond = _palmgren(own, loads, load, speed) if own.palmgren_beyond else None
+        loss = fitted_rolling_loss(bearing, loads, speed, oil, own.model, beyond)
     elif own.model == "mixed-ehl":
         loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil, oil_held=own.oil_held)
     else:
-        watts = palmgren_loss(own.palmgren_coefficient, load.force, bearing.pitch_diameter, speed)
-        loss = BearingLoss(watts, palmgren_flags(bearing, loads, speed))
+        loss = _palmgren(own, loads, load, speed)
     viscous_loss = bearing_viscous_loss(
         own.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
     )
@@ -134,6 +142,14 @@ def solve_bearing(
         _bearing_figures(own, loads, load, speed, oil),
         loss.flags + viscous_flags(key.replace("_", " "), speed, bearing.pitch_diameter),
     )
+
+
+def _palmgren(
+    own: PlanetBearing, loads: RollerLoads, load: PlanetLoad, speed: float
+) -> BearingLoss:
+    bearing = own.bearing
+    watts = palmgren_loss(own.palmgren_coefficient, load.force, bearing.pitch_diameter, speed)
+    return BearingLoss(watts, palmgren_flags(bearing, loads, speed))
 
 
 def _bearing_figures(

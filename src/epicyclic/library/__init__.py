@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -19,6 +20,7 @@ __all__ = [
     "case_variants",
     "finishes",
     "materials",
+    "oil_model_file",
     "oil_names",
     "oil_table",
 ]
@@ -54,6 +56,12 @@ def oil_table(name: str) -> dict[str, Any]:
     if name not in oil_names():
         raise KeyError(name)
     return _read(_root().joinpath("oils", f"{name}.toml")) | {"name": name}
+
+
+def oil_model_file(name: str) -> Path | None:
+    """The file of the models fitted for a built-in oil; None if there is none."""
+    file = Path(str(_root().joinpath("oilmodels", f"{name}.json")))
+    return file if name in oil_names() and file.is_file() else None
 
 
 @cache

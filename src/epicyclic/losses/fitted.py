@@ -52,7 +52,7 @@ class FittedFriction:
     title: ClassVar = "fit to simulated contacts of the oil"
     made_for: ClassVar[RegressionFluid | None] = None
     takes_oil_temperature: ClassVar[bool] = False
-    QUANTITY: ClassVar = "friction"
+    quantity: ClassVar = "friction"
 
     model: OilModel
     form: str
@@ -65,11 +65,11 @@ class FittedFriction:
     @property
     def ranges(self) -> tuple[Range, ...]:
         """The domain of the fit."""
-        return tuple(domain_ranges(self.model, self.QUANTITY))
+        return tuple(domain_ranges(self.model, self.quantity))
 
     def coefficient(self, contact: LineContacts) -> FloatArray:
         """See the class. [1]"""
-        return self.model.value(self.QUANTITY, contact, self.form)
+        return self.model.value(self.quantity, contact, self.form)
 
 
 @dataclass(frozen=True, slots=True)

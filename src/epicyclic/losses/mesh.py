@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.fitted_or_formula import FittedOrGoksem, FittedOrSchlenk
 from epicyclic.losses.friction.base import FrictionModel
 from epicyclic.losses.rolling import RollingModel
 from epicyclic.losses.validity import Flags, ModelUse, SomeFlags, ValidityFlag, check_contacts
@@ -127,5 +128,9 @@ def _sliding_integral(tip1: float, tip2: float) -> float:
 def _flags(
     role: str, model: FrictionModel | RollingModel, contact: MeshContact, weight: FloatArray
 ) -> tuple[ValidityFlag, ...]:
-    use = ModelUse(role, model.name, contact.mesh.name)
-    return check_contacts(use, model.ranges, contact, weight)
+    where = contact.mesh.name
+    if isinstance(model, FittedOrSchlenk | FittedOrGoksem):
+        use = ModelUse(role, model.name, where, instead=model.beyond.name)
+        beyond = model.beyond_flags(role, contact, weight)
+        return (*check_contacts(use, model.ranges, contact, weight), *beyond)
+    return check_contacts(ModelUse(role, model.name, where), model.ranges, contact, weight)

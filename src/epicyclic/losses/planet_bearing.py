@@ -19,6 +19,7 @@ from epicyclic.kernels.line_contact import hertz_pressure
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss_at
 from epicyclic.kernels.roller_bearing import solve_roller_loads
 from epicyclic.losses.fitted import FittedRolling
+from epicyclic.losses.fitted_or_formula import weight_of_fit
 from epicyclic.losses.mixed_ehl_groups import (
     PRESSURE_VISCOSITY_RANGE,
     VISCOSITY_RANGE,
@@ -46,6 +47,7 @@ from epicyclic.units import (
 )
 
 __all__ = [
+    "FITTED_OR_PALMGREN",
     "BearingLoss",
     "RollerBearing",
     "RollerLoads",
@@ -59,6 +61,8 @@ __all__ = [
 
 FloatArray = NDArray[np.float64]
 
+FITTED_OR_PALMGREN = "fitted-or-palmgren"
+"""Name of the fitted loss with that of Palmgren beyond the simulations."""
 TOLERANCE = 1e-9
 """Residual force over the largest load at which the balance counts as met. [1]"""
 MAX_ITERATIONS = 100
@@ -344,18 +348,37 @@ def mixed_ehl_rolling_loss(
 
 
 def fitted_rolling_loss(
-    bearing: RollerBearing, loads: RollerLoads, speed: float, oil: OilState, model: FittedRolling
+    bearing: RollerBearing,
+    loads: RollerLoads,
+    speed: float,
+    oil: OilState,
+    model: FittedRolling,
+    beyond: BearingLoss | None = None,
 ) -> BearingLoss:
     """As `mixed_ehl_rolling_loss`, with rolling losses fitted to simulated contacts. [W]
 
-    Theory (O9).
+    Theory (O9), (O11).
+
+    Parameters
+    ----------
+    bearing, loads, speed, oil, model
+    beyond : BearingLoss, optional
+        That of Palmgren, which takes over beyond the simulations.
     """
     contacts = _outer_contacts(bearing, loads, speed, oil)
     if contacts is None:
         return BearingLoss(0.0)
     local = bearing.slice_width * model.loss_density(contacts)
-    use = ModelUse("bearing", model.name, "planet bearing")
-    return BearingLoss(float(local.sum()), check_contacts(use, model.ranges, contacts, local))
+    total = float(local.sum())
+    if beyond is None:
+        use = ModelUse("bearing", model.name, "planet bearing")
+        return BearingLoss(total, check_contacts(use, model.ranges, contacts, local))
+    within = float((weight_of_fit(model.model, model.quantity, contacts) * local).sum())
+    use = ModelUse("bearing", FITTED_OR_PALMGREN, "planet bearing", instead="palmgren")
+    flags = check_contacts(use, model.ranges, contacts, local)
+    if within == total:
+        return BearingLoss(total, flags)
+    return BearingLoss(within + (1 - within / total) * beyond.loss, (*flags, *beyond.flags))
 
 
 def _outer_contacts(

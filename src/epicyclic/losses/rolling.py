@@ -30,9 +30,10 @@ class RollingModel(Protocol):
     """A way to the rolling loss per contact length; attributes as those of `FrictionModel`."""
 
     name: ClassVar[str]
-    title: ClassVar[str]
     made_for: ClassVar[RegressionFluid | None]
 
+    @property
+    def title(self) -> str: ...
     @property
     def source(self) -> str: ...
     @property

@@ -27,6 +27,7 @@ __all__ = [
     "describe_flags",
     "held_in_range",
     "range_left",
+    "share_text",
 ]
 
 FloatArray = NDArray[np.float64]
@@ -105,14 +106,18 @@ class ModelUse:
         Its name there: ``"mixed-ehl"``.
     where : str
         ``"sun mesh"``.
+    instead : str
+        The model that takes over outside the range; empty if the model goes on there itself.
     """
 
     role: str
     model: str
     where: str
+    instead: str = ""
 
     def __str__(self) -> str:
-        return f"{self.role.replace('_', ' ')} {self.model} ({self.where})"
+        instead = f"; {self.instead} takes over" if self.instead else ""
+        return f"{self.role.replace('_', ' ')} {self.model} ({self.where}{instead})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +192,7 @@ def describe_flags(flags: Iterable[ValidityFlag]) -> tuple[str, ...]:
 
 
 def _sentence(group: list[ValidityFlag]) -> str:
-    models = ", ".join(f"{flag.use} {_percent(flag.share)}" for flag in group)
+    models = ", ".join(f"{flag.use} {share_text(flag.share)}" for flag in group)
     return f"{range_left(group)} Share of the loss: {models}."
 
 
@@ -212,7 +217,8 @@ def _limits(flag: ValidityFlag) -> str:
     return f"{format_number(flag.low)} to {format_number(flag.high)}"
 
 
-def _percent(share: float) -> str:
+def share_text(share: float) -> str:
+    """A share of the loss in whole percent."""
     return f"{share:.0%}" if share >= SMALLEST_SHOWN_SHARE else "under 1%"
 
 
@@ -269,14 +275,18 @@ def check_ranges(
 
 
 def check_contacts(
-    use: ModelUse, ranges: Iterable[Range], contacts: object, weight: FloatArray
+    use: ModelUse,
+    ranges: Iterable[Range],
+    contacts: object,
+    weight: FloatArray,
+    part: float = 1.0,
 ) -> tuple[ValidityFlag, ...]:
     """`check_ranges` of line contacts; local quantities count with the loss where they occur."""
     flags: tuple[ValidityFlag, ...] = ()
     for item in ranges:
         values = item.found_in(contacts)
         local = values.shape == weight.shape
-        flags += check_ranges(use, (item,), {item.name: values}, weight if local else 1.0)
+        flags += check_ranges(use, (item,), {item.name: values}, weight if local else 1.0, part)
     return flags
 
 

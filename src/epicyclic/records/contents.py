@@ -94,6 +94,7 @@ class Use(_Part):
     role: str
     model: str
     where: str
+    instead: str = ""
 
 
 class Validity(_Part):
@@ -201,6 +202,7 @@ class ResultContents(_Part):
     groups: dict[str, Group]
     citations: dict[str, str]
     models: dict[str, str]
+    standing: dict[str, str] = {}
     validity: tuple[Validity, ...]
     members: dict[str, Member]
     meshes: dict[str, dict[str, Measure]]

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import xarray as xr
 
+from epicyclic.losses.validity import ModelUse
 from epicyclic.records.contents import ResultContents
 from epicyclic.records.record import ResultRecord, sets_of
 from epicyclic.report.heat_tables import heat_items, ways_items
@@ -30,6 +31,7 @@ from epicyclic.report.result_tables import (
     mesh_tables,
     oil_table,
     planets_table,
+    standing_items,
     users_text,
 )
 from epicyclic.report.train_tables import (
@@ -53,7 +55,10 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
         Section(
             "losses",
             "Losses",
-            (_train_losses if result.kind == "train" else _losses)(result, drawings),
+            (
+                *standing_items(result),
+                *(_train_losses if result.kind == "train" else _losses)(result, drawings),
+            ),
         ),
         Section("validity", "Validity", _validity(result), _validity_lead(result)),
         Section("temperatures", "Temperatures", _heat(result, drawings)),
@@ -157,7 +162,7 @@ def _validity(result: ResultContents) -> tuple[Table | Listing, ...]:
                 Cell(f"{_number(flag.found_low)} to {_number(flag.found_high)}", about="nowrap"),
                 Cell(_limits(flag.low, flag.high), about="nowrap"),
                 Cell(unit_text(flag.unit)),
-                Cell(f"{flag.use.role.replace('_', ' ')} {flag.use.model}, {flag.use.where}"),
+                Cell(str(ModelUse(**flag.use.model_dump()))),
                 aligned("under 1%" if flag.share < 0.01 else f"{flag.share:.0%}"),
                 Cell(flag.source),
             )

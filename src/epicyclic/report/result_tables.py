@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from epicyclic.records.contents import Measure, ResultContents, set_of
-from epicyclic.report.page import Cell, KeyFigure, Table, aligned, number
+from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number
 from epicyclic.report.shown import MISSING
 from epicyclic.results.result import in_words
 from epicyclic.units import unit_text
@@ -22,6 +22,7 @@ __all__ = [
     "operation_line",
     "planets_table",
     "share_row",
+    "standing_items",
     "users_text",
 ]
 
@@ -31,6 +32,7 @@ _FLOW_NOTE = (
     "Speeds are positive in one common sense of rotation; torques act on the gear set from "
     "outside; positive power enters."
 )
+_ROLES = {"friction": "friction", "rolling": "rolling loss", "bearing": "planet bearing"}
 _NO_CONTACT = f'"{MISSING}": no load or no motion in the mesh.'
 
 
@@ -220,3 +222,17 @@ def users_text(names: Iterable[str]) -> str:
         for owner, terms in sets.items()
     )
     return "; ".join(parts)
+
+
+def standing_items(result: ResultContents) -> Iterator[Listing]:
+    """Which models were used and how well each is known, those that sets share on one line."""
+    users: dict[tuple[str, str], list[str]] = {}
+    for key, phrase in result.standing.items():
+        owner, _, role = key.rpartition(".")
+        users.setdefault((role, phrase), []).append(owner)
+    lines = []
+    for (role, phrase), owners in users.items():
+        whose = f" of {', '.join(owners)}" if any(owners) else ""
+        lines.append(f"{_ROLES[role]}{whose}: {phrase}")
+    if lines:
+        yield Listing(tuple(lines), "Models, and how well they are known")

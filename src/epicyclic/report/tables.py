@@ -12,7 +12,8 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from epicyclic.analysis.compare import FrictionComparison
+from epicyclic.analysis.compare import FrictionComparison, recommended
+from epicyclic.losses.validity import share_text
 from epicyclic.records.contents import ResultContents, contents_of
 from epicyclic.report import page
 from epicyclic.report.heat_tables import heat_items
@@ -26,6 +27,7 @@ from epicyclic.report.result_tables import (
     oil_table,
     operation_line,
     planets_table,
+    standing_items,
     users_text,
 )
 from epicyclic.report.train_tables import (
@@ -74,6 +76,7 @@ def result_tables(result: Result, remarks: Sequence[str] = ()) -> RenderableType
     contents = contents_of(result)
     labels = {field.key: field.label for field in number_fields(result.layout)}
     parts: list[RenderableType] = [_headline(contents)]
+    parts += map(as_on_page, standing_items(contents))
     parts += map(as_on_page, _tables(contents, labels))
     if result.heat is not None:
         parts += map(as_on_page, heat_items(result.heat))
@@ -172,7 +175,7 @@ def number_table(title: str, *columns: str) -> Table:
 
 
 def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
-    """Friction models side by side, with the spread."""
+    """Friction models side by side, with the spread, what they leave, and which one suits."""
     meshes = list(rows[0].mean_friction)
     if all(math.isnan(row.mean_friction[mesh]) for row in rows for mesh in meshes):
         return Text("There is no load or no motion: nothing slides, and no friction to compare.")
@@ -181,22 +184,37 @@ def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
     table.columns[-1].justify = "left"
     chosen = next((row.sliding for row in rows if row.chosen), 0.0)
     for row in rows:
-        marks = ", ".join(
-            mark for mark, holds in (("chosen", row.chosen), ("out of range", row.flagged)) if holds
-        )
+        outside = f"out of range {share_text(row.outside)}"
+        known = (("chosen", row.chosen), (outside, row.flagged), ("other oil", row.other_oil))
         table.add_row(
             row.name,
             *(f"{row.mean_friction[mesh]:z.4f}" for mesh in meshes),
             f"{row.sliding:z.1f}",
             f"{row.quick:z.1f}",
             f"{row.sliding / chosen:.2f}" if chosen else "",
-            marks,
+            ", ".join(mark for mark, holds in known if holds),
             style="bold" if row.chosen else "",
         )
     low, high = min(row.sliding for row in rows), max(row.sliding for row in rows)
-    quick = Text("sliding: local, along the contact lines; quick: mean friction times loss factor")
+    quick = Text(
+        "sliding: local, along the contact lines; quick: mean friction times loss factor; out of "
+        "range: share of the sliding loss"
+    )
     spread = Text(
         f"Spread: {low:.1f} to {high:.1f} W" + (f", a factor of {high / low:.2f}." if low else ".")
     )
-    sources = _list("Sources", [f"{row.name}: {row.title}, {row.source}" for row in rows])
-    return Group(table, quick, spread, Text(), sources)
+    best, why = recommended(rows)
+    advice = Text.assemble(("Recommended: ", "bold"), f"{best.name}: {why}. {best.standing}.")
+    lists = [
+        _list("Out of range, and for another oil", [it for row in rows for it in _left(row)]),
+        _list("How well they are known", [f"{row.name}: {row.standing}" for row in rows]),
+        _list("Sources", [f"{row.name}: {row.title}, {row.source}" for row in rows]),
+    ]
+    spaced = (part for item in lists for part in (Text(), item))
+    return Group(table, quick, spread, Text(), advice, *spaced)
+
+
+def _left(row: FrictionComparison) -> list[str]:
+    """Why a model does not suit, and by how much."""
+    other = [f"{row.name}: made for {row.other_oil}"] if row.other_oil else []
+    return [*other, *(f"{row.name}, {reason}" for reason in row.reasons)]

@@ -208,6 +208,9 @@ class Result:
     fluid : FluidFigures or None
     models : mapping of str to str
         The models used, defaults resolved.
+    standing : mapping of str to str
+        The models of friction, rolling loss and planet bearings, and how well each is known to be
+        right, ``"schlenk: fitted to gear tests ..."``, by their keys.
     flags : tuple of ValidityFlag
         Models used outside their ranges.
     notes : tuple of str
@@ -239,6 +242,7 @@ class Result:
     parts: Mapping[str, DataclassInstance]
     fluid: FluidFigures | None
     models: Mapping[str, str]
+    standing: Mapping[str, str]
     flags: tuple[ValidityFlag, ...]
     notes: tuple[str, ...]
     load_methods: Mapping[str, str]
@@ -336,6 +340,7 @@ class Result:
                 **self.load_sources,
             },
             "models": dict(self.models),
+            "standing": dict(self.standing),
             "validity": [dataclasses.asdict(flag) for flag in self.flags],
             "members": _members_dict(self.flow),
             "meshes": {name: _figures_dict(mesh) for name, mesh in self.meshes.items()},

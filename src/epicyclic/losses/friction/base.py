@@ -45,10 +45,11 @@ class FrictionModel(Protocol):
     """
 
     name: ClassVar[str]
-    title: ClassVar[str]
     made_for: ClassVar[RegressionFluid | None]
     takes_oil_temperature: ClassVar[bool]
 
+    @property
+    def title(self) -> str: ...
     @property
     def source(self) -> str: ...
     @property

@@ -1,0 +1,266 @@
+"""Fitted models that come with an oil: when `auto` takes them, where they end, what is said."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import epicyclic as ep
+from epicyclic import library
+from epicyclic.analysis.compare import compare_friction, recommended
+from epicyclic.builders.models import resolve_models, standing_of
+from epicyclic.case.plain import plain
+from epicyclic.contact import contacts_at
+from epicyclic.losses.fitted_or_formula import REACH, weight_of_fit
+from epicyclic.losses.friction import FRICTION_MODELS
+from epicyclic.losses.rolling import ROLLING_MODELS
+from epicyclic.losses.standing import STANDING, standing
+from epicyclic.oilmodel.fitting import fit_quantity
+from epicyclic.oilmodel.model import FORMAT, FORMS, OilModel
+
+OIL = "iso-vg-220-mineral"
+STEEL = 227.47e9
+GEAR = {
+    "slide_to_roll_ratio": (0.02, 1.1),
+    "rolling_speed": (0.9, 21.0),
+    "radius": (4.2e-3, 43e-3),
+    "hertz_pressure": (0.31e9, 2.3e9),
+    "roughness1": (0.07e-6, 0.8e-6),
+    "roughness2": (0.06e-6, 0.9e-6),
+    "dynamic_viscosity": (9e-3, 300e-3),
+    "pressure_viscosity": (13e-9, 25e-9),
+}
+BEARING = GEAR | {
+    "slide_to_roll_ratio": (0.0, 0.0),
+    "radius": (0.4e-3, 4.4e-3),
+    "hertz_pressure": (0.12e9, 3.3e9),
+    "roughness1": (0.03e-6, 0.3e-6),
+    "roughness2": (0.04e-6, 0.35e-6),
+}
+
+
+def contacts(ranges, count=80, seed=5):
+    rng = np.random.default_rng(seed)
+    shares = [np.concatenate([[0.0, 1.0], rng.random(count - 2)]) for _ in ranges]
+    values = {
+        name: low + (high - low) * share
+        for (name, (low, high)), share in zip(ranges.items(), shares, strict=True)
+    }
+    return contacts_at(**values, equivalent_modulus=STEEL)
+
+
+def fit_of(quantity, ranges):
+    points = contacts(ranges)
+    form = FORMS[quantity]["structured"]
+    unit = "1" if quantity == "friction" else "W/m"
+    target = form.value(points, np.array(form.start)) * (1 + 0.01 * np.sin(np.arange(80)))
+    return fit_quantity(quantity, unit, points, target, np.ones(80))
+
+
+@pytest.fixture(scope="session")
+def model():
+    case = ep.load_case("talbot-2012").updated({"lubricant.oil": OIL})
+    return OilModel(
+        format=FORMAT,
+        version="0",
+        settings={"lubricant": {"oil": plain(case.lubricant.oil)}},
+        designs=(),
+        seed=0,
+        simulations={"simulated": 160},
+        equivalent_modulus=STEEL,
+        fits={
+            "friction": fit_of("friction", GEAR),
+            "rolling_loss": fit_of("rolling_loss", GEAR),
+            "bearing_rolling_loss": fit_of("bearing_rolling_loss", BEARING),
+        },
+    )
+
+
+@pytest.fixture
+def case(model, tmp_path, monkeypatch):
+    """A set with an oil for which models are built in."""
+    file = tmp_path / f"{OIL}.json"
+    file.write_text(model.model_dump_json())
+    monkeypatch.setattr(library, "oil_model_file", lambda name: file if name == OIL else None)
+    return ep.load_case("talbot-2012").updated({"lubricant.oil": OIL, "planet.count": 4})
+
+
+def test_auto_takes_the_built_in_models(case):
+    models = resolve_models(case)
+    assert models["friction"] == "fitted-or-schlenk"
+    assert models["rolling"] == "fitted-or-goksem-hargreaves"
+    assert models["bearing"] == "fitted-or-palmgren"
+    fitted = case.updated(dict.fromkeys(("models.friction", "models.rolling"), "fitted"))
+    inside, held = ep.solve(case), ep.solve(fitted.updated({"models.bearing": "fitted"}))
+    for name in ("sun_mesh_sliding", "ring_mesh_rolling"):
+        assert inside.losses[name] == pytest.approx(held.losses[name], rel=1e-3)
+    for name in ("mixed-ehl", "schlenk"):
+        other = ep.solve(case.updated({"models.friction": name}))
+        assert inside.losses["sun_mesh_sliding"] != pytest.approx(
+            other.losses["sun_mesh_sliding"], rel=0.01
+        )
+
+
+def test_full_complement_bearings_keep_their_own_formula(case):
+    changed = case.updated({"planet_bearing.cage": "full-complement"})
+    assert resolve_models(changed)["bearing"] == "palmgren"
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"lubricant.oil": "iso-vg-220-pao"}, ""),
+        ({"lubricant.pressure_viscosity_factor": 1.07}, "pressure_viscosity_factor"),
+    ],
+)
+def test_another_oil_has_no_built_in_models(case, changes, named):
+    changed = case.updated(changes)
+    assert resolve_models(changed)["friction"] == "schlenk"
+    told = [note for note in ep.solve(changed).warnings if "are not used" in note]
+    assert [named in note for note in told] == ([True] if named else [])
+
+
+@pytest.mark.parametrize("name", [OIL, "custom"])
+def test_an_oil_with_other_properties_has_none(case, name):
+    table = library.oil_table(OIL)
+    table["name"] = name
+    table["kinematic_viscosity"][0]["value"] = "221.5 mm^2/s"
+    changed = case.updated({"lubricant.oil": table})
+    assert resolve_models(changed)["rolling"] == "goksem-hargreaves"
+    told = [note for note in ep.solve(changed).warnings if "are not used" in note]
+    assert len(told) == (name == OIL)
+    assert all("kinematic_viscosity" in note for note in told)
+
+
+def test_where_a_value_is_from_does_not_matter(case):
+    table = library.oil_table(OIL)
+    table["kinematic_viscosity"][0]["source"] = "another certificate"
+    table["lubricant_factor"] = {"value": 0.93}
+    changed = case.updated({"lubricant.oil": table})
+    assert resolve_models(changed)["friction"] == "fitted-or-schlenk"
+
+
+def test_a_file_of_the_user_comes_before_that_built_in(case, model, tmp_path):
+    only = model.model_copy(update={"fits": {"friction": model.fits["friction"]}})
+    file = tmp_path / "own.json"
+    file.write_text(only.model_dump_json())
+    changed = case.updated({"models.oil_model": str(file)})
+    models = resolve_models(changed)
+    assert models["friction"] == "fitted-or-schlenk"
+    assert models["rolling"] == "goksem-hargreaves"
+    assert models["bearing"] == "palmgren"
+
+
+@pytest.mark.parametrize("key", ["friction", "rolling", "bearing"])
+def test_fitted_models_need_a_file_or_one_built_in(case, key):
+    assert resolve_models(case.updated({f"models.{key}": "fitted"}))[key] == "fitted"
+    with pytest.raises(ep.InputError) as error:
+        case.updated({f"models.{key}": "fitted", "lubricant.oil": "iso-vg-68-pao"})
+    assert [problem.key for problem in error.value.problems] == [f"models.{key}"]
+    assert "none is built in" in str(error.value)
+
+
+@pytest.mark.parametrize("name", [name for name in GEAR if name != "slide_to_roll_ratio"])
+@pytest.mark.parametrize("end", [0, 1])
+def test_weight_falls_to_zero_beyond_each_limit(model, name, end):
+    middle = {key: float(np.sqrt(low * high)) for key, (low, high) in GEAR.items()}
+    factors = np.array([1.0, REACH ** (1 / 3), REACH ** (2 / 3), REACH, 3 * REACH])
+    away = factors if end else 1 / factors
+    values = {key: np.full(5, value) for key, value in middle.items()}
+    values[name] = model.fits["friction"].domain[name][end] * away
+    weight = weight_of_fit(model, "friction", contacts_at(**values, equivalent_modulus=STEEL))
+    # 1 - t^2 (3 - 2 t) at thirds of the way
+    assert weight == pytest.approx([1.0, 20 / 27, 7 / 27, 0.0, 0.0], abs=1e-9)
+
+
+def test_slow_sliding_is_not_beyond_the_fit_but_another_material_is(model):
+    values = {key: np.array([float(np.sqrt(low * high))]) for key, (low, high) in GEAR.items()}
+    values["slide_to_roll_ratio"] = np.zeros(1)
+    for factor, expected in ((1.0, 1.0), (1.05, 1.0), (0.5, 0.0)):
+        point = contacts_at(**values, equivalent_modulus=factor * STEEL)
+        assert weight_of_fit(model, "friction", point) == pytest.approx(expected)
+
+
+def test_loss_has_no_step_where_the_simulations_end(case):
+    """Over speed, through the limit of the rolling speed, up to where the formulas take over."""
+    speeds = np.geomspace(110, 900, 30)
+    results = [ep.solve(case.updated({"operation.speed": f"{it} rpm"})) for it in speeds]
+    friction = np.array([it.meshes["sun_mesh"].friction_mean for it in results])
+    slow = case.updated({"operation.speed": "110 rpm", "models.friction": "schlenk"})
+    assert friction[0] == pytest.approx(ep.solve(slow).meshes["sun_mesh"].friction_mean)
+    assert np.abs(np.diff(np.log(friction))).max() < 0.25
+    assert not any(flag.use.role == "friction" for flag in results[-1].flags)
+
+
+def test_what_is_left_and_what_takes_over_is_said(case, model):
+    slow = ep.solve(case.updated({"operation.speed": "110 rpm"}))
+    flags = [flag for flag in slow.flags if flag.use.model.startswith("fitted")]
+    assert {flag.use.instead for flag in flags} == {"schlenk", "goksem-hargreaves", "palmgren"}
+    told = next(text for text in slow.warnings if "rolling speed" in text)
+    low, high = model.fits["friction"].domain["rolling_speed"]
+    assert f"range {low:g} to {high:g} m/s" in told
+    assert "fitted-or-schlenk (sun mesh; schlenk takes over) 100%" in told
+    formula = [flag for flag in slow.flags if flag.use.model == "schlenk"]
+    assert {flag.quantity for flag in formula} == {"pitch-line speed"}
+    assert slow.losses["planet_bearing_mechanical"] == pytest.approx(
+        ep.solve(case.updated({"operation.speed": "110 rpm", "models.bearing": "palmgren"})).losses[
+            "planet_bearing_mechanical"
+        ],
+        rel=1e-9,
+    )
+
+
+def test_temperatures_are_found_where_fit_and_formula_mix(case):
+    changes = {
+        "models.temperatures": "flank",
+        "operation.speed": "520 rpm",
+        "operation.torque": "700 N*m",
+    }
+    result = ep.solve(case.updated(changes))
+    assert result.heat is not None
+    assert result.heat.residual < 0.1
+
+
+def test_the_result_says_how_well_its_models_are_known(case):
+    result = ep.solve(case)
+    known = json.loads(result.to_json())["standing"]
+    assert known == dict(result.standing) == standing_of(case)
+    assert known["friction"].startswith("fitted-or-schlenk: median error ")
+    assert "against 80 contacts simulated for iso-vg-220-mineral" in known["friction"]
+    assert "beyond them schlenk: " in known["friction"]
+    quick = ep.solve(case.updated({"models.mesh": "loss-factor"}))
+    assert set(quick.standing) == {"friction", "bearing"}
+
+
+def test_every_model_has_a_standing():
+    assert set(STANDING["friction"]) == {*FRICTION_MODELS, "ehl-direct"}
+    assert set(STANDING["rolling"]) == set(ROLLING_MODELS)
+    for role, models in STANDING.items():
+        assert [standing(role, name) for name in models] == list(models.values())
+
+
+def test_comparison_gives_reasons_and_a_recommendation(case):
+    rows = {row.name: row for row in compare_friction(case)}
+    assert recommended(tuple(rows.values()))[0].name == "fitted-or-schlenk"
+    assert rows["xu-2007"].other_oil == "a 75W-90 gear oil"
+    assert rows["schlenk"].other_oil == ""
+    film = [reason for reason in rows["xu-2007"].reasons if "film ratio" in reason]
+    assert any(reason.startswith("sun mesh: film ratio 0.") for reason in film)
+    assert all("range from 1 (" in reason and "of the loss" in reason for reason in film)
+    assert 0.5 < rows["xu-2007"].outside <= 1.0
+    slow = compare_friction(case.updated({"operation.speed": "110 rpm"}))
+    best, why = recommended(slow)
+    assert best.name in ("schlenk", "niemann-winter")
+    assert "100% of the loss is outside the range of fitted-or-schlenk" in why
+
+
+def test_recommendation_for_the_fluid_of_the_regression_and_for_an_unknown_oil():
+    best, why = recommended(compare_friction(ep.load_case("talbot-2012")))
+    assert best.name == "mixed-ehl"
+    assert "made for this oil" in why
+    other = ep.load_case("talbot-2012-pair").updated({"lubricant.oil": "iso-vg-46-pao"})
+    best, why = recommended(compare_friction(other))
+    assert best.name == "schlenk"
+    assert "no model was made for this oil" in why
