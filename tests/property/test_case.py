@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import epicyclic
-from epicyclic.case.case import load_case
+from epicyclic.case.case import read_case
 from epicyclic.case.plain import changed_at, plain, value_at
 from epicyclic.errors import InputError
 
@@ -41,7 +41,7 @@ def paths_of(tables, path=()):
 
 def full_case(name):
     """The tables of a built-in case with the tables that it leaves out."""
-    tables = load_case(name).inputs()
+    tables = read_case(name).inputs()
     tables["friction_table"] = {
         "film_ratio": [0.1, 1.0],
         "hertz_pressure": ["0.5 GPa", "1 GPa"],
@@ -156,7 +156,7 @@ def mutated(name, changes):
 @given(mutations())
 def test_a_mutated_case_is_a_case_or_a_list_of_problems(mutation):
     tables = mutated(*mutation)
-    error = outcome(lambda: load_case(tables))
+    error = outcome(lambda: read_case(tables))
     if error is not None:
         check_problems(error)
 
@@ -164,7 +164,7 @@ def test_a_mutated_case_is_a_case_or_a_list_of_problems(mutation):
 @property_test
 @given(st.dictionaries(st.one_of(text, names), junk, max_size=5))
 def test_any_mapping_is_a_case_or_a_list_of_problems(tables):
-    error = outcome(lambda: load_case(tables))
+    error = outcome(lambda: read_case(tables))
     assert error is not None
     check_problems(error)
 
@@ -181,7 +181,7 @@ LENGTHS |= dict.fromkeys(("planet", "ring", "pinion", "gear"), LENGTHS["sun"])
 def geometries(draw):
     """A built-in case with other tooth numbers, lengths and angles, in or out of all reason."""
     name = draw(st.sampled_from(list(CASES)))
-    tables = plain(load_case(name).inputs())
+    tables = plain(read_case(name).inputs())
     for table in tables.keys() & LENGTHS.keys():
         owner = tables[table]
         for key in owner.keys() & set(LENGTHS[table]):
@@ -216,7 +216,7 @@ def geometries(draw):
 @property_test
 @given(geometries())
 def test_any_geometry_is_a_case_or_a_list_of_problems(tables):
-    error = outcome(lambda: load_case(tables))
+    error = outcome(lambda: read_case(tables))
     if error is not None:
         check_problems(error)
 
@@ -252,7 +252,7 @@ def file(tmp_path_factory):
 @given(content=st.one_of(files(), st.binary(max_size=200)))
 def test_any_file_is_a_case_or_a_list_of_problems(file, content):
     file.write_bytes(content)
-    error = outcome(lambda: load_case(file))
+    error = outcome(lambda: read_case(file))
     if error is not None:
         assert error.problems
         for problem in error.problems:

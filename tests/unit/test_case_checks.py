@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from epicyclic.case.case import load_case
+from epicyclic.case.case import read_case
 from epicyclic.geometry.assembly import admissible_angles
 from problems import problems_of
 
@@ -14,7 +14,7 @@ TALBOT, PAIR = "talbot-2012", "talbot-2012-pair"
 
 
 def problems_of_changes(name, changes):
-    problems = problems_of(load_case(name).updated, changes)
+    problems = problems_of(read_case(name).updated, changes)
     assert all(problem.value for problem in problems)
     return problems
 
@@ -253,7 +253,7 @@ def test_problems_of_different_tables_come_together():
         "planet.colour": "red",
         "carrier": {"width": 5},
     }
-    assert [problem.key for problem in problems_of(load_case(TALBOT).updated, changes)] == [
+    assert [problem.key for problem in problems_of(read_case(TALBOT).updated, changes)] == [
         "operation.fixed",
         "sun.roughness",
         "sun.tip_diameter, sun.root_diameter",
@@ -273,7 +273,7 @@ def test_problems_of_different_tables_come_together():
 )
 def test_a_key_that_no_geometry_needs_does_not_hide_its_problems(key):
     changes = {f"planet.{key}": -5, "planet.root_diameter": "38 mm"}
-    keys = {problem.key for problem in problems_of(load_case(TALBOT).updated, changes)}
+    keys = {problem.key for problem in problems_of(read_case(TALBOT).updated, changes)}
     assert keys == {f"planet.{key}", "planet.tip_diameter, planet.root_diameter"}
 
 
@@ -286,7 +286,7 @@ def test_geometry_is_not_judged_without_a_key_it_needs(key):
 
 def test_a_friction_table_with_mistakes_is_not_told_as_missing():
     changes = {"models.friction": "table", "friction_table": {"film_ratio": [0.1, 1.0]}}
-    (problem,) = problems_of(load_case(TALBOT).updated, changes)
+    (problem,) = problems_of(read_case(TALBOT).updated, changes)
     assert problem.key == "friction_table.friction"
 
 
@@ -301,7 +301,7 @@ def test_a_ring_that_no_cutter_makes():
 
 @pytest.mark.parametrize("count", range(1, 12))
 def test_the_published_set_takes_up_to_eleven_planets(count):
-    case = load_case(TALBOT).updated({"planet.count": count})
+    case = read_case(TALBOT).updated({"planet.count": count})
     assert case.planet.angles is None
 
 
@@ -310,7 +310,7 @@ def test_admissible_angles_are_taken_as_given_ones(count):
     degrees = [math.degrees(angle) for angle in admissible_angles(count, 73, 125)]
     for shift in (0.0, 17.3, -100.0):
         angles = [f"{angle + shift:.4f} deg" for angle in degrees]
-        load_case(TALBOT).updated({"planet.count": count, "planet.angles": angles})
+        read_case(TALBOT).updated({"planet.count": count, "planet.angles": angles})
 
 
 @pytest.mark.parametrize(("error", "sound"), [(0.009, True), (0.011, False), (-0.011, False)])
@@ -332,12 +332,12 @@ def test_the_nearest_angle_is_proposed():
 
 
 def test_clearance_and_backlash_may_be_zero():
-    tables = load_case(PAIR).inputs()
+    tables = read_case(PAIR).inputs()
     mesh_tip = f"{2 * (50 - 46 / 2)} mm"
     tables["pinion"]["tip_diameter"] = mesh_tip
-    assert problems_of(load_case, tables) == ()
+    assert problems_of(read_case, tables) == ()
     pitch = math.pi * 2.0
     for gear in ("pinion", "gear"):
         tables[gear]["tooth_thickness"] = f"{pitch / 2} mm"
         tables[gear]["thickness_diameter"] = "50 mm"
-    assert problems_of(load_case, tables) == ()
+    assert problems_of(read_case, tables) == ()

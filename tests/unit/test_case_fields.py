@@ -8,7 +8,7 @@ from typing import Literal
 import pytest
 from pydantic import BaseModel
 
-from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema, load_case
+from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema, read_case
 from epicyclic.case.fields import (
     all_keys,
     choices_of,
@@ -239,7 +239,7 @@ def test_only_a_likely_name_is_taken_for_another():
 
 
 def test_inputs_are_plain_and_complete():
-    case = load_case("talbot-2012")
+    case = read_case("talbot-2012")
     inputs = to_inputs(case)
     assert inputs == case.inputs()
     assert inputs["sun"]["tip_diameter"] == "139.23 mm"
@@ -266,7 +266,7 @@ def test_the_json_schema_accepts_what_is_accepted(name):
     validator = jsonschema.Draft202012Validator(schema)
     tables = builtin_case(name)
     assert list(validator.iter_errors(tables)) == []
-    assert list(validator.iter_errors(load_case(name).inputs())) == []
+    assert list(validator.iter_errors(read_case(name).inputs())) == []
     for key, value in {"face_width": 5, "roughness": "rough", "teeth": "73", "tooth": 1}.items():
         gear = "sun" if "sun" in tables else "gear"
         wrong = tables | {gear: tables[gear] | {key: value}}

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import epicyclic as ep
-from epicyclic.case.case import GearPairCase, PlanetaryCase, load_case
+from epicyclic.case.case import GearPairCase, PlanetaryCase, read_case
 from epicyclic.errors import InputError
 from epicyclic.library import builtin_case
 from problems import only, problems_of
@@ -33,20 +33,20 @@ def write(tmp_path):
 
 
 def test_files_names_and_tables_make_the_same_case(write):
-    by_name = load_case("talbot-2012")
-    by_file = load_case(write(TALBOT))
-    by_text = load_case(str(write(TALBOT)))
-    by_tables = load_case(builtin_case("talbot-2012"))
+    by_name = read_case("talbot-2012")
+    by_file = read_case(write(TALBOT))
+    by_text = read_case(str(write(TALBOT)))
+    by_tables = read_case(builtin_case("talbot-2012"))
     assert by_name == by_file == by_text == by_tables
     assert isinstance(by_name, PlanetaryCase)
-    assert isinstance(load_case("talbot-2012-pair"), GearPairCase)
+    assert isinstance(read_case("talbot-2012-pair"), GearPairCase)
 
 
 def test_a_case_knows_where_it_came_from(write):
     path = write(TALBOT)
-    assert load_case(path).source == str(path)
-    assert load_case("talbot-2012-n6").source == "talbot-2012-n6"
-    assert load_case(builtin_case("talbot-2012")).source == "the given tables"
+    assert read_case(path).source == str(path)
+    assert read_case("talbot-2012-n6").source == "talbot-2012-n6"
+    assert read_case(builtin_case("talbot-2012")).source == "the given tables"
 
 
 @pytest.mark.parametrize("change", ["\ufeff{}", "{}\r\n", "# only a comment first\n{}", "{}"])
@@ -54,16 +54,16 @@ def test_files_of_every_editor_are_read(write, change):
     text = change.format(TALBOT)
     if "\r" in change:
         text = text.replace("\n", "\r\n").replace("\r\r", "\r")
-    assert load_case(write(text)) == load_case("talbot-2012")
+    assert read_case(write(text)) == read_case("talbot-2012")
 
 
 def test_a_file_needs_no_suffix_and_goes_before_a_built_in_case(write, monkeypatch):
     path = write(PAIR, "talbot-2012")
     monkeypatch.chdir(path.parent)
-    assert load_case("talbot-2012").kind == "gear_pair"
+    assert read_case("talbot-2012").kind == "gear_pair"
     path.unlink()
     path.mkdir()
-    assert load_case("talbot-2012").kind == "planetary"
+    assert read_case("talbot-2012").kind == "planetary"
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_a_file_needs_no_suffix_and_goes_before_a_built_in_case(write, monkeypat
     ],
 )
 def test_names_of_nothing(name, words):
-    problem = only(problems_of(load_case, name))
+    problem = only(problems_of(read_case, name))
     assert problem.key == "CASE"
     assert problem.value
     assert words in problem.remedy
@@ -88,15 +88,15 @@ def test_names_of_nothing(name, words):
 
 @pytest.mark.parametrize("name", ["missing.toml", "no/such/case.toml", "no/such/case", "a\0b.toml"])
 def test_missing_files(name):
-    assert "cannot be read" in only(problems_of(load_case, name)).allowed
+    assert "cannot be read" in only(problems_of(read_case, name)).allowed
 
 
 def test_folders_pipes_and_devices_are_refused_at_once(tmp_path):
     os.mkfifo(tmp_path / "pipe.toml")
-    assert "a folder" in only(problems_of(load_case, tmp_path)).allowed
-    assert "a folder" in only(problems_of(load_case, "")).allowed
+    assert "a folder" in only(problems_of(read_case, tmp_path)).allowed
+    assert "a folder" in only(problems_of(read_case, "")).allowed
     for path in (tmp_path / "pipe.toml", "/dev/zero", "/dev/null"):
-        assert "not a regular file" in only(problems_of(load_case, path)).allowed
+        assert "not a regular file" in only(problems_of(read_case, path)).allowed
 
 
 def test_a_pipe_nobody_writes_to_does_not_block(tmp_path):
@@ -106,7 +106,7 @@ def test_a_pipe_nobody_writes_to_does_not_block(tmp_path):
 
     def read():
         with pytest.raises(InputError):
-            load_case(path)
+            read_case(path)
         done.set()
 
     threading.Thread(target=read, daemon=True).start()
@@ -117,7 +117,7 @@ def test_a_pipe_nobody_writes_to_does_not_block(tmp_path):
 def test_files_without_permission(write):
     path = write(TALBOT)
     path.chmod(stat.S_IWUSR)
-    assert "Permission denied" in only(problems_of(load_case, path)).allowed
+    assert "Permission denied" in only(problems_of(read_case, path)).allowed
 
 
 @pytest.mark.parametrize(
@@ -146,15 +146,15 @@ def test_files_without_permission(write):
 )
 def test_files_that_are_no_case(write, content, words):
     path = write(content)
-    assert words in only(problems_of(load_case, path)).allowed
+    assert words in only(problems_of(read_case, path)).allowed
     with pytest.raises(InputError) as caught:
-        load_case(path)
+        read_case(path)
     assert all(line.isprintable() for line in str(caught.value).splitlines())
     assert caught.value.source.endswith("case.toml")
 
 
 def test_a_line_that_is_not_toml_is_shown(write):
-    problem = only(problems_of(load_case, write(TALBOT.replace("[sun]", "[sun"))))
+    problem = only(problems_of(read_case, write(TALBOT.replace("[sun]", "[sun"))))
     assert problem.value.startswith("line ")
     assert problem.value.endswith(": [sun")
     assert problem.remedy == "Mend this line."
@@ -171,7 +171,7 @@ def test_a_line_that_is_not_toml_is_shown(write):
 )
 def test_missing_quotes_are_mended_and_told(write, line, remedy):
     text = TALBOT.replace('torque = "1000 N*m"', line, 1)
-    problem = only(problems_of(load_case, write(text)))
+    problem = only(problems_of(read_case, write(text)))
     assert problem.key == "operation.torque"
     number = 1 + next(i for i, row in enumerate(text.splitlines()) if row.startswith("torque"))
     assert f"is not TOML (line {number})" in problem.allowed
@@ -188,27 +188,27 @@ def test_missing_quotes_are_mended_and_told(write, line, remedy):
 )
 def test_numbers_that_are_not_toml(write, line, remedy):
     text = TALBOT.replace("oil_air_ratio = 0.05", line, 1)
-    problem = only(problems_of(load_case, write(text)))
+    problem = only(problems_of(read_case, write(text)))
     assert problem.key == "surroundings.oil_air_ratio"
     assert problem.remedy == remedy
 
 
 def test_a_line_that_quotes_do_not_mend_is_told_once(write):
     text = TALBOT.replace("face_width", '"face_width', 1)
-    problem = only(problems_of(load_case, write(text)))
+    problem = only(problems_of(read_case, write(text)))
     assert '"face_width = "30.9 mm"' in problem.value
 
 
 def test_a_table_that_a_dotted_key_has_made_already_is_explained(write):
     text = b"[sun]\nmicro_geometry.tip_relief = '5 um'\n[sun.micro_geometry]"
-    problem = only(problems_of(load_case, write(text)))
+    problem = only(problems_of(read_case, write(text)))
     assert problem.allowed == "declares a table twice (line 3)."
     assert "a dotted key, such as micro_geometry.tip_relief" in problem.remedy
 
 
 def test_a_key_given_twice_is_told(write):
     text = TALBOT.replace("count = 3", "count = 3\ncount = 4")
-    problem = only(problems_of(load_case, write(text)))
+    problem = only(problems_of(read_case, write(text)))
     assert "count = 4" in problem.value
     assert "given before" in problem.allowed
 
@@ -216,7 +216,7 @@ def test_a_key_given_twice_is_told(write):
 def test_bad_lines_do_not_hide_each_other_nor_the_rest(write):
     text = TALBOT.replace('"1000 N*m"', "1000 N*m").replace('"4000 rpm"', "4000 rpm")
     text = text.replace("teeth = 73", "teeth = 3").replace("[carrier]", "[carriar]")
-    problems = problems_of(load_case, write(text))
+    problems = problems_of(read_case, write(text))
     assert [problem.key for problem in problems] == [
         "operation.torque",
         "operation.speed",
@@ -226,5 +226,5 @@ def test_bad_lines_do_not_hide_each_other_nor_the_rest(write):
 
 
 def test_too_many_bad_lines_are_no_case(write):
-    problems = problems_of(load_case, write("\n".join(f"a{i} = b c" for i in range(1000))))
+    problems = problems_of(read_case, write("\n".join(f"a{i} = b c" for i in range(1000))))
     assert len(problems) < 100

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from epicyclic.case.case import PlanetaryCase, load_case
+from epicyclic.case.case import PlanetaryCase, read_case
 from epicyclic.library import builtin_case
 from problems import only, problems_of
 
@@ -112,7 +112,7 @@ def every_kind(tmp_path):
     """The problems of a file with a mistake of every kind."""
     path = tmp_path / "case.toml"
     path.write_text(EVERY_KIND, encoding="utf-8")
-    return problems_of(load_case, path)
+    return problems_of(read_case, path)
 
 
 def test_one_of_each_kind_of_problem_all_together(every_kind):
@@ -192,7 +192,7 @@ def test_values_are_shown_as_they_were_written(every_kind):
 def test_one_problem_for_one_mistake(table, key, value, place, words):
     tables = builtin_case("talbot-2012")
     tables.setdefault(table, {})[key] = value
-    problem = only(problems_of(load_case, tables))
+    problem = only(problems_of(read_case, tables))
     assert problem.key == place
     assert words in problem.remedy
     assert len(problem.value) < 80
@@ -211,14 +211,14 @@ def test_one_problem_for_one_mistake(table, key, value, place, words):
     ],
 )
 def test_incomplete_tables(tables, key, words):
-    found = {problem.key: problem for problem in problems_of(load_case, tables)}
+    found = {problem.key: problem for problem in problems_of(read_case, tables)}
     assert words in found[key].allowed
 
 
 def test_a_wrong_kind_does_not_hide_the_rest():
     tables = builtin_case("talbot-2012-pair") | {"kind": "pair"}
     tables["pinion"]["teeth"] = 3
-    keys = [problem.key for problem in problems_of(load_case, tables)]
+    keys = [problem.key for problem in problems_of(read_case, tables)]
     assert keys == ["kind", "pinion.teeth"]
 
 
@@ -228,7 +228,7 @@ def test_every_table_may_be_something_else(name, value):
     if name in ("kind", "title"):
         return
     tables = builtin_case("talbot-2012") | {name: value}
-    problems = problems_of(load_case, tables)
+    problems = problems_of(read_case, tables)
     problem = next(problem for problem in problems if problem.key == name)
     assert problem.allowed == "must be a table of keys."
     assert f"[{name}]" in problem.remedy
@@ -238,7 +238,7 @@ def test_a_misspelt_key_counts_as_the_one_that_was_meant():
     tables = builtin_case("talbot-2012")
     tables["sun"]["teth"] = tables["sun"].pop("teeth")
     tables["gaers"] = tables.pop("gears")
-    keys = [problem.key for problem in problems_of(load_case, tables)]
+    keys = [problem.key for problem in problems_of(read_case, tables)]
     assert sorted(keys) == ["gaers", "sun.teth"]
 
 
@@ -247,7 +247,7 @@ def test_misspelt_tables_do_not_hide_what_is_wrong_in_them():
     tables["gaers"] = tables.pop("gears") | {"helix_angel": "13 deg", "helix_angle": None}
     del tables["lubricant"]
     tables["lubricnt"] = {"oill": "water"}
-    keys = [problem.key for problem in problems_of(load_case, tables)]
+    keys = [problem.key for problem in problems_of(read_case, tables)]
     assert sorted(keys) == [
         "gaers",
         "gears.helix_angel",
@@ -261,7 +261,7 @@ def test_a_missing_key_is_told_beside_an_unknown_one():
     tables = builtin_case("talbot-2012")
     del tables["sun"]["teeth"]
     tables["sun"]["number_of_something"] = 3
-    problems = problems_of(load_case, tables)
+    problems = problems_of(read_case, tables)
     assert {problem.key for problem in problems} == {"sun.teeth", "sun.number_of_something"}
 
 
@@ -281,7 +281,7 @@ def test_exactly_one_of_the_alternatives(table, give, take, key, words):
     tables[table] |= give
     for name in take:
         del tables[table][name]
-    problem = only(problems_of(load_case, tables))
+    problem = only(problems_of(read_case, tables))
     assert problem.key == f"{table}.{key}"
     assert words in problem.allowed
     assert problem.remedy
@@ -291,10 +291,10 @@ def test_nothing_is_a_case_that_is_too_large_or_too_deep():
     deep = {}
     deep["deeper"] = deep
     for tables in (deep, {"x": list(range(30_000))}):
-        assert only(problems_of(load_case, tables)).remedy
+        assert only(problems_of(read_case, tables)).remedy
 
 
 def test_many_problems_take_no_long():
     tables = builtin_case("talbot-2012")
     tables["sun"] |= {f"key{number}": number for number in range(5_000)}
-    assert len(problems_of(load_case, tables)) == 5_000
+    assert len(problems_of(read_case, tables)) == 5_000

@@ -12,7 +12,7 @@ import pytest
 from pydantic import ValidationError
 
 from epicyclic import library
-from epicyclic.case.case import PlanetaryCase, load_case
+from epicyclic.case.case import PlanetaryCase, read_case
 from epicyclic.errors import InputError
 from epicyclic.units import registry
 from problems import problems_of
@@ -29,13 +29,13 @@ NAMES = [
 
 @pytest.fixture(scope="module")
 def case():
-    return load_case("talbot-2012")
+    return read_case("talbot-2012")
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_inputs_make_the_same_case_again(name):
-    case = load_case(name)
-    again = load_case(case.inputs())
+    case = read_case(name)
+    again = read_case(case.inputs())
     assert again == case
     assert hash(again) == hash(case)
     assert again.inputs() == case.inputs()
@@ -50,7 +50,7 @@ def test_inputs_of_values_with_many_digits_make_the_same_case_again(case):
         "surroundings.oil_air_ratio": 0.1 / 3,
     }
     changed = case.updated(changes)
-    assert load_case(changed.inputs()) == changed
+    assert read_case(changed.inputs()) == changed
 
 
 def test_updating_with_every_input_changes_nothing(case):
@@ -180,7 +180,7 @@ def test_tables_are_made_on_the_way(case):
 
 
 def test_tables_of_another_case_can_be_taken_over(case):
-    oil = load_case("talbot-2012").updated({"lubricant.oil": "iso-vg-68-pao"}).lubricant.oil
+    oil = read_case("talbot-2012").updated({"lubricant.oil": "iso-vg-68-pao"}).lubricant.oil
     assert case.updated({"lubricant.oil": oil}).lubricant.oil == oil
     assert case.updated({"sun": case.sun}) == case
 
@@ -197,7 +197,7 @@ def test_an_update_leaves_the_original_alone(case):
 def test_a_case_does_not_change_with_the_tables_it_was_made_of():
     tables = library.builtin_case("talbot-2012")
     tables["planet"]["angles"] = ["0 deg", "120 deg", "240 deg"]
-    case = load_case(tables)
+    case = read_case(tables)
     tables["planet"]["angles"].append("300 deg")
     tables["sun"]["teeth"] = 5
     assert case.updated({}).planet.angles == case.planet.angles
@@ -222,8 +222,8 @@ def test_cases_are_frozen_hashable_and_compared_by_value(case):
         del case.title
     other = case.updated({"title": "other"})
     assert other != case
-    assert len({case, other, load_case("talbot-2012")}) == 2
-    assert case != load_case("talbot-2012-pair")
+    assert len({case, other, read_case("talbot-2012")}) == 2
+    assert case != read_case("talbot-2012-pair")
     assert case != "talbot-2012"
 
 
@@ -255,4 +255,4 @@ def test_updating_and_loading_are_quick(case):
     # measured 0.4 ms and 0.7 ms; sweeps update a case for each of their points
     numbers = iter(range(1000))
     assert median_time(lambda: case.updated({"operation.torque": f"{next(numbers)} N*m"})) < 2e-3
-    assert median_time(lambda: load_case("talbot-2012")) < 20e-3
+    assert median_time(lambda: read_case("talbot-2012")) < 20e-3

@@ -7,7 +7,7 @@ import itertools
 import pytest
 
 from epicyclic import library
-from epicyclic.case.case import load_case
+from epicyclic.case.case import read_case
 from epicyclic.case.schema import Material
 from epicyclic.lubricant.oil import Oil
 
@@ -22,7 +22,7 @@ def test_cases_and_their_variants_are_found():
 
 @pytest.mark.parametrize("words", [*itertools.product(*TALBOT_WORDS)], ids="-".join)
 def test_every_variant_is_a_sound_case(words):
-    case = load_case("-".join(["talbot-2012", *words]))
+    case = read_case("-".join(["talbot-2012", *words]))
     count, finish, temperature = words
     assert f"n{case.planet.count}" == count
     assert case.planet.roughness == pytest.approx(0.4e-6 if finish == "shaved" else 0.1e-6)
@@ -32,7 +32,7 @@ def test_every_variant_is_a_sound_case(words):
 
 
 def test_the_order_of_the_words_does_not_matter():
-    one, two = load_case("talbot-2012-n6-40C"), load_case("talbot-2012-40C-n6")
+    one, two = read_case("talbot-2012-n6-40C"), read_case("talbot-2012-40C-n6")
     assert one.updated({"title": ""}) == two.updated({"title": ""})
 
 
@@ -64,7 +64,7 @@ def test_every_oil_is_sound_and_sourced(name):
     assert oil.title
     assert oil.pressure_viscosity.source
     assert all(point.source for point in (*oil.kinematic_viscosity, *oil.density))
-    assert load_case("talbot-2012").updated({"lubricant.oil": name}).lubricant.oil == oil
+    assert read_case("talbot-2012").updated({"lubricant.oil": name}).lubricant.oil == oil
 
 
 @pytest.mark.parametrize("name", ["", "iso-vg-100", "../finishes", "atf-talbot-2012.toml"])
@@ -81,7 +81,7 @@ def test_every_material_is_sound_and_sourced(name):
     assert 185e9 <= material.elastic_modulus <= 215e9
     assert 0.27 <= material.poisson_ratio <= 0.30
     assert 7750 <= material.density <= 7900
-    case = load_case("talbot-2012").updated({"planet.material": name})
+    case = read_case("talbot-2012").updated({"planet.material": name})
     assert case.planet.material == material
 
 
@@ -90,7 +90,7 @@ def test_every_finish_is_sound_and_sourced(name):
     finish = library.finishes()[name]
     assert set(finish) == {"title", "roughness", "source"}
     assert finish["source"]
-    case = load_case("talbot-2012").updated({"sun.roughness": name})
+    case = read_case("talbot-2012").updated({"sun.roughness": name})
     assert case.sun.roughness == pytest.approx(float(finish["roughness"].split()[0]) * 1e-6)
 
 

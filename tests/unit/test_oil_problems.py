@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from epicyclic.case.case import load_case
+from epicyclic.case.case import read_case
 from epicyclic.library import builtin_case
 from problems import only, problems_of
 
@@ -12,7 +12,7 @@ from problems import only, problems_of
 def test_an_unknown_oil_is_not_told_with_all_others():
     tables = builtin_case("talbot-2012")
     tables["lubricant"]["oil"] = "iso-vg-100-mneral"
-    problem = only(problems_of(load_case, tables))
+    problem = only(problems_of(read_case, tables))
     assert "epicyclic oils" in problem.allowed
     assert len(str(problem)) < 200
 
@@ -36,7 +36,7 @@ OIL = {
 def test_problems_of_an_oil_have_their_exact_places():
     tables = builtin_case("talbot-2012")
     tables["lubricant"]["oil"] = OIL
-    problems = problems_of(load_case, tables)
+    problems = problems_of(read_case, tables)
     assert {problem.key for problem in problems} == {
         "lubricant.oil.kind",
         "lubricant.oil.kinematic_viscosity[1].value",
@@ -70,17 +70,17 @@ def test_problems_of_an_oil_have_their_exact_places():
 )
 def test_problems_of_a_law(law, key, words):
     oil = builtin_case("talbot-2012")["lubricant"]["oil"]
-    tables = load_case("talbot-2012").inputs()
+    tables = read_case("talbot-2012").inputs()
     assert tables["lubricant"]["oil"]["name"] == oil
     tables["lubricant"]["oil"]["pressure_viscosity"] = law
-    problem = only(problems_of(load_case, tables))
+    problem = only(problems_of(read_case, tables))
     assert problem.key == f"lubricant.oil.pressure_viscosity.{key}"
     assert words in problem.allowed
     assert problem.remedy
 
 
 def test_data_of_an_oil_that_cannot_be():
-    tables = load_case("talbot-2012").inputs()
+    tables = read_case("talbot-2012").inputs()
     oil = tables["lubricant"]["oil"]
     points = oil["kinematic_viscosity"]  # 40, 60, 90 degC
     points[0]["value"], points[1]["value"] = points[1]["value"], points[0]["value"]
@@ -88,7 +88,7 @@ def test_data_of_an_oil_that_cannot_be():
     oil["density"][1]["temperature"] = oil["density"][0]["temperature"]
     oil["density"][2]["value"] = "900 kg/m^3"
     oil["temperature_range"] = ["50 degC", "20 degC"]
-    found = {problem.key: problem for problem in problems_of(load_case, tables)}
+    found = {problem.key: problem for problem in problems_of(read_case, tables)}
     assert set(found) == {
         "lubricant.oil.kinematic_viscosity[1].value",
         "lubricant.oil.kinematic_viscosity[2].value",
@@ -114,8 +114,8 @@ def test_data_of_an_oil_that_cannot_be():
     ],
 )
 def test_numbers_of_an_oil_have_bounds(key, value):
-    tables = load_case("talbot-2012").inputs()
+    tables = read_case("talbot-2012").inputs()
     tables["lubricant"]["oil"][key] = value
-    problems = problems_of(load_case, tables)
+    problems = problems_of(read_case, tables)
     assert problems
     assert all(problem.key.startswith(f"lubricant.oil.{key}") for problem in problems)

@@ -8,7 +8,7 @@ import math
 import pytest
 
 from epicyclic.case import build
-from epicyclic.case.case import load_case
+from epicyclic.case.case import read_case
 from epicyclic.geometry.cutting import longest_involute
 from epicyclic.geometry.gear import involute
 from epicyclic.geometry.outline import form_radius
@@ -38,7 +38,7 @@ def pair(z1, z2, x1=0.0, x2=0.0, *, module=2.0, beta=0.0, alpha=20.0, internal=F
     )
     reference = module / math.cos(math.radians(beta)) * (z2 + side * z1) / 2
     distance = reference * math.cos(alpha_t) / math.cos(inverse_involute(shifted))
-    tables = load_case(PAIR).inputs()
+    tables = read_case(PAIR).inputs()
     tables["gears"] = gears | {
         "normal_module": f"{module} mm",
         "normal_pressure_angle": f"{alpha} deg",
@@ -65,7 +65,7 @@ def planetary(zs, zp, zr, xs=0.0, xp=0.0, *, module=2.0, beta=0.0, alpha=20.0, c
     distance = half_module * (zs + zp) / math.cos(operating)
     at_ring = math.acos(half_module * (zr - zp) / distance)
     xr = -(involute(at_ring) - involute(alpha_t)) * (zr - zp) / tangent - xp
-    tables = load_case(TALBOT).inputs()
+    tables = read_case(TALBOT).inputs()
     del tables["planet_bearing"]
     tables["gears"] = {
         "normal_module": f"{module} mm",
@@ -93,7 +93,7 @@ def test_standard_gear_pairs_are_sound(module, beta):
     for z1, z2 in itertools.product((17, 18, 20, 40, 200), (17, 25, 100, 200)):
         for x1, x2 in SHIFTS:
             tables = pair(z1, z2, x1, x2, module=module, beta=beta)
-            assert problems_of(load_case, tables) == (), (z1, z2, x1, x2)
+            assert problems_of(read_case, tables) == (), (z1, z2, x1, x2)
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_standard_gear_pairs_are_sound(module, beta):
 @pytest.mark.parametrize("beta", [0, 15, 30])
 def test_standard_ring_pairs_are_sound(z1, z2, beta):
     for x1, x2 in ((0, 0), (0.2, -0.2), (0.5, -0.5), (0.3, -0.5)):
-        assert problems_of(load_case, pair(z1, z2, x1, x2, beta=beta, internal=True)) == (), (
+        assert problems_of(read_case, pair(z1, z2, x1, x2, beta=beta, internal=True)) == (), (
             x1,
             x2,
         )
@@ -120,13 +120,13 @@ def test_planetary_sets_that_state_only_profile_shifts_are_sound(teeth, module):
     for xs, xp in ((0.3, 0.1), (0.4, 0.0), (0.3, 0.3)):
         for beta in (0, 12, 25):
             tables = planetary(*teeth, xs, xp, module=module, beta=beta)
-            assert problems_of(load_case, tables) == (), (xs, xp, beta)
+            assert problems_of(read_case, tables) == (), (xs, xp, beta)
 
 
 @pytest.mark.parametrize("alpha", [17.5, 22.5, 25])
 def test_other_pressure_angles_are_sound(alpha):
-    assert problems_of(load_case, planetary(30, 30, 90, 0.3, 0.1, alpha=alpha)) == ()
-    assert problems_of(load_case, pair(30, 60, 0.2, 0.1, alpha=alpha)) == ()
+    assert problems_of(read_case, planetary(30, 30, 90, 0.3, 0.1, alpha=alpha)) == ()
+    assert problems_of(read_case, pair(30, 60, 0.2, 0.1, alpha=alpha)) == ()
 
 
 # Interference that does exist, against textbooks.
@@ -134,36 +134,36 @@ def test_other_pressure_angles_are_sound(alpha):
 
 def test_a_ring_tip_needs_planets_with_enough_teeth():
     """Full-depth rings of 60 teeth meet the base circle of pinions below about 21 teeth."""
-    assert problems_of(load_case, pair(22, 60, internal=True)) == ()
-    (problem,) = problems_of(load_case, pair(19, 60, internal=True))
+    assert problems_of(read_case, pair(22, 60, internal=True)) == ()
+    (problem,) = problems_of(read_case, pair(19, 60, internal=True))
     assert problem.key == "gear.tip_diameter"
     assert "tip interference" in problem.allowed
 
 
 def test_tips_collide_where_the_tooth_numbers_are_too_near():
     """With full-depth teeth of 20 deg the difference must be about 8 to 10."""
-    assert problems_of(load_case, pair(60, 72, internal=True)) == ()
-    (problem,) = problems_of(load_case, pair(60, 66, internal=True))
+    assert problems_of(read_case, pair(60, 72, internal=True)) == ()
+    (problem,) = problems_of(read_case, pair(60, 66, internal=True))
     assert problem.key == "pinion.tip_diameter, gear.tip_diameter"
     assert "collide beside the mesh" in problem.allowed
-    assert problems_of(load_case, pair(60, 66, internal=True, addendum_coefficient=0.6)) == ()
+    assert problems_of(read_case, pair(60, 66, internal=True, addendum_coefficient=0.6)) == ()
 
 
 def test_undercut_takes_the_involute_that_a_large_mate_needs():
     """Below 17 teeth a rack of full depth undercuts; with profile shift it does not."""
-    (problem,) = problems_of(load_case, pair(12, 100))
+    (problem,) = problems_of(read_case, pair(12, 100))
     assert problem.key == "gear.tip_diameter"
-    assert problems_of(load_case, pair(12, 100, 0.4)) == ()
+    assert problems_of(read_case, pair(12, 100, 0.4)) == ()
 
 
 @pytest.mark.parametrize("teeth", [20, 30, 33])
 def test_a_ring_too_small_for_its_teeth_is_told_once(teeth):
-    (problem,) = problems_of(load_case, pair(11, teeth, 0.3, -0.1, internal=True))
+    (problem,) = problems_of(read_case, pair(11, teeth, 0.3, -0.1, internal=True))
     assert problem.key.startswith("gear.tip_diameter")
 
 
 def test_the_longest_involute_is_as_long_as_that_of_any_tool():
-    case = load_case(TALBOT)
+    case = read_case(TALBOT)
     tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
     for name, table in tables.items():
         gear = build.gear(name, table, case.gears)
@@ -176,7 +176,7 @@ def test_the_longest_involute_is_as_long_as_that_of_any_tool():
 
 @pytest.mark.parametrize("teeth", [12, 15, 17, 18, 20])
 def test_the_longest_involute_of_gears_that_sharp_tools_undercut(teeth):
-    case = load_case(pair(teeth, 40, 0.4 if teeth < 17 else 0.0))
+    case = read_case(pair(teeth, 40, 0.4 if teeth < 17 else 0.0))
     gear = build.gear("pinion", case.pinion, case.gears)
     longest = longest_involute(gear, case.pinion.tool_tip_radius)
     assert longest >= gear.base_radius

@@ -48,7 +48,7 @@ __all__ = [
     "build_case",
     "case_schema",
     "changed_tables",
-    "load_case",
+    "read_case",
 ]
 
 
@@ -120,29 +120,19 @@ _KINDS: dict[str, type[PlanetaryCase] | type[GearPairCase] | type[TrainCase]] = 
 }
 
 
-def load_case(path_or_name: str | Path | Mapping[str, Any]) -> Case:
-    """Read and check a case.
-
-    Parameters
-    ----------
-    path_or_name : str, Path or mapping
-        A TOML file, the name of a built-in case (``"talbot-2012"``, ``"talbot-2012-n6-40C"``), or
-        the tables of a case.
-
-    Returns
-    -------
-    PlanetaryCase or GearPairCase
+def read_case(source: str | Path | Mapping[str, Any]) -> Case:
+    """A case from a TOML file, the name of a built-in one or its tables, checked.
 
     Raises
     ------
     InputError
         With every problem found, not only the first.
     """
-    if isinstance(path_or_name, Mapping):
-        return _build_any(plain(path_or_name), "the given tables")
-    if not isinstance(path_or_name, str | Path):
-        raise InputError([_no_such_case(path_or_name)])
-    name, path = str(path_or_name), Path(path_or_name)
+    if isinstance(source, Mapping):
+        return _build_any(plain(source), "the given tables")
+    if not isinstance(source, str | Path):
+        raise InputError([_no_such_case(source)])
+    name, path = str(source), Path(source)
     if path.suffix.lower() != ".toml" and not _holds(path.is_file):
         try:
             return _build_any(plain(library.builtin_case(name)), name)

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from epicyclic.case import case as cases
-from epicyclic.case.case import Case
+from epicyclic.case.case import Case, read_case
 from epicyclic.exchange.rexs.file import is_rexs
 
 __all__ = ["load_case"]
@@ -39,5 +38,5 @@ def load_case(
         from epicyclic.exchange.rexs.importing import read_rexs
 
         return read_rexs(source).case(changes)
-    case = cases.load_case(source)
+    case = read_case(source)
     return case.updated(changes) if changes else case

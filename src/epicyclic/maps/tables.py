@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from epicyclic.case.case import Case, load_case
+from epicyclic.case.case import Case, read_case
 from epicyclic.case.operating import PLANE, STATE
 from epicyclic.case.wording import one_line, sentence
 from epicyclic.errors import InputError, Problem
@@ -66,7 +66,7 @@ def map_inputs(data: xr.Dataset) -> dict[str, Any]:
 def map_case(data: xr.Dataset, changes: Mapping[str, Any] | None = None) -> Case | None:
     """The case of a map with `changes`; None if it is none of this version."""
     try:
-        case = load_case(map_inputs(data))
+        case = read_case(map_inputs(data))
         return case.updated(changes) if changes else case
     except (ValueError, TypeError, InputError):
         return None

@@ -20,7 +20,7 @@ from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
 from epicyclic.builders.build import build
 from epicyclic.builders.models import fluids_of
 from epicyclic.builders.planetary import roller_bearing
-from epicyclic.case.case import GearPairCase, PlanetaryCase, load_case
+from epicyclic.case.case import GearPairCase, PlanetaryCase, read_case
 from epicyclic.elasticity.loaded_mesh import LoadedMesh
 from epicyclic.kernels.line_contact import hertz_half_width
 from epicyclic.losses.contact import MeshContact
@@ -51,7 +51,7 @@ KELVIN = 273.15
 
 
 def _case(**changes: object) -> PlanetaryCase:
-    case = load_case("talbot-2012")
+    case = read_case("talbot-2012")
     assert isinstance(case, PlanetaryCase)
     return case.updated({key.replace("__", "."): value for key, value in changes.items()})
 
@@ -178,7 +178,7 @@ def mechanical_efficiency(
 
 def _pocketing(**changes: object) -> float:
     """Pocketing loss of the example pair with its keys changed. [W]"""
-    case = load_case("talbot-2012-pair")
+    case = read_case("talbot-2012-pair")
     updated = case.updated({key.replace("__", "."): value for key, value in changes.items()})
     return solve(updated).losses["mesh_pocketing"]
 
@@ -235,7 +235,7 @@ def _standard_mesh(teeth1: int, teeth2: int, internal: bool) -> LoadedMesh:
         "roughness": "ground",
         "material": {"elastic_modulus": "206 GPa"},
     }
-    case = load_case(
+    case = read_case(
         {
             "kind": "gear_pair",
             "operation": {
@@ -267,7 +267,7 @@ def _tables_of(name: str) -> dict[str, Any]:
 
 def _train(train: str, changes: Mapping[str, Any]) -> Result:
     tables = _tables_of("trains.toml").get(train)
-    case = load_case(train if tables is None else tables)
+    case = read_case(train if tables is None else tables)
     return solve(case.updated(changes))
 
 
@@ -334,7 +334,7 @@ def pair_flash_temperature(pair: str, line_load: float) -> float:
 @cache
 def _loaded_pair(pair: str) -> tuple[dict[str, Any], MeshContact]:
     given = _tables_of("temperatures.toml")[pair]
-    return given, mesh_contacts(load_case(given["case"]))["mesh"]
+    return given, mesh_contacts(read_case(given["case"]))["mesh"]
 
 
 def _mean_friction(pair: str) -> float:

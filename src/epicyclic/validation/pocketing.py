@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from epicyclic.case.case import Case, GearPairCase, load_case
+from epicyclic.case.case import Case, GearPairCase, read_case
 from epicyclic.units import DEGREE, MILLIMETRE, RPM
 from epicyclic.validation.compare import published_figures
 
@@ -37,7 +37,7 @@ class PublishedStudy:
 
 def published_study(case: Case) -> PublishedStudy | None:
     """The published values if they hold for `case`, the example of the source."""
-    example = load_case(EXAMPLE)
+    example = read_case(EXAMPLE)
     assert isinstance(example, GearPairCase)
     if not isinstance(case, GearPairCase) or not _is_example(case, example):
         return None

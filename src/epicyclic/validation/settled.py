@@ -13,7 +13,7 @@ from functools import cache, partial
 from importlib import resources
 from typing import Any, NamedTuple
 
-from epicyclic.case.case import load_case
+from epicyclic.case.case import read_case
 from epicyclic.errors import ConvergenceError
 from epicyclic.sweeps.plan import PointList
 from epicyclic.sweeps.runner import HERE, Runner
@@ -157,7 +157,7 @@ def _tests_of(settings: Sequence[Mapping[str, Any]], runner: Runner) -> list[Loa
         for test in loaded_conditions(temperature, finish, content["planets"])
     ]
     points, unloaded = with_unloaded([{**test, **own} for own in settings for test in conditions])
-    rows = runner.run(PointList(load_case("talbot-2012"), points))
+    rows = runner.run(PointList(read_case("talbot-2012"), points))
     if rows.failures:
         raise ConvergenceError(
             f"{len(rows.failures)} of {len(rows)} tests cannot be computed: {rows.failures[0]}"

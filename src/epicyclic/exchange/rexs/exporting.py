@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from epicyclic.case.case import TrainCase, load_case
+from epicyclic.case.case import TrainCase, read_case
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.exchange.rexs.content import build_model
@@ -97,7 +97,7 @@ def _described(path: str | Path, result: Result) -> Document:
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
     }
     document = new_document(path, head)
-    case = load_case(result.inputs)
+    case = read_case(result.inputs)
     for part in train_parts(case) if isinstance(case, TrainCase) else case_parts(case):
         document.content.add(part)
     return document
