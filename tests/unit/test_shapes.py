@@ -10,6 +10,8 @@ from matplotlib.path import Path
 
 import epicyclic as ep
 from epicyclic.analysis.shapes import gear_shapes, mesh_views
+from epicyclic.builders.build import build
+from listed_trains import double_planet, layshaft, plus, ravigneaux, stepped, wolfrom
 
 CHORD_ERROR = 0.02
 """By how much the chords of a drawn outline leave the curve, at most. [transverse modules]"""
@@ -54,6 +56,25 @@ def test_drawn_teeth_stand_in_the_spaces_of_their_mates(name):
         assert inside(planet, sun) == inside(sun, planet) == 0
         # the outline of a ring gear encloses its spaces, and the whole planet
         assert inside(planet, ring) == planet.size
+
+
+@pytest.mark.parametrize(
+    "listed",
+    [wolfrom, stepped, double_planet, ravigneaux, plus, layshaft],
+    ids=lambda it: it.__name__,
+)
+def test_drawn_teeth_of_listed_gears_stand_in_the_spaces_of_all_their_mates(listed):
+    case = ep.load_case(listed())
+    gears = gear_shapes(case)
+    (name,) = case.sets
+    assert gears.keys() == {f"{name}.{gear}" for gear in case.sets[name].members}
+    for mesh in build(case).sets[name].meshes:
+        one, two = (gears[f"{name}.{gear.name}"] for gear in (mesh.mesh.gear1, mesh.mesh.gear2))
+        count = max(one.sizes["place"], two.sizes["place"])
+        for number in range(count):
+            first, second = (placed(it, min(number, it.sizes["place"] - 1)) for it in (one, two))
+            assert inside(second, first) == 0
+            assert inside(first, second) == (first.size if two.attrs["internal"] else 0)
 
 
 @pytest.mark.parametrize("key", ["sun_mesh", "ring_mesh"])

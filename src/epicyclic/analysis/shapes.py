@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from epicyclic.analysis.datasets import variable
+from epicyclic.analysis.gear_places import Place, SetPlaces, places_of
 from epicyclic.builders.build import build as build_machine
 from epicyclic.builders.train import set_cases
 from epicyclic.case import build
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.case import Case
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.elements.base import joined_key
 from epicyclic.elements.gear_mesh import MeshDuty
@@ -31,19 +32,14 @@ if TYPE_CHECKING:
 
 __all__ = ["gear_shapes", "mesh_views"]
 
-Place = tuple[float, float, float]
-"""x and y of the centre [m], direction of the first tooth [rad]."""
-
 POINTS_PER_SECTION = 12
 """Points of a drawn outline on each section of half a tooth."""
-HALF = 0.5
-"""Of a pitch: what a tooth is from the space beside it."""
 
 
 def gear_shapes(case: Case) -> dict[str, xr.Dataset]:
     """Outline and places of every gear of a case, about the axis of the set or of the wheel.
 
-    Of a train the gears of the sets whose losses are computed, but for those that are listed.
+    Of a train the gears of the sets whose losses are computed.
 
     Parameters
     ----------
@@ -59,8 +55,8 @@ def gear_shapes(case: Case) -> dict[str, xr.Dataset]:
     """
     return {
         joined_key(prefix, name): shape
-        for prefix, own, duties in _drawn_sets(case)
-        for name, shape in _set_shapes(own, duties).items()
+        for prefix, found, duties in _drawn_sets(case)
+        for name, shape in _set_shapes(found, duties).items()
     }
 
 
@@ -83,74 +79,25 @@ def mesh_views(case: Case) -> dict[str, xr.Dataset]:
     }
 
 
-def _drawn_sets(
-    case: Case,
-) -> Iterator[tuple[str, PlanetaryCase | GearPairCase, tuple[MeshDuty, ...]]]:
-    """Name, case and meshes of every set that is drawn: not those whose gears are listed."""
+def _drawn_sets(case: Case) -> Iterator[tuple[str, SetPlaces, tuple[MeshDuty, ...]]]:
+    """Name, gears and meshes of every set of which it is known where its gears stand."""
     built = build_machine(case)
     state = built.state()
     for name, own in set_cases(case, built.sets):
-        if isinstance(own, PlanetaryCase | GearPairCase):
-            yield name, own, built.sets[name].mean_duties(state)
+        duties = built.sets[name].mean_duties(state)
+        found = places_of(own, {duty.key: duty.mesh for duty in duties})
+        if found is not None:
+            yield name, found, duties
 
 
-def _set_shapes(
-    case: PlanetaryCase | GearPairCase, duties: tuple[MeshDuty, ...]
-) -> dict[str, xr.Dataset]:
-    tables: dict[str, GearTable]
-    pairs = [
-        ((duty.mesh.gear1, duty.tools[0]), (duty.mesh.gear2, duty.tools[1])) for duty in duties
-    ]
-    if isinstance(case, PlanetaryCase):
-        tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
-        places = _planetary_places(case)
-    else:
-        tables = {"pinion": case.pinion, "gear": case.gear}
-        places = _pair_places(case.gears.center_distance, *pairs[0])
-    gears = {gear.name: (gear, tool) for pair in pairs for gear, tool in pair}
-    return {name: _shape(*gears[name], table, places[name]) for name, table in tables.items()}
-
-
-# --- where gears stand ----------------------------------------------------------------------------
-
-
-def _planetary_places(case: PlanetaryCase) -> dict[str, list[Place]]:
-    """The sun with a tooth upwards, the planets in its spaces, the ring on the first planet."""
-    radius = case.gears.center_distance
-    angles = [
-        math.pi / 2 + angle for angle in build.planet_angles(case.sun, case.planet, case.ring)
-    ]
-    sun = math.pi / 2
-    teeth = case.sun.teeth, case.planet.teeth
-    planets = [
-        (radius * math.cos(angle), radius * math.sin(angle), _outside(sun, angle, *teeth))
-        for angle in angles
-    ]
-    ring = _around(planets[0][2], angles[0], case.planet.teeth, case.ring.teeth)
-    return {"sun": [(0.0, 0.0, sun)], "planet": planets, "ring": [(0.0, 0.0, ring)]}
-
-
-def _pair_places(
-    distance: float, pinion: tuple[Gear, Tool], wheel: tuple[Gear, Tool]
-) -> dict[str, list[Place]]:
-    """The pinion at the origin, or inside an internal gear there."""
-    teeth, up = (pinion[0].teeth, wheel[0].teeth), math.pi / 2
-    if wheel[0].internal:
-        around = _around(up, 0.0, *teeth)
-        return {"pinion": [(distance, 0.0, up)], "gear": [(0.0, 0.0, around)]}
-    return {"pinion": [(0.0, 0.0, up)], "gear": [(distance, 0.0, _outside(up, 0.0, *teeth))]}
-
-
-def _outside(direction1: float, angle: float, teeth1: int, teeth2: int) -> float:
-    """Direction of a tooth of gear 2, beside gear 1 at `angle`, whose spaces take its teeth."""
-    passed = (angle - direction1) * teeth1 / (2 * math.pi)
-    return angle + math.pi - (HALF - passed) * 2 * math.pi / teeth2
-
-
-def _around(direction1: float, angle: float, teeth1: int, teeth2: int) -> float:
-    """Direction of a tooth of the internal gear 2 around gear 1, which stands at `angle`."""
-    passed = (angle - direction1) * teeth1 / (2 * math.pi)
-    return angle - (passed + HALF) * 2 * math.pi / teeth2
+def _set_shapes(found: SetPlaces, duties: tuple[MeshDuty, ...]) -> dict[str, xr.Dataset]:
+    gears = {
+        gear.name: (gear, tool)
+        for duty in duties
+        for gear, tool in zip((duty.mesh.gear1, duty.mesh.gear2), duty.tools, strict=True)
+    }
+    places = found.places([duty.mesh for duty in duties])
+    return {name: _shape(*gears[name], table, places[name]) for name, table in found.tables.items()}
 
 
 # --- datasets -------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping
 
@@ -13,12 +14,18 @@ from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from epicyclic.plots.style import COLOURS, legend_below
+from epicyclic.results.result import in_words
 
 __all__ = ["plot_gear_set", "plot_teeth"]
 
 Floats = NDArray[np.float64]
 
-FILLS = {"sun": "#F6D58A", "pinion": "#F6D58A", "planet": "#BFD9EA", "ring": "0.85", "gear": "0.85"}
+FILLS = {
+    "sun": ("#F6D58A", "#E3B24C", "#FBEBC8", "#C08F2F"),
+    "planet": ("#BFD9EA", "#8DB7D5", "#DFECF5", "#6496BB"),
+    "ring": ("0.85", "0.7", "0.93"),
+}
+"""Shades of gears that stand alone, several times, and around others."""
 CIRCLE_POINTS = 181
 SHOWN_MODULES = 5.0
 """Half the width of a drawing of teeth. [transverse modules]"""
@@ -38,8 +45,9 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
         As `epicyclic.analysis.shapes.gear_shapes` returns them.
     """
     low, high = np.full(2, math.inf), np.full(2, -math.inf)
-    for name, gear in gears.items():
-        label = f"{name}, {int(gear.attrs['teeth'])} teeth"
+    fills = _fills(gears)
+    for name, gear in sorted(gears.items(), key=_is_behind):
+        label = f"{in_words(name)}, {int(gear.attrs['teeth'])} teeth"
         outline = _whole_outline(gear, SKIPPED_POINTS)
         inside = bool(gear.attrs["internal"])
         for number in range(gear.sizes["place"]):
@@ -51,7 +59,7 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
             ax.add_patch(
                 PathPatch(
                     shape,
-                    facecolor=FILLS.get(name, "0.9"),
+                    facecolor=fills[name],
                     edgecolor="black",
                     linewidth=0.5,
                     label=label if number == 0 else None,
@@ -62,7 +70,7 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
             low, high = np.minimum(low, center - radius), np.maximum(high, center + radius)
     _frame(ax, (low + high) / 2, MARGIN * (high - low) / 2)
     legend_below(ax, ncols=3)
-    ax.set_title("Gear set to scale" if "ring" in gears else "Gear pair to scale")
+    ax.set_title("Gear pair to scale" if "pinion" in gears else "Gear set to scale")
     return ax
 
 
@@ -73,16 +81,17 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
         _scalar(gears[name], "reference_diameter") / gears[name].attrs["teeth"] for name in names
     )
     half = SHOWN_MODULES * module
+    fills = _fills(gears)
     for number, name in enumerate(names):
         gear, center = gears[name], np.array([view["center_x"][number], view["center_y"][number]])
         turn = math.radians(float(view["direction"][number])) - math.pi / 2
         ax.add_patch(
             PathPatch(
                 _path(_some_teeth(gear, turn, half) + center),
-                facecolor=FILLS.get(name, "0.9"),
+                facecolor=fills[name],
                 edgecolor="black",
                 linewidth=0.8,
-                label=name,
+                label=in_words(name),
             )
         )
         pitch = _circle(float(view["operating_radius"][number])) + center
@@ -98,6 +107,26 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
     legend_below(ax, ncols=3)
     ax.set_title("Teeth in contact")
     return ax
+
+
+def _is_behind(item: tuple[str, xr.Dataset]) -> tuple[bool, float]:
+    """Sorts gears from the last to the first that is seen: smaller ones stand before larger."""
+    _, gear = item
+    return not gear.attrs["internal"], -_scalar(gear, "tip_diameter")
+
+
+def _fills(gears: Mapping[str, xr.Dataset]) -> dict[str, str]:
+    """Colour of each gear: one for each kind, in several shades."""
+    kinds: dict[str, list[str]] = {}
+    for name, gear in gears.items():
+        alone = "planet" if gear.sizes["place"] > 1 else "sun"
+        around = gear.attrs["internal"] or name == "gear"
+        kinds.setdefault("ring" if around else alone, []).append(name)
+    return {
+        name: shade
+        for kind, names in kinds.items()
+        for name, shade in zip(names, itertools.cycle(FILLS[kind]), strict=False)
+    }
 
 
 def _frame(ax: Axes, middle: Floats, half: Floats) -> None:
