@@ -32,7 +32,34 @@ _GEAR_1_IS_LARGER = """
     planetary-077 planetary-084 planetary-097 planetary-105 planetary-112 planetary-130
     planetary-133 planetary-144 planetary-166
 """
+_ENTERING = (
+    "The power that enters is counted at every shaft where it does, with the losses. It was "
+    "counted at the shafts that would drive without losses, so that losses that exceed the power "
+    "passed on, and those without torque, came from nowhere."
+)
+_NOTHING_LEAVES = """
+    planetary-007 planetary-014 planetary-031 planetary-040 planetary-053 planetary-058
+    planetary-069 planetary-087 planetary-089 planetary-109 planetary-118 planetary-131
+    planetary-134 planetary-154 planetary-160 planetary-174 planetary-182 planetary-188
+    pair-011 pair-021 pair-028 pair-041 pair-054 pair-066 pair-070 pair-078 pair-095
+    pair-102
+"""
+_WITHOUT_POWER = (
+    *_NOTHING_LEAVES.split(),
+    "talbot-2012-pair",
+    "no air in the oil",
+    "stiff oil",
+    "racing",
+    "map talbot-2012",
+    "map talbot-2012-pair",
+    "sweep talbot-2012-pair",
+)
 EXCEPTIONS: dict[str, str] = {
+    **{
+        f"{case}/*{what}*": _ENTERING
+        for case in _WITHOUT_POWER
+        for what in ("input_power", "efficiency", "warnings")
+    },
     "planetary-095/*": _EMPTY_PLANET,  # planet 1 carries nothing, and the set coasts
     **{f"{case}/*": _PINION for case in _GEAR_1_IS_LARGER.split()},  # friction niemann-winter
 }
@@ -58,6 +85,9 @@ Where a member should have none of it, the balance leaves this."""
 FROZEN = json.loads(lzma.decompress(Path(__file__).with_name("results.json.xz").read_bytes()))
 CHANGELOG = Path(__file__).parents[2] / "CHANGELOG.md"
 
+AS_FROZEN = {"models.mesh_loads": "without-losses"}
+"""Choices that were no choices then."""
+
 slow = pytest.mark.slow
 CASES = [
     pytest.param(name, marks=() if entry["quick"] else slow)
@@ -68,7 +98,7 @@ CASES = [
 @pytest.mark.parametrize("name", CASES)
 def test_results_are_the_frozen_ones(name):
     entry = FROZEN["cases"][name]
-    case = with_models_of(entry, ep.load_case(entry["case"]))
+    case = with_models_of(entry, ep.load_case(entry["case"])).updated(AS_FROZEN)
     if "error" in entry:
         with pytest.raises(ep.ConvergenceError) as error:
             ep.solve(case)
@@ -85,7 +115,7 @@ def test_results_are_the_frozen_ones(name):
 @pytest.mark.parametrize("name", FROZEN["data"])
 def test_maps_and_sweeps_are_the_frozen_ones(name):
     entry = FROZEN["data"][name]
-    case = ep.load_case(entry["case"]).updated(entry["changes"])
+    case = ep.load_case(entry["case"]).updated(entry["changes"] | AS_FROZEN)
     if entry["kind"] == "loss_map":
         data = ep.loss_map(case, **entry["asked"], jobs=1)
     else:

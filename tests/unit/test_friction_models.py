@@ -276,6 +276,7 @@ def test_schlenk_and_ohlendorf_on_the_test_article(talbot, celsius, rpm, mu, wat
             {
                 "models.friction": "schlenk",
                 "models.mesh": "loss-factor",
+                "models.mesh_loads": "without-losses",
                 "operation.speed": f"{rpm} rpm",
                 "operation.oil_inlet_temperature": f"{celsius} degC",
             }
@@ -287,6 +288,38 @@ def test_schlenk_and_ohlendorf_on_the_test_article(talbot, celsius, rpm, mu, wat
         assert found == pytest.approx(friction, abs=0.5e-4 + 0.001 * friction)
         per_planet = result.losses[f"{mesh}_sliding"] / 3
         assert per_planet == pytest.approx(loss, abs=0.5 + 0.002 * loss)
+
+
+@pytest.mark.parametrize(("factors", "times"), [((1.25, 1.1), 1.375**0.2), ((1.6, 1.0), 1.6**0.2)])
+def test_load_factors_enter_the_load_of_niemann_and_winter_only(talbot, factors, times):
+    """(K_A K_gamma)^0.2, as KISSsoft 03/2017 has it; 2500 N m keeps the load in its range."""
+    given = {"operation.torque": "2500 N*m", "models.mesh_loads": "without-losses"}
+    keys = {
+        "models.application_factor": factors[0],
+        "models.mesh_load_factor": factors[1],
+    }
+    for name in ("niemann-winter", "schlenk"):
+        plain = ep.solve(talbot.updated(given | {"models.friction": name}))
+        loaded = ep.solve(talbot.updated(given | keys | {"models.friction": name}))
+        expected = times if name == "niemann-winter" else 1.0
+        for mesh, figures in plain.meshes.items():
+            found = loaded.meshes[mesh]
+            assert found.friction_mean / figures.friction_mean == pytest.approx(expected, rel=1e-12)
+            assert found.line_load_max == figures.line_load_max
+
+
+def test_load_factors_count_in_the_range_of_the_load(talbot):
+    """150 N/mm and more: 100 N/mm on the teeth are in it with K_A = 1.6."""
+    given = {"operation.torque": "450 N*m", "models.friction": "niemann-winter"}
+    loads = [
+        [flag for flag in ep.solve(case).flags if flag.quantity == "load for each face width"]
+        for case in (
+            talbot.updated(given),
+            talbot.updated(given | {"models.application_factor": 1.6}),
+        )
+    ]
+    assert loads[0]
+    assert not loads[1]
 
 
 # --- behaviour ------------------------------------------------------------------------------------

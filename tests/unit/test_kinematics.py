@@ -38,7 +38,7 @@ class Brake:
 
     def evaluate(self, state):
         found = {
-            f"loss {number}": Loss(LOAD_INDEPENDENT, watts, between=between)
+            f"loss {number}": Loss(LOAD_INDEPENDENT, watts, brakes=((*between, 1.0),))
             for number, (between, watts) in enumerate(self.losses)
         }
         return ElementResult(found)

@@ -122,13 +122,18 @@ def test_losses_act_on_the_bodies_of_their_own_elements_even_if_one_name_begins_
     built = build(ep.load_case(tables))
     losses = built.solve().solution.results["S"].losses
     carrier = "out"
-    assert losses["p_bearing_mechanical"].between == ("S.p", carrier)
-    assert losses["p_bearing_bearing_mechanical"].between == ("S.p_bearing", carrier)
+    assert losses["p_bearing_mechanical"].brakes == (("S.p", carrier, 1.0),)
+    assert losses["p_bearing_bearing_mechanical"].brakes == (("S.p_bearing", carrier, 1.0),)
     assert losses["p_p_p_mesh_sliding"].mesh == "S.p_p_p_mesh"
-    assert losses["p_p_p_mesh_rolling"].between == ("S.p", carrier)
-    assert losses["p_p_bearing_mesh_pocketing"].between == ("S.p_bearing", carrier)
-    # the ring stands still and is driven by the outer planet
-    assert losses["p_bearing_ring_mesh_rolling"].between == ("housing", carrier)
+    assert losses["p_p_p_mesh_rolling"].brakes == (("in", carrier, 0.5), ("S.p", carrier, 0.5))
+    assert losses["p_p_bearing_mesh_pocketing"].brakes == (
+        ("S.p", carrier, 0.5),
+        ("S.p_bearing", carrier, 0.5),
+    )
+    assert losses["p_bearing_ring_mesh_rolling"].brakes == (
+        ("S.p_bearing", carrier, 0.5),
+        ("housing", carrier, 0.5),
+    )
 
 
 def test_own_keys_of_a_gear_come_before_those_that_all_share():

@@ -217,7 +217,7 @@ def test_drag_brakes_the_speed_difference(state):
     loss = slipping.losses["drag"]
     assert loss.watts == pytest.approx(300.0)
     assert loss.group == LOAD_INDEPENDENT
-    assert loss.between == ("a", "b")
+    assert loss.brakes == (("a", "b", 1.0),)
     assert slipping.figures["drag"].friction_torque == pytest.approx(3.0)
     assert clutch.evaluate(state(-30.0, 70.0)).losses["drag"].watts == loss.watts
     closed = clutch.evaluate(state(50.0, 50.0))

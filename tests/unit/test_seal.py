@@ -108,7 +108,7 @@ def test_element_has_the_loss_of_its_formula_and_all_others(state, formula):
     loss = result.losses["friction"]
     assert loss.watts == seal_loss(formula, 40e-3, 3000 * RPM, 333.15, VG_100)
     assert loss.group == LOAD_INDEPENDENT
-    assert loss.between == ("input", HOUSING)
+    assert loss.brakes == (("input", HOUSING, 1.0),)
     assert loss.method
     assert loss.source
     spread = result.figures["seal"]

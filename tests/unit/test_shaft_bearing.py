@@ -339,7 +339,7 @@ def test_a_bearing_loses_power_in_both_senses_and_none_at_rest(state, name):
         assert loss.watts > 0
         assert backward.losses[key].watts == loss.watts
         assert rest.losses[key].watts == 0
-        assert loss.between == ("input", HOUSING)
+        assert loss.brakes == (("input", HOUSING, 1.0),)
         assert loss.method
         assert loss.source
     assert rest.flags == ()

@@ -324,17 +324,23 @@ def test_a_case_reports_transmission_error_and_stiffness(talbot):
     assert set(loaded) == {"sun_mesh", "ring_mesh"}
     for key, mesh in loaded.items():
         figures = result.meshes[key]
-        assert figures.transmission_error_range == mesh.transmission_error_range > 0
-        assert figures.mesh_stiffness == mesh.mean(mesh.tangent_stiffness) > 0
+        # of the last pass of torques and losses but one: they agree to 5e-10
+        error, stiffness = mesh.transmission_error_range, mesh.mean(mesh.tangent_stiffness)
+        assert figures.transmission_error_range == pytest.approx(error, rel=1e-8)
+        assert figures.mesh_stiffness == pytest.approx(stiffness, rel=1e-8)
+        assert error > 0
+        assert stiffness > 0
     uniform = ep.solve(talbot.updated({"models.load_distribution": "uniform"}))
     assert math.isnan(uniform.meshes["sun_mesh"].mesh_stiffness)
-    assert ep.loaded_meshes(talbot.updated({"operation.torque": "0 N*m"})) == {}
+    unloaded = {"operation.torque": "0 N*m", "operation.speed": "0 rpm"}
+    assert ep.loaded_meshes(talbot.updated(unloaded)) == {}
 
 
 def test_reversed_torque_loads_the_teeth_alike(talbot):
+    talbot = talbot.updated({"models.mesh_loads": "without-losses"})
     back = ep.loaded_meshes(talbot.updated({"operation.torque": "-1000 N*m"}))
     for key, mesh in ep.loaded_meshes(talbot).items():
-        np.testing.assert_array_equal(back[key].line_load, mesh.line_load)
+        np.testing.assert_allclose(back[key].line_load, mesh.line_load, rtol=1e-9)
 
 
 def test_the_tool_of_the_case_cuts_the_fillet(talbot):

@@ -1,4 +1,7 @@
-"""The whole set: sums, shares, balances and closed forms."""
+"""The whole set: sums, shares, balances and closed forms, under the loads of a set without losses.
+
+Loads with losses: test_loads_with_losses.py.
+"""
 
 from __future__ import annotations
 
@@ -33,6 +36,12 @@ ALL_LOSSES = (
     "carrier_drag",
     "thrust_bearing_viscous",
 )
+
+
+@pytest.fixture(scope="module")
+def talbot():
+    """The test article, with the loads that the laws here are about."""
+    return ep.load_case("talbot-2012").updated({"models.mesh_loads": "without-losses"})
 
 
 @pytest.fixture(scope="module")
@@ -225,7 +234,7 @@ def test_standstill_and_no_load(talbot):
     for name in PER_PLANET[:-1]:
         assert idle.losses[name] == 0.0
     assert idle.load_independent > 0
-    assert idle.efficiency is None
+    assert idle.efficiency == 0.0
     assert_consistent(idle)
 
 

@@ -87,7 +87,7 @@ def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
     InputError
         If the case is a train of given efficiencies.
     """
-    built, _ = build_computed(case)
+    built = build_computed(case)
     owners = [own for _, own in set_cases(case, built.sets)]
     chosen = {resolve_models(own)["friction"] for own in owners}
     rows = []

@@ -78,11 +78,11 @@ def mesh_details(case: Case) -> dict[str, xr.Dataset]:
             "Give a torque other than zero.",
         )
         raise InputError([problem], case.source)
-    built, fluids = build_computed(case)
+    built = build_computed(case)
     notes = {name: load_notes(own) for name, own in set_cases(case, built.sets)}
-    state = built.state()
+    state = built.loaded_state()
     return {
-        key: _details(case.title, key, duty, fluids, notes[name])
+        key: _details(case.title, key, duty, state.fluids, notes[name])
         for name, own in built.sets.items()
         for duty in own.loaded_duties(state)
         for key in (joined_key(name, duty.key),)

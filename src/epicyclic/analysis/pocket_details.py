@@ -87,7 +87,8 @@ def pocket_details(case: Case, meshes: Collection[str] | None = None) -> dict[st
     ConvergenceError
         If the flow is not found.
     """
-    built, fluids = build_computed(case)
+    built = build_computed(case)
+    fluids = built.fluids if built.thermal is None else built.loaded_state().fluids
     found = {}
     for name, own in built.sets.items():
         for duty in own.mean_duties(built.state()):

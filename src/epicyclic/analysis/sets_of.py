@@ -5,14 +5,13 @@ from __future__ import annotations
 from epicyclic.builders.build import build
 from epicyclic.builders.built import Built
 from epicyclic.case.case import Case
-from epicyclic.elements.fluids import Fluids
 from epicyclic.errors import InputError, Problem
 
 __all__ = ["build_computed"]
 
 
-def build_computed(case: Case) -> tuple[Built, Fluids]:
-    """The machine of a case, and its oil at the temperatures that settle.
+def build_computed(case: Case) -> Built:
+    """The machine of a case with gears.
 
     Raises
     ------
@@ -28,6 +27,4 @@ def build_computed(case: Case) -> tuple[Built, Fluids]:
             "Give a set its gears (module, face widths, roughness) in place of its efficiency.",
         )
         raise InputError([problem], case.source)
-    if built.thermal is None:
-        return built, built.fluids
-    return built, built.solve().solution.state.fluids
+    return built

@@ -85,10 +85,11 @@ def mesh_contacts(case: Case) -> dict[str, MeshContact]:
 
     Of a planetary set both meshes of the most loaded planet.
     """
-    built, fluids = build_computed(case)
+    built = build_computed(case)
+    state = built.loaded_state()
     contacts = {
-        key: load_mesh(duty, fluids.at(key), fluids.oil)
-        for key, duty in built.loaded_duties().items()
+        key: load_mesh(duty, state.fluids.at(key), state.fluids.oil)
+        for key, duty in built.loaded_duties(state).items()
     }
     return {key: contact for key, contact in contacts.items() if contact is not None}
 
@@ -99,5 +100,6 @@ def loaded_meshes(case: Case) -> dict[str, LoadedMesh]:
     Line loads, load of each pair of teeth, contact pattern, transmission error and stiffness over
     the mesh period; of a planetary set for the most loaded planet. Empty without load.
     """
-    duties = build_computed(case)[0].loaded_duties()
+    built = build_computed(case)
+    duties = built.loaded_duties(built.loaded_state())
     return {key: elastic_loads(duty) for key, duty in duties.items() if duty.torque1 != 0}

@@ -59,9 +59,12 @@ class Built:
         """Speeds, and torques as without losses."""
         return lossless_state(self.machine, self.operation, self.known_fluids)
 
-    def loaded_duties(self) -> dict[str, MeshDuty]:
+    def loaded_state(self) -> State:
+        """Speeds, torques and oil in balance with all losses."""
+        return self.solve().solution.state
+
+    def loaded_duties(self, state: State) -> dict[str, MeshDuty]:
         """The meshes of the planet that carries most, of every set, by their keys."""
-        state = self.state()
         return {
             joined_key(name, duty.key): duty
             for name, own in self.sets.items()

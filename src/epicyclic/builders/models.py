@@ -120,6 +120,7 @@ def friction_settings(case: SetCase) -> FrictionSettings:
         fluid=case.models.fluid_friction,
         table=None if table is None else FrictionMap(tuple(table.axes().items()), table.friction),
         oil_held=case.models.oil_beyond_range == "held",
+        load_factor=case.models.application_factor * case.models.mesh_load_factor,
     )
 
 

@@ -193,7 +193,7 @@ def general_notes(
     ]
     if efficiency == 0.0 and input_power > 0:
         notes.append(
-            "The losses exceed the power passed on: no power leaves, and the output must be driven."
+            "No power leaves: the losses take all that enters, and the output must be driven."
         )
     return tuple(notes)
 
@@ -223,7 +223,9 @@ def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, 
 
 
 def _arrangement_notes(case: ListedCase) -> Iterator[str]:
-    """What the planets of a listed set need to be assembled."""
+    """What has no effect on a listed set, and what its planets need to be assembled."""
+    if case.models.mesh_loads == "without-losses":
+        yield "models.mesh_loads = without-losses has no effect on a set whose gears are listed."
     planets = case.table.planets
     if planets is None:
         return

@@ -95,5 +95,9 @@ def pair_element(
         missing={},
         thrust=None,
         choices=loss_choices(case),
-        reference=Reference(bodies[reference], {"mesh": lever}, (bodies[other], HOUSING)),
+        reference=(
+            None
+            if case.models.mesh_loads == "with-losses"
+            else Reference(bodies[reference], {"mesh": lever}, (bodies[other], HOUSING))
+        ),
     )

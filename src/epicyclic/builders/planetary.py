@@ -124,8 +124,12 @@ def planetary_element(
         missing=_missing(case),
         thrust=_thrust_bearing(case, bodies),
         choices=loss_choices(case),
-        reference=Reference(
-            bodies[order[0]], _levers(case, order[0]), (bodies[order[1]], bodies[order[2]])
+        reference=(
+            None
+            if case.models.mesh_loads == "with-losses"
+            else Reference(
+                bodies[order[0]], _levers(case, order[0]), (bodies[order[1]], bodies[order[2]])
+            )
         ),
     )
 

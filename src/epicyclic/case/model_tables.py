@@ -93,6 +93,7 @@ FrictionName = Literal[
 
 
 Coefficient = Annotated[Number, Field(ge=0, le=1)]
+LoadFactor = Annotated[Number, Field(ge=1, le=10)]
 
 
 def _values_or_rows(value: object) -> str:
@@ -172,10 +173,13 @@ class GearPairModels(Table):
         "constant_friction": None,
         "boundary_friction": None,
         "fluid_friction": None,
+        "application_factor": None,
+        "mesh_load_factor": None,
         "rolling": None,
         "oil_model": None,
         "fitted_form": None,
         "load_distribution": None,
+        "mesh_loads": None,
         "mesh": None,
         "pocketing": None,
         "pocketing_table": None,
@@ -208,6 +212,13 @@ class GearPairModels(Table):
         le=1,
         description="Of separated contact, for matsumoto and doleschel (estimate, as above).",
     )
+    application_factor: LoadFactor = Field(
+        default=1.0, description="K_A, in the load of the formula niemann-winter only."
+    )
+    mesh_load_factor: LoadFactor = Field(
+        default=1.0,
+        description="K_gamma, in the same place; what planets carry is up to load_sharing.",
+    )
     rolling: Literal[
         "auto", "mixed-ehl", "goksem-hargreaves", "fitted", "fitted-or-goksem-hargreaves"
     ] = Field(
@@ -226,6 +237,11 @@ class GearPairModels(Table):
     load_distribution: Literal["uniform", "minimum-energy", "compliance"] = Field(
         default="compliance",
         description="Along the contact lines: even, after a stiffness, or from elastic teeth.",
+    )
+    mesh_loads: Literal["with-losses", "without-losses"] = Field(
+        default="with-losses",
+        description="What the teeth carry: the torques in balance with all losses; or those of the "
+        "set without its own losses, at the given torque, as in the source.",
     )
     mesh: Literal["local", "loss-factor"] = Field(
         default="local",

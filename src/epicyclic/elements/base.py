@@ -55,6 +55,9 @@ class State:
         Oil and mixture with air. A machine without elements may do without.
     lossless : bool
         True if no loss has been taken from the torques yet.
+    drives : mapping of str to bool
+        For each mesh, True if its first gear drives it; where losses turn a small load round, not
+        before they are found.
     idle : mapping of str to object
         What each element has found out about itself from the speeds alone, by its key.
     """
@@ -64,6 +67,7 @@ class State:
     forces: Mapping[str, BearingLoad]
     fluids: Fluids
     lossless: bool = False
+    drives: Mapping[str, bool] = field(default_factory=dict[str, bool])
     idle: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
@@ -81,10 +85,10 @@ class Loss:
         The model and where it is printed.
     left_out : str
         Why there is no such loss; empty if there is.
-    between : tuple of str
-        The two bodies whose relative motion the loss brakes.
+    brakes : tuple of (str, str, float)
+        Two bodies each whose relative motion the loss brakes, and its share there. [1]
     mesh : str
-        Key of the mesh whose power the loss is a share of; empty for friction between two bodies.
+        Key of the mesh whose power the loss is a share of; empty for friction between bodies.
     factor : float
         The user's factor, which `watts` contain. [1]
     heat : tuple of (str, float)
@@ -96,7 +100,7 @@ class Loss:
     method: str = ""
     source: str = ""
     left_out: str = ""
-    between: tuple[str, str] = (HOUSING, HOUSING)
+    brakes: tuple[tuple[str, str, float], ...] = ()
     mesh: str = ""
     factor: float = 1.0
     heat: tuple[tuple[str, float], ...] = ((OIL, 1.0),)

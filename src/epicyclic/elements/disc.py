@@ -64,18 +64,17 @@ class ThrustBearing:
 
 
 def disc_loss(discs: Iterable[Disc], state: State) -> Outcome:
-    """The drag of `discs` together, and its flags; it acts on the shaft of the first one."""
-    watts = 0.0
+    """The drag of `discs` together, each on its own shaft, and its flags."""
     flags: tuple[ValidityFlag, ...] = ()
-    bodies = []
+    drags = {}
     for disc in discs:
         speed = state.speeds[disc.body]
         drag = disc_drag(disc.radius, disc.width, speed, state.fluids.mixture)
-        watts += drag.total
+        drags[disc.body] = drag.total
         flags += disc_drag_flags(disc.where, disc.radius, drag, speed, state.fluids.mixture)
-        bodies.append(disc.body)
-    between = (bodies[0], HOUSING)
-    return Loss(LOAD_INDEPENDENT, watts, DRAG_METHOD, DRAG_SOURCE, between=between), flags
+    watts = sum(drags.values())
+    brakes = tuple((body, HOUSING, drag / watts) for body, drag in drags.items() if drag)
+    return Loss(LOAD_INDEPENDENT, watts, DRAG_METHOD, DRAG_SOURCE, brakes=brakes), flags
 
 
 def thrust_loss(bearing: ThrustBearing, state: State) -> Outcome:
@@ -91,7 +90,7 @@ def thrust_loss(bearing: ThrustBearing, state: State) -> Outcome:
             bearing.count * loss,
             VISCOUS_METHOD,
             VISCOUS_SOURCE,
-            between=bearing.between,
+            brakes=((*bearing.between, 1.0),),
         ),
         viscous_flags("thrust bearing", speed, bearing.mean_diameter),
     )

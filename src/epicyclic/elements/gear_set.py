@@ -308,7 +308,8 @@ class GearSet:
             return passed
         # the drag of the body itself does not take from the load that its torque states
         body, speed = self.reference.body, state.speeds[self.reference.body]
-        drag = sum(loss.watts for loss in drags.values() if loss.between == (body, HOUSING))
+        own_shaft = ((body, HOUSING, 1.0),)
+        drag = sum(loss.watts for loss in drags.values() if loss.brakes == own_shaft)
         own = drag / speed if speed else 0.0
         torques = {}
         for key, torque in passed.items():
@@ -322,6 +323,10 @@ class GearSet:
     ) -> Mapping[str, MeshFlow]:
         """Flow through the pockets of each mesh, under the mean load of its planets."""
         duties = self.duties(state, torques, 1 / self.count)
+        if self.reference is None:
+            duties = tuple(
+                replace(duty, drives1=state.drives[f"{self.key}.{duty.key}"]) for duty in duties
+            )
         driving = tuple(duty.drives1 for duty in duties)
         if driving not in idle.flows:
             idle.flows[driving] = mesh_flows(duties, state.fluids)
@@ -397,46 +402,43 @@ class GearSet:
             if bearing.figures is not None:
                 figures[planet.key] = bearing.figures
         for duty, mesh in zip(duties.values(), meshes, strict=True):
-            losses |= self._of_mesh(duty, mesh.losses, state)
+            losses |= self._of_mesh(duty, mesh.losses)
             flags = mesh.flags + flags
             figures[duty.key] = mesh.figures
         return replace(branch, flags=flags)
 
-    def _of_mesh(self, duty: MeshDuty, losses: Mapping[str, Loss], state: State) -> dict[str, Loss]:
-        """Losses of a mesh where they act: sliding is a share of its power, the rest brakes the
-        driven gear against the carrier.
+    def _of_mesh(self, duty: MeshDuty, losses: Mapping[str, Loss]) -> dict[str, Loss]:
+        """Losses of a mesh where they act: sliding is a share of its power, half of the rest brakes
+        each of its gears against the carrier.
         """
         if self.reference is not None:
             return {name: self._inside(loss) for name, loss in losses.items()}
         mesh = duty.gears
-        driven = mesh.bodies[1] if self._drives(mesh, state) else mesh.bodies[0]
+        halves = tuple((body, self.carrier, 0.5) for body in mesh.bodies)
         sliding, own = f"{mesh.key}_sliding", f"{self.key}.{mesh.key}"
         return {
-            name: replace(loss, between=(driven, self.carrier), mesh=own if name == sliding else "")
+            name: replace(loss, brakes=halves, mesh=own if name == sliding else "")
             for name, loss in losses.items()
         }
 
     def _in_bearing(self, loss: Loss, planet: Planet) -> Loss:
         """A loss of a planet bearing where it acts; that of the rollers heats planet and pin."""
         between = (planet.body, self.carrier) if self.reference is None else self.reference.between
+        placed = replace(loss, brakes=((*between, 1.0),))
         if loss.group == LOAD_INDEPENDENT:
-            return replace(loss, between=between)
-        return replace(loss, between=between, heat=tuple((node, 0.5) for node in planet.nodes))
+            return placed
+        return replace(placed, heat=tuple((node, 0.5) for node in planet.nodes))
 
     def _inside(self, loss: Loss) -> Loss:
         """A loss between moving parts of the set where the set has all of them act."""
         if self.reference is None:
             return loss
-        return replace(loss, between=self.reference.between, mesh="")
+        return replace(loss, brakes=((*self.reference.between, 1.0),), mesh="")
 
     def _placed(self, loss: Loss) -> Loss:
         """Friction inside the set acts where all its losses do, and so do both discs of a pair."""
-        own_shaft = HOUSING in loss.between and self.carrier != HOUSING
-        return loss if own_shaft else self._inside(loss)
-
-    def _drives(self, mesh: GearMesh, state: State) -> bool:
-        speed = state.speeds[mesh.bodies[0]] - state.speeds[self.carrier]
-        return state.torques[f"{self.key}.{mesh.key}"] * speed >= 0
+        on_shaft = any(HOUSING in brake for brake in loss.brakes) and self.carrier != HOUSING
+        return loss if on_shaft else self._inside(loss)
 
 
 def _with_choice(loss: Loss, choice: LossChoice) -> Loss:

@@ -62,7 +62,7 @@ class TableLoss:
             watts,
             "loss table",
             self.table.source,
-            between=self.between,
+            brakes=((*self.between, 1.0),),
         )
         figures = TableLossFigures(
             speed=abs(speed), friction_torque=watts / abs(speed) if speed != 0 else math.nan

@@ -209,7 +209,7 @@ class Seal:
             watts = seal_loss(self.model, *at)
             method, source = SEAL_METHODS[self.model], SEAL_SOURCES[self.model]
             flags = seal_flags(self.model, self.key, *at)
-        loss = Loss(LOAD_INDEPENDENT, watts, method, source, between=self.between)
+        loss = Loss(LOAD_INDEPENDENT, watts, method, source, brakes=((*self.between, 1.0),))
         return ElementResult(
             losses={"friction": loss},
             figures={"seal": self._figures(watts, speed, temperature)},

@@ -117,7 +117,7 @@ class ShaftBearing:
                     part.watts,
                     part.method,
                     part.source,
-                    between=self.between,
+                    brakes=((*self.between, 1.0),),
                     heat=((self.key, 1.0),),
                 )
                 for part in parts

@@ -81,8 +81,8 @@ class Answer:
         return all(
             load * self.loads[key] > 0 or load == self.loads[key] for key, load in loads.items()
         ) and all(
-            (loss.mesh, loss.between)
-            == (self.result.losses[name].mesh, self.result.losses[name].between)
+            (loss.mesh, loss.brakes)
+            == (self.result.losses[name].mesh, self.result.losses[name].brakes)
             for name, loss in result.losses.items()
         )
 

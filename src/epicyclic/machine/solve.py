@@ -25,6 +25,8 @@ ROUNDING = 1e-14
 FORETOLD = 0.1
 """Error of a foretold loss over the change of the loads from one pass to the next, at most: losses
 are small beside powers, so that the error leaves less of the change than a pass does. [1]"""
+NO_POWER = 1e-12
+"""Power, relative to the largest one, that is rounding. [1]"""
 MOST_PASSES = 60
 MOST_BRANCHES = 8
 """Directions of the rolling powers that are tried with the losses of elements."""
@@ -52,8 +54,6 @@ class Solution:
         By the key of the element.
     given : mapping of str to Loss
         Losses of the meshes of given efficiency, by the key of the mesh.
-    drivers : tuple of str
-        Bodies that would bring power in without losses.
     ratio : float or None
         Speed of the input over that of the output; None if that stands still. [1]
     self_locking : bool
@@ -74,7 +74,6 @@ class Solution:
     rolling: Mapping[str, float]
     results: Mapping[str, ElementResult]
     given: Mapping[str, Loss]
-    drivers: tuple[str, ...]
     ratio: float | None
     self_locking: bool
     jammed: bool
@@ -88,25 +87,32 @@ class Solution:
 
     @property
     def input_power(self) -> float:
-        """Power that enters at the bodies that would drive without losses. Theory (P5). [W]"""
-        return max(0.0, sum(self.torques[body] * self.speeds[body] for body in self.drivers))
+        """Power that enters, at all shafts where it does. Theory (P5). [W]"""
+        return sum(power for power in self._powers() if power > 0)
 
     @property
     def efficiency(self) -> float | None:
-        """Power that leaves over power that enters. Theory (P6), (P7). [1]
+        """Power that leaves over power that enters. Theory (P6). [1]
 
-        0 if the losses take all of it; None if no power is passed on.
+        0 if the losses take all of it; None if no power enters.
         """
-        if not self.drivers:
+        entering = self.input_power
+        if not entering:
             return 0.0 if self.jammed else None
-        entering, loss = self.input_power, self.loss
-        return 1 - loss / entering if loss < entering and not self.self_locking else 0.0
+        leaves = any(power < 0 for power in self._powers())
+        return max(0.0, 1 - self.loss / entering) if leaves else 0.0
 
     @property
     def power_ratio(self) -> float | None:
         """Sum of the rolling powers of all meshes over the power that enters. Theory (T7). [1]"""
         entering = self.input_power
         return sum(map(abs, self.rolling.values())) / entering if entering else None
+
+    def _powers(self) -> list[float]:
+        """Of all bodies, without what is rounding. [W]"""
+        powers = [torque * self.speeds[body] for body, torque in self.torques.items()]
+        limit = NO_POWER * max(map(abs, powers), default=0.0)
+        return [power for power in powers if abs(power) > limit]
 
     def _losses(self) -> Iterable[Loss]:
         for result in self.results.values():
@@ -119,7 +125,8 @@ def lossless_state(machine: Machine, operation: Operation, fluids: Fluids | None
     speeds = speeds_of(machine, operation.speeds)
     found = _lossless(machine, operation, speeds)
     forces = forces_of(machine.layouts, found.meshes)
-    return State(speeds, found.meshes, forces, cast(Fluids, fluids), lossless=True)
+    drives = drives_first(found.powers, dict.fromkeys(found.powers, True))
+    return State(speeds, found.meshes, forces, cast(Fluids, fluids), lossless=True, drives=drives)
 
 
 def _lossless(machine: Machine, operation: Operation, speeds: Mapping[str, float]) -> Balance:
@@ -201,7 +208,6 @@ def solve_machine(
         rolling=last.balance.powers,
         results=last.results,
         given=_given_losses(machine, last.balance),
-        drivers=_drivers(lossless, speeds),
         ratio=start.ratio,
         self_locking=directions.locking,
         jammed=directions.jammed,
@@ -238,7 +244,13 @@ def _converged(
     for number in range(MOST_PASSES):
         forces = forces_of(machine.layouts, found.meshes)
         state = State(
-            speeds, found.meshes, forces, cast(Fluids, fluids), lossless=number == 0, idle=idle
+            speeds,
+            found.meshes,
+            forces,
+            cast(Fluids, fluids),
+            lossless=number == 0,
+            drives=drives,
+            idle=idle,
         )
         if not number:
             idle |= {element.key: element.idle(state) for element in machine.elements}
@@ -296,17 +308,15 @@ def effects_of(
     """
     efficiencies = {row.key: row.efficiency for row in machine.rows}
     frictions = []
-    rows = {row.key: row for row in machine.rows}
     for result in results:
         for loss in result.losses.values():
             power = abs(powers.get(loss.mesh, 0.0))
             if loss.mesh and loss.watts < MOST_OF_A_MESH * power:
                 efficiencies[loss.mesh] -= loss.watts / power
-            elif loss.mesh:
-                row = rows[loss.mesh]
-                frictions.append(Friction((row.second, row.carrier), loss.watts))
             elif loss.watts:
-                frictions.append(Friction(loss.between, loss.watts))
+                frictions += [
+                    Friction((one, two), share * loss.watts) for one, two, share in loss.brakes
+                ]
     return efficiencies, frictions
 
 
@@ -322,10 +332,3 @@ def _given_losses(machine: Machine, found: Balance) -> dict[str, Loss]:
         for row in machine.rows
         if row.efficiency < 1
     }
-
-
-def _drivers(lossless: Balance, speeds: Mapping[str, float]) -> tuple[str, ...]:
-    """Bodies that would bring power in without losses."""
-    powers = {body: torque * speeds[body] for body, torque in lossless.torques.items()}
-    limit = 1e-12 * max(map(abs, powers.values()), default=0.0)
-    return tuple(body for body, power in powers.items() if power > limit)

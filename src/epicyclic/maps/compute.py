@@ -128,7 +128,7 @@ def loss_map(
         ``power_ratio`` and, over the state, ``ratio``. At zero speed
         powers are zero, and torques, torque loss and efficiency are the limits of slow motion in
         positive direction; but the torque loss is NaN there if a second member is driven. The
-        efficiency is NaN where no power is passed on. Points that failed are NaN, with status
+        efficiency is NaN where nothing is lost. Points that failed are NaN, with status
         ``"failed"``. The attributes state the reference shaft and the signs.
 
     Raises
@@ -358,7 +358,8 @@ def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:
         "directions of the power",
         "zero_speed": "powers are 0; torque loss, torques and efficiency are the limits of slow "
         "motion in positive direction, without friction of rest",
-        "zero_torque": "efficiency has no value; the torque loss is that of the drag",
+        "zero_torque": "efficiency is 0, there and wherever the loss takes all of the power; the "
+        "torque loss is that of drag and of teeth that drive it",
         "temperatures": _TEMPERATURES[plan.case.models.temperatures],
         "conventions": "losses in W of the whole gear set, summed over planets; efficiency: power "
         "that leaves over power that enters, 0 if the loss takes all of it",

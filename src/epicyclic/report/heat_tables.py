@@ -162,7 +162,7 @@ def _flank_text(result: Result, warm: Result | str) -> str:
 
 
 def _total(watts: float, before: float) -> str:
-    return f"{watts:.0f} W ({watts / before - 1:+.1%})".replace("%", " %")
+    return f"{watts:.0f} W ({watts / before - 1:+z.1%})".replace("%", " %")
 
 
 def _beyond_text(beyond: BeyondRange, free: Result | str) -> str:

@@ -107,7 +107,7 @@ class PowerFlow:
     members : mapping of str to MemberState
         The shafts; their powers sum to the loss.
     input_power : float
-        Power that enters, at the members that would drive without losses. [W]
+        Power that enters, at all members where it does. [W]
     efficiency : float or None
         Power that leaves over power that enters; 0 if the loss takes all of it; None if no power
         is passed on. [1]

@@ -40,20 +40,27 @@ from epicyclic.thermal.bulk import (
 )
 from epicyclic.thermal.flash import effusivity, flash_temperature
 
-__all__ = ["FIGURES", "LoadedTests", "loaded_conditions"]
+__all__ = ["FIGURES", "LoadedTests", "loaded_conditions", "source_case"]
 
 TEST_TORQUES = (250, 500, 750, 1000)
 """Loaded tests: torque on the sun. [N m]"""
 TEST_SPEEDS = (1000, 2000, 3000, 4000)
 """Speeds of the sun. [rpm]"""
+AS_IN_THE_SOURCE = {"models.mesh_loads": "without-losses"}
+"""Talbot (2012), Eq. 3.7, p. 68."""
 KELVIN = 273.15
 """0 degC in kelvin."""
 
 
-def _case(**changes: object) -> PlanetaryCase:
+def source_case() -> PlanetaryCase:
+    """The set of the dissertation, computed as there."""
     case = read_case("talbot-2012")
     assert isinstance(case, PlanetaryCase)
-    return case.updated({key.replace("__", "."): value for key, value in changes.items()})
+    return case.updated(AS_IN_THE_SOURCE)
+
+
+def _case(**changes: object) -> PlanetaryCase:
+    return source_case().updated({key.replace("__", "."): value for key, value in changes.items()})
 
 
 class LoadedTest(Protocol):

@@ -13,13 +13,12 @@ from functools import cache, partial
 from importlib import resources
 from typing import Any, NamedTuple
 
-from epicyclic.case.case import read_case
 from epicyclic.errors import ConvergenceError
 from epicyclic.sweeps.plan import PointList
 from epicyclic.sweeps.runner import HERE, Runner
 from epicyclic.sweeps.unloaded import as_tested, with_unloaded
 from epicyclic.validation.compare import published_figures
-from epicyclic.validation.compute import FIGURES, LoadedTests, loaded_conditions
+from epicyclic.validation.compute import FIGURES, LoadedTests, loaded_conditions, source_case
 
 __all__ = ["Estimate", "SettledFigure", "estimates", "settled_figures"]
 
@@ -157,7 +156,7 @@ def _tests_of(settings: Sequence[Mapping[str, Any]], runner: Runner) -> list[Loa
         for test in loaded_conditions(temperature, finish, content["planets"])
     ]
     points, unloaded = with_unloaded([{**test, **own} for own in settings for test in conditions])
-    rows = runner.run(PointList(read_case("talbot-2012"), points))
+    rows = runner.run(PointList(source_case(), points))
     if rows.failures:
         raise ConvergenceError(
             f"{len(rows.failures)} of {len(rows)} tests cannot be computed: {rows.failures[0]}"

@@ -42,6 +42,8 @@ class FrictionSettings:
     table : FrictionMap or None
     oil_held : bool
         False to continue the model mixed-ehl beyond its oil.
+    load_factor : float
+        K_A K_gamma, for the model niemann-winter. [1]
     """
 
     constant: float
@@ -49,6 +51,7 @@ class FrictionSettings:
     fluid: float
     table: FrictionMap | None = None
     oil_held: bool = True
+    load_factor: float = 1.0
 
 
 def _table(settings: FrictionSettings) -> FrictionModel:
@@ -64,7 +67,7 @@ FRICTION_MODELS: dict[str, Callable[[FrictionSettings], FrictionModel]] = {
     Matsumoto.name: lambda settings: Matsumoto(settings.boundary, settings.fluid),
     Doleschel.name: lambda settings: Doleschel(settings.boundary, settings.fluid),
     Schlenk.name: lambda _: Schlenk(),
-    NiemannWinter.name: lambda _: NiemannWinter(),
+    NiemannWinter.name: lambda settings: NiemannWinter(settings.load_factor),
     Constant.name: lambda settings: Constant(settings.constant),
     FrictionMap.name: _table,
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -49,13 +50,13 @@ _ROUGHNESS = Range(
 _GEAR_TESTS = (_SPEED, _LOAD, _PRESSURE)
 
 
-def _mean_group(contact: MeshContact) -> float:
-    """[(F_bt/b)/(v_SigmaC rho_redC)]^0.2 eta^-0.05 in N/mm, m/s, mm and mPa s, in its range.
+def _mean_group(contact: MeshContact, load_factor: float = 1.0) -> float:
+    """[K (F_bt/b)/(v_SigmaC rho_redC)]^0.2 eta^-0.05 in N/mm, m/s, mm and mPa s, in its range.
 
     Theory (F19).
     """
     radius, e_eq = pitch_point_radius(contact), contact.flanks.equivalent_modulus
-    load = held_in_range(specific_load(contact), _LOAD)
+    load = held_in_range(load_factor * specific_load(contact), _LOAD)
     pressure = held_in_range(hertz_pressure(load, radius, e_eq), _PRESSURE)
     load = line_load_at_pressure(pressure, radius, e_eq)
     speed = contact.pitch_line_speed
@@ -104,13 +105,14 @@ class Schlenk:
         return np.full_like(contact.line_load, mu)
 
 
+@dataclass(frozen=True, slots=True)
 class NiemannWinter:
-    """mu = 0.045 [(F_bt/b)/(v_SigmaC rho_redC)]^0.2 eta^-0.05 X_R X_L, X_R = 3.8 (Ra/d1)^0.25.
+    """mu = 0.045 [K (F_bt/b)/(v_SigmaC rho_redC)]^0.2 eta^-0.05 X_R X_L, X_R = 3.8 (Ra/d1)^0.25.
 
     Theory (F16).
 
-    N/mm, m/s, mm, mPa s, um. Standard formula from general knowledge, its text not read; X_R
-    agrees with the form 2.2 (Ra/rho)^0.25 of DIN 3990-4.
+    N/mm, m/s, mm, mPa s, um; K = K_A K_gamma is `load_factor`. Standard formula from general
+    knowledge, its text not read; X_R agrees with the form 2.2 (Ra/rho)^0.25 of DIN 3990-4.
     """
 
     name: ClassVar = "niemann-winter"
@@ -127,12 +129,25 @@ class NiemannWinter:
         OF_THIS_PACKAGE,
         _relative_roughness,
     )
-    ranges: ClassVar[tuple[Range, ...]] = (*_GEAR_TESTS, RELATIVE_ROUGHNESS)
+
+    load_factor: float = 1.0
+
+    @property
+    def ranges(self) -> tuple[Range, ...]:
+        """Those of the tests, for the load with its factor."""
+        factor = self.load_factor
+        return (
+            _SPEED,
+            replace(_LOAD, of=lambda contact: factor * specific_load(contact)),
+            replace(_PRESSURE, of=lambda contact: factor**0.5 * pitch_point_pressure(contact)),
+            self.RELATIVE_ROUGHNESS,
+        )
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
         rough = held_in_range(_relative_roughness(contact), self.RELATIVE_ROUGHNESS)
-        mu = 0.045 * _mean_group(contact) * 3.8 * rough**0.25 * contact.oil.lubricant_factor
+        group = _mean_group(contact, self.load_factor)
+        mu = 0.045 * group * 3.8 * rough**0.25 * contact.oil.lubricant_factor
         return np.full_like(contact.line_load, mu)
 
 
