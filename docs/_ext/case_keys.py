@@ -45,9 +45,10 @@ def keys_of_schema() -> dict[str, str]:
             if inner is None or table == "losses":
                 found[table] = ""
                 continue
+            named = "" if dict_value(field.annotation) is None else "NAME."
             for key, default in _fields(inner):
                 shared = table in GEARS and key.partition(".")[0] in GearTable.model_fields
-                found[f"<gear>.{key}" if shared else f"{table}.{key}"] = default
+                found[f"<gear>.{key}" if shared else f"{table}.{named}{key}"] = default
     found["losses.<term>.include"], found["losses.<term>.factor"] = "true", "1"
     found.pop("losses")
     return found

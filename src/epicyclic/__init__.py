@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from epicyclic.analysis.mesh_details import mesh_details
     from epicyclic.analysis.pocket_details import pocket_details
     from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
+    from epicyclic.bands.pairs import compare_cases
+    from epicyclic.bands.study import uncertainty
     from epicyclic.campaigns.fit import characterise_oil
     from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema
     from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
@@ -54,6 +56,7 @@ _HOME = {
     "characterise_oil": "epicyclic.campaigns.fit",
     "heat_balance": "epicyclic.analysis.heat",
     "load_case": "epicyclic.exchange.load",
+    "compare_cases": "epicyclic.bands.pairs",
     "compare_measured": "epicyclic.measurement.compare",
     "duty_cycle": "epicyclic.maps.duty",
     "loaded_meshes": "epicyclic.analysis.solve",
@@ -71,6 +74,7 @@ _HOME = {
     "solve": "epicyclic.analysis.solve",
     "solve_for": "epicyclic.analysis.heat",
     "sweep": "epicyclic.sweeps.run",
+    "uncertainty": "epicyclic.bands.study",
     "warm_up": "epicyclic.maps.warm_up",
     "with_temperature_state": "epicyclic.maps.lumped",
     "write_map": "epicyclic.maps.formats",
@@ -90,6 +94,7 @@ __all__ = [
     "RexsImport",
     "case_schema",
     "characterise_oil",
+    "compare_cases",
     "compare_measured",
     "duty_cycle",
     "heat_balance",
@@ -109,6 +114,7 @@ __all__ = [
     "solve",
     "solve_for",
     "sweep",
+    "uncertainty",
     "warm_up",
     "with_temperature_state",
     "write_map",

@@ -12,10 +12,10 @@ import pytest
 from scipy.optimize import curve_fit
 
 import epicyclic as ep
+from epicyclic.case.parameters import Parameter
 from epicyclic.measurement.files import read_frame
 from epicyclic.measurement.fit import fit_parameters
 from epicyclic.measurement.model import MeasuredPoints
-from epicyclic.measurement.parameters import Parameter
 from epicyclic.measurement.table import Measurements, parse_measurements
 from epicyclic.sweeps.journal import Row, Rows
 from epicyclic.sweeps.runner import failed_row

@@ -93,6 +93,10 @@ class CaseTable(Table):
         cls, case: Self | None, tables: dict[str, Any], source: str, problems: list[Problem]
     ) -> Self:
         """The case with what it was made from; an error with all problems, if there are any."""
+        if case is not None and getattr(case, "uncertainty", {}):
+            from epicyclic.case.uncertain_values import check_uncertainty
+
+            problems = [*problems, *check_uncertainty(case)]
         if case is None or problems:
             ordered = sorted(problems, key=lambda problem: _position(cls, problem))
             raise InputError(ordered, source)
@@ -113,7 +117,7 @@ class CaseTable(Table):
         return type(self) is type(other) and self.__dict__ == other.__dict__
 
     def __hash__(self) -> int:
-        return hash(tuple(self.__dict__.values()))
+        return hash(tuple(it for it in self.__dict__.values() if not isinstance(it, dict)))
 
 
 def as_given(problem: Problem, tables: dict[str, Any]) -> Problem:

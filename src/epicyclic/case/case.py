@@ -36,6 +36,7 @@ from epicyclic.case.reading import read_file
 from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import StateTable
+from epicyclic.case.uncertainty_tables import UNCERTAINTY, DistributionTable
 from epicyclic.case.validation import tables_of
 from epicyclic.case.wording import one_line, written
 from epicyclic.errors import InputError, Problem
@@ -90,6 +91,7 @@ class PlanetaryCase(_SetTables):
     contact_solver: ContactSolver = ContactSolver()
     numerics: Numerics = Numerics()
     losses: PlanetaryLosses = PlanetaryLosses()
+    uncertainty: dict[str, DistributionTable] = UNCERTAINTY
 
 
 class GearPairCase(_SetTables):
@@ -110,6 +112,7 @@ class GearPairCase(_SetTables):
     contact_solver: ContactSolver = ContactSolver()
     numerics: Numerics = Numerics()
     losses: GearPairLosses = GearPairLosses()
+    uncertainty: dict[str, DistributionTable] = UNCERTAINTY
 
 
 Case = PlanetaryCase | GearPairCase | TrainCase

@@ -46,6 +46,7 @@ from epicyclic.case.train_tables import (
     StateTable,
     TrainOperation,
 )
+from epicyclic.case.uncertainty_tables import UNCERTAINTY, DistributionTable
 from epicyclic.case.validation import Validation, validate
 from epicyclic.case.wording import written
 from epicyclic.errors import InputError, Problem
@@ -74,6 +75,7 @@ class _TrainTables(CaseTable):
     models: PlanetaryModels = PlanetaryModels()
     contact_solver: ContactSolver = ContactSolver()
     numerics: Numerics = Numerics()
+    uncertainty: dict[str, DistributionTable] = UNCERTAINTY
 
     _shape: TrainShape = PrivateAttr()
 

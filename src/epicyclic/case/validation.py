@@ -16,7 +16,7 @@ from epicyclic.case.nearest import misspelt
 from epicyclic.case.plain import changed_at, value_at
 from epicyclic.case.schema import Table
 from epicyclic.case.translation import translate, unknown_key
-from epicyclic.case.wording import written
+from epicyclic.case.wording import dotted, written
 from epicyclic.errors import Problem
 
 __all__ = ["Validation", "tables_of", "validate"]
@@ -132,7 +132,7 @@ def _check_alternatives(kind: type[Table], raw: dict[str, Any]) -> list[Problem]
     for name, table in tables_of(kind).items():
         given = {name: raw.get(name)}
         if _holds_names(kind, name) and isinstance(raw.get(name), dict):
-            given = {f"{name}.{key}": item for key, item in raw[name].items()}
+            given = {f"{name}.{dotted([key])}": item for key, item in raw[name].items()}
         for key, item in given.items():
             if isinstance(item, dict):
                 for group in table.EXACTLY_ONE:

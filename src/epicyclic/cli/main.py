@@ -33,6 +33,7 @@ from epicyclic.cli.pockets_table import pockets_table
 from epicyclic.cli.rexs import rexs
 from epicyclic.cli.show import plot, report
 from epicyclic.cli.single import check, friction, mesh, run
+from epicyclic.cli.uncertainty import compare_cases, uncertainty
 from epicyclic.cli.validate import validate
 from epicyclic.cli.warm_up import warm_up
 from epicyclic.errors import ConvergenceError, InputError, is_interrupt
@@ -61,6 +62,8 @@ COMMANDS = (
     loss_map,
     merge,
     duty,
+    uncertainty,
+    compare_cases,
     heat,
     warm_up,
     mesh,

@@ -85,7 +85,7 @@ class OneGear:
 def gear_set_links(
     own: GearSet, state: State, result: ElementResult, wetting: Wetting
 ) -> Iterator[Link]:
-    """Ways of the heat of a set. Theory (W28), (W29), (W30)."""
+    """Ways of the heat of a set. Theory (W29), (W30), (W31)."""
     planets = {planet.nodes[0]: planet for planet in own.planets}
     for one in gears_of(own):
         planet = planets.get(one.node)

@@ -23,6 +23,7 @@ __all__ = [
     "oil_model_file",
     "oil_names",
     "oil_table",
+    "uncertainty_table",
 ]
 
 
@@ -128,3 +129,9 @@ def builtin_case(name: str) -> dict[str, Any]:
     if words:
         raise KeyError(name)
     return table
+
+
+@cache
+def uncertainty_table() -> dict[str, Any]:
+    """What is assumed of values and models whose uncertainty a case does not state."""
+    return _read(_root().joinpath("uncertainty.toml"))

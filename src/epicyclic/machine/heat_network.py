@@ -335,7 +335,7 @@ class NetworkModel:
         return tuple(map(self._changed, ways))
 
     def capacities(self) -> dict[str, float]:
-        """Heat that each node stores for a kelvin. Theory (W34). [J/K]
+        """Heat that each node stores for a kelvin. Theory (W35). [J/K]
 
         Raises
         ------
@@ -372,7 +372,7 @@ class NetworkModel:
         return oil.density * oil.heat_capacity * own.flow
 
     def _jet_shares(self, heat: Mapping[str, float]) -> dict[str, float]:
-        """The oil goes where the heat arises, unless the user says otherwise. Theory (W29)."""
+        """The oil goes where the heat arises, unless the user says otherwise. Theory (W30)."""
         given = self.settings.jet_shares
         own = {node: heat.get(node, 0.0) for node in self.wetted if node not in given}
         left = max(0.0, 1 - sum(given.values()))

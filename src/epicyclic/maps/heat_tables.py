@@ -124,7 +124,7 @@ def _heat(machine: Machine, solution: Solution, nodes: Sequence[str]) -> dict[So
 
 
 class HeatTables:
-    """Curves over temperature of the heat and the ways of every operating point. Theory (W35).
+    """Curves over temperature of the heat and the ways of every operating point. Theory (W36).
 
     Parameters
     ----------

@@ -63,7 +63,7 @@ def check_axis(count: int) -> None:
 
 
 def lumped(case: Case) -> dict[str, float]:
-    """Attributes of a map whose temperature follows from its losses. Theory (W38).
+    """Attributes of a map whose temperature follows from its losses. Theory (W39).
 
     Raises
     ------

@@ -267,7 +267,7 @@ def _constant(case: Case) -> _Drive:
 
 
 def _driven(case: Case, seconds: float, cycle: Cycle) -> _Drive:
-    """A cycle: a time series in steps, a histogram as one step. Theory (W36)."""
+    """A cycle: a time series in steps, a histogram as one step. Theory (W37)."""
     if not held_shaft(case):
         raise InputError([driven_problem("only one speed and one torque can be looked up")])
     states: list[str] = []

@@ -20,13 +20,13 @@ from numpy.typing import NDArray
 from epicyclic.builders.notes import NOT_INCLUDED
 from epicyclic.case.case import Case
 from epicyclic.case.operating import OPERATING
+from epicyclic.case.parameters import make_parameters
 from epicyclic.errors import InputError, Problem
 from epicyclic.losses.validity import OUT_OF_RANGE
 from epicyclic.measurement.deviations import AS_GIVEN, CALIBRATED, ErrorFigures, all_errors
 from epicyclic.measurement.files import read_frame, read_grid
 from epicyclic.measurement.fit import Fit, fit_parameters
 from epicyclic.measurement.model import Computed, MeasuredPoints
-from epicyclic.measurement.parameters import make_parameters
 from epicyclic.measurement.table import (
     LOAD_DEPENDENT,
     Measurements,

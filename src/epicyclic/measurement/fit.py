@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.case.parameters import Parameter
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.measurement.intervals import Linearised
 from epicyclic.measurement.model import MeasuredPoints
-from epicyclic.measurement.parameters import Parameter
 from epicyclic.units import format_number
 
 __all__ = ["Fit", "FittedParameter", "fit_parameters"]

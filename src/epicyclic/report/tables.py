@@ -122,7 +122,10 @@ def as_on_page(item: page.Table | page.Listing) -> RenderableType:
     for column, head in enumerate(item.head):
         whole = column == 0 and (len(item.head) <= FEW_COLUMNS or _longest(item) <= SHORT_NAME)
         table.add_column(
-            head, justify="right" if item.is_numeric(column) else "left", no_wrap=whole
+            head,
+            justify="right" if item.is_numeric(column) else "left",
+            no_wrap=whole,
+            overflow="fold",
         )
     for place, row in enumerate(item.rows):
         strong = place in item.strong

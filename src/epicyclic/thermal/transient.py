@@ -65,7 +65,7 @@ class Curves:
     weights: FloatArray
 
     def read(self, temperatures: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Values, and their slopes over the temperature of each. Theory (W35)."""
+        """Values, and their slopes over the temperature of each. Theory (W36)."""
         own = self.weights @ temperatures
         held = np.clip(own, self.knots[0], self.knots[-1])
         below = np.clip(np.searchsorted(self.knots, held) - 1, 0, self.knots.size - 2)
@@ -116,7 +116,7 @@ class _Ways(NamedTuple):
 
 @dataclass(frozen=True)
 class Transient:
-    """Nodes that store heat. Theory (W31).
+    """Nodes that store heat. Theory (W32).
 
     Attributes
     ----------
@@ -196,7 +196,7 @@ class Transient:
     def integrate(
         self, start: FloatArray, times: FloatArray, tolerance: float = TOLERANCE
     ) -> Course:
-        """The course from temperatures `start` at the first of `times`. Theory (W31).
+        """The course from temperatures `start` at the first of `times`. Theory (W32).
 
         Parameters
         ----------
@@ -251,7 +251,7 @@ class Transient:
         return done.x if done.success else None
 
     def time_constants(self, temperatures: FloatArray) -> FloatArray:
-        """Of small changes about some temperatures, from the slowest. Theory (W37). [s]
+        """Of small changes about some temperatures, from the slowest. Theory (W38). [s]
 
         Infinite where they grow.
         """

@@ -1,15 +1,15 @@
-"""Keys of a case that can be fitted: their start values and bounds."""
+"""Keys of a case that hold a continuous number: their values and bounds."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from typing import Any
 
 from annotated_types import Gt
 
-from epicyclic.case.case import Case
+from epicyclic.case.base import CaseTable
 from epicyclic.case.fields import (
     bounds_of,
     is_array,
@@ -22,7 +22,7 @@ from epicyclic.case.nearest import did_you_mean
 from epicyclic.errors import InputError, Problem
 from epicyclic.units import Quantity
 
-__all__ = ["Parameter", "make_parameters"]
+__all__ = ["Parameter", "make_parameters", "parameter_of"]
 
 OFF_OPEN_BOUND = 1e-6
 """Distance kept from a bound that is no value itself, over that of the start value. [1]"""
@@ -61,7 +61,7 @@ class Parameter:
 
 
 def make_parameters(
-    case: Case, keys: Iterable[str], varied: Iterable[str]
+    case: CaseTable, keys: Iterable[str], varied: Iterable[str]
 ) -> tuple[Parameter, ...]:
     """The keys to be fitted, checked; `varied` are those that the table sets itself.
 
@@ -71,7 +71,7 @@ def make_parameters(
         For keys that are unknown, hold no number, or have no start value.
     """
     found: dict[str, Parameter | Problem] = {
-        key: _parameter(case, key, set(varied)) for key in keys
+        key: parameter_of(case, key, set(varied)) for key in keys
     }
     problems = [item for item in found.values() if isinstance(item, Problem)]
     if problems:
@@ -79,7 +79,8 @@ def make_parameters(
     return tuple(item for item in found.values() if isinstance(item, Parameter))
 
 
-def _parameter(case: Case, key: str, varied: set[str]) -> Parameter | Problem:
+def parameter_of(case: CaseTable, key: str, varied: Collection[str] = ()) -> Parameter | Problem:
+    """A key that holds a number, or why it cannot be varied continuously."""
     field = field_at(case, key)
     if field is None:
         remedy = did_you_mean(key, known_keys(case)) or "See 'epicyclic init' for keys."
@@ -92,7 +93,9 @@ def _parameter(case: Case, key: str, varied: set[str]) -> Parameter | Problem:
     start = _start(case, key, quantity)
     if start is None or start == 0:
         what = "has no value in the case" if start is None else "is 0 in the case"
-        return Problem(key, "", f"{what}; a fit starts from one.", f'Add --set "{key}=...".')
+        return Problem(
+            key, "", f"{what}; it must have one to vary about.", f'Add --set "{key}=...".'
+        )
     low, high, is_open = _bounds(quantity, field)
     if is_open:
         low += OFF_OPEN_BOUND * (start - low)
@@ -132,7 +135,7 @@ def _bounds(
     )
 
 
-def _start(case: Case, key: str, quantity: Quantity | None) -> float | None:
+def _start(case: CaseTable, key: str, quantity: Quantity | None) -> float | None:
     value = value_of(case, key)
     if value is None:
         return None

@@ -1,0 +1,1 @@
+"""How well a result is known, given how well its inputs and models are."""

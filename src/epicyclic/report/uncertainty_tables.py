@@ -1,0 +1,158 @@
+"""How well a result is known, in tables: for terminals and pages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from rich.console import RenderableType
+
+from epicyclic.case.uncertain_values import MODEL_FORM
+from epicyclic.case.wording import one_line
+from epicyclic.report.page import Cell, Listing, Table, aligned, number
+from epicyclic.report.shown import shown
+from epicyclic.report.tables import as_on_page, titled
+from epicyclic.results.result import in_words
+from epicyclic.units import unit_text
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["driver_name", "pair_tables", "uncertainty_items", "uncertainty_tables"]
+
+CUT_OFF = 1e-3
+"""Probability of impossible values that is worth a sentence. [1]"""
+
+
+def uncertainty_tables(data: xr.Dataset) -> RenderableType:
+    """All of a dataset of `epicyclic.uncertainty`, for a terminal."""
+    return titled(one_line(data.attrs["title"]), *map(as_on_page, uncertainty_items(data)))
+
+
+def uncertainty_items(data: xr.Dataset) -> Iterator[Table | Listing]:
+    """Results with their bands, the budget of the total loss, and what to know of it."""
+    yield _results(data)
+    yield _budget(data)
+    yield Listing(tuple(_notes(data)), "Notes")
+
+
+def pair_tables(data: xr.Dataset) -> RenderableType:
+    """All of a dataset of `epicyclic.compare_cases`, for a terminal."""
+    rows = []
+    names = [str(name) for name in data["result"].values]
+    for name in names:
+        one = data.sel(result=name)
+        percent = str(one["unit"].values) != "W"
+        scale, digits = (100.0, 3) if percent else (1.0, 1)
+        values = [
+            float(one[key]) * scale
+            for key in ("first", "second", "difference", "standard_uncertainty", "low", "high")
+        ]
+        cells = (number(value, "", text=f"{value:z.{digits}f}") for value in values)
+        chance = aligned(f"{float(one['probability']):.1%}")
+        rows.append((Cell(in_words(name) + (", %" if percent else "")), *cells, chance))
+    strong = frozenset({names.index("total"), names.index("efficiency")})
+    head = ("", "first", "second", "mean difference", "u", "95 % from", "to", "second smaller")
+    title = f"{data.attrs['second_title']} less {data.attrs['first_title']}"
+    table = Table(head, tuple(rows), "Second less first", strong, "Losses in W.")
+    total = data.sel(result="total")
+    notes = [
+        f"Shared: {data.attrs['shared'] or 'nothing'}.",
+        f"Total loss: u of the difference {float(total['standard_uncertainty']):.1f} W; of two "
+        f"results that know nothing of each other {float(total['unpaired_uncertainty']):.1f} W.",
+    ]
+    if data.attrs["failed"]:
+        notes.append(f"{data.attrs['failed']} of {data.attrs['pairs']} pairs have no result.")
+    return titled(one_line(title), as_on_page(table), as_on_page(Listing(tuple(notes), "Notes")))
+
+
+def driver_name(key: str) -> str:
+    """What an uncertain value is called."""
+    if key.startswith(MODEL_FORM):
+        return f"model of {in_words(key.removeprefix(MODEL_FORM)).replace('-', ' ')}"
+    return key
+
+
+def _results(data: xr.Dataset) -> Table:
+    rows = []
+    names = [str(name) for name in data["result"].values]
+    for name in names:
+        one = data.sel(result=name)
+        percent = str(one["unit"].values) != "W"
+        scale, digits = (100.0, 3) if percent else (1.0, 1)
+        values = [
+            float(one[key]) * scale
+            for key in ("nominal", "mean", "standard_uncertainty", "expanded_uncertainty",
+                        "low", "high", "shortest_low", "shortest_high")
+        ]  # fmt: skip
+        cells = (number(value, "", text=f"{value:z.{digits}f}") for value in values)
+        rows.append((Cell(in_words(name) + (", %" if percent else "")), *cells))
+    strong = frozenset({names.index("total"), names.index("efficiency")})
+    head = ("", "case", "mean", "u_c", "U", "95 % from", "to", "shortest", "to")
+    note = "u_c: combined standard uncertainty; U = 2 u_c. Losses in W."
+    return Table(head, tuple(rows), "Results with their uncertainty", strong, note)
+
+
+def _budget(data: xr.Dataset) -> Table:
+    """What makes the variance of the total loss, the largest share first."""
+    total = data.sel(result="total", sum="total")
+    order = total["total_order"].sortby(-total["total_order"])["driver"].values
+    rows = []
+    for driver in map(str, order):
+        keys = driver.split(" + ")
+        if not total["contribution"].sel(input=keys).any():
+            continue
+        one = total.sel(driver=driver)
+        first, whole = float(one["first_order"]), float(one["total_order"])
+        for place, key in enumerate(keys):
+            own = total.sel(input=key)
+            rows.append(
+                (
+                    Cell(driver_name(key)),
+                    Cell(str(own["distribution"].values)),
+                    _value(own),
+                    number(
+                        float(own["contribution"]), "", text=f"{float(own['contribution']):z.1f}"
+                    ),
+                    aligned("" if place else f"{max(first, 0.0):.1%}"),
+                    aligned("" if place else f"{max(whole, 0.0):.1%}"),
+                )
+            )
+    head = ("", "distribution", "value", "per u_i, W", "share", "with others")
+    note = (
+        "per u_i: change of the total loss for one standard deviation. Shares of its variance, "
+        "alone and with all interactions; values that are correlated share one."
+    )
+    return Table(head, tuple(rows), "What the uncertainty of the total loss is due to", note=note)
+
+
+def _watts(value: float) -> Cell:
+    return number(value, "", text=f"{value:z.1f}")
+
+
+def _value(own: xr.Dataset) -> Cell:
+    unit = unit_text(str(own["input_unit"].values)).removesuffix("1")
+    return aligned(f"{shown(float(own['input_value']))} {unit}".rstrip())
+
+
+def _notes(data: xr.Dataset) -> Iterator[str]:
+    failed, count = int(data.attrs["failed"]), data.sizes["sample"]
+    if failed:
+        reason = next(str(text) for text in data["message"].values if text)
+        yield (
+            f"{failed} of {count} samples have no result and are left out of the intervals; for "
+            f"example: {reason}"
+        )
+    for key in map(str, data["input"].values):
+        share = float(data["cut_off"].sel(input=key))
+        if share > CUT_OFF:
+            yield f"{key}: {share:.1%} of its distribution is beyond what it can be, and cut off."
+    idle = data["input"].values[~data["contribution"].any("result").values]
+    if idle.size:
+        yield f"Without effect here: {', '.join(map(str, idle))}."
+    sources: dict[str, list[str]] = {}
+    for key in sorted(set(map(str, data["input"].values)) - set(map(str, idle))):
+        source = str(data["distribution_source"].sel(input=key).values)
+        sources.setdefault(source, []).append(driver_name(key))
+    for source, keys in sources.items():
+        yield f"{', '.join(keys)}: {source}."

@@ -1,0 +1,253 @@
+"""Propagation of what is uncertain: published figures, coverage, bad tables."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+import epicyclic as ep
+from asymmetric import gear_pair
+from epicyclic.bands.distributions import cut_off, quantiles, standard_uncertainty
+from epicyclic.bands.nearby import look_nearby, quick_band
+from epicyclic.bands.sampling import make_samples
+from epicyclic.bands.statistics import sobol_indices, summary
+from epicyclic.case.uncertain_values import UncertainValue, uncertain_values
+from epicyclic.errors import InputError
+
+ISOLATED = {
+    "losses.mesh_pocketing.include": False,
+    "numerics.mesh_positions": 8,
+    "numerics.contact_segments": 6,
+}
+"""Quick to solve."""
+
+
+def normal(key, value=0.0, deviation=1.0, **more):
+    return UncertainValue(key, "", value, "normal", (deviation,), **more)
+
+
+def uniform(key, low, high):
+    return UncertainValue(key, "", (low + high) / 2, "uniform", (low, high))
+
+
+def at_all(samples, function):
+    """A function at A, at B, and at A with each group from B."""
+    mixed = [function(samples.mixed(number)) for number in range(len(samples.groups))]
+    return function(samples.a)[None], function(samples.b)[None], np.array(mixed)[:, None]
+
+
+@pytest.fixture(scope="module")
+def case():
+    return ep.load_case(gear_pair()).updated(ISOLATED)
+
+
+@pytest.fixture(scope="module")
+def study(case):
+    return ep.uncertainty(case, samples=64, jobs=1)
+
+
+def test_indices_of_the_function_of_ishigami():
+    """a = 7, b = 0.1: exact indices, to 0.01."""
+    samples = make_samples([uniform(key, -math.pi, math.pi) for key in "abc"], 2**12, 5)
+    found = sobol_indices(
+        *at_all(
+            samples,
+            lambda x: np.sin(x[0]) + 7 * np.sin(x[1]) ** 2 + 0.1 * x[2] ** 4 * np.sin(x[0]),
+        ),
+        seed=1,
+    )
+    assert found.first[0] == pytest.approx([0.3139, 0.4424, 0.0], abs=0.01)
+    assert found.total[0] == pytest.approx([0.5576, 0.4424, 0.2437], abs=0.01)
+    low, high = found.first_ends
+    assert (low <= found.first).all()
+    assert (found.first <= high).all()
+
+
+@pytest.mark.parametrize(
+    ("values", "end"),
+    [
+        ([normal(key) for key in "abcd"], 3.92),
+        ([uniform(key, -math.sqrt(3), math.sqrt(3)) for key in "abcd"], 3.88),
+    ],
+    ids=["normal", "rectangular"],
+)
+def test_sums_of_jcgm_101(values, end):
+    """JCGM 101:2008, 9.2: four inputs of unit variance."""
+    samples = make_samples(values, 2**13, 3)
+    found = summary(np.concatenate([samples.a.sum(axis=0), samples.b.sum(axis=0)]))
+    assert found.standard_uncertainty == pytest.approx(2.0, rel=2e-3)
+    assert (found.low, found.high) == pytest.approx((-end, end), abs=0.02)
+    assert found.shortest_high - found.shortest_low == pytest.approx(2 * end, abs=0.06)
+
+
+def test_bands_hold_the_truth_as_often_as_they_say():
+    """Of 1000 truths that are off as stated, 93 to 97 % lie within their bands."""
+    rng = np.random.default_rng(20)
+    held = 0
+    for number in range(1000):
+        a, b, c, low = rng.uniform(2.0, 3.0, 4)
+        values = [
+            normal("a", a, 0.3), normal("b", b, 0.2), uniform("d", low, low + 1.7),
+            UncertainValue("c", "", c, "lognormal", (1.3,)),
+        ]  # fmt: skip
+        samples = make_samples(values, 128, number)
+        found = summary(np.concatenate([samples.a.prod(axis=0), samples.b.prod(axis=0)]))
+        truth = (
+            (a + 0.3 * rng.standard_normal())
+            * (b + 0.2 * rng.standard_normal())
+            * (low + 1.7 * rng.random())
+            * c * math.exp(math.log(1.3) * rng.standard_normal())
+        )  # fmt: skip
+        held += found.low <= truth <= found.high
+    assert 0.93 <= held / 1000 <= 0.97
+
+
+def test_small_uncertainties_add_up_as_in_the_gum(case):
+    """Linear limit: u_c from contributions of single inputs, to 1 %."""
+    small = {
+        "pinion.roughness": {"normal": "0.4 %"},
+        "gear.roughness": {"normal": "0.7 %"},
+        "surroundings.oil_air_ratio": {"lognormal_factor": 1.006},
+        "lubricant.pressure_viscosity_factor": {"normal": "0.3 %"},
+        "operation.oil_inlet_temperature": {"normal": "0.05 K"},
+        "models.boundary_friction": {"exact": True},
+        "thermal.jet_effectiveness": {"exact": True},
+    }
+    kinds = ("sliding", "rolling", "drag")
+    small |= {f"model_form.{kind}": {"lognormal_factor": 1.004} for kind in kinds}
+    data = ep.uncertainty(case.updated({"uncertainty": small}), samples=64, jobs=1)
+    total = data.sel(result="total")
+    expected = math.sqrt(float((total["contribution"] ** 2).sum()))
+    assert float(total["standard_uncertainty"]) == pytest.approx(expected, rel=0.01)
+    assert float(total["mean"]) == pytest.approx(float(total["nominal"]), rel=1e-4)
+
+
+def test_workers_give_the_same_file(case, tmp_path):
+    one = ep.uncertainty(case, samples=16, jobs=1)
+    two = ep.uncertainty(case, samples=16, jobs=2, journal=tmp_path / "kept")
+    assert one.identical(two)
+    assert not one.identical(ep.uncertainty(case, samples=16, seed=2, jobs=1))
+
+
+def test_results_of_a_case_are_those_without_uncertainty(case, study):
+    result = ep.solve(case)
+    for name, watts in result.losses.items():
+        if name in study["result"]:
+            assert float(study["nominal"].sel(result=name)) == pytest.approx(watts, rel=1e-12)
+    assert float(study["nominal"].sel(result="total")) == pytest.approx(result.total, rel=1e-12)
+    efficiency = float(study["nominal"].sel(result="efficiency"))
+    assert efficiency == pytest.approx(result.efficiency, rel=1e-12)
+    losses = study["value"].sel(result=["load_dependent", "load_independent"]).sum("result")
+    assert losses.values == pytest.approx(study["value"].sel(result="total").values)
+
+
+def test_each_input_moves_the_losses_that_depend_on_it(study):
+    moved = study["contribution"]
+    assert not moved.sel(input="thermal.jet_effectiveness").any()
+    share = moved.sel(input="surroundings.oil_air_ratio")
+    assert float(share.sel(result="drag")) > 0
+    # but for what the loss adds to the load of the teeth
+    assert abs(float(share.sel(result="mesh_rolling"))) < 1e-3 * float(share.sel(result="drag"))
+    sliding = moved.sel(input="model_form.sliding")
+    assert float(sliding.sel(result="mesh_sliding")) == pytest.approx(
+        float(sliding.sel(result="total"))
+    )
+    pinion, gear = (moved.sel(input=f"{it}.roughness", result="total") for it in ("pinion", "gear"))
+    assert float(pinion) != pytest.approx(float(gear), rel=0.05)
+
+
+def test_the_quick_band_is_that_of_many_samples(case, study):
+    band = quick_band(look_nearby(case, ep.solve(case)))
+    total = study.sel(result="total")
+    width = float(total["high"] - total["low"])
+    assert band.low["total"] == pytest.approx(float(total["low"]), abs=0.1 * width)
+    assert band.high["total"] == pytest.approx(float(total["high"]), abs=0.15 * width)
+    shares = study["total_order"].sel(sum="total").to_series()
+    assert band.drivers[0][0] == shares.idxmax()
+    assert sum(share for _, share in band.drivers) == pytest.approx(1.0)
+
+
+def test_correlated_inputs_share_their_part_of_the_variance(case):
+    together = {
+        "pinion.roughness": {"normal": "0.06 um"},
+        "gear.roughness": {"normal": "0.09 um", "correlated": {"pinion.roughness": 0.9}},
+    }
+    data = ep.uncertainty(case.updated({"uncertainty": together}), samples=64, jobs=1)
+    assert "pinion.roughness + gear.roughness" in data["driver"].values
+    drawn = data["drawn"].sel(input=["pinion.roughness", "gear.roughness"])
+    assert np.corrcoef(drawn.values)[0, 1] == pytest.approx(0.9, abs=0.05)
+
+
+def test_a_paired_difference_is_known_better_than_an_unpaired_one(case):
+    data = ep.compare_cases(case, case.updated({"gear.roughness": "0.31 um"}), samples=64, jobs=1)
+    total = data.sel(result="total")
+    assert total["standard_uncertainty"] < 0.6 * total["unpaired_uncertainty"]
+    assert total["low"] < total["difference"] < total["high"]
+    assert "surroundings.oil_air_ratio" in data.attrs["shared"]
+    assert "gear.roughness" not in data.attrs["shared"].split(", ")
+    same = ep.compare_cases(case, case, samples=16, jobs=1)
+    assert not same["difference"].sel(result="total").any()
+
+
+def test_values_that_cannot_be_are_cut_off_and_told(case):
+    value = normal("clearance", 4.0, 3.0, low=0.0)
+    drawn = quantiles(value, np.linspace(0.0, 1.0, 11)[1:-1])
+    assert (drawn > 0).all()
+    assert cut_off(value) == pytest.approx(0.0912, abs=1e-4)
+    assert standard_uncertainty(uniform("x", 1.0, 4.0)) == pytest.approx(3 / math.sqrt(12))
+
+
+def test_samples_without_a_result_are_counted(case):
+    """Centre distances of which some make the gears jam."""
+    jams = {"gears.center_distance": {"tolerance": ["-0.45 mm", "0.7 mm"]}}
+    data = ep.uncertainty(case.updated({"uncertainty": jams}), samples=16, jobs=1)
+    failed = data["status"].values == "failed"
+    assert 0 < data.attrs["failed"] == failed.sum() < failed.size
+    assert all(text for text in data["message"].values[failed])
+    assert np.isfinite(float(data["low"].sel(result="total")))
+    assert np.isfinite(data["total_order"]).all()
+
+
+def test_every_problem_of_the_table_is_told(case):
+    with pytest.raises(InputError) as caught:
+        case.updated(
+            {
+                "uncertainty": {
+                    "gear.rougness": {"normal": "1 um"},
+                    "pinion.roughness": {"normal": "3 rpm"},
+                    "gear.roughness": {"uniform": ["2 um", "1 um"]},
+                    "model_form.slding": {"lognormal_factor": 1.2},
+                    "model_form.rolling": {"normal": "10 %"},
+                    "lubricant.oil": {"normal": "1 %"},
+                    "surroundings.oil_air_ratio": {
+                        "normal": "1 %", "correlated": {"x": 0.3, "gear.roughness": 1.2},
+                    },
+                }
+            }
+        )  # fmt: skip
+    told = {problem.key: str(problem) for problem in caught.value.problems}
+    assert set(told) == {
+        'uncertainty."gear.rougness"',
+        'uncertainty."pinion.roughness"',
+        'uncertainty."gear.roughness"',
+        'uncertainty."model_form.slding"',
+        'uncertainty."model_form.rolling"',
+        'uncertainty."lubricant.oil"',
+        'uncertainty."surroundings.oil_air_ratio".correlated.x',
+        'uncertainty."surroundings.oil_air_ratio".correlated."gear.roughness"',
+    }
+    assert "gear.roughness" in told['uncertainty."gear.rougness"']
+    assert "sliding" in told['uncertainty."model_form.slding"']
+
+
+def test_every_assumption_has_a_source():
+    for name in ("talbot-2012", "talbot-2012-pair", "train-eaxle"):
+        own = ep.load_case(name)
+        values, problems = uncertain_values(own, ("sliding", "seals"))
+        assert not problems
+        assert all(value.source for value in values)
+        pairs = itertools.pairwise(sorted(value.key for value in values))
+        assert all(one != two for one, two in pairs)
