@@ -27,6 +27,10 @@ _PINION = (
     "The friction of Niemann and Winter takes the diameter of the pinion, the smaller gear of a "
     "mesh; it took that of the gear that the case names first."
 )
+_TILT = (
+    "The tilt of the planets is found where it was not: at light loads, and in bearings of few "
+    "rollers, which hardly resist to tilt in one direction."
+)
 _GEAR_1_IS_LARGER = """
     pair-033 pair-044 pair-069 pair-105 planetary-013 planetary-037 planetary-043 planetary-054
     planetary-077 planetary-084 planetary-097 planetary-105 planetary-112 planetary-130
@@ -55,6 +59,7 @@ _WITHOUT_POWER = (
     "sweep talbot-2012-pair",
 )
 EXCEPTIONS: dict[str, str] = {
+    **{f"planetary-{number}/error": _TILT for number in ("066", "141", "175")},
     **{
         f"{case}/*{what}*": _ENTERING
         for case in _WITHOUT_POWER
@@ -99,6 +104,9 @@ CASES = [
 def test_results_are_the_frozen_ones(name):
     entry = FROZEN["cases"][name]
     case = with_models_of(entry, ep.load_case(entry["case"])).updated(AS_FROZEN)
+    if f"{name}/error" in EXCEPTIONS:
+        ep.solve(case)
+        return
     if "error" in entry:
         with pytest.raises(ep.ConvergenceError) as error:
             ep.solve(case)

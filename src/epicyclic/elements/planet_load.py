@@ -8,15 +8,14 @@ turns the planet from t to r: for a sun, t is then the sense in which it pushes 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.elements.gear_mesh import MeshDuty, elastic_loads
-from epicyclic.errors import ConvergenceError
-from epicyclic.losses.planet_bearing import RollerBearing, roller_loads
+from epicyclic.losses.planet_bearing import RollerBearing, roller_loads, tilting_moments
 
 __all__ = ["PlanetContact", "PlanetLoad", "planet_load", "tilt_planet"]
 
@@ -171,7 +170,7 @@ def tilt_planet(
     Raises
     ------
     ConvergenceError
-        If no tilt is found at which bearing and meshes are in balance.
+        If the load of a mesh or of the bearing is not found.
     """
     from scipy.optimize import root
 
@@ -185,13 +184,51 @@ def tilt_planet(
         return residual
 
     found = root(imbalance, tilt / scale, method="hybr")
-    if np.abs(found.fun).max() > TILT_TOLERANCE:
-        raise ConvergenceError(
-            "no tilt of the planet was found at which its bearing and its meshes are in balance; "
-            'use models.planet_tilt = "left-out".'
-        )
-    tilt = found.x * scale
+    if np.abs(found.fun).max() <= TILT_TOLERANCE:
+        tilt = found.x * scale
+        return _misaligned(contacts, tilt), _load_at(tilt, contacts, centrifugal)
+    tilt = _tilt_one_by_one(contacts, bearing, centrifugal)
     return _misaligned(contacts, tilt), _load_at(tilt, contacts, centrifugal)
+
+
+def _tilt_one_by_one(contacts: Contacts, bearing: RollerBearing, centrifugal: float) -> FloatArray:
+    """Tilt in balance, in t and r, each component in a bracket of its own. [rad]
+
+    Bearing and meshes resist the more the farther the planet tilts: for any tilt in one plane there
+    is one in the other. Slow, but it needs no stiffness where none is: rollers that are not loaded
+    let the planet tilt until the next ones touch.
+    """
+    force = _radial_force(contacts, centrifugal)
+    along, across = _axes(force)
+    size = math.hypot(*force)
+
+    def excess(tilts: tuple[float, float]) -> tuple[float, float]:
+        load = _load_at(tilts[0] * along + tilts[1] * across, contacts, centrifugal)
+        holding = tilting_moments(bearing, size, *tilts)
+        return holding[0] - load.moment_x, holding[1] - load.moment_y
+
+    reach = (bearing.diametral_clearance + bearing.crown_drop) / bearing.half_width + SMALL_TILT
+
+    def first(second: float) -> float:
+        return _rising_root(lambda tilt: excess((tilt, second))[0], reach)
+
+    second = _rising_root(lambda tilt: excess((first(tilt), tilt))[1], reach)
+    tilt: FloatArray = first(second) * along + second * across
+    return tilt
+
+
+def _rising_root(rising: Callable[[float], float], reach: float) -> float:
+    """Where a rising function is zero, from -`reach` to `reach` or beyond."""
+    from scipy.optimize import brentq
+
+    while rising(-reach) > 0 or rising(reach) < 0:
+        reach *= 2
+    return float(brentq(rising, -reach, reach, xtol=TILT_TOLERANCE * SMALL_TILT))
+
+
+def _turning(contact: PlanetContact) -> float:
+    """Moment of a mesh on its planet, about the middle of the face. [N m]"""
+    return contact.face_sense * _mesh_moment(contact.duty)
 
 
 def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
@@ -209,9 +246,7 @@ def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
 
 def _load_at(tilt: FloatArray, contacts: Contacts, centrifugal: float) -> PlanetLoad:
     """Load of a planet tilted by `tilt`."""
-    moments = [
-        contact.face_sense * _mesh_moment(contact.duty) for contact in _misaligned(contacts, tilt)
-    ]
+    moments = [_turning(contact) for contact in _misaligned(contacts, tilt)]
     return planet_load(contacts, centrifugal, moments)
 
 

@@ -51,6 +51,16 @@ SMALLEST_LENGTH = 1e-6
 """Size of a deflection where there is no clearance to compare it with. [m]"""
 NEWTON_SHIFT = 1e-12
 """Share of the reference stiffness added to the Hessian, which is singular without contact. [1]"""
+HIGHEST_SHIFT = 1e-4
+SHORT_STEP = 1e-3
+"""Factor of the line search from which on the shift grows: a step that is rounding over hardly any
+stiffness, in a direction in which no roller is loaded, has run into the next roller. [1]"""
+SHIFT_GROWTH = 100.0
+STALLED = 1e-6
+"""Residual over the largest load at which an iteration that comes no further has its answer: the
+energy of small forces is rounding. [1]"""
+SMALL_FORCE = 1e-3
+"""A largest load below this counts as this size in `STALLED`. [N]"""
 
 
 @kernel
@@ -156,6 +166,16 @@ def loaded_lengths(
 
 
 @kernel
+def hold_tilt(gradient: FloatArray, hessian: FloatArray) -> None:
+    """Take the tilts out of a Newton step."""
+    for i in range(2, 4):
+        gradient[i] = 0.0
+        for j in range(4):
+            hessian[i, j] = hessian[j, i] = 0.0
+        hessian[i, i] = max(hessian[0, 0], hessian[1, 1])
+
+
+@kernel
 def minimise(
     d: FloatArray,
     load: FloatArray,
@@ -167,8 +187,9 @@ def minimise(
     stiffness: FloatArray,
     tolerance: float,
     max_iterations: int,
+    held: bool,
 ) -> int:
-    """Move `d` to the minimum of `potential` by Newton steps with line search.
+    """Move `d`, its tilts only if not `held`, to the minimum of `potential` by Newton steps.
 
     Returns the number of steps, or -1 if `max_iterations` did not suffice.
     """
@@ -181,14 +202,17 @@ def minimise(
     energy = potential(
         d, load, psi, y_over_l, crown, width, clearance, stiffness, gradient, hessian
     )
+    relative_shift = NEWTON_SHIFT
     for iteration in range(max_iterations):
+        if held:
+            hold_tilt(gradient, hessian)
         stiffest = max(hessian[0, 0], hessian[1, 1], hessian[2, 2], hessian[3, 3])
         rounding = ROUNDING * stiffest * np.abs(d).max()
         if np.abs(gradient).max() <= max(tolerance * scale, rounding):
             return iteration
-        shift = NEWTON_SHIFT * reference
+        shift = relative_shift * reference
         for i in range(4):
-            shift = max(shift, NEWTON_SHIFT * hessian[i, i])
+            shift = max(shift, relative_shift * hessian[i, i])
         for i in range(4):
             hessian[i, i] += shift
         step = np.linalg.solve(hessian, -gradient)
@@ -206,6 +230,8 @@ def minimise(
                 trial, load, psi, y_over_l, crown, width, clearance, stiffness,
                 trial_gradient, trial_hessian,
             )  # fmt: skip
+            if held:
+                hold_tilt(trial_gradient, trial_hessian)
             decrease = SUFFICIENT_DECREASE * factor * slope
             # near the minimum the energy is rounding noise: then the gradient decides
             flatter = np.abs(trial_gradient).max() < FLATTER * np.abs(gradient).max()
@@ -213,13 +239,23 @@ def minimise(
                 accepted = True
                 break
             factor *= 0.5
+        if accepted and factor > SHORT_STEP:
+            relative_shift = max(NEWTON_SHIFT, relative_shift / SHIFT_GROWTH)
+        elif relative_shift < HIGHEST_SHIFT:
+            relative_shift *= SHIFT_GROWTH
         if not accepted:
-            return -1
+            if relative_shift < HIGHEST_SHIFT:
+                potential(
+                    d, load, psi, y_over_l, crown, width, clearance, stiffness, gradient, hessian
+                )
+                continue
+            break
         d[:] = trial
         energy = trial_energy
         gradient[:] = trial_gradient
         hessian[:] = trial_hessian
-    return -1
+    stalled = np.abs(gradient).max() <= STALLED * max(scale, SMALL_FORCE)
+    return max_iterations if stalled else -1
 
 
 @kernel
@@ -246,6 +282,7 @@ def solve_roller_loads(
     clearance: float,
     tolerance: float,
     max_iterations: int,
+    held: bool = False,
 ) -> tuple[FloatArray, FloatArray, int]:
     """Load intensity of every slice of every roller.
 
@@ -269,6 +306,8 @@ def solve_roller_loads(
         Largest residual force over the largest load. [1]
     max_iterations : int
         For each of the two nested iterations.
+    held : bool
+        True to keep the tilts of `start`.
 
     Returns
     -------
@@ -293,8 +332,9 @@ def solve_roller_loads(
             for z in range(psi.size):
                 stiffness[row, z] = slice_stiffness(lengths[row, z])
         steps = minimise(
-            d, load, psi, y_over_l, crown, width, clearance, stiffness, tolerance, max_iterations
-        )
+            d, load, psi, y_over_l, crown, width, clearance, stiffness, tolerance, max_iterations,
+            held,
+        )  # fmt: skip
         if steps < 0:
             return q, d, -1
         total += steps

@@ -57,6 +57,7 @@ __all__ = [
     "palmgren_loss",
     "radial_stiffness",
     "roller_loads",
+    "tilting_moments",
 ]
 
 FloatArray = NDArray[np.float64]
@@ -291,6 +292,51 @@ def roller_loads(
     for array in (azimuth, intensity, state):
         array.flags.writeable = False
     return RollerLoads(azimuth, intensity, state, iterations)
+
+
+def tilting_moments(
+    bearing: RollerBearing, force: float, tilt_x: float, tilt_y: float
+) -> tuple[float, float]:
+    """Moments that hold the outer race tilted under a radial force along x. Theory (B10). [N m]
+
+    Parameters
+    ----------
+    bearing : RollerBearing
+    force : float
+        [N]
+    tilt_x, tilt_y : float
+        In the planes of the axis and x, and of the axis and y. [rad]
+
+    Raises
+    ------
+    ConvergenceError
+        If the balance of forces is not found.
+    """
+    half_width = bearing.half_width
+    load = np.array([force, 0.0, 0.0, 0.0])
+    start = _start(bearing, load)
+    start[2:] = tilt_x * half_width, tilt_y * half_width
+    azimuth = np.arange(bearing.rollers_per_row) * 2 * math.pi / bearing.rollers_per_row
+    positions = bearing.slice_positions()
+    intensity, _, iterations = solve_roller_loads(
+        load,
+        start,
+        azimuth,
+        positions / half_width,
+        bearing.crown(),
+        bearing.slice_width,
+        bearing.diametral_clearance,
+        TOLERANCE,
+        MAX_ITERATIONS,
+        True,
+    )
+    if iterations < 0:
+        raise ConvergenceError(
+            f"the load distribution of the planet bearing was not found under {force:.4g} N with "
+            f"tilts of {tilt_x:.4g} and {tilt_y:.4g} rad; check roller length and clearance."
+        )
+    turning = (intensity * bearing.slice_width * positions[:, None, :]).sum(axis=(0, 2))
+    return float(turning @ np.cos(azimuth)), float(turning @ np.sin(azimuth))
 
 
 def radial_stiffness(bearing: RollerBearing, force: float) -> float:
