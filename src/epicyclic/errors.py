@@ -15,6 +15,7 @@ __all__ = [
     "InputError",
     "Problem",
     "is_interrupt",
+    "printable",
 ]
 
 
@@ -42,7 +43,14 @@ class Problem:
     def __str__(self) -> str:
         given = " = ".join(part for part in (self.key, self.value) if part)
         head = f"{given}: {self.allowed}" if given else self.allowed
-        return f"{head} {self.remedy}".rstrip()
+        return printable(f"{head} {self.remedy}".rstrip())
+
+
+def printable(text: str) -> str:
+    """`text` with control characters, which names of users may contain, as escapes."""
+    return "".join(
+        char if char.isprintable() else char.encode("unicode_escape").decode() for char in text
+    )
 
 
 class EpicyclicError(Exception):

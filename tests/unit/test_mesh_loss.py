@@ -376,3 +376,13 @@ def test_resolution_of_the_default_is_enough(pair):
     # measured 3e-4, from load peaks at the ends of the contact lines; times 1.5
     assert coarse["mesh_sliding"] == pytest.approx(fine["mesh_sliding"], rel=5e-4)
     assert coarse["mesh_rolling"] == pytest.approx(fine["mesh_rolling"], rel=5e-4)
+
+
+@pytest.mark.parametrize("mesh", ["local", "loss-factor"])
+@pytest.mark.parametrize(("torque", "rpm"), [(1e-230, 1e-160), (1e-300, 1e-300), (31.0, 1e-310)])
+def test_powers_too_small_for_a_number_have_a_friction_still(pair, mesh, torque, rpm):
+    friction = {"models.friction": "constant", "models.constant_friction": 0.061}
+    point = {"operation.torque": f"{torque} N*m", "operation.speed": f"{rpm} rpm"}
+    result = ep.solve(pair.updated({**friction, **point, "models.mesh": mesh}))
+    assert 0 <= result.losses["mesh_sliding"] < 1e-290
+    assert result.meshes["mesh"].friction_mean == pytest.approx(0.061, rel=1e-12)

@@ -271,3 +271,22 @@ def test_names_are_not_empty():
     tables = simple(30, 90, "ring", ("sun", "carrier"))
     tables["sets"][" "] = tables["sets"]["S"]
     assert any("is no name for a set" in allowed for allowed in told(tables).values())
+
+
+@pytest.mark.parametrize("name", ["\x1b[31m", "a\u2028b", "\x00", "\u202e", "tab\there", "two\nlines"])
+def test_names_with_control_characters_are_told_in_one_printable_line(name):
+    tables = eight_speed()
+    tables["sets"][name] = tables["sets"].pop("P1")
+    tables["states"][name] = {"fixed": [name]}
+    tables["shafts"][name] = [f"{name}.sun", name]
+    problems = problems_of(ep.load_case, tables)
+    assert problems
+    for problem in problems:
+        assert str(problem).isprintable()
+
+
+def test_a_key_that_is_no_text_is_a_problem():
+    tables = eight_speed() | {"\ud800": {}}
+    (problem,) = problems_of(ep.load_case, tables)
+    assert str(problem).isprintable()
+    assert "\\ud800" in str(problem)

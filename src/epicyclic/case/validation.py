@@ -63,7 +63,8 @@ def validate(kind: type[AnyCase], raw: dict[str, Any]) -> Validation[AnyCase]:
         return Validation(case, {k: table for k, table in given.items() if table is not None}, [])
     bad: defaultdict[str, set[str]] = defaultdict(set)
     for detail in details:
-        section, *keys = map(str, locate(kind, detail["loc"]).path)
+        # a name that is no Unicode has no place: it belongs to no section
+        section, *keys = map(str, locate(kind, detail["loc"]).path or [""])
         bad[section].add(keys[0] if keys else "")
     for problem in alternatives:
         section, _, key = problem.key.partition(".")

@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from epicyclic.errors import printable
+
 __all__ = ["dotted", "key_parts", "one_line", "path_of", "sentence", "written"]
 
 _LONGEST_SHOWN = 60
@@ -46,10 +48,7 @@ def written(value: Any) -> str:
 
 def one_line(text: str, longest: int = _LONGEST_SHOWN) -> str:
     """`text` on one line, without control characters, cut to the `longest` that is shown."""
-    shown = " ".join(text[: 2 * longest].split())
-    shown = "".join(
-        char if char.isprintable() else char.encode("unicode_escape").decode() for char in shown
-    )
+    shown = printable(" ".join(text[: 2 * longest].split()))
     is_cut = len(shown) > longest or len(text) > 2 * longest
     return f"{shown[:longest]}..." if is_cut else shown
 

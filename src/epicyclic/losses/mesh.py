@@ -61,17 +61,25 @@ def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingMo
     coefficient = friction.coefficient(own)
     local_sliding = coefficient * sliding_power
     local_rolling = rolling.loss_density(contact) * contact.weight
-    sliding = float(local_sliding.sum())
     return MeshLoss(
-        sliding=sliding,
+        sliding=float(local_sliding.sum()),
         rolling=float(local_rolling.sum()),
-        mean_friction=sliding / float(sliding_power.sum()),
+        mean_friction=_mean_friction(contact, coefficient),
         friction=coefficient,
         flags=Flags(
             partial(_flags, "friction", friction, own, local_sliding),
             partial(_flags, "rolling", rolling, contact, local_rolling),
         ),
     )
+
+
+def _mean_friction(contact: MeshContact, coefficient: FloatArray) -> float:
+    """Mean over the sliding power of the load, from its shares: powers may be too small. [1]"""
+    share = contact.weight
+    for part in (contact.line_load, np.abs(contact.sliding_speed)):
+        largest = float(part.max())
+        share = share * (part / largest if largest else 1.0)
+    return float(coefficient @ share / share.sum())
 
 
 def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
@@ -85,7 +93,7 @@ def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
     own = contact.seen_by(friction)
     coefficient = friction.coefficient(own)
     local_sliding = coefficient * sliding_power
-    mean = float(local_sliding.sum() / sliding_power.sum())
+    mean = _mean_friction(contact, coefficient)
     return MeshLoss(
         sliding=contact.input_power * mean * ohlendorf_loss_factor(contact.mesh),
         rolling=0.0,
