@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+import html
 import math
+from importlib import resources
 
 import pytest
 
+import epicyclic as ep
 from epicyclic.reference.mesh_stiffness import mesh_stiffness, theoretical_single_stiffness
-from epicyclic.validation.compare import compare_published, published_figures
+from epicyclic.validation.compare import by_topic, compare_published, published_figures, summary
 from epicyclic.validation.compute import FIGURES
 
 KNOWN_DIFFERENCES = {
+    # the loss at the lowest share of the input power is predicted too high: docs, validation
+    *(
+        f"smallest load-dependent loss over input power of the {count}-planet tests, shaved, "
+        "90 degC, measured"
+        for count in (3, 4, 5, 6)
+    ),
     # Eq. 3.8 gives a tilting couple that loads these rollers at 42 N m already: docs, validation
     "azimuth of the two rollers that come into contact between 42 and 333 N m on the branch",
     # the flow reaches the speed of sound of the mixture at 10000 rpm: theory manual, pocketing
@@ -30,15 +39,78 @@ def test_figures_agree_but_for_the_known_differences(rows):
 
 def test_calibration_is_met_and_does_not_count(rows):
     calibrated = [row for row in rows if row.role == "calibration"]
-    assert [row.low for row in calibrated] == [236.0, 195.0, 181.0]
+    assert [row.low for row in calibrated] == [236.0, 195.0, 181.0, 43.84, 43.15, 42.13, 0.0256]
     assert {row.verdict for row in calibrated} == {"calibrated"}
     # the coefficients are stored with six digits; 5 % of loss per 1 % of coefficient
-    assert max(abs(row.difference) for row in calibrated) < 1e-4
+    assert max(abs(row.difference) for row in calibrated[:3]) < 1e-4
+    # half a unit of the last printed digit
+    for row in calibrated[3:]:
+        digits = len(str(row.low).partition(".")[2])
+        assert row.computed == pytest.approx(row.low, abs=0.5001 * 10**-digits)
 
 
 def test_every_compared_figure_states_its_tolerance_and_cause(rows):
-    assert all(row.cause for row in rows if row.role == "validation")
+    compared = [row for row in rows if row.role == "validation"]
+    assert all(row.cause for row in compared)
+    assert {row.settled for row in compared} == {"print", "in view"}
     assert all(row.source for row in rows)
+
+
+def test_no_figure_is_context_without_a_reason(rows):
+    context = [row for row in rows if row.role == "context"]
+    assert context
+    assert all(row.reason for row in context)
+    assert {row.verdict for row in context} == {"no verdict"}
+
+
+def test_a_tolerance_from_print_is_that_of_the_printed_digits(rows):
+    """At most one unit of the last digit of what is printed, with friction of two digits 1.8 %."""
+    for row in rows:
+        if row.settled == "print":
+            assert row.tolerance <= (0.02 if "friction" in row.what else 0.005), row.what
+
+
+def test_inferred_figures_say_how(rows):
+    inferred = {row.low: row.inferred for row in rows if row.inferred}
+    assert inferred[3.21] == "'about 85 %' of 3.78 kW (p. 30)"
+    assert inferred[2.966].startswith("7.6 % (p. 152) below 3.21 kW")
+    assert inferred[0.57] == "'the remaining 15 %' of 3.78 kW (p. 30)"
+    assert 120.0 not in inferred
+
+
+def test_the_last_line_counts_what_the_rows_are(rows):
+    text = summary(rows)
+    counted = [row for row in rows if row.role == "validation"]
+    agreeing = [row for row in counted if row.verdict == "agrees"]
+    printed = [row for row in agreeing if row.settled == "print"]
+    assert text.startswith(
+        f"{len(agreeing)} of {len(counted)} figures agree: {len(printed)} to the digits"
+    )
+    assert f"{len(agreeing) - len(printed)} within a tolerance that was settled" in text
+    assert f"{len(KNOWN_DIFFERENCES)} differ." in text
+    assert "7 that fixed an unknown input" in text
+
+
+def test_other_programs_are_compared(rows):
+    kisssoft = [row for row in rows if row.source.startswith("KISSsoft") and "NREL" in row.what]
+    gearpie = [row for row in rows if row.source.startswith("GEARpie")]
+    assert len(kisssoft) > 40
+    assert len(gearpie) == 14
+    # what differs on purpose is the ring meshes' loss factor, stiffness as printed, and the film
+    without = {row.reason for row in kisssoft if row.role == "context"}
+    assert len(without) == 6
+
+
+def test_a_result_says_where_other_programs_state_another_loss_factor():
+    file = resources.files("epicyclic.validation").joinpath("cases", "nrel-2.toml")
+    case = ep.load_case(str(file))
+    quick = ep.solve(case.updated({"models.mesh": "loss-factor", "models.friction": "schlenk"}))
+    told = [text for text in quick.warnings if "closed form" in text]
+    assert len(told) == 1
+    assert "loss factor of the ring mesh is 0.0878" in told[0]
+    assert "gives 0.1090" in told[0]
+    assert "here they are 1.63 and -0.01" in told[0]
+    assert not any("closed form" in text for text in ep.solve(case).warnings)
 
 
 def test_stiffness_of_the_standard_is_that_of_its_formulas(make_mesh):
@@ -58,12 +130,7 @@ def test_stiffness_of_the_standard_is_that_of_its_formulas(make_mesh):
 
 
 def test_no_figure_function_is_unused(rows):
-    import tomllib
-    from importlib import resources
-
-    text = resources.files("epicyclic.validation").joinpath("published.toml").read_text()
-    used = {figure["compute"] for figure in tomllib.loads(text)["figure"]}
-    assert used == set(FIGURES)
+    assert {figure["compute"] for figure in published_figures()} == set(FIGURES)
 
 
 def test_tolerances_of_the_first_issue_hold(rows):
@@ -88,4 +155,35 @@ def test_command_prints_the_table(monkeypatch, rows, capsys):
     monkeypatch.setattr(compare, "compare_published", lambda progress: rows)
     output = CliRunner().invoke(cli, ["validate"]).output
     assert "calibrated" in output
-    assert "figures agree within their tolerances" in output
+    assert "figures agree: " in output
+
+
+def test_command_writes_a_page(monkeypatch, rows, tmp_path):
+    from click.testing import CliRunner
+
+    from epicyclic.cli.main import cli
+    from epicyclic.validation import compare
+
+    monkeypatch.setattr(compare, "compare_published", lambda progress: rows)
+    file = tmp_path / "validation.html"
+    done = CliRunner().invoke(cli, ["validate", "-o", str(file)])
+    assert done.exit_code == 0
+    assert f"Wrote {file}." in done.output
+    page = file.read_text(encoding="utf-8")
+    for topic, own in by_topic(rows).items():
+        assert f">{topic}</h2>" in page
+        assert all(html.escape(row.what, quote=False) in html.unescape(page) for row in own)
+    assert sum(map(len, by_topic(rows).values())) == len(rows)
+    assert page.count("<figure") == len(by_topic(rows))
+    assert "src=" not in page.partition("<main>")[2].partition("</main>")[0]
+
+
+def test_page_and_temperatures_exclude_each_other(tmp_path):
+    from click.testing import CliRunner
+
+    from epicyclic.cli.main import cli
+
+    done = CliRunner().invoke(cli, ["validate", "--temperatures", "-o", str(tmp_path / "v.html")])
+    assert "does not go with --temperatures" in str(done.exception)
+    done = CliRunner().invoke(cli, ["validate", "-o", str(tmp_path / "v.txt")])
+    assert "must end in .html or .pdf" in str(done.exception)

@@ -34,7 +34,7 @@ def figures():
 @pytest.mark.slow
 def test_at_inlet_temperature_they_are_the_figures_of_the_default_comparison(figures):
     published = [item for item in published_figures() if item["compute"] in settled._OF_TESTS]
-    assert len(published) == 6
+    assert len(published) == 12
     assert len(figures) == len(published)  # the only slope is a published one
     for figure, row in zip(published, figures, strict=True):
         assert row.what == figure["what"]

@@ -21,15 +21,18 @@ __all__ = [
     "PICTURES",
     "beside",
     "check_ending",
+    "check_page",
     "draw",
     "finishing",
     "picture_bytes",
     "show",
     "write_file",
+    "write_page",
     "wrong_ending",
 ]
 
 PICTURES = (".png", ".svg", ".pdf")
+PAGE, PRINT = ".html", ".pdf"
 
 
 def check_ending(option: str, path: Path, endings: Sequence[str] = PICTURES) -> None:
@@ -77,6 +80,26 @@ def picture_bytes(figure: Figure, path: Path) -> bytes:
     picture = io.BytesIO()
     figure.savefig(picture, format=path.suffix[1:])
     return picture.getvalue()
+
+
+def check_page(path: Path) -> None:
+    """Raise `InputError` if a page cannot be written to a file of this name."""
+    check_ending("-o", path, (PAGE, PRINT))
+    if path.suffix == PRINT:
+        from epicyclic.report.pdf import check_pdf
+
+        check_pdf()
+
+
+def write_page(path: Path, page: str) -> None:
+    """Write a page as it is, or printed to a PDF."""
+    if path.suffix == PRINT:
+        from epicyclic.report.pdf import report_pdf
+
+        write_file(path, report_pdf(page))
+    else:
+        write_file(path, page)
+    click.echo(f"Wrote {path}.")
 
 
 def write_file(path: Path, content: str | bytes) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from epicyclic.cli.options import load_with, set_option
-from epicyclic.cli.output import PICTURES, check_ending, draw, write_file
+from epicyclic.cli.output import PICTURES, check_ending, check_page, draw, write_page
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["plot", "report"]
 
-PAGE, PRINT = ".html", ".pdf"
 stored_argument = click.argument("source", metavar="CASE|FILE.nc")
 
 
@@ -34,23 +33,13 @@ def report(source: str, changes: tuple[str, ...], output: Path) -> None:
     """
     from epicyclic.cli.progress import progress_bar
 
-    check_ending("-o", output, (PAGE, PRINT))
-    if output.suffix == PRINT:
-        from epicyclic.report.pdf import check_pdf
-
-        check_pdf()
+    check_page(output)
     stored = _stored(source, changes)
     from epicyclic.report.html import report_html
 
     with progress_bar("figures") as progress:
         page = report_html(stored, progress)
-    if output.suffix == PRINT:
-        from epicyclic.report.pdf import report_pdf
-
-        write_file(output, report_pdf(page))
-    else:
-        write_file(output, page)
-    click.echo(f"Wrote {output}.")
+    write_page(output, page)
 
 
 @click.command()

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from epicyclic.cli.output import check_page, write_page
+from epicyclic.errors import InputError, Problem
+
 if TYPE_CHECKING:
     from rich.console import RenderableType
+
+    from epicyclic.validation.compare import Comparison
 
 __all__ = ["validate"]
 
@@ -18,20 +24,49 @@ __all__ = ["validate"]
     is_flag=True,
     help="The loaded tests only, with temperatures that follow from the losses: minutes.",
 )
-def validate(temperatures: bool) -> None:
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="A page with pictures and tables in place of the table: .html, or .pdf.",
+)
+def validate(temperatures: bool, output: Path | None) -> None:
     """Compare with published figures: published, computed, difference, verdict."""
     from epicyclic.report.tables import terminal
 
-    terminal().print(_settled() if temperatures else _compared())
+    if temperatures:
+        if output is not None:
+            problem = Problem(
+                "-o", str(output), "does not go with --temperatures.", "Leave one of them out."
+            )
+            raise InputError([problem], "the command")
+        terminal().print(_settled())
+    elif output is None:
+        from epicyclic.report.validation_table import validation_table
+
+        terminal().print(validation_table(_compared()))
+    else:
+        _write(output)
 
 
-def _compared() -> RenderableType:
+def _write(output: Path) -> None:
+    """The page of all figures, and what it comes to."""
+    check_page(output)
+    from epicyclic.report.validation_page import validation_html
+    from epicyclic.validation.compare import summary
+
+    rows = _compared()
+    write_page(output, validation_html(rows))
+    click.echo(summary(rows))
+
+
+def _compared() -> tuple[Comparison, ...]:
     from epicyclic.cli.progress import progress_bar
-    from epicyclic.report.validation_table import validation_table
     from epicyclic.validation.compare import compare_published
 
     with progress_bar("figures") as progress:
-        return validation_table(compare_published(progress))
+        return compare_published(progress)
 
 
 def _settled() -> RenderableType:

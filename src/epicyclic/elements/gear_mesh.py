@@ -29,7 +29,13 @@ from epicyclic.losses.contact import MeshContact, mesh_contact
 from epicyclic.losses.direct import EhlDirect
 from epicyclic.losses.friction import FrictionModel
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS, LineLoads, MeshLoad
-from epicyclic.losses.mesh import MeshLoss, local_loss, loss_factor_loss, ohlendorf_loss_factor
+from epicyclic.losses.mesh import (
+    MeshLoss,
+    local_loss,
+    loss_factor_loss,
+    loss_factor_notes,
+    ohlendorf_loss_factor,
+)
 from epicyclic.losses.mesh_warmth import MeshWarmth, mesh_warmth
 from epicyclic.losses.rolling import RollingModel
 from epicyclic.losses.validity import SomeFlags
@@ -280,6 +286,8 @@ def solve_mesh(
     figures = _mesh_figures(duty, contact, loss.mean_friction, elastic, flow.figures, warmth)
     notes = pocket_notes(duty.mesh, flow.figures, fluids.pressure)
     notes += stored_note(duty.models.pockets, duty.mesh, flow.figures)
+    if duty.models.by_loss_factor:
+        notes += loss_factor_notes(duty.mesh)
     if contact is not None and isinstance(friction, EhlDirect):
         notes += friction.remarks(contact)
     return MeshOutcome(losses, figures, loss.flags, notes)

@@ -24,9 +24,19 @@ from epicyclic.losses.friction.base import FrictionModel
 from epicyclic.losses.rolling import RollingModel
 from epicyclic.losses.validity import Flags, ModelUse, SomeFlags, ValidityFlag, check_contacts
 
-__all__ = ["MeshLoss", "local_loss", "loss_factor_loss", "ohlendorf_loss_factor"]
+__all__ = [
+    "MeshLoss",
+    "local_loss",
+    "loss_factor_loss",
+    "ohlendorf_closed_form",
+    "ohlendorf_loss_factor",
+]
 
 FloatArray = NDArray[np.float64]
+
+
+CLOSED_LIMIT = 1.0
+"""Tip contact ratio up to which Ohlendorf's closed form holds. [1]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,9 +123,37 @@ def ohlendorf_loss_factor(mesh: Mesh) -> float:
     eps_1, eps_2 <= 1; here it is the integral that it stands for, 2 int |s|/N(s) ds with N the
     number of pairs in contact, which has no such limits.
     """
-    bracket = _sliding_integral(mesh.tip_contact_ratio1, mesh.tip_contact_ratio2)
-    ratio_term = (mesh.ratio + mesh.side) / (mesh.gear1.teeth * mesh.ratio)
-    return math.pi * ratio_term * bracket / math.cos(mesh.gear1.rack.base_helix_angle)
+    return _ratio_term(mesh) * _sliding_integral(mesh.tip_contact_ratio1, mesh.tip_contact_ratio2)
+
+
+def ohlendorf_closed_form(mesh: Mesh) -> float:
+    """`ohlendorf_loss_factor` with the bracket as printed, within its range and beyond. [1]
+
+    Theory (M5).
+
+    What other programs state, KISSsoft among them.
+    """
+    tip1, tip2 = mesh.tip_contact_ratio1, mesh.tip_contact_ratio2
+    return _ratio_term(mesh) * (1 - tip1 - tip2 + tip1**2 + tip2**2)
+
+
+def loss_factor_notes(mesh: Mesh) -> tuple[str, ...]:
+    """Where other programs state another loss factor, and why."""
+    tip1, tip2 = mesh.tip_contact_ratio1, mesh.tip_contact_ratio2
+    if max(tip1, tip2) <= CLOSED_LIMIT and 1 <= tip1 + tip2 <= 2 * CLOSED_LIMIT:
+        return ()
+    return (
+        f"The loss factor of the {mesh.name} is {ohlendorf_loss_factor(mesh):.4f}. Ohlendorf's "
+        f"closed form, which other programs apply here too, gives {ohlendorf_closed_form(mesh):.4f}"
+        f"; it holds for tip contact ratios up to {CLOSED_LIMIT:g}, and here they are {tip1:.2f} "
+        f"and {tip2:.2f}.",
+    )
+
+
+def _ratio_term(mesh: Mesh) -> float:
+    """pi (u +- 1)/(z1 u cos(beta_b)). [1]"""
+    ratio = (mesh.ratio + mesh.side) / (mesh.gear1.teeth * mesh.ratio)
+    return math.pi * ratio / math.cos(mesh.gear1.rack.base_helix_angle)
 
 
 def _sliding_integral(tip1: float, tip2: float) -> float:

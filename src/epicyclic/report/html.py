@@ -23,7 +23,7 @@ from epicyclic.report.page import Drawings
 from epicyclic.report.result_page import result_sections
 from epicyclic.report.result_tables import key_figures, operation_line
 
-__all__ = ["report_html"]
+__all__ = ["page_html", "report_html"]
 
 KINDS = {
     "planetary": "Power losses of a planetary gear set",
@@ -53,6 +53,11 @@ def report_html(stored: Stored, progress: Callable[[int, int], None] | None = No
         if isinstance(stored, ResultRecord)
         else _map_content(stored, drawings)
     )
+    return page_html(**content)
+
+
+def page_html(**content: Any) -> str:
+    """A page of its title, kind, operation, source, key figures and sections."""
     return _template().render(
         **content,
         style=_asset("report.css"),

@@ -9,10 +9,10 @@ from rich.text import Text
 
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import plain_table
-from epicyclic.validation.compare import Comparison
+from epicyclic.validation.compare import Comparison, summary
 from epicyclic.validation.settled import Estimate, SettledFigure
 
-__all__ = ["settled_table", "validation_table"]
+__all__ = ["published_text", "remarks", "settled_table", "validation_table", "verdict_text"]
 
 _STYLES = {"agrees": "green", "differs": "bold red", "calibrated": "dim", "no verdict": "dim"}
 
@@ -26,19 +26,13 @@ def validation_table(rows: Sequence[Comparison]) -> RenderableType:
     table.add_column("verdict", no_wrap=True)
     for row in rows:
         table.add_row(
-            Text.assemble(row.what, ("\n" + row.source, "dim")),
-            f"{_published(row)} {row.unit}".rstrip(),
+            Text.assemble(row.what, ("\n" + "\n".join(remarks(row)), "dim")),
+            f"{published_text(row)} {row.unit}".rstrip(),
             f"{shown(row.computed)} {row.unit}".rstrip(),
             f"{row.difference:+z.1%}",
-            Text(_verdict(row), style=_STYLES[row.verdict]),
+            Text(verdict_text(row), style=_STYLES[row.verdict]),
         )
-    counted = [row for row in rows if row.role == "validation"]
-    agreeing = sum(row.verdict == "agrees" for row in counted)
-    note = Text(
-        f"{agreeing} of {len(counted)} figures agree within their tolerances. Figures marked "
-        "'calibrated' fixed an unknown input and do not count; 'no verdict' stands for context."
-    )
-    return Group(table, note)
+    return Group(table, Text(summary(rows)))
 
 
 def settled_table(rows: Sequence[SettledFigure], estimates: Sequence[Estimate]) -> RenderableType:
@@ -69,12 +63,28 @@ def settled_table(rows: Sequence[SettledFigure], estimates: Sequence[Estimate]) 
     return Group(table, note, *ranges)
 
 
-def _verdict(row: Comparison) -> str:
+def remarks(row: Comparison) -> list[str]:
+    """Where a figure is printed, how it was inferred, why there is no verdict."""
+    found = [row.source]
+    if row.inferred:
+        found.append(f"Inferred: {row.inferred}.")
+    if row.reason:
+        found.append(f"{_REASONS[row.role]}: {row.reason}.")
+    return found
+
+
+_REASONS = {"context": "No verdict", "calibration": "Calibrated"}
+
+
+def verdict_text(row: Comparison) -> str:
+    """The verdict with its tolerance, and a star if that was settled with the figure in view."""
     if row.role != "validation":
         return row.verdict
-    return f"{row.verdict} ({100 * row.tolerance:.2g} %)"
+    seen = "*" if row.settled == "in view" else ""
+    return f"{row.verdict} ({100 * row.tolerance:.2g} %{seen})"
 
 
-def _published(row: Comparison) -> str:
+def published_text(row: Comparison) -> str:
+    """The published value, or the ends of its range."""
     low, high = shown(row.low), shown(row.high)
     return low if low == high else f"{low} to {high}"

@@ -3,16 +3,33 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from typing import Any, Literal
 
 from epicyclic.validation.compute import FIGURES
 
-__all__ = ["Comparison", "compare_published", "published_figures"]
+__all__ = ["Comparison", "by_topic", "compare_published", "published_figures", "summary"]
 
 Verdict = Literal["agrees", "differs", "calibrated", "no verdict"]
+_TOPICS = {
+    "Planet bearings": ("planet_bearing_loss", "planet_bearing_ratio", "azimuth_of_gained_rollers"),
+    "Pockets": (),
+    "Air-oil mixture": ("mixture_density", "mixture_viscosity"),
+    "Planetary sets, tests": (
+        "branch_slope", "load_dependent_loss", "load_independent_loss", "loss_share",
+    ),
+    "Stiffness of teeth": ("single_stiffness", "mean_mesh_stiffness"),
+    "Trains": ("train_ratio", "train_efficiency"),
+    "Temperatures": ("bulk_temperature", "pair_bulk_temperature", "pair_flash_temperature"),
+    "KISSsoft, NREL 5 MW": ("nrel-1", "nrel-2"),
+    "GEARpie": ("gearpie-c14", "gearpie-c40"),
+}  # fmt: skip
+"""The functions that compute the figures, or the cases of other programs; whatever begins with
+``pocket`` is about pockets."""
+FILES = ("published.toml", "programs.toml")
+"""What is published, and what other programs print."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +38,7 @@ class Comparison:
 
     Attributes
     ----------
-    what, unit, source : str
+    what, topic, unit, source : str
     low, high : float
         The published value, twice, or the published range.
     computed : float
@@ -31,9 +48,17 @@ class Comparison:
         Why that tolerance.
     role : str
         ``"validation"``, ``"calibration"`` or ``"context"``.
+    settled : str
+        How the tolerance was: ``"print"``, the rounding of what is printed, or ``"in view"`` of the
+        computed figure.
+    inferred : str
+        How the published value follows from what is printed; empty if it is printed itself.
+    reason : str
+        Why there is no verdict; empty if there is.
     """
 
     what: str
+    topic: str
     unit: str
     source: str
     low: float
@@ -42,6 +67,9 @@ class Comparison:
     tolerance: float
     cause: str
     role: str
+    settled: str = ""
+    inferred: str = ""
+    reason: str = ""
 
     @property
     def difference(self) -> float:
@@ -72,15 +100,51 @@ def compare_published(
 
 
 def published_figures() -> list[dict[str, Any]]:
-    """The entries of `published.toml`."""
-    file = resources.files("epicyclic.validation").joinpath("published.toml")
-    figures: list[dict[str, Any]] = tomllib.loads(file.read_text(encoding="utf-8"))["figure"]
-    return figures
+    """The entries of all `FILES`."""
+    folder = resources.files("epicyclic.validation")
+    texts = (folder.joinpath(name).read_text(encoding="utf-8") for name in FILES)
+    return [figure for text in texts for figure in tomllib.loads(text)["figure"]]
+
+
+def by_topic(rows: Sequence[Comparison]) -> dict[str, list[Comparison]]:
+    """The rows of each topic, in the order of the topics."""
+    found = {topic: [row for row in rows if row.topic == topic] for topic in _TOPICS}
+    return {topic: own for topic, own in found.items() if own}
+
+
+def _topic(name: str) -> str:
+    if name.startswith("pocket"):
+        return "Pockets"
+    return next(topic for topic, names in _TOPICS.items() if name in names)
+
+
+def summary(rows: Sequence[Comparison]) -> str:
+    """How many figures agree, and how much each kind of agreement says."""
+    return " ".join(_sentences(rows))
+
+
+def _sentences(rows: Sequence[Comparison]) -> Iterator[str]:
+    counted = [row for row in rows if row.role == "validation"]
+    agreeing = [row for row in counted if row.verdict == "agrees"]
+    printed = sum(row.settled == "print" for row in agreeing)
+    inferred = sum(bool(row.inferred) for row in counted)
+    yield (
+        f"{len(agreeing)} of {len(counted)} figures agree: {printed} to the digits that are "
+        f"printed, {len(agreeing) - printed} within a tolerance that was settled with the computed "
+        f"figure in view (*). {len(counted) - len(agreeing)} differ."
+    )
+    yield f"{inferred} of the {len(counted)} are not printed as such but inferred, as stated."
+    calibrated = sum(row.role == "calibration" for row in rows)
+    yield (
+        f"Not counted: {calibrated} that fixed an unknown input, and "
+        f"{sum(row.role == 'context' for row in rows)} without a verdict, for the reasons stated."
+    )
 
 
 def _compare(figure: dict[str, Any]) -> Comparison:
     return Comparison(
         what=figure["what"],
+        topic=_topic(figure["with"].get("case", figure["compute"])),
         unit=figure["unit"],
         source=figure["source"],
         low=figure["low"] if "low" in figure else figure["value"],
@@ -89,4 +153,7 @@ def _compare(figure: dict[str, Any]) -> Comparison:
         tolerance=figure.get("tolerance", 0.0),
         cause=figure.get("cause", ""),
         role=figure["role"],
+        settled=figure.get("settled", ""),
+        inferred=figure.get("inferred", ""),
+        reason=figure.get("reason", ""),
     )

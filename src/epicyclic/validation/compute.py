@@ -39,6 +39,11 @@ from epicyclic.thermal.bulk import (
     roughness_factor,
 )
 from epicyclic.thermal.flash import effusivity, flash_temperature
+from epicyclic.validation.programs import (
+    PROGRAM_FIGURES,
+    mesh_stiffness_of,
+    single_stiffness_of,
+)
 
 __all__ = ["FIGURES", "LoadedTests", "loaded_conditions", "source_case"]
 
@@ -174,13 +179,13 @@ def load_independent_loss(temperature: str, planets: int) -> float:
     return solve(case).load_independent / 1e3
 
 
-def mechanical_efficiency(
-    temperature: str, extreme: str, tests: LoadedTests = _computed_tests
+def loss_share(
+    temperature: str, planets: int, extreme: str, tests: LoadedTests = _computed_tests
 ) -> float:
-    """Extreme of 1 - P_LD/P_in over the 3-planet tests. [%]"""
-    results = tests(temperature, "shaved", [3])
-    values = [100 * (1 - result.load_dependent / result.input_power) for result in results]
-    return min(values) if extreme == "lowest" else max(values)
+    """Extreme of P_LD/P_in over the tests of a number of planets. [%]"""
+    results = tests(temperature, "shaved", [planets])
+    values = [100 * result.load_dependent / result.input_power for result in results]
+    return min(values) if extreme == "smallest" else max(values)
 
 
 def _pocketing(**changes: object) -> float:
@@ -220,15 +225,12 @@ def pocketing_oil_ratio(model: str) -> float:
 
 def single_stiffness(teeth1: int, teeth2: int, internal: bool) -> float:
     """c': largest stiffness of a lone pair of teeth of a standard spur mesh. [N/(mm um)]"""
-    mesh = _standard_mesh(teeth1, teeth2, internal)
-    alone = (mesh.pair_force > 0).sum(axis=1) == 1
-    return float(mesh.secant_stiffness[alone].max()) / mesh.mesh.face_width / 1e9
+    return single_stiffness_of(_standard_mesh(teeth1, teeth2, internal))
 
 
 def mean_mesh_stiffness(teeth1: int, teeth2: int, internal: bool) -> float:
     """c_gamma: stiffness of a standard spur mesh, mean over its period. [N/(mm um)]"""
-    mesh = _standard_mesh(teeth1, teeth2, internal)
-    return mesh.mean(mesh.secant_stiffness) / mesh.mesh.face_width / 1e9
+    return mesh_stiffness_of(_standard_mesh(teeth1, teeth2, internal))
 
 
 def _standard_mesh(teeth1: int, teeth2: int, internal: bool) -> LoadedMesh:
@@ -357,7 +359,7 @@ def _mean_friction(pair: str) -> float:
     )
 
 
-FIGURES: dict[str, Callable[..., float]] = {
+FIGURES: Mapping[str, Callable[..., float]] = {
     function.__name__: function
     for function in (
         planet_bearing_loss,
@@ -373,11 +375,11 @@ FIGURES: dict[str, Callable[..., float]] = {
         branch_slope,
         load_dependent_loss,
         load_independent_loss,
-        mechanical_efficiency,
+        loss_share,
         pocketing_loss,
         pocketing_speed_exponent,
         pocketing_oil_ratio,
         single_stiffness,
         mean_mesh_stiffness,
     )
-}
+} | PROGRAM_FIGURES

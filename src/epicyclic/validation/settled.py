@@ -23,7 +23,7 @@ from epicyclic.validation.compute import FIGURES, LoadedTests, loaded_conditions
 __all__ = ["Estimate", "SettledFigure", "estimates", "settled_figures"]
 
 _MODEL = "models.temperatures"
-_OF_TESTS = ("branch_slope", "load_dependent_loss", "mechanical_efficiency")
+_OF_TESTS = ("branch_slope", "load_dependent_loss", "loss_share")
 """Figures that follow from the loaded tests."""
 
 

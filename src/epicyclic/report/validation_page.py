@@ -1,0 +1,85 @@
+"""The report of the comparison with published figures: one page for all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from epicyclic.plots.style import styled_figure
+from epicyclic.plots.validation import deviations_size, plot_deviations
+from epicyclic.report.drawings import svg_text
+from epicyclic.report.explore import explorable
+from epicyclic.report.html import page_html
+from epicyclic.report.page import Cell, Drawing, Gallery, KeyFigure, Listing, Section, Table, number
+from epicyclic.report.validation_table import published_text, remarks, verdict_text
+from epicyclic.results.result import versions
+from epicyclic.units import unit_text
+from epicyclic.validation.compare import Comparison, by_topic, summary
+
+__all__ = ["validation_html"]
+
+_HEAD = (
+    "figure",
+    "published",
+    "computed",
+    "unit",
+    "difference",
+    "verdict",
+    "cause of the tolerance",
+)
+
+
+def validation_html(rows: Sequence[Comparison]) -> str:
+    """Every published figure, pictured and listed, as one page that needs nothing else."""
+    return page_html(
+        title="Published figures, computed",
+        kind="Validation",
+        operation=summary(rows),
+        source=f"Computed with epicyclic {versions()['epicyclic']}",
+        key_figures=_key_figures(rows),
+        sections=list(_sections(rows)),
+    )
+
+
+def _key_figures(rows: Sequence[Comparison]) -> list[KeyFigure]:
+    verdicts = [row.verdict for row in rows]
+    return [
+        KeyFigure(verdict, number(verdicts.count(verdict), ""))
+        for verdict in ("agrees", "differs", "calibrated", "no verdict")
+    ]
+
+
+def _sections(rows: Sequence[Comparison]) -> Iterator[Section]:
+    for topic, own in by_topic(rows).items():
+        key = topic.lower().replace(" ", "-").replace(",", "")
+        yield Section(key, topic, (Gallery((_drawing(key, own),), is_wide=True), _table(own)))
+    text = (
+        "* The tolerance was settled with the computed figure in view. Without a star it is the "
+        "rounding of what is printed.",
+        "Calibrated figures fixed an unknown input; they, and those without a verdict, do not "
+        "count.",
+    )
+    yield Section("signs", "Signs", (Listing(text),))
+
+
+def _drawing(key: str, rows: Sequence[Comparison]) -> Drawing:
+    with styled_figure(1, 1, "", panel=deviations_size(rows)) as (figure, axes):
+        ax = plot_deviations(rows, axes[0, 0])
+        return Drawing(key, "Computed over published", svg_text(figure, key), explorable(ax))
+
+
+def _table(rows: Sequence[Comparison]) -> Table:
+    return Table(
+        _HEAD,
+        tuple(
+            (
+                Cell(f"{row.what}. {' '.join(remarks(row))}"),
+                Cell(published_text(row), row.low),
+                number(row.computed, ""),
+                Cell(unit_text(row.unit)),
+                Cell(f"{row.difference:+z.1%}", row.difference),
+                Cell(verdict_text(row), about="nowrap"),
+                Cell(row.cause),
+            )
+            for row in rows
+        ),
+    )
