@@ -87,7 +87,7 @@ def test_the_last_line_counts_what_the_rows_are(rows):
         f"{len(agreeing)} of {len(counted)} figures agree: {len(printed)} to the digits"
     )
     assert f"{len(agreeing) - len(printed)} within a tolerance that was settled" in text
-    assert f"{len(KNOWN_DIFFERENCES)} differ." in text
+    assert f"Differing: {len(KNOWN_DIFFERENCES)}." in text
     assert "7 that fixed an unknown input" in text
 
 

@@ -30,6 +30,7 @@ from epicyclic.cli.merge import merge
 from epicyclic.cli.oil import oil
 from epicyclic.cli.pockets import pockets, study
 from epicyclic.cli.pockets_table import pockets_table
+from epicyclic.cli.reproduce import reproduce
 from epicyclic.cli.rexs import rexs
 from epicyclic.cli.show import plot, report
 from epicyclic.cli.single import check, friction, mesh, run
@@ -75,6 +76,7 @@ COMMANDS = (
     friction,
     compare,
     validate,
+    reproduce,
     cases,
     oils,
     init,

@@ -24,6 +24,7 @@ __all__ = [
     "check_page",
     "draw",
     "finishing",
+    "make_folder",
     "picture_bytes",
     "show",
     "write_file",
@@ -100,6 +101,16 @@ def write_page(path: Path, page: str) -> None:
     else:
         write_file(path, page)
     click.echo(f"Wrote {path}.")
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder for results, unless there is one."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        allowed = f"is no place for a folder: {error.strerror}."
+        problem = Problem("-o", str(path), allowed, "Name another folder.")
+        raise InputError([problem], "the command") from None
 
 
 def write_file(path: Path, content: str | bytes) -> None:

@@ -16,8 +16,15 @@ from epicyclic.cli.options import (
     set_option,
     shard_option,
 )
-from epicyclic.cli.output import PICTURES, beside, check_ending, draw, picture_bytes, write_file
-from epicyclic.errors import InputError, Problem
+from epicyclic.cli.output import (
+    PICTURES,
+    beside,
+    check_ending,
+    draw,
+    make_folder,
+    picture_bytes,
+    write_file,
+)
 
 if TYPE_CHECKING:
     from epicyclic.sweeps.journal import Rows
@@ -139,7 +146,7 @@ def study_writer(plan: StudyPlan, folder: Path, picture: str) -> Write:
     from epicyclic.sweeps.pocketing_study import study_datasets
     from epicyclic.validation.pocketing import published_study
 
-    _make_folder(folder)
+    make_folder(folder)
 
     def write(rows: Rows) -> str:
         written = []
@@ -154,12 +161,3 @@ def study_writer(plan: StudyPlan, folder: Path, picture: str) -> Write:
         return "\n".join(f"Wrote {path}." for path in written)
 
     return write
-
-
-def _make_folder(path: Path) -> None:
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        allowed = f"is no place for a folder: {error.strerror}."
-        problem = Problem("-o", str(path), allowed, "Name another folder.")
-        raise InputError([problem], "the command") from None

@@ -15,7 +15,7 @@ from epicyclic.results.result import versions
 from epicyclic.units import unit_text
 from epicyclic.validation.compare import Comparison, by_topic, summary
 
-__all__ = ["validation_html"]
+__all__ = ["comparison_sections", "validation_html"]
 
 _HEAD = (
     "figure",
@@ -36,7 +36,7 @@ def validation_html(rows: Sequence[Comparison]) -> str:
         operation=summary(rows),
         source=f"Computed with epicyclic {versions()['epicyclic']}",
         key_figures=_key_figures(rows),
-        sections=list(_sections(rows)),
+        sections=list(comparison_sections(rows)),
     )
 
 
@@ -48,7 +48,8 @@ def _key_figures(rows: Sequence[Comparison]) -> list[KeyFigure]:
     ]
 
 
-def _sections(rows: Sequence[Comparison]) -> Iterator[Section]:
+def comparison_sections(rows: Sequence[Comparison]) -> Iterator[Section]:
+    """A picture and a table for each topic, and what the signs mean."""
     for topic, own in by_topic(rows).items():
         key = topic.lower().replace(" ", "-").replace(",", "")
         yield Section(key, topic, (Gallery((_drawing(key, own),), is_wide=True), _table(own)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from typing import Any, Literal
@@ -88,10 +88,10 @@ class Comparison:
 
 
 def compare_published(
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Callable[[int, int], None] = lambda done, total: None, topic: str = ""
 ) -> tuple[Comparison, ...]:
-    """Every published figure whose model exists, compared."""
-    figures = published_figures()
+    """Every published figure whose model exists, or those of a topic, compared."""
+    figures = [item for item in published_figures() if topic in ("", _topic(item))]
     rows = []
     for number, figure in enumerate(figures):
         rows.append(_compare(figure))
@@ -112,7 +112,8 @@ def by_topic(rows: Sequence[Comparison]) -> dict[str, list[Comparison]]:
     return {topic: own for topic, own in found.items() if own}
 
 
-def _topic(name: str) -> str:
+def _topic(figure: Mapping[str, Any]) -> str:
+    name = figure["with"].get("case", figure["compute"])
     if name.startswith("pocket"):
         return "Pockets"
     return next(topic for topic, names in _TOPICS.items() if name in names)
@@ -131,9 +132,10 @@ def _sentences(rows: Sequence[Comparison]) -> Iterator[str]:
     yield (
         f"{len(agreeing)} of {len(counted)} figures agree: {printed} to the digits that are "
         f"printed, {len(agreeing) - printed} within a tolerance that was settled with the computed "
-        f"figure in view (*). {len(counted) - len(agreeing)} differ."
+        f"figure in view (*). Differing: {len(counted) - len(agreeing)}."
     )
-    yield f"{inferred} of the {len(counted)} are not printed as such but inferred, as stated."
+    if inferred:
+        yield f"{inferred} of the {len(counted)} are not printed as such but inferred, as stated."
     calibrated = sum(row.role == "calibration" for row in rows)
     yield (
         f"Not counted: {calibrated} that fixed an unknown input, and "
@@ -144,7 +146,7 @@ def _sentences(rows: Sequence[Comparison]) -> Iterator[str]:
 def _compare(figure: dict[str, Any]) -> Comparison:
     return Comparison(
         what=figure["what"],
-        topic=_topic(figure["with"].get("case", figure["compute"])),
+        topic=_topic(figure),
         unit=figure["unit"],
         source=figure["source"],
         low=figure["low"] if "low" in figure else figure["value"],

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from epicyclic.case.case import Case, GearPairCase, read_case
+from epicyclic.sweeps.pocketing_plan import STUDIES, make_study
+from epicyclic.sweeps.pocketing_study import study_datasets
+from epicyclic.sweeps.runner import HERE, Runner
 from epicyclic.units import DEGREE, MILLIMETRE, RPM
 from epicyclic.validation.compare import published_figures
 
-__all__ = ["PublishedStudy", "published_study"]
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["FIGURES_AGAIN", "PublishedStudy", "published_study", "study_again"]
 
 EXAMPLE = "talbot-2012-pair"
 _SAME = ("gears", "pinion", "gear", "lubricant", "surroundings")
@@ -33,6 +40,23 @@ class PublishedStudy:
     speed: float
     loss: float
     exponent: float
+
+
+FIGURES_AGAIN = {study.figure.removeprefix("Fig. "): name for name, study in STUDIES.items()}
+"""Figures of section 4.4, and the study behind each."""
+
+
+def study_again(
+    figures: Sequence[str], runner: Runner = HERE
+) -> tuple[Case, dict[str, xr.Dataset]]:
+    """The example of the source, and the studies of its figures by their numbers."""
+    case = read_case(EXAMPLE)
+    names = {FIGURES_AGAIN[figure]: figure for figure in figures if figure in FIGURES_AGAIN}
+    if not names:
+        return case, {}
+    plan = make_study(case, names, mesh=None, ranges={}, levels={})
+    found = study_datasets(plan, runner.run(plan))
+    return case, {names[name]: data for name, data in found.items()}
 
 
 def published_study(case: Case) -> PublishedStudy | None:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
-from epicyclic.case.case import Case, PlanetaryCase, load_case
+from epicyclic.case.case import Case, PlanetaryCase, read_case
 from epicyclic.elasticity.loaded_mesh import LoadedMesh
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
@@ -34,7 +34,7 @@ _GEOMETRY: dict[str, Callable[[Mesh], float]] = {
 @cache
 def _case(name: str) -> Case:
     file = resources.files("epicyclic.validation").joinpath("cases", f"{name}.toml")
-    return load_case(Path(str(file)))
+    return read_case(Path(str(file)))
 
 
 @cache

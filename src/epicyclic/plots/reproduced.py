@@ -1,0 +1,59 @@
+"""Every figure of a chapter of Talbot (2012) that is computed again, with its data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from matplotlib.figure import Figure
+
+from epicyclic.plots.chapters import branch_figure, family_figure, roller_figure
+from epicyclic.plots.pocketing_study import study_figure
+from epicyclic.sweeps.runner import HERE, Runner
+from epicyclic.validation import chapters
+from epicyclic.validation.pocketing import published_study, study_again
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Reproduced", "reproduce"]
+
+
+@dataclass(frozen=True)
+class Reproduced:
+    """A figure of the source, computed again.
+
+    Attributes
+    ----------
+    number : str
+        In the source.
+    data : xarray.Dataset
+    picture : Figure
+    """
+
+    number: str
+    data: xr.Dataset
+    picture: Figure
+
+
+def reproduce(figures: Sequence[str], runner: Runner = HERE) -> Iterator[Reproduced]:
+    """Compute and draw figures, ``"3.4"``, published numbers marked on them.
+
+    Raises
+    ------
+    ConvergenceError
+        If a point of chapter 3 or 5 cannot be computed.
+    """
+    for name in figures:
+        if name in chapters.ROLLER_FIGURES:
+            cases = chapters.roller_loads_over(name)
+            yield Reproduced(name, chapters.joined(cases), roller_figure(name, cases))
+    for family in chapters.bearing_families(figures, runner):
+        yield Reproduced(family.figure, family.data, family_figure(family))
+    case, studies = study_again(figures, runner)
+    for name, data in studies.items():
+        yield Reproduced(name, data, study_figure(data, published_study(case)))
+    for family in chapters.set_families(figures, runner):
+        draw = branch_figure if "branch_power" in family.data else family_figure
+        yield Reproduced(family.figure, family.data, draw(family))

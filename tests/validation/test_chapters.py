@@ -1,0 +1,223 @@
+"""Chapters of the dissertation computed again: data, marks, pictures, the command."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+
+import epicyclic as ep
+from epicyclic.cli.main import cli
+from epicyclic.errors import ConvergenceError, InputError
+from epicyclic.plots.chapters import branch_figure, family_figure
+from epicyclic.plots.reproduced import reproduce
+from epicyclic.sweeps.journal import Rows
+from epicyclic.sweeps.runner import HERE, Runner, failed_row
+from epicyclic.validation import chapters, compare
+from epicyclic.validation.compare import by_topic, compare_published, published_figures
+from epicyclic.validation.compute import planet_bearing_loss
+
+
+@pytest.fixture(scope="module")
+def warm():
+    (family,) = chapters.bearing_families(["3.4"])
+    return family
+
+
+def test_planet_bearing_over_temperature(warm):
+    data = warm.data["bearing_loss"]
+    assert data.dims == ("speed", "temperature", "branch_torque")
+    assert data.shape == (2, 3, 8)
+    for value in (40, 60, 90):
+        found = float(data.sel(speed=4000, temperature=value)[-1])
+        expected = planet_bearing_loss(f"{value} degC", np.hypot(0.1, 0.1))
+        # 333.3 in place of 333 N m
+        assert found == pytest.approx(expected, rel=1e-3)
+
+
+def test_printed_losses_are_marked_where_they_belong(warm):
+    marks = [(mark.panel, mark.value, mark.label) for mark in warm.marks]
+    assert marks == [
+        (4000, 236.0, "printed, 40 degC"),
+        (4000, 195.0, "printed, 60 degC"),
+        (4000, 181.0, "printed, 90 degC"),
+    ]
+    figure = family_figure(warm)
+    slow, fast = figure.axes
+    stars = [[line for line in ax.lines if "printed" in line.get_label()] for ax in (slow, fast)]
+    assert list(map(len, stars)) == [0, 3]
+    curve = next(line for line in fast.lines if line.get_label().startswith("60"))
+    assert np.array_equal(curve.get_ydata(), warm.data["bearing_loss"][1, 1])
+
+
+@pytest.mark.slow
+def test_effects_on_the_bearing_have_the_described_signs():
+    """Section 3.4: rises with roughness, diameter, length and helix, falls with the clearance."""
+    families = chapters.bearing_families(["3.5", "3.6", "3.8", "3.10", "3.11"])
+    for family in families:
+        at_full = family.data["bearing_loss"][:, :, -1]
+        sign = -1 if family.figure == "3.8" else 1
+        assert np.all(sign * np.diff(at_full, axis=1) > 0), family.figure
+    rough = families[0]
+    assert [mark.value for mark in rough.marks] == [89.0, 267.0]
+
+
+def test_helix_changes_the_moment_and_not_the_force():
+    """Eq. 3.7 and 3.8: F_r = 2 T/r, M = F_r r_pp tan(beta), the transverse geometry held."""
+    case = ep.load_case("talbot-2012").updated(chapters._WITHOUT_FLOW)
+    found = [
+        ep.solve(case.updated(chapters._helical(angle))).bearing for angle in (0.0, 13.124, 30.0)
+    ]
+    assert [it.radial_force for it in found] == pytest.approx([found[1].radial_force] * 3)
+    assert found[0].moment == pytest.approx(0.0, abs=1e-9)
+    ratio = np.tan(np.radians(30.0)) / np.tan(np.radians(13.124))
+    assert found[2].moment == pytest.approx(ratio * found[1].moment)
+    assert found[1].radial_force == pytest.approx(ep.solve(case).bearing.radial_force)
+
+
+def test_roller_loads_are_those_of_the_rollers():
+    cases = chapters.roller_loads_over("3.3")
+    assert [label for label, _ in cases] == [
+        f"torque on the branch {torque} N m" for torque in (42, 100, 333)
+    ]
+    forces = [float(data["load"].max()) for _, data in cases]
+    assert np.all(np.diff(forces) > 0)
+    whole = chapters.joined(cases)
+    assert whole.sizes == {"case": 3, "row": 2, "roller": 16, "slice": 20}
+    assert float(whole["load"].isel(case=2).max()) == forces[2]
+
+
+@pytest.fixture
+def data(monkeypatch):
+    """Tests with made-up losses, no two of them equal."""
+    levers = (
+        chapters._SET,
+        chapters._TEMPERATURE,
+        chapters._TORQUE,
+        chapters._speed(),
+    )
+    shape = tuple(len(lever.values) for lever in levers)
+    rng = np.random.default_rng(11)
+    values = {
+        name: rng.uniform(1e3, 9e3, shape)
+        for name in ("load_dependent", "load_independent", "input_power")
+    }
+    made = chapters._dataset(values, levers)
+    assert made["load_dependent"].size == 300
+    monkeypatch.setattr(chapters, "loaded_and_unloaded", lambda runner: made)
+    return made
+
+
+def family(number):
+    (found,) = chapters.set_families([number])
+    return found
+
+
+def test_load_independent_losses_are_those_without_torque(data):
+    shown = family("5.1")
+    expected = data["load_independent"].sel(set="4 shaved", temperature=60, torque=0, speed=2000)
+    found = shown.data["loss"].sel(set="4 shaved", temperature=60, speed=2000)
+    assert float(found) == pytest.approx(float(expected) / 1e3)
+    assert [(mark.panel, mark.value) for mark in shown.marks] == [(90, 0.57)]
+    six, three = (
+        float(data["load_independent"].sel(set=name, temperature=40, torque=0, speed=3000))
+        for name in ("6 shaved", "3 shaved")
+    )
+    branch = family("5.2").data["loss"].sel(temperature=40, speed=3000)
+    assert float(branch.item()) == pytest.approx((six - three) / 3)
+
+
+@pytest.mark.parametrize(("number", "temperature"), [("5.3", 40), ("5.4", 60), ("5.5", 90)])
+def test_load_dependent_losses_of_all_shaved_sets(data, number, temperature):
+    shown = family(number)
+    found = shown.data["loss"].sel(set="5 shaved", torque=750, speed=1000)
+    where = {"set": "5 shaved", "temperature": temperature, "torque": 750, "speed": 1000}
+    assert float(found) == pytest.approx(float(data["load_dependent"].sel(where)) / 1e3)
+    assert {mark.value for mark in shown.marks} == ({2.966, 3.21} if number == "5.5" else set())
+
+
+def test_polished_planets(data):
+    found = family("5.6").data["loss"].sel(temperature=60, torque=500, speed=4000)
+    where = {"set": "6 polished", "temperature": 60, "torque": 500, "speed": 4000}
+    assert float(found) == pytest.approx(float(data["load_dependent"].sel(where)) / 1e3)
+
+
+@pytest.mark.parametrize("number", range(7, 13))
+def test_lines_through_the_branches(data, number):
+    shown = family(f"5.{number}")
+    sets = ["3 shaved", "4 shaved", "5 shaved", "6 shaved"] if number < 10 else ["6 polished"]
+    part = data.sel(set=sets, temperature=(40, 60, 90)[(number - 7) % 3], torque=slice(250, None))
+    count = part["planets"]
+    power, loss = (
+        (part[name] / count).transpose("set", "torque", "speed").values.ravel()
+        for name in ("input_power", "load_dependent")
+    )
+    slope = np.polyfit(power, loss, 1)[0]
+    assert shown.data.attrs["slope"] == pytest.approx(slope)
+    assert {mark.value for mark in shown.marks} == ({0.7223, 0.7487} if number == 9 else set())
+    labels = [line.get_label() for line in branch_figure(shown).axes[0].lines]
+    assert f"line, {100 * slope:.4f} %" in labels
+    assert len(labels) == len(sets) + 1 + len(shown.marks)
+
+
+def test_every_figure_belongs_to_one_chapter():
+    for chapter, names in chapters.CHAPTERS.items():
+        assert all(name.startswith(f"{chapter}.") for name in names)
+    assert len(chapters.CHAPTERS["3"]) == 10
+    assert chapters.CHAPTERS["3"][:2] == ("3.3", "3.4")
+    assert len(chapters.CHAPTERS["4"]) == 6
+    assert len(chapters.CHAPTERS["5"]) == 12
+    known = {compare._topic(item) for item in published_figures()}
+    assert set(chapters.TOPICS.values()) <= known
+
+
+def test_a_topic_is_compared_alone():
+    rows = compare_published(topic="Air-oil mixture")
+    assert len(rows) == 6
+    assert len(rows) < len(published_figures())
+    assert set(by_topic(rows)) == {"Air-oil mixture"}
+
+
+def test_a_point_that_fails_is_told(monkeypatch):
+    def run(self, plan):
+        rows = Rows(plan.size)
+        for number in range(plan.size):
+            rows.add(number, failed_row("the rollers are lost"))
+        return rows
+
+    monkeypatch.setattr(Runner, "run", run)
+    with pytest.raises(ConvergenceError, match=r"48 of 48 points.*the rollers are lost"):
+        list(reproduce(["3.4"], HERE))
+
+
+def test_command_writes_figures_data_and_a_page(tmp_path):
+    folder = tmp_path / "bearings"
+    arguments = ["reproduce", "3", "--figure", "3.4", "--figure", "3.3", "--jobs", "1"]
+    done = CliRunner().invoke(cli, [*arguments, "--picture", "svg", "-o", str(folder)])
+    assert done.exit_code == 0, done.output
+    assert {path.name for path in folder.iterdir()} == {
+        "index.html",
+        *(f"fig-{name}.{ending}" for name in ("3.3", "3.4") for ending in ("nc", "csv", "svg")),
+    }
+    with xr.open_dataset(folder / "fig-3.4.nc") as stored:
+        assert stored["bearing_loss"].attrs["units"] == "W"
+    page = (folder / "index.html").read_text(encoding="utf-8")
+    assert page.index("Fig. 3.3</span>") < page.index("Fig. 3.4</span>")
+    assert "Planet bearings</h2>" in page
+    assert "2 of 3 figures agree" in done.output
+
+
+def test_an_unknown_figure_is_refused(tmp_path):
+    done = CliRunner().invoke(cli, ["reproduce", "5", "--figure", "3.4", "-o", str(tmp_path)])
+    assert isinstance(done.exception, InputError)
+    assert "is not computed: 5.1, 5.2" in str(done.exception)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("chapter", ["3", "4", "5"])
+def test_whole_chapters(chapter, tmp_path):
+    done = CliRunner().invoke(cli, ["reproduce", chapter, "-o", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    pictures = {path.stem.removeprefix("fig-") for path in tmp_path.glob("*.png")}
+    assert pictures == set(chapters.CHAPTERS[chapter])
