@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import html
+import io
 import json
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import epicyclic as ep
 from epicyclic import library
@@ -19,6 +22,8 @@ from epicyclic.losses.rolling import ROLLING_MODELS
 from epicyclic.losses.standing import STANDING, standing
 from epicyclic.oilmodel.fitting import fit_quantity
 from epicyclic.oilmodel.model import FORMAT, FORMS, OilModel
+from epicyclic.report.result_parts import standing_lines
+from epicyclic.report.tables import result_tables
 
 OIL = "iso-vg-220-mineral"
 STEEL = 227.47e9
@@ -200,7 +205,7 @@ def test_what_is_left_and_what_takes_over_is_said(case, model):
     assert {flag.use.instead for flag in flags} == {"schlenk", "goksem-hargreaves", "palmgren"}
     told = next(text for text in slow.warnings if "rolling speed" in text)
     low, high = model.fits["friction"].domain["rolling_speed"]
-    assert f"range {low:g} to {high:g} m/s" in told
+    assert f"range {low:.4g} to {high:.4g} m/s" in told
     assert "fitted-or-schlenk (sun mesh; schlenk takes over) 100%" in told
     formula = [flag for flag in slow.flags if flag.use.model == "schlenk"]
     assert {flag.quantity for flag in formula} == {"pitch-line speed"}
@@ -232,6 +237,26 @@ def test_the_result_says_how_well_its_models_are_known(case):
     assert "beyond them schlenk: " in known["friction"]
     quick = ep.solve(case.updated({"models.mesh": "loss-factor"}))
     assert set(quick.standing) == {"friction", "bearing"}
+
+
+def test_tables_and_reports_begin_with_the_models(case):
+    result = ep.solve(case)
+    console = Console(width=400, record=True, file=io.StringIO())
+    console.print(result_tables(result))
+    text = console.export_text()
+    title, losses = text.index("Models, and how well"), text.index("Losses of the gear set")
+    assert title < losses
+    assert f"rolling loss: {result.standing['rolling']}" in text
+    page = html.unescape(ep.report_html(ep.record(case, result=result)))
+    assert page.index("Models, and how well") < page.index("loss, W")
+    assert f"planet bearing: {result.standing['bearing']}" in page
+
+
+def test_models_of_a_train_are_named_once_for_all_sets():
+    lines = standing_lines(
+        {"P1.friction": "schlenk: a", "P2.friction": "schlenk: a", "P3.friction": "table: b"}
+    )
+    assert lines == ["friction of P1, P2: schlenk: a", "friction of P3: table: b"]
 
 
 def test_every_model_has_a_standing():

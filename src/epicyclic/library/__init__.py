@@ -59,6 +59,7 @@ def oil_table(name: str) -> dict[str, Any]:
     return _read(_root().joinpath("oils", f"{name}.toml")) | {"name": name}
 
 
+@cache
 def oil_model_file(name: str) -> Path | None:
     """The file of the models fitted for a built-in oil; None if there is none."""
     file = Path(str(_root().joinpath("oilmodels", f"{name}.json")))

@@ -125,5 +125,6 @@ def domain_ranges(model: OilModel, quantity: str) -> Iterator[Range]:
     source = f"the simulations of {model.oil.name}"
     for name, (label, unit) in _LABELS.items():
         limits = model.fits[quantity].domain[name]
-        low, high = (unit.to_display(value) if unit.si else value for value in limits)
+        shown = (unit.to_display(value) if unit.si else value for value in limits)
+        low, high = (float(f"{value:.4g}") for value in shown)
         yield Range(name, label, low, high, unit, source)

@@ -55,19 +55,17 @@ def weight_of_fit(model: OilModel, quantity: str, contacts: LineContacts) -> Flo
     -------
     ndarray, shape (n,)
     """
-    domain, reach = model.fits[quantity].domain, math.log(REACH)
+    domain = model.fits[quantity].domain
     modulus = contacts.flanks.equivalent_modulus / model.equivalent_modulus
-    beyond = np.full(
-        contacts.line_load.shape, max(0.0, abs(math.log(modulus)) - math.log(MODULUS_SLACK))
-    )
+    beyond = np.full(contacts.line_load.shape, max(1.0, modulus, 1 / modulus) / MODULUS_SLACK)
     for name in CONDITIONS:
-        value = np.maximum(getattr(contacts, name), np.finfo(float).tiny)
+        value = getattr(contacts, name)
         low, high = domain[name]
         if high > 0:
-            beyond = np.maximum(beyond, np.log(value / high))
+            np.maximum(beyond, value / high, out=beyond)
         if low > 0 and name != NO_LEAST:
-            beyond = np.maximum(beyond, np.log(low / value))
-    t = np.clip(beyond / reach, 0.0, 1.0)
+            np.maximum(beyond, low / value, out=beyond)
+    t = np.clip(np.log(beyond) / math.log(REACH), 0.0, 1.0)
     weight: FloatArray = 1 - t * t * (3 - 2 * t)
     return weight
 

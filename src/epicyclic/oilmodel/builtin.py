@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 from epicyclic import library
@@ -45,10 +46,10 @@ def builtin_model(oil: Oil, pressure_viscosity_factor: float = 1.0) -> OilModel 
     ... )) is None
     True
     """
-    model = _of_name(oil.name)
-    if model is None or changed_properties(oil, pressure_viscosity_factor):
+    file = library.oil_model_file(oil.name)
+    if file is None or _changed(oil, file, pressure_viscosity_factor):
         return None
-    return model
+    return _read(file)
 
 
 def changed_properties(oil: Oil, pressure_viscosity_factor: float = 1.0) -> tuple[str, ...]:
@@ -56,20 +57,23 @@ def changed_properties(oil: Oil, pressure_viscosity_factor: float = 1.0) -> tupl
 
     Wherever their values are from; none if no oil of this name was.
     """
-    model = _of_name(oil.name)
-    if model is None:
-        return ()
-    own, simulated = map(_numbers, (oil, model.oil))
-    changed = tuple(name for name in _SIMULATED if own[name] != simulated[name])
-    return changed if pressure_viscosity_factor == 1 else (*changed, "pressure_viscosity_factor")
-
-
-def _of_name(name: str) -> OilModel | None:
-    file = library.oil_model_file(name)
-    return None if file is None else read_oil_model(file)
+    file = library.oil_model_file(oil.name)
+    return () if file is None else _changed(oil, file, pressure_viscosity_factor)
 
 
 @lru_cache(maxsize=64)
+def _changed(oil: Oil, file: Path, factor: float) -> tuple[str, ...]:
+    own, simulated = map(_numbers, (oil, _read(file).oil))
+    changed = tuple(name for name in _SIMULATED if own[name] != simulated[name])
+    return changed if factor == 1 else (*changed, "pressure_viscosity_factor")
+
+
+@lru_cache(maxsize=64)
+def _read(file: Path) -> OilModel:
+    """Of a file that comes with the package, and does not change."""
+    return read_oil_model(file)
+
+
 def _numbers(oil: Oil) -> dict[str, Any]:
     """What the contacts of an oil depend on."""
     numbers: dict[str, Any] = _plain(oil.model_dump(include=set(_SIMULATED)))
