@@ -90,9 +90,9 @@ def local_loss_factor(case: str, mesh: str, load_distribution: str) -> float:
     return loss / (friction * _planets(case) * _contacts(case)[mesh].input_power)
 
 
-def mean_friction(case: str, mesh: str, friction: str, load_factor: float = 1.0) -> float:
-    """Mean coefficient of a model in which the load has the exponent 0.2. [1]"""
-    return _solved(case, friction).meshes[mesh].friction_mean * math.pow(load_factor, 0.2)
+def mean_friction(case: str, mesh: str, friction: str) -> float:
+    """Mean coefficient of friction of a model. [1]"""
+    return _solved(case, friction).meshes[mesh].friction_mean
 
 
 def closed_loss(case: str, mesh: str, friction: float) -> float:
