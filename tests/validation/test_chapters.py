@@ -16,7 +16,7 @@ from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.runner import HERE, Runner, failed_row
 from epicyclic.validation import chapters, compare
 from epicyclic.validation.compare import by_topic, compare_published, published_figures
-from epicyclic.validation.compute import planet_bearing_loss
+from epicyclic.validation.compute import planet_bearing_loss, source_case
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +65,7 @@ def test_effects_on_the_bearing_have_the_described_signs():
 
 def test_helix_changes_the_moment_and_not_the_force():
     """Eq. 3.7 and 3.8: F_r = 2 T/r, M = F_r r_pp tan(beta), the transverse geometry held."""
-    case = ep.load_case("talbot-2012").updated(chapters._WITHOUT_FLOW)
+    case = source_case().updated(chapters._WITHOUT_FLOW)
     found = [
         ep.solve(case.updated(chapters._helical(angle))).bearing for angle in (0.0, 13.124, 30.0)
     ]

@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 from epicyclic.analysis.bearing_details import bearing_details
 from epicyclic.analysis.solve import solve
 from epicyclic.builders.planetary import roller_bearing
-from epicyclic.case.case import PlanetaryCase, read_case
 from epicyclic.errors import ConvergenceError
 from epicyclic.sweeps.plan import PointList
 from epicyclic.sweeps.runner import HERE, Runner
 from epicyclic.units import NUMBER, WATT
 from epicyclic.validation.compare import published_figures
+from epicyclic.validation.compute import source_case
 from epicyclic.validation.pocketing import FIGURES_AGAIN
 
 if TYPE_CHECKING:
@@ -44,7 +44,6 @@ __all__ = [
 ]
 
 FloatArray = NDArray[np.float64]
-EXAMPLE = "talbot-2012"
 PLANETS = 3
 """Of the set whose planet bearing chapter 3 studies."""
 FULL_BRANCH = 1000 / PLANETS
@@ -148,9 +147,7 @@ def _rough(composite: float) -> dict[str, Any]:
 
 def _helical(angle: float) -> dict[str, Any]:
     """The transverse geometry held, so that the torque gives the same radial force. Eq. 3.7."""
-    case = read_case(EXAMPLE)
-    assert isinstance(case, PlanetaryCase)
-    gears = case.given()["gears"]
+    gears = source_case().given()["gears"]
     module, pressure, helix = (
         float(str(gears[key]).split()[0])
         for key in ("normal_module", "normal_pressure_angle", "helix_angle")
@@ -252,8 +249,7 @@ def roller_loads_over(figure: str) -> list[tuple[str, xr.Dataset]]:
         values = (0, 20, 30)
     found = []
     for value in values:
-        case = read_case(EXAMPLE).updated(_WITHOUT_FLOW | dict(lever.changes(value)))
-        assert isinstance(case, PlanetaryCase)
+        case = source_case().updated(_WITHOUT_FLOW | dict(lever.changes(value)))
         assert case.planet_bearing is not None
         result = solve(case)
         assert result.bearing is not None
@@ -450,7 +446,7 @@ def _numbers(
     points: Sequence[Mapping[str, Any]], names: Sequence[str], runner: Runner
 ) -> list[FloatArray]:
     """Numbers of the results of the example with other keys."""
-    rows = runner.run(PointList(read_case(EXAMPLE), tuple(map(dict, points))))
+    rows = runner.run(PointList(source_case(), tuple(map(dict, points))))
     if rows.failures:
         raise ConvergenceError(
             f"{len(rows.failures)} of {len(rows)} points cannot be computed: {rows.failures[0]}"
