@@ -284,6 +284,28 @@ def test_comparison_gives_reasons_and_a_recommendation(case):
     assert "100% of the loss is outside the range of fitted-or-schlenk" in why
 
 
+def test_xu_is_recommended_for_its_oil_in_full_films_only():
+    """75W-90 without fitted models, smooth flanks and thick oil, then rough ones."""
+    case = ep.load_case("talbot-2012").updated({"lubricant.oil": "75w-90-gear-oil"})
+    table = library.oil_table("75w-90-gear-oil")
+    table["name"] = "own"
+    smooth = {f"{gear}.roughness": "0.08 um" for gear in ("sun", "planet", "ring")}
+    cold = {"operation.oil_inlet_temperature": "40 degC", "lubricant.oil": table}
+    best, why = recommended(compare_friction(case.updated(cold | smooth)))
+    assert best.name == "xu-2007"
+    assert "made for this oil" in why
+    best, why = recommended(compare_friction(case.updated({"lubricant.oil": table})))
+    assert best.name == "schlenk"
+    assert "of the loss is outside the range of xu-2007" in why
+
+
+def test_shaft_bearings_have_a_standing():
+    known = ep.solve(ep.load_case("train-eaxle")).standing
+    bearings = {key: text for key, text in known.items() if key.endswith(".shaft_bearing")}
+    assert bearings
+    assert all(text.split(":")[0] in STANDING["shaft_bearing"] for text in bearings.values())
+
+
 def test_recommendation_for_the_fluid_of_the_regression_and_for_an_unknown_oil():
     best, why = recommended(compare_friction(ep.load_case("talbot-2012")))
     assert best.name == "mixed-ehl"

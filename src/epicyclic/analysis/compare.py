@@ -28,6 +28,8 @@ __all__ = ["FrictionComparison", "compare_friction", "recommended"]
 
 MOSTLY = 0.5
 """Share of the loss outside its range up to which a model made for the oil is preferred. [1]"""
+_FOR_ONE_OIL = ("mixed-ehl", FittedOrSchlenk.name, "xu-2007")
+"""Models made for an oil, the one that is known best first."""
 _OF_ALL_OILS = ("schlenk", "niemann-winter")
 """Fitted to gear tests with many oils, the one recommended first."""
 
@@ -56,6 +58,8 @@ class FrictionComparison:
         Share of the sliding loss outside its range. [1]
     other_oil : str
         The fluid that it was made for, if that is not the oil of the case; else empty.
+    own_oil : bool
+        True if it was made for the oil of the case, and for no other.
     standing : str
         How well it is known to be right.
     """
@@ -71,6 +75,7 @@ class FrictionComparison:
     reasons: tuple[str, ...]
     outside: float
     other_oil: str
+    own_oil: bool
     standing: str
 
 
@@ -99,7 +104,7 @@ def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
         model = friction_of(own)
         flags = [flag for flag in local.flags if flag.use.role == "friction"]
         fluid = model.made_for
-        other = fluid is not None and fluid.key != own.lubricant.oil.friction_regression
+        same = fluid is not None and fluid.key == own.lubricant.oil.friction_regression
         rows.append(
             FrictionComparison(
                 name=name,
@@ -112,7 +117,8 @@ def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
                 flagged=bool(flags),
                 reasons=tuple(_reason(flag) for flag in flags),
                 outside=_outside(local, flags),
-                other_oil=fluid.title if other and fluid is not None else "",
+                other_oil="" if fluid is None or same else fluid.title,
+                own_oil=same or name == FittedOrSchlenk.name,
                 standing=standing_of(own)["friction"].removeprefix(f"{name}: "),
             )
         )
@@ -127,14 +133,12 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
     least.
     """
     by_name = {row.name: row for row in rows}
-    own = [by_name[name] for name in ("mixed-ehl", FittedOrSchlenk.name) if name in by_name]
-    own = [row for row in own if not row.other_oil]
+    own = [by_name[name] for name in _FOR_ONE_OIL if name in by_name and by_name[name].own_oil]
     for row in own:
         if row.outside <= MOSTLY:
-            how = (
-                "made for this oil" if row.name == "mixed-ehl" else "fitted to contacts of this oil"
-            )
-            return row, f"it was {how}, and {_inside(row)}"
+            fitted = row.name == FittedOrSchlenk.name
+            made = "fitted to simulated contacts of" if fitted else "made for"
+            return row, f"it was {made} this oil, and {_inside(row)}"
     general = min((by_name[name] for name in _OF_ALL_OILS), key=lambda row: row.outside)
     why = "it was fitted to gear tests with many oils"
     if own:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -18,7 +19,9 @@ from epicyclic.elements.base import joined_key
 from epicyclic.elements.fluids import Fluids
 from epicyclic.elements.gear_mesh import MeshDuty, contact_under, distribute_load
 from epicyclic.errors import InputError, Problem
+from epicyclic.geometry.mesh import Mesh
 from epicyclic.losses.load_distribution import LineLoads
+from epicyclic.losses.mesh import loss_factor_notes
 from epicyclic.losses.mesh_warmth import flash_temperatures
 from epicyclic.units import (
     DEGREE,
@@ -119,12 +122,27 @@ def _details(
     }
     attributes = {
         "title": f"{_words(key)} of {title or 'the case'}",
-        "notes": "\n".join(notes),
+        "notes": "\n".join((*notes, *_other_programs(mesh, loads))),
         "load_distribution": duty.models.load_distribution,
         "force_N": duty.force,
         "pitch_angle_deg": DEGREE.to_display(pitch_angle),
     }
     return xr.Dataset(variables, coordinates, attributes)
+
+
+def _other_programs(mesh: Mesh, loads: LineLoads) -> Iterator[str]:
+    """Where a user who compares with another program finds another number, and why."""
+    if loads.elastic is not None:
+        yield (
+            "Stiffness is that of the teeth in theory. ISO 6336-1 multiplies it by C_M = 0.8 and "
+            "by a factor of the gear blank: programs that follow it state 0.7 to 0.8 of this."
+        )
+    yield (
+        "Films are those of smooth contacts with oil at the temperature of the case. ISO/TR 15144 "
+        "takes that of the flanks, under K_A K_gamma K_v: programs that follow it state thinner "
+        "ones."
+    )
+    yield from loss_factor_notes(mesh)
 
 
 def _words(key: str) -> str:

@@ -17,7 +17,9 @@ from epicyclic.elements.base import HOUSING, OIL, Loss, joined_key
 from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.elements.load_sharing import SHARING_METHODS
+from epicyclic.elements.shaft_bearing import ShaftBearing
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
+from epicyclic.losses.standing import standing
 from epicyclic.losses.validity import SomeFlags, ValidityFlag
 from epicyclic.machine.flow import stage_torques
 from epicyclic.machine.settle import Answer, Settled, heat_of
@@ -176,6 +178,11 @@ def _standing(case: Case, built: Built) -> Iterator[tuple[str, str]]:
     for key, own in set_cases(case, built.sets):
         for role, phrase in standing_of(own).items():
             yield joined_key(key, role), phrase
+    for element in built.machine.elements:
+        if isinstance(element, ShaftBearing):
+            name = element.model.name
+            phrase = f"{name}: {standing('shaft_bearing', name)}"
+            yield joined_key(element.key, "shaft_bearing"), phrase
 
 
 def _set_notes(case: Case, built: Built, solution: Solution) -> Iterator[str]:

@@ -173,6 +173,10 @@ class BearingModel(Protocol):
     """How the friction of a bearing is computed."""
 
     @property
+    def name(self) -> str:
+        """As a case has it."""
+
+    @property
     def terms(self) -> tuple[str, ...]:
         """Keys of the parts of its friction."""
 
@@ -297,6 +301,11 @@ class PalmgrenModel:
     terms: ClassVar = ("mechanical", "viscous")
 
     @property
+    def name(self) -> str:
+        """As a case has it."""
+        return "harris" if self.constant is None else "palmgren"
+
+    @property
     def depends_on_load(self) -> bool:
         """True."""
         return True
@@ -343,6 +352,7 @@ class TableModel:
 
     table: LossTable
 
+    name: ClassVar = "table"
     terms: ClassVar = ("friction",)
 
     @property

@@ -165,6 +165,7 @@ class SkfModel:
     drag_variable: float | None = None
     seal: ContactSeal | None = None
 
+    name: ClassVar = "skf-2018"
     terms: ClassVar = ("mechanical", "drag")
 
     @property

@@ -37,6 +37,12 @@ STANDING: dict[str, dict[str, str]] = {
         "rollers, is met within 10 %",
         "palmgren": "its source gives a range of a factor of 2 for caged rollers",
     },
+    "shaft_bearing": {
+        "skf-2018": "formulas of a catalogue, which states no error",
+        "palmgren": "mean coefficients of bearings of a type, whose scatter was not found in print",
+        "harris": "mean coefficients of bearings of a type, whose scatter was not found in print",
+        "table": _OF_THE_CASE,
+    },
 }
 """By role and name of the model, each a phrase."""
 _QUANTITIES = {
@@ -52,7 +58,7 @@ def standing(role: str, name: str, model: OilModel | None = None, form: str = ""
     Parameters
     ----------
     role : str
-        ``"friction"``, ``"rolling"`` or ``"bearing"``.
+        ``"friction"``, ``"rolling"``, ``"bearing"`` of planets or ``"shaft_bearing"``.
     name : str
         Of the model, as a case chooses it.
     model : OilModel, optional

@@ -32,7 +32,12 @@ _FLOW_NOTE = (
     "Speeds are positive in one common sense of rotation; torques act on the gear set from "
     "outside; positive power enters."
 )
-_ROLES = {"friction": "friction", "rolling": "rolling loss", "bearing": "planet bearing"}
+_ROLES = {
+    "friction": "friction",
+    "rolling": "rolling loss",
+    "bearing": "planet bearing",
+    "shaft_bearing": "shaft bearing",
+}
 _NO_CONTACT = f'"{MISSING}": no load or no motion in the mesh.'
 
 
