@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from epicyclic.case.contact import ContactCase, ContactModel
-from epicyclic.ehl.box import VALIDATED_FILM_RATIO
+from epicyclic.ehl.box import DRY_SPEED, FEWEST_KEPT, VALIDATED_FILM_RATIO
 from epicyclic.ehl.rough import RoughSolution
 from epicyclic.ehl.roughness import Profile
 from epicyclic.ehl.steady import SmoothSolution
@@ -25,8 +25,6 @@ HIGHEST_RISE = Range(
     "temperature_rise", "temperature rise", 0.0, 50.0, KELVIN, "thinning by heat, linear in it"
 )
 """Beyond it the estimate of heat thins the oil too much."""
-LOST = 0.05
-"""Share of a roughness that the grid may lose unsaid. [1]"""
 FEWEST_POINTS = 16
 """Points of a profile in the width of the contact, below which it is hardly one."""
 
@@ -69,6 +67,13 @@ def contact_notes(
             "The roughness stands still: all is of one place of the profiles, whatever the "
             "standard error, and the rolling loss has no meaning for surfaces that move."
         )
+    speed = model.contact.rolling_speed
+    if speed < DRY_SPEED:
+        yield (
+            f"At {format_number(speed, 2)} m/s, below {DRY_SPEED:g} m/s, oil leaks out of the "
+            "valleys of real surfaces; ridges that run across, as here, trap it: load and friction "
+            "of the surfaces that touch are too small, and no result to use."
+        )
     ratio = film_ratio(model, smooth)
     if ratio < VALIDATED_FILM_RATIO:
         yield (
@@ -94,8 +99,8 @@ def _profile_notes(
             ("width", 2 * model.contact.half_width, MILLIMETRE),
         )
     }
-    left = float(surface.resampled(spacing).std()) / surface.rms
-    if left < 1 - LOST:
+    left = surface.kept(spacing)
+    if left < FEWEST_KEPT:
         yield (
             f"The nodes, {shown['spacing']} um apart, resolve {left:.0%} of the Rq of {name}: "
             "shorter waves are lost. Raise numerics.nodes."

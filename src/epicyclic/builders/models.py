@@ -12,6 +12,7 @@ from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.model_tables import LossOption
 from epicyclic.case.oil_laws import oil_laws
 from epicyclic.case.part_tables import PlanetBearing
+from epicyclic.ehl.assumptions import PRESETS
 from epicyclic.ehl.rough import AsperityContact
 from epicyclic.elements.fluids import Fluids, fluids_at
 from epicyclic.elements.gear_mesh import MeshModels
@@ -20,7 +21,7 @@ from epicyclic.elements.pocket_flow import PocketSettings
 from epicyclic.losses.direct import DirectSettings, EhlDirect
 from epicyclic.losses.fitted import FittedFriction, FittedRolling
 from epicyclic.losses.fitted_or_formula import FittedOrGoksem, FittedOrSchlenk
-from epicyclic.losses.friction import FrictionModel, FrictionSettings, friction_model
+from epicyclic.losses.friction import DRY_FRICTION, FrictionModel, FrictionSettings, friction_model
 from epicyclic.losses.friction.user import FrictionMap
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN
@@ -113,10 +114,10 @@ def gear_tables(case: SetCase) -> tuple[GearTable, ...]:
 
 def friction_settings(case: SetCase) -> FrictionSettings:
     """The numbers that friction models take from the case."""
-    table = case.friction_table
+    table, boundary = case.friction_table, case.models.boundary_friction
     return FrictionSettings(
         constant=case.models.constant_friction,
-        boundary=case.models.boundary_friction,
+        boundary=DRY_FRICTION if boundary is None else boundary,
         fluid=case.models.fluid_friction,
         table=None if table is None else FrictionMap(tuple(table.axes().items()), table.friction),
         oil_held=case.models.oil_beyond_range == "held",
@@ -136,7 +137,8 @@ def friction_of(case: SetCase) -> FrictionModel:
 
 
 def _direct_settings(case: SetCase) -> DirectSettings:
-    solver = case.contact_solver
+    solver, boundary = case.contact_solver, case.models.boundary_friction
+    touching = PRESETS[solver.preset]
     carried = None
     if solver.heating != "isothermal":
         given = solver.solid_conductivity, solver.solid_heat_capacity
@@ -144,7 +146,9 @@ def _direct_settings(case: SetCase) -> DirectSettings:
         carried = float(np.mean([solid.effusivity for solid in solids]))
     return DirectSettings(
         laws=oil_laws(solver),
-        asperities=AsperityContact(solver.asperity_film, case.models.boundary_friction),
+        asperities=AsperityContact(
+            solver.asperity_film, touching.friction if boundary is None else boundary
+        ),
         effusivity=carried,
         correlation_length=solver.correlation_length,
         seed=solver.seed,

@@ -151,7 +151,8 @@ def make_campaign(
     seed : int
         Of designs and profiles.
     ranges : mapping of str to (float, float), optional
-        Other limits of gear axes, in display units; for a space-filling design.
+        Other limits of gear axes, in display units, and with ``bearing.`` before the name of those
+        of bearings; for space-filling designs.
     changes : mapping of str to object, optional
         Keys of a line contact that hold for all points, ``"lubricant.eyring_stress"``.
 
@@ -164,18 +165,19 @@ def make_campaign(
     if size is None:
         designs.append(GEAR_TABLE)
     elif size > 0:
-        designs.append(GEAR_TABLE.within(ranges or {}).filling(size, seed))
+        designs.append(GEAR_TABLE.within(_ranges_of("gear", ranges)).filling(size, seed))
     if bearing_size is None and size is None:
         designs.append(BEARING_TABLE)
     elif bearing_size:
-        designs.append(BEARING_TABLE.filling(bearing_size, seed))
+        within = _ranges_of("bearing", ranges)
+        designs.append(BEARING_TABLE.within(within).filling(bearing_size, seed))
     if ranges and not size:
         problem = Problem(
             "ranges", ", ".join(ranges), "needs a space-filling design.", "Give a size."
         )
         raise InputError([problem], "the command")
     for name in ranges or {}:
-        quantity_of_axis(name)  # says which axes there are
+        quantity_of_axis(name.removeprefix("bearing."))  # says which axes there are
     for design in designs:
         design.check()
     _check_changes(changes or {})
@@ -188,6 +190,18 @@ def make_campaign(
     for key in (*AXES.values(), *SEEDS):
         tables = without(tables, key.split("."))
     return Campaign(json.dumps(tables, sort_keys=True), tuple(designs), seed)
+
+
+def _ranges_of(
+    part: str, ranges: Mapping[str, tuple[float, float]] | None
+) -> dict[str, tuple[float, float]]:
+    """Limits that are for the contacts of a part: bearings: ``bearing.radius``."""
+    before = "" if part == "gear" else f"{part}."
+    return {
+        name.removeprefix(before): limits
+        for name, limits in (ranges or {}).items()
+        if name.startswith(before) and "." not in name.removeprefix(before)
+    }
 
 
 def _check_changes(changes: Mapping[str, Any]) -> None:
@@ -266,6 +280,7 @@ def _row(result: ContactResult) -> Row:
             "unsolved_share": rough.unsolved_steps / max(rough.steps, 1),
             "asperity_load_share": rough.asperity_load_share,
             "asperity_friction_share": rough.asperity_friction_share,
+            "roughness_kept": rough.roughness_kept,
             "contact_share": rough.contact_share,
             "mean_least_film": rough.mean_least_film,
         }

@@ -44,7 +44,7 @@ LOGARITHMIC = ("radius", "roughness1", "roughness2", "rolling_speed", "slide_to_
 """Axes that are filled evenly in the logarithm."""
 
 _RANGE = re.compile(
-    r"\s*(?P<name>\w+)\s*=\s*(?P<low>[^:\s]+)\s*:\s*(?P<high>[^:\s]+)\s*(?P<unit>.*)"
+    r"\s*(?P<name>(bearing\.)?\w+)\s*=\s*(?P<low>[^:\s]+)\s*:\s*(?P<high>[^:\s]+)\s*(?P<unit>.*)"
 )
 
 Axis = tuple[str, tuple[float, ...]]
@@ -174,7 +174,7 @@ def parse_ranges(options: Iterable[str]) -> dict[str, tuple[float, float]]:
             continue
         name, unit = match["name"], match["unit"]
         try:
-            quantity = quantity_of_axis(name)
+            quantity = quantity_of_axis(name.removeprefix("bearing."))
             low, high = (
                 quantity.to_display(quantity.parse(f"{match[end]} {unit}"))
                 if quantity.display

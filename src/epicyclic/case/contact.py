@@ -8,13 +8,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from epicyclic.case.oil_laws import (
     HEATING,
+    PRESET,
+    USUAL,
     HeatingModel,
     LoadPressure,
     OilBehaviour,
+    PresetName,
+    behaviour_of,
+    film_text,
     law_problems,
     oil_laws,
 )
@@ -22,11 +27,12 @@ from epicyclic.case.plain import plain, value_at, with_value
 from epicyclic.case.reading import read_file
 from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Table
 from epicyclic.case.validation import validate
+from epicyclic.ehl.assumptions import DEFAULT, PRESETS
 from epicyclic.ehl.conditions import LineContact, contact_oil
 from epicyclic.ehl.heating import Heating, heating_of
 from epicyclic.ehl.profile_file import read_profile
 from epicyclic.ehl.rough import MOST_BLOCKS, NODES, STATIONARY, AsperityContact
-from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile
+from epicyclic.ehl.roughness import PERIOD, SMOOTH, Profile, generate_profile
 from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus, line_load_at_pressure
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity
@@ -47,8 +53,6 @@ LineLoad = Annotated[
 ]
 RollingSpeed = Annotated[float, Quantity("a speed", "m/s", "m/s", low=0.0, high=1e4, open_low=True)]
 SURFACES = ("surface1", "surface2")
-PERIOD = 200.0
-"""Length of a generated profile, over its correlation length. [1]"""
 OF_GENERATED: tuple[str, ...] = ("correlation_length", "skewness", "kurtosis", "seed")
 OF_MEASURED: tuple[str, ...] = ("cutoff", "short_cutoff")
 """Keys of a surface that are for profiles of either kind."""
@@ -116,10 +120,11 @@ class Asperities(Table):
     """Where the film vanishes."""
 
     film: SmallLength = Field(
-        default=as_stated("20 nm"), description="Film below which surfaces touch (estimate)."
+        default=as_stated(film_text(USUAL)),
+        description="Film below which surfaces touch (estimate).",
     )
     friction: Number = Field(
-        default=0.1, ge=0.0, le=1.0, description="Friction where they touch (estimate)."
+        default=USUAL.friction, ge=0.0, le=1.0, description="Friction where they touch (estimate)."
     )
 
 
@@ -157,6 +162,7 @@ class ContactCase(Table):
 
     kind: Literal["line_contact"] = "line_contact"
     title: str = ""
+    preset: PresetName = Field(default=DEFAULT, description=PRESET)
     contact: Contact
     lubricant: ContactLubricant
     surface1: Surface = Surface()
@@ -164,6 +170,20 @@ class ContactCase(Table):
     asperities: Asperities = Asperities()
     heating: ContactHeating = ContactHeating()
     numerics: ContactNumerics = ContactNumerics()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _assume(cls, tables: Any) -> Any:
+        """Fill in what the preset says of keys that are not given."""
+        preset = value_at(tables, ("preset",))
+        if preset not in PRESETS:
+            return tables
+        touching = {"film": film_text(PRESETS[preset]), "friction": PRESETS[preset].friction}
+        for name, keys in (("lubricant", behaviour_of(preset)), ("asperities", touching)):
+            given = tables.get(name, {})
+            if isinstance(given, Mapping):
+                tables = {**tables, name: {**keys, **given}}
+        return tables
 
 
 @dataclass(frozen=True, eq=False)

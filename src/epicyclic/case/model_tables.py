@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag, model_validator
 
-from epicyclic.case.oil_laws import HEATING, HeatingModel, OilBehaviour
+from epicyclic.case.oil_laws import (
+    HEATING,
+    PRESET,
+    USUAL,
+    HeatingModel,
+    OilBehaviour,
+    PresetName,
+    behaviour_of,
+    film_text,
+)
+from epicyclic.case.plain import value_at
 from epicyclic.case.schema import Table
+from epicyclic.ehl.assumptions import DEFAULT, PRESETS
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity
 from epicyclic.units import (
     Deviation,
@@ -141,6 +152,7 @@ class FrictionTable(Table):
 class ContactSolver(OilBehaviour):
     """How the contacts of a mesh are solved for friction = ehl-direct."""
 
+    preset: PresetName = Field(default=DEFAULT, description=PRESET)
     heating: HeatingModel = Field(default="isothermal", description=HEATING)
     solid_conductivity: Conductivity | None = Field(
         default=None, description="With heating. Default: that of the material of each gear."
@@ -149,7 +161,8 @@ class ContactSolver(OilBehaviour):
         default=None, description="With heating. Default: that of the material of each gear."
     )
     asperity_film: SmallLength = Field(
-        default=as_stated("20 nm"), description="Film below which flanks touch (estimate)."
+        default=as_stated(film_text(USUAL)),
+        description="Film below which flanks touch (estimate).",
     )
     correlation_length: SmallLength = Field(
         default=as_stated("20 um"), description="Of the roughness of both flanks (estimate)."
@@ -161,6 +174,16 @@ class ContactSolver(OilBehaviour):
     most_contacts: int = Field(
         default=48, ge=12, le=5000, description="Solved for one mesh at most."
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _assume(cls, keys: Any) -> Any:
+        """Fill in what the preset says of keys that are not given."""
+        preset = value_at(keys, ("preset",))
+        if preset not in PRESETS:
+            return keys
+        film = film_text(PRESETS[preset])
+        return {**behaviour_of(preset), "asperity_film": film, **keys}
 
 
 TemperatureModel = Literal["inlet", "flank", "network"]
@@ -199,12 +222,12 @@ class GearPairModels(Table):
     constant_friction: Number = Field(
         default=0.04, ge=0, le=1, description="For friction = constant."
     )
-    boundary_friction: Number = Field(
-        default=0.10,
+    boundary_friction: Number | None = Field(
+        default=None,
         ge=0,
         le=1,
-        description="Of dry contact, for matsumoto and doleschel (estimate; an oil's own is "
-        "measured).",
+        description="Of dry contact (estimate; an oil's own is measured). Default: 0.10 for "
+        "matsumoto and doleschel, 0.12 for ehl-direct.",
     )
     fluid_friction: Number = Field(
         default=0.02,

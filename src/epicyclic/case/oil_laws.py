@@ -3,30 +3,80 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
 from epicyclic.case.schema import Stress, Table
-from epicyclic.ehl.rheology import PRESSURE_LAWS, SHEAR_LAWS, OilLaws, ReeEyring, ShearLaw
+from epicyclic.ehl.assumptions import DEFAULT, PRESETS, SLOPE_RATIO, TRANSITION, Assumptions
+from epicyclic.ehl.rheology import (
+    PRESSURE_LAWS,
+    SHEAR_LAWS,
+    OilLaws,
+    PressureLaw,
+    ReeEyring,
+    ShearLaw,
+)
 from epicyclic.errors import Problem
 from epicyclic.units import Number, PressureViscosity, Quantity, as_stated
 
-__all__ = ["HEATING", "HeatingModel", "LoadPressure", "OilBehaviour", "law_problems", "oil_laws"]
+__all__ = [
+    "HEATING",
+    "PRESET",
+    "USUAL",
+    "HeatingModel",
+    "LoadPressure",
+    "OilBehaviour",
+    "PresetName",
+    "behaviour_of",
+    "film_text",
+    "law_problems",
+    "oil_laws",
+]
 
 LoadPressure = Annotated[
     float, Quantity("a pressure", "Pa", "GPa", low=0.0, high=100.0, open_low=True)
 ]
 
+PRESSURE_NAMES: dict[type[PressureLaw], Any] = {law: name for name, law in PRESSURE_LAWS.items()}
+USUAL = PRESETS[DEFAULT]
+PresetName = Literal["usual", "as-published"]
+PRESET = (
+    "Assumptions where a key is not given: as-published for those made before the comparison with "
+    "the dissertation."
+)
+"""What the key says."""
+
+
+def stress_text(assumed: Assumptions) -> str:
+    """The Eyring stress as a file has it."""
+    return f"{assumed.eyring_stress * 1e-6:g} MPa"
+
+
+def film_text(assumed: Assumptions) -> str:
+    """The film of touching as a file has it."""
+    return f"{assumed.film * 1e9:g} nm"
+
+
+def behaviour_of(preset: object) -> dict[str, object]:
+    """Keys of `OilBehaviour` that a preset sets; none for a name that there is not."""
+    assumed = PRESETS.get(str(preset))
+    if assumed is None:
+        return {}
+    law = PRESSURE_NAMES[assumed.pressure_law]
+    return {"pressure_law": law, "eyring_stress": stress_text(assumed)}
+
+
 HeatingModel = Literal["isothermal", "inlet-and-film"]
 HEATING = "With or without thinner inlet film, flash and film temperature."
 """What the key says."""
 NEEDED = {
-    "two-slope": ("second_slope", "transition_pressure"),
     "limiting-stress": ("shear_stress",),
     "carreau": ("shear_stress", "shear_exponent"),
 }
 """Keys without which a law cannot be used."""
+OF_TWO_SLOPES = ("second_slope", "slope_ratio", "transition_pressure")
+"""Keys of that law, which has a default for each."""
 KEYS = {"stress": "shear_stress", "slope": "shear_stress_slope", "exponent": "shear_exponent"}
 """Keys that hold the constants of a law of shear."""
 
@@ -35,16 +85,21 @@ class OilBehaviour(Table):
     """Viscosity under pressure and under shear."""
 
     pressure_law: Literal["roelands", "barus", "two-slope"] = Field(
-        default="roelands", description="Viscosity under pressure."
+        default=PRESSURE_NAMES[USUAL.pressure_law], description="Viscosity under pressure."
     )
+    slope_ratio: Number = Field(
+        default=SLOPE_RATIO, gt=0.0, le=1.0,
+        description="For two-slope: slope at high over that at ambient pressure (estimate).",
+    )  # fmt: skip
     second_slope: PressureViscosity | None = Field(
-        default=None, description="For two-slope: slope at high pressure."
+        default=None, description="For two-slope: slope at high pressure, instead of slope_ratio."
     )
-    transition_pressure: LoadPressure | None = Field(
-        default=None, description="For two-slope: where the slopes meet."
+    transition_pressure: LoadPressure = Field(
+        default=as_stated(f"{TRANSITION * 1e-9:g} GPa"),
+        description="For two-slope: where the slopes meet (estimate).",
     )
     eyring_stress: Stress = Field(
-        default=as_stated("5 MPa"),
+        default=as_stated(stress_text(USUAL)),
         description="Of the default law: stress beyond which the oil thins (estimate; mineral "
         "oils 2 to 10 MPa).",
     )
@@ -77,13 +132,22 @@ def law_problems(section: str, table: OilBehaviour) -> list[Problem]:
             laws = " and ".join(law for law, keys in NEEDED.items() if key in keys)
             remedy = "Choose such a law, or leave it out."
             problems.append(Problem(f"{section}.{key}", "", f"is for {laws} only.", remedy))
-    return problems
+    return problems + [
+        Problem(f"{section}.{key}", "", "is for two-slope only.", "Choose it, or leave it out.")
+        for key in OF_TWO_SLOPES
+        if table.pressure_law != "two-slope" and getattr(table, key) != getattr(_USUAL_OIL, key)
+    ]
+
+
+_USUAL_OIL = OilBehaviour()
 
 
 def oil_laws(table: OilBehaviour) -> OilLaws:
     """The laws that a table without problems chooses."""
-    constants = tuple(getattr(table, key) for key in NEEDED.get(table.pressure_law, ()))
-    return OilLaws(PRESSURE_LAWS[table.pressure_law], constants, _shear_law(table))
+    return OilLaws(
+        PRESSURE_LAWS[table.pressure_law], _shear_law(table), table.second_slope,
+        table.slope_ratio, table.transition_pressure,
+    )  # fmt: skip
 
 
 def _shear_law(table: OilBehaviour) -> ShearLaw:

@@ -27,6 +27,7 @@ CONTACT_OPTIONS = {
     "temperature": ("lubricant.temperature", "Of the oil at the inlet, as in '90 degC'."),
     "roughness1": ("surface1.roughness", "Rq, as in '0.4 um', or the name of a finish."),
     "roughness2": ("surface2.roughness", "Of the other surface."),
+    "preset": ("preset", "Assumptions: usual, as-published."),
 }
 
 

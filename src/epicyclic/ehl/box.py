@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["SOLVER_BOX", "VALIDATED_FILM_RATIO"]
+__all__ = ["DRY_SPEED", "FEWEST_KEPT", "SOLVER_BOX", "VALIDATED_FILM_RATIO"]
 
 SOLVER_BOX: dict[str, tuple[float, float]] = {
     "radius": (0.3e-3, 0.1),
@@ -14,5 +14,10 @@ SOLVER_BOX: dict[str, tuple[float, float]] = {
 }
 """Lowest and highest equivalent radius [m], Hertz pressure [Pa], rolling speed [m/s], slip [1], and
 of rough contacts minimum film over composite roughness [1], composite roughness [m]."""
+DRY_SPEED = 0.01
+"""Rolling speed below which ridges across the motion trap oil that would leak past real ones, and
+a contact does not become dry. [m/s]"""
+FEWEST_KEPT = 0.95
+"""Share of Rq that a grid must resolve. [1]"""
 VALIDATED_FILM_RATIO = 0.7
 """Film ratio below which friction of rough contacts is not validated. [1]"""

@@ -143,18 +143,27 @@ class OilLaws:
     ----------
     pressure_law : type
         Barus, Roelands or TwoSlope.
-    constants : tuple of float
-        Of that law, after the slope at ambient pressure.
     shear : Newtonian, ReeEyring, LimitingStress or Carreau
+    second_slope : float or None
+        Of two slopes: the one at high pressure. [1/Pa]
+    slope_ratio : float
+        Of two slopes, without `second_slope`: it over the one at ambient pressure. [1]
+    transition : float
+        Of two slopes: where they meet. [Pa]
     """
 
     pressure_law: type[PressureLaw]
-    constants: tuple[float, ...]
     shear: ShearLaw
+    second_slope: float | None = None
+    slope_ratio: float = math.nan
+    transition: float = math.nan
 
     def pressure(self, alpha: float) -> PressureLaw:
         """The law for an oil of slope `alpha` at ambient pressure."""
-        return self.pressure_law(alpha, *self.constants)
+        if issubclass(self.pressure_law, TwoSlope):
+            second = self.second_slope or self.slope_ratio * alpha
+            return self.pressure_law(alpha, second, self.transition)
+        return self.pressure_law(alpha)
 
 
 def shear_problems(law: ShearLaw) -> list[tuple[str, float, str]]:

@@ -6,11 +6,12 @@ import math
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.ehl.assumptions import DEFAULT, PRESETS
+from epicyclic.ehl.averaging import Estimate, Plan, aided_mean, next_plan
 from epicyclic.ehl.conditions import LineContact
 from epicyclic.ehl.heating import Heating, flow_easing, thinning
 from epicyclic.ehl.roughness import SMOOTH, Profile
@@ -36,8 +37,11 @@ STILL, GROWTH, SETTLING = 2.0, 1.0, 2.0
 until averages begin. [1]"""
 BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 8, 1024
 """Time b/u_r of a block, and numbers of blocks that an average takes."""
-MORE_BLOCKS = 1.5
-"""Growth of their number between looks at the error: each look may end on a lucky one. [1]"""
+FEWEST_COARSE_NODES, COARSE_SPACING = 96, 0.3
+"""Of the grid that aids the averages: fewest nodes, and their distance over the correlation length
+of the roughness; at most half of the nodes. [1]"""
+COST_EXPONENT = 1.9
+"""Of the number of nodes in the time that a step takes, measured from 96 to 512 nodes. [1]"""
 BRIEF = 64
 """Number of blocks where many contacts are solved and the error of each is weighed."""
 FINEST_FEATURE = 0.2
@@ -65,8 +69,8 @@ class AsperityContact:
         Shear stress over pressure where they touch. [1]
     """
 
-    film: float = 20e-9
-    friction: float = 0.1
+    film: float = PRESETS[DEFAULT].film
+    friction: float = PRESETS[DEFAULT].friction
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +116,8 @@ class RoughSolution:
         Mean over all moments of the film at x = 0. [m]
     rolling_loss, rolling_loss_error : float
         Power per length of the pressure flow: mean and its standard error. [W/m]
+    roughness_kept : float
+        Share of Rq that the grid resolves, of the surface that loses more. [1]
     steps, unsolved_steps : int
         Time steps in all, and those without convergence.
     newton_steps : float
@@ -137,6 +143,7 @@ class RoughSolution:
     mean_highest_pressure: float
     rolling_loss: float
     rolling_loss_error: float
+    roughness_kept: float
     steps: int
     unsolved_steps: int
     newton_steps: float
@@ -197,6 +204,7 @@ class _Simulation:
         self.grouped = np.zeros((-(-nodes // GROUP), nodes))
         self.included = np.zeros(nodes, dtype=np.bool_)
         spacing = self.dx * contact.half_width
+        self.roughness_kept = min(surface.kept(spacing) for surface in surfaces)
         self.heights = [surface.resampled(spacing) / contact.film_scale for surface in surfaces]
         self.shifts = [
             (not frozen)
@@ -218,11 +226,16 @@ class _Simulation:
             time = frame_interval * contact.rolling_speed / contact.half_width
             self.steps_to_frame = self.step_count(time)
         self.still = self.step_count(STILL)
+        self.time = 0.0
         self.smooth_power = float(self.march(self.still)[-1, Column.FLOW_POWER])
 
     def advance(self, time: float) -> FloatArray:
-        """Records of a `time` in b/u_r, shape (steps, 10); keeps frames if they are asked for."""
-        left = self.step_count(time)
+        """Records of a `time` in b/u_r, shape (steps, 10); keeps frames if they are asked for.
+
+        What whole steps lack of one time is added to the next: grids stay in step.
+        """
+        self.time += time
+        left = max(1, self.still + self.step_count(self.time) - self.steps)
         parts = []
         while left > 0:
             steps = min(left, self.steps_to_frame or left)
@@ -248,6 +261,11 @@ class _Simulation:
         self.steps += steps
         self.unsolved += int((~(records[:, Column.ERROR] < TOLERANCE)).sum())
         return records
+
+    @property
+    def work(self) -> float:
+        """Of a time b/u_r, in a unit of its own."""
+        return math.pow(self.x.size, COST_EXPONENT) / (self.stride * self.dx)
 
     def step_count(self, time: float) -> int:
         """Time steps in `time`, in b/u_r."""
@@ -317,66 +335,71 @@ def solve_rough(
     surfaces = (surface1, surface2)
     asperities = asperities or AsperityContact()
     run = _Simulation(smooth, surfaces, nodes, asperities, frame_interval, heating, frozen)
-    run.advance(GROWTH + SETTLING)
-    blocks: list[FloatArray] = []
-    judged, wanted = _Mean(0.0, math.inf), min(FEWEST_BLOCKS, most_blocks)
-    while len(blocks) < wanted:
-        blocks.append(run.advance(BLOCK))
-        if len(blocks) == wanted:
-            friction = _mean([_shear(block) for block in blocks])
-            rolling = _rolling_loss(run, blocks)
-            judged = friction if contact.sliding_speed else rolling
-            if math.isfinite(judged.value) and not judged.within(tolerance):
-                wanted = min(most_blocks, math.ceil(MORE_BLOCKS * wanted))
-        if progress is not None:
-            progress(len(blocks), _expected(wanted, judged, tolerance, most_blocks))
-    message = _failure(run, judged, tolerance)
-    return _averages(run, np.concatenate(blocks), friction, rolling, message)
+    coarse = _coarse_nodes(run, surfaces)
+    aid = _Simulation(smooth, surfaces, coarse, asperities, None, heating, frozen)
+    series = _Series(run), _Series(aid)
+    plan = Plan(fewest := min(FEWEST_BLOCKS, most_blocks), fewest)
+    while True:
+        for blocks, wanted in zip(series, plan, strict=True):
+            while len(blocks.means) < wanted:
+                blocks.extend()
+                if progress is not None and blocks.run is run:
+                    progress(len(blocks.means), wanted)
+        means = _means(*series)
+        judged = means.friction if contact.sliding_speed else means.rolling
+        before, plan = plan, next_plan(judged, tolerance, aid.work / run.work, most_blocks)
+        if not math.isfinite(judged.value) or judged.within(tolerance) or plan == before:
+            break
+    return _solution(run, series[0], means, _failure(run, judged, tolerance))
 
 
-class _Mean(NamedTuple):
-    """A mean over blocks, and its standard error."""
-
-    value: float
-    error: float
-
-    def within(self, tolerance: float) -> bool:
-        return self.error <= tolerance * self.value
+def _coarse_nodes(run: _Simulation, surfaces: Sequence[Profile]) -> int:
+    """Nodes of the grid that aids the averages of a simulation."""
+    finest = min(s.correlation_length for s in surfaces if s.rms > 0)
+    span = float(run.x[-1] - run.x[0]) * run.contact.half_width
+    wanted = math.ceil(span / (COARSE_SPACING * finest))
+    return min(max(wanted, FEWEST_COARSE_NODES), run.x.size // 2)
 
 
-def _mean(blocks: Sequence[FloatArray]) -> _Mean:
-    """Of the values at every time step of each block.
+class _Series:
+    """Records of a simulation, and their means over blocks."""
 
-    A ridge crosses the contact in two blocks, so that blocks are taken to depend on the next.
-    """
-    means = np.array([block.mean() for block in blocks])
-    rest = means - means.mean()
-    following = max(0.0, float(rest[1:] @ rest[:-1]))
-    variance = (float(rest @ rest) + 2 * following) / max(1, means.size - 1)
-    return _Mean(float(means.mean()), math.sqrt(variance / means.size))
+    def __init__(self, run: _Simulation) -> None:
+        self.run = run
+        self.records: list[FloatArray] = []
+        self.means: list[FloatArray] = []
+        run.advance(GROWTH + SETTLING)
+
+    def extend(self) -> None:
+        """Another block."""
+        self.records.append(self.run.advance(BLOCK))
+        self.means.append(self.records[-1].mean(axis=0))
 
 
-def _rolling_loss(run: _Simulation, blocks: Sequence[FloatArray]) -> _Mean:
-    """That of the smooth contact and what the roughness adds to the power of the flow. [W/m]"""
-    contact = run.contact
+@dataclass(frozen=True, slots=True)
+class _Means:
+    """Averages in time, scaled but for the rolling loss; `rest` by `Column`."""
+
+    friction: Estimate
+    rolling: Estimate
+    rest: Sequence[float]
+
+
+def _means(fine: _Series, coarse: _Series) -> _Means:
+    """Averages from both grids; of the rolling loss the smooth one and what roughness adds."""
+    on, by = np.array(fine.means), np.array(coarse.means)
+    run, contact = fine.run, fine.run.contact
     power = contact.hertz_pressure * contact.film_scale * contact.rolling_speed
     smooth = run.smooth.rolling_loss
-    return _mean(
-        [smooth + power * (block[:, Column.FLOW_POWER] - run.smooth_power) for block in blocks]
+    flow, flow_by = on[:, Column.FLOW_POWER] - run.smooth_power, by[:, Column.FLOW_POWER]
+    return _Means(
+        aided_mean(_shear(on), _shear(by)),
+        aided_mean(smooth + power * flow, power * flow_by),
+        [aided_mean(on[:, column], by[:, column]).value for column in Column],
     )
 
 
-def _expected(done: int, judged: _Mean, tolerance: float, most_blocks: int) -> int:
-    """Blocks that it takes if the error goes on falling with the root of their number."""
-    wanted = tolerance * judged.value
-    if math.isinf(judged.error) or judged.error <= wanted:
-        return done
-    if not judged.error < math.sqrt(most_blocks / done) * wanted:
-        return most_blocks
-    return max(done, math.ceil(done * (judged.error / wanted) ** 2))
-
-
-def _failure(run: _Simulation, judged: _Mean, tolerance: float) -> str:
+def _failure(run: _Simulation, judged: Estimate, tolerance: float) -> str:
     """Why there is no result to rely on; empty if there is."""
     unsolved = run.unsolved
     if not math.isfinite(judged.value):
@@ -396,13 +419,11 @@ def _shear(records: FloatArray) -> FloatArray:
     return total
 
 
-def _averages(
-    run: _Simulation, records: FloatArray, shear: _Mean, rolling: _Mean, message: str
-) -> RoughSolution:
-    """The result of a simulation; `shear` is the integral of the shear stress."""
+def _solution(run: _Simulation, series: _Series, means: _Means, message: str) -> RoughSolution:
+    """The result of a simulation."""
     contact = run.contact
     load = math.pi / 2
-    mean = records.mean(axis=0)
+    records, mean, shear = np.concatenate(series.records), means.rest, means.friction
     return RoughSolution(
         contact=contact,
         smooth=run.smooth,
@@ -412,17 +433,18 @@ def _averages(
         friction=_shear(records) / load,
         friction_coefficient=shear.value / load,
         friction_error=shear.error / load,
-        asperity_friction_share=float(mean[Column.ASPERITY_SHEAR]) / shear.value
+        asperity_friction_share=mean[Column.ASPERITY_SHEAR] / shear.value
         if shear.value > 0
         else 0.0,
-        contact_share=float(mean[Column.CONTACT_SHARE]),
-        asperity_load_share=float(mean[Column.ASPERITY_LOAD]) / load,
+        contact_share=mean[Column.CONTACT_SHARE],
+        asperity_load_share=mean[Column.ASPERITY_LOAD] / load,
         minimum_film=float(records[:, Column.LEAST_FILM].min()) * contact.film_scale,
-        mean_least_film=float(mean[Column.LEAST_FILM]) * contact.film_scale,
-        mean_central_film=float(mean[Column.CENTRAL_FILM]) * contact.film_scale,
-        mean_highest_pressure=float(mean[Column.HIGHEST_PRESSURE]) * contact.hertz_pressure,
-        rolling_loss=rolling.value,
-        rolling_loss_error=rolling.error,
+        mean_least_film=mean[Column.LEAST_FILM] * contact.film_scale,
+        mean_central_film=mean[Column.CENTRAL_FILM] * contact.film_scale,
+        mean_highest_pressure=mean[Column.HIGHEST_PRESSURE] * contact.hertz_pressure,
+        rolling_loss=means.rolling.value,
+        rolling_loss_error=means.rolling.error,
+        roughness_kept=run.roughness_kept,
         steps=run.steps,
         unsolved_steps=run.unsolved,
         newton_steps=float(records[:, Column.NEWTON_STEPS].mean()),
@@ -435,6 +457,6 @@ def _failed(smooth: SmoothSolution, message: str) -> RoughSolution:
     nothing = math.nan
     return RoughSolution(
         smooth.contact, smooth, Status.FAILED, message, np.empty(0), np.empty(0), nothing, nothing,
-        nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, 0, 0,
+        nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, 0, 0,
         nothing,
     )  # fmt: skip

@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["SMOOTH", "Profile", "generate_profile", "mean_line", "sinusoidal_profile"]
+__all__ = ["PERIOD", "SMOOTH", "Profile", "generate_profile", "mean_line", "sinusoidal_profile"]
 
 FloatArray = NDArray[np.float64]
 
 POINTS_PER_CORRELATION = 8
 """Points of a generated profile within one correlation length."""
+PERIOD = 1000.0
+"""Length of a generated profile over its correlation length: that of 200 has a friction of its own,
+up to 10 % from that of other seeds. [1]"""
 FEWEST_SAMPLES = 4
 """Of a period that a grid resolves."""
 GAUSSIAN = math.sqrt(math.log(2) / math.pi)
@@ -66,6 +69,10 @@ class Profile:
     def scaled_to(self, rms: float) -> Profile:
         """The same shape with another Rq."""
         return Profile(self.heights * (rms / self.rms), self.spacing)
+
+    def kept(self, spacing: float) -> float:
+        """Share of Rq that a grid of `spacing` resolves; shorter waves are lost. [1]"""
+        return float(self.resampled(spacing).std()) / self.rms if self.rms > 0 else 1.0
 
     def resampled(self, spacing: float) -> FloatArray:
         """Heights at about `spacing`, without what that cannot resolve, shape (m,).

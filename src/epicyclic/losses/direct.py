@@ -23,7 +23,7 @@ from epicyclic.ehl.conditions import LineContact, contact_oil, line_contact
 from epicyclic.ehl.heating import Heating, heating_of
 from epicyclic.ehl.rheology import OilLaws
 from epicyclic.ehl.rough import BRIEF, LARGEST_UNSOLVED_SHARE, AsperityContact, solve_rough
-from epicyclic.ehl.roughness import generate_profile
+from epicyclic.ehl.roughness import PERIOD, generate_profile
 from epicyclic.ehl.steady import solve_smooth
 from epicyclic.elasticity.threads import one_thread
 from epicyclic.errors import ConvergenceError
@@ -53,8 +53,6 @@ LARGEST_LEFT_OUT = 0.25
 """Share of contacts left out above which there is no result. [1]"""
 SMOOTHING = 1e-2
 """Of the interpolation, about the scatter of 2 % of solved contacts squared over their variance."""
-PROFILE_LENGTHS = 200.0
-"""Period of the profiles over their correlation length. [1]"""
 
 
 def solver_range(name: str, label: str, unit: Quantity) -> Range:
@@ -273,7 +271,7 @@ def _friction(
             return smooth.friction_coefficient if converged else np.nan
         length = settings.correlation_length
         one, two = (
-            generate_profile(rms, length, PROFILE_LENGTHS * length, seed)
+            generate_profile(rms, length, PERIOD * length, seed)
             for rms, seed in zip(roughness, seeds, strict=True)
         )
         rough = solve_rough(line, one, two, settings.asperities, heating=heating, most_blocks=BRIEF)

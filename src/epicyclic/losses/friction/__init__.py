@@ -26,7 +26,11 @@ from epicyclic.losses.friction.film_share import Doleschel, Matsumoto
 from epicyclic.losses.friction.regressions import MixedEhl, Xu2007
 from epicyclic.losses.friction.user import Constant, FrictionMap
 
-__all__ = ["FRICTION_MODELS", "FrictionModel", "FrictionSettings", "friction_model"]
+__all__ = ["DRY_FRICTION", "FRICTION_MODELS", "FrictionModel", "FrictionSettings", "friction_model"]
+
+
+DRY_FRICTION = 0.10
+"""Coefficient of dry contact in the film-share models, unless the case has its own. [1]"""
 
 
 @dataclass(frozen=True, slots=True)
