@@ -35,7 +35,7 @@ MAX_ITERATIONS = 40
 STILL, GROWTH, SETTLING = 2.0, 1.0, 2.0
 """Times b/u_r in which the smooth contact settles on the grid, in which the roughness grows, and
 until averages begin. [1]"""
-BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 8, 1024
+BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 6, 1024
 """Time b/u_r of a block, and numbers of blocks that an average takes."""
 FEWEST_COARSE_NODES, COARSE_SPACING = 96, 0.3
 """Of the grid that aids the averages: fewest nodes, and their distance over the correlation length
@@ -347,15 +347,17 @@ def solve_rough(
                     progress(len(blocks.means), wanted)
         means = _means(*series)
         judged = means.friction if contact.sliding_speed else means.rolling
+        if not math.isfinite(judged.value) or judged.within(tolerance):
+            break
         before, plan = plan, next_plan(judged, tolerance, aid.work / run.work, most_blocks)
-        if not math.isfinite(judged.value) or judged.within(tolerance) or plan == before:
+        if plan == before:
             break
     return _solution(run, series[0], means, _failure(run, judged, tolerance))
 
 
 def _coarse_nodes(run: _Simulation, surfaces: Sequence[Profile]) -> int:
     """Nodes of the grid that aids the averages of a simulation."""
-    finest = min(s.correlation_length for s in surfaces if s.rms > 0)
+    finest = min((s.correlation_length for s in surfaces if s.rms > 0), default=math.inf)
     span = float(run.x[-1] - run.x[0]) * run.contact.half_width
     wanted = math.ceil(span / (COARSE_SPACING * finest))
     return min(max(wanted, FEWEST_COARSE_NODES), run.x.size // 2)
@@ -457,6 +459,6 @@ def _failed(smooth: SmoothSolution, message: str) -> RoughSolution:
     nothing = math.nan
     return RoughSolution(
         smooth.contact, smooth, Status.FAILED, message, np.empty(0), np.empty(0), nothing, nothing,
-        nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, 0, 0,
-        nothing,
+        nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, 0,
+        0, nothing,
     )  # fmt: skip

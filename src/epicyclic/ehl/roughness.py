@@ -72,7 +72,9 @@ class Profile:
 
     def kept(self, spacing: float) -> float:
         """Share of Rq that a grid of `spacing` resolves; shorter waves are lost. [1]"""
-        return float(self.resampled(spacing).std()) / self.rms if self.rms > 0 else 1.0
+        if self.rms == 0:
+            return 1.0
+        return Profile(self.resampled(spacing), spacing).rms / self.rms
 
     def resampled(self, spacing: float) -> FloatArray:
         """Heights at about `spacing`, without what that cannot resolve, shape (m,).
