@@ -36,7 +36,7 @@ __all__ = [
 FloatArray = NDArray[np.float64]
 Form = Regression | Structured
 
-FORMAT: Literal["epicyclic oil model 1"] = "epicyclic oil model 1"
+FORMAT: Literal["epicyclic oil model 2"] = "epicyclic oil model 2"
 """Name and version of the file format."""
 FORMS: dict[str, dict[str, Form]] = {
     "friction": {form.name: form for form in (STRUCTURED_FRICTION, FRICTION_REGRESSION)},
@@ -138,7 +138,7 @@ class OilModel(_Data):
         By quantity, the keys of `FORMS`.
     """
 
-    format: Literal["epicyclic oil model 1"]
+    format: Literal["epicyclic oil model 2"]
     version: str
     settings: dict[str, Any]
     designs: tuple[dict[str, Any], ...]

@@ -2,7 +2,9 @@
 
 Friction is that of a sheared film and of the asperities that touch through it, rolling loss that
 of a smooth contact times what the roughness adds. Both have few coefficients, each with a meaning,
-and neither falls when the film becomes thinner than the roughness.
+and neither falls when the film becomes thinner than the roughness. Both see the roughness of each
+surface: a polished one keeps the ridges of the other from meeting any, and a rough surface that
+moves slower than the oil touches more than one that moves faster.
 """
 
 from __future__ import annotations
@@ -15,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.contact import LineContacts
+from epicyclic.kernels.eyring_friction import eyring_means
 from epicyclic.kernels.line_contact import pan_hamrock_central_film
-from epicyclic.lubricant.properties import ROELANDS_OFFSET, ROELANDS_PRESSURE
 
 __all__ = [
     "EYRING_STRESS",
@@ -30,22 +32,29 @@ FloatArray = NDArray[np.float64]
 
 EYRING_STRESS = 5e6
 """Unit of the stress of the fit. [Pa]"""
-EFFUSIVITY = 12.9e3
-"""sqrt(k rho c) of steel, 46 W/(m K), 7865 kg/m^3, 460 J/(kg K). [W s^0.5/(m^2 K)]"""
-FLASH = 100.0
-"""Unit of the temperature rise. [K]"""
-LARGEST_EXPONENT = 300.0
-"""Of the viscosity under pressure: what is larger is solid, and overflows."""
+SLOPE_RATIO, TRANSITION = 0.41, 0.38e9
+"""Of the two slopes of the closed form, those of the default of the solver: slope at high over that
+at low pressure [1], and where they meet [Pa]."""
+LIGHT_LOAD = 0.6
+"""M of Moes at which the pressure is half that of Hertz, found for smooth contacts. [1]"""
+HALF_WIDTH = 0.2e-3
+"""Unit of the half-width. [m]"""
+FINE = 100e-9
+"""Unit of the film that counts as roughness. [m]"""
+SAME_MOTION = 0.1
+"""Slide-to-roll ratio at which half of the effect of which surface is faster is there. [1]"""
 
 FIT_TOLERANCE = 1e-5
 """Relative gain of a step in the sum of squares at which a fit ends: what the data do not tell
 apart, such as size and exponent of a roughness that adds next to nothing, need not be found. [1]"""
+TINY = 1e-12
+"""Roughness of a smooth surface, which has a logarithm. [m]"""
 SMALLEST_SLIP = 0.01
 """Added to the slide-to-roll ratio where it is raised to a power. [1]"""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
-_ANGLES = math.pi / 4 * (_NODES + 1)
-"""Angles of the quadrature over half a contact, x = b sin(angle)."""
+_COSINES = np.cos(math.pi / 4 * (_NODES + 1))
+"""Pressure over the highest at the points of the quadrature over half a contact. [1]"""
 
 
 @dataclass(frozen=True)
@@ -109,81 +118,127 @@ class Structured:
         return coefficients
 
 
-def eyring_friction(states: LineContacts, stress: float) -> FloatArray:
-    """Friction of an Eyring fluid under the pressure of Hertz in an even film. Theory (O4). [1]"""
+def eyring_friction(
+    states: LineContacts, stress: float, light_load: float = LIGHT_LOAD
+) -> FloatArray:
+    """Friction of an Eyring fluid under the pressure of Hertz in an even film. Theory (O4). [1]
+
+    Parameters
+    ----------
+    states : LineContacts
+        n of them.
+    stress : float
+        tau_0. [Pa]
+    light_load : float
+        M of Moes at which the pressure is half that of Hertz. [1]
+    """
     film = states.radius * pan_hamrock_central_film(
         states.speed_number, states.material_number, states.load_number
     )
-    limit = np.log(states.dynamic_viscosity) + ROELANDS_OFFSET
-    index = states.pressure_viscosity * ROELANDS_PRESSURE / limit
     rate = states.dynamic_viscosity * np.abs(states.sliding_speed) / (film * stress)
-    total = np.zeros(states.radius.shape)
-    for angle, weight in zip(_ANGLES, _WEIGHTS, strict=True):
-        pressure = states.hertz_pressure * math.cos(angle)
-        exponent = limit * ((1 + pressure / ROELANDS_PRESSURE) ** index - 1)
-        viscosity = np.exp(np.minimum(exponent, LARGEST_EXPONENT))
-        total += weight * math.cos(angle) * np.arcsinh(rate * viscosity)
-    friction: FloatArray = total * stress / states.hertz_pressure
+    highest = states.hertz_pressure / (1 + light_load / states.moes_load)
+    slope = states.pressure_viscosity * np.ones(rate.shape)
+    mean = eyring_means(rate, highest, slope, SLOPE_RATIO, TRANSITION, _COSINES, _WEIGHTS)
+    friction: FloatArray = mean * stress / highest
     return friction
 
 
-def _flash(states: LineContacts, friction: FloatArray) -> FloatArray:
-    """Temperature rise of the surfaces, over `FLASH`. Theory (O6). [1]"""
-    flux = friction * math.pi / 4 * states.hertz_pressure * np.abs(states.sliding_speed)
-    time = 2 * states.hertz_half_width / states.rolling_speed
-    rise: FloatArray = flux * np.sqrt(time) / (2 * EFFUSIVITY * FLASH)
-    return rise
+def _pairing(states: LineContacts) -> FloatArray:
+    """Roughness of the smoother over that of the rougher surface, 1 without any. [1]"""
+    one, two = states.roughness
+    ratio: FloatArray = np.minimum(one, two) / np.maximum(np.maximum(one, two), TINY)
+    return np.where(np.maximum(one, two) > 0, ratio, 1.0) + np.zeros(states.radius.shape)
+
+
+def _faster(states: LineContacts) -> FloatArray:
+    """ln of the roughness of the faster over that of the slower surface, less with less slip. [1]
+
+    Theory (O12).
+    """
+    one, two = (np.maximum(roughness, TINY) for roughness in states.roughness)
+    slip = states.slide_to_roll_ratio
+    sense = np.sign(states.sliding_speed) * slip / (slip + SAME_MOTION)
+    difference: FloatArray = np.log(one / two) * sense
+    return difference
 
 
 def _friction(states: LineContacts, c: FloatArray) -> FloatArray:
     """A sheared film and, the more the thinner it is, touching asperities. Theory (O5). [1]"""
-    stress, factor, heat, asperities, ratio, steepness, slip, pressure = c
-    film = eyring_friction(states, EYRING_STRESS * math.exp(stress))
-    film = math.exp(factor) * film / (1 + heat * _flash(states, film))
-    even = math.exp(ratio) * (states.slide_to_roll_ratio + SMALLEST_SLIP) ** slip
-    share = 1 / (1 + (states.film_ratio / even) ** steepness)
-    friction: FloatArray = film + asperities * share * (states.hertz_pressure / 1e9) ** pressure
+    stress, light, factor, pairing, faster, fine, ratio, slip, load, width, steep, dry, wide = c
+    film = math.exp(factor) * eyring_friction(
+        states, EYRING_STRESS * math.exp(stress), math.exp(light)
+    )
+    half_width = states.hertz_half_width / HALF_WIDTH
+    roughness = np.maximum(states.composite_roughness, TINY)
+    thickness = (
+        states.film_ratio
+        * np.hypot(1, fine * FINE / roughness) ** -1
+        * np.exp(faster * _faster(states))
+        * _pairing(states) ** -pairing
+    )
+    even = (
+        math.exp(ratio)
+        * (states.slide_to_roll_ratio + SMALLEST_SLIP) ** slip
+        * states.moes_load**load
+        * half_width**width
+    )
+    share = 1 / (1 + (thickness / even) ** steep)
+    touching = dry * half_width**wide
+    friction: FloatArray = film + np.maximum(touching - film, 0.0) * share
     return friction
 
 
 def _rolling(states: LineContacts, c: FloatArray) -> FloatArray:
     """A smooth contact, and what roughness adds. Theory (O7). [W/m]"""
-    factor, speed, material, load, rough, thinness, slip = c
+    factor, speed, material, load, light, pairing, rough, thinness, slip, width, most, held = c
     smooth = (
         2 * states.rolling_speed * states.radius / states.pressure_viscosity
         * np.exp(factor)
         * (states.speed_number * 1e11) ** speed
         * (states.material_number / 3e3) ** material
         * (states.load_number * 1e4) ** load
+        / (1 + math.exp(light) / states.moes_load)
     )  # fmt: skip
-    added = math.exp(rough) * states.film_ratio**-thinness
-    loss: FloatArray = smooth * (1 + added * (SMALLEST_SLIP + states.slide_to_roll_ratio) ** slip)
+    thickness = states.film_ratio * _pairing(states) ** -pairing
+    added = (
+        math.exp(rough)
+        * thickness**-thinness
+        * (SMALLEST_SLIP + states.slide_to_roll_ratio) ** slip
+        * (states.hertz_half_width / HALF_WIDTH) ** width
+        / (1 + (math.exp(most) * thickness) ** (-held * thinness))
+    )
+    loss: FloatArray = smooth * (1 + added)
     return loss
 
 
 STRUCTURED_FRICTION = Structured(
     name="structured",
-    title="Eyring film, and asperities by the film ratio",
+    title="Eyring film, and asperities by film ratio and pairing",
     labels=(
-        "ln of the Eyring stress over 5 MPa", "ln of the film's factor", "softening by heat",
-        "friction of asperities at 1 GPa", "ln of the film ratio of even shares",
-        "steepness of the shares", "exponent of the slip in that ratio",
-        "exponent of the pressure in the friction of asperities",
+        "ln of the Eyring stress over 5 MPa", "ln of the load number at half the pressure",
+        "ln of the film's factor", "exponent of the pairing", "exponent of the faster roughness",
+        "film that counts as roughness, over 100 nm", "ln of the film ratio of even shares",
+        "exponent of the slip in that ratio", "exponent of the load number in it",
+        "exponent of the half-width in it", "steepness of the shares",
+        "friction where all is dry, at a half-width of 0.2 mm", "exponent of the half-width in it",
     ),
-    start=(0.0, 0.0, 0.1, 0.1, -1.0, 1.5, 0.0, 0.0),
-    low=(-4.0, -3.0, 0.0, 0.0, -8.0, 0.2, -1.0, -3.0),
-    high=(4.0, 3.0, 50.0, 0.5, 3.0, 8.0, 1.0, 3.0),
+    start=(0.0, -0.5, 0.0, 0.2, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, 2.0, 0.06, 0.0),
+    low=(-3.0, -3.0, -2.0, 0.0, -1.0, 0.0, -8.0, -1.0, -2.0, -2.0, 0.2, 0.0, -2.0),
+    high=(3.0, 2.0, 2.0, 3.0, 1.0, 10.0, 3.0, 1.0, 2.0, 2.0, 8.0, 1.0, 2.0),
     function=_friction,
 )  # fmt: skip
 STRUCTURED_ROLLING = Structured(
     name="structured",
-    title="smooth contact and what roughness adds",
+    title="smooth contact and what roughness adds, by film ratio and pairing",
     labels=(
         "ln of the factor", "exponent of U", "exponent of G", "exponent of W",
+        "ln of the load number at half the loss", "exponent of the pairing",
         "ln of what roughness adds", "exponent of the thinness", "exponent of the slip",
+        "exponent of the half-width", "ln of one over the film ratio of half of that",
+        "share of the thinness that is lost in thinner films",
     ),
-    start=(-9.0, 0.66, 0.66, 0.01, -3.0, 1.0, 0.0),
-    low=(-30.0, 0.2, -1.0, -1.0, -20.0, 0.0, 0.0),
-    high=(10.0, 1.5, 3.0, 1.0, 8.0, 6.0, 2.0),
+    start=(-10.0, 0.75, 1.2, 0.05, -1.0, 0.1, 1.0, 1.5, 0.8, 0.8, 1.5, 0.5),
+    low=(-30.0, 0.2, -1.0, -1.0, -6.0, 0.0, -20.0, 0.0, 0.0, -3.0, -3.0, 0.0),
+    high=(10.0, 1.5, 3.0, 1.0, 4.0, 3.0, 12.0, 6.0, 2.0, 3.0, 9.0, 1.0),
     function=_rolling,
 )  # fmt: skip

@@ -1,0 +1,47 @@
+"""Mean shear stress of an Eyring fluid under an elliptic pressure in an even film."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.kernels._jit import kernel
+from epicyclic.kernels.ehl_fluid import two_slopes
+
+__all__ = ["eyring_means"]
+
+FloatArray = NDArray[np.float64]
+
+LARGEST_EXPONENT = 300.0
+"""Of the viscosity under pressure: what is larger is solid, and overflows."""
+
+
+@kernel
+def eyring_means(
+    rate: FloatArray, highest: FloatArray, slope: FloatArray, slope_ratio: float,
+    transition: float, cosines: FloatArray, weights: FloatArray,
+) -> FloatArray:  # fmt: skip
+    """Sum of the weighted arsinh(rate exp(ln mu)), shape (n,). Theory (O4). [1]
+
+    Parameters
+    ----------
+    rate : ndarray, shape (n,)
+        Newtonian stress at ambient viscosity over the Eyring stress. [1]
+    highest, slope : ndarray, shape (n,)
+        Highest pressure [Pa], slope of ln(mu) at ambient pressure [1/Pa].
+    slope_ratio, transition : float
+        Of two slopes: high over low [1], pressure where they meet [Pa].
+    cosines, weights : ndarray, shape (k,)
+        Of the quadrature.
+    """
+    total = np.zeros(rate.size)
+    for i in range(rate.size):
+        for k in range(cosines.size):
+            exponent = two_slopes(
+                highest[i] * cosines[k], slope[i], slope_ratio * slope[i], transition
+            )[0]
+            viscosity = math.exp(min(exponent, LARGEST_EXPONENT))
+            total[i] += weights[k] * cosines[k] * math.asinh(rate[i] * viscosity)
+    return total
