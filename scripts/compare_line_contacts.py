@@ -1,16 +1,16 @@
 """Sliding friction of the line-contact solver beside the regression of Talbot (2012), Eq. 5.8.
 
-Run: python scripts/compare_line_contacts.py POINTS SEED LAW [KEY=VALUE ...]
+Run: python scripts/compare_line_contacts.py FILE.csv POINTS SEED [KEY=VALUE ...]
 
-LAW is roelands, two-slope or barus; KEY any key of a line contact, as in asperities.film=30nm.
-Points are drawn from the levels of his Table 5.1 for the test fluid. The source states neither the
-profiles nor the laws of viscosity nor the boundary friction of its simulations: those of the
-defaults of `epicyclic contact` are used, uncalibrated. The two slopes are in the ratio, and meet at
-the pressure, that S. Li and A. Kahraman used for another oil (general knowledge).
+KEY is any key of a line contact, as in preset=as-published or asperities.film=30nm. Points are drawn
+from the levels of his Table 5.1 for the test fluid. Each solved point is kept in FILE.csv at once;
+the same command goes on where it stopped. The source states neither profiles nor the laws of
+viscosity nor the boundary friction of its simulations: those are the assumptions of the preset.
 """
 
 from __future__ import annotations
 
+import csv
 import sys
 import time
 from collections.abc import Mapping
@@ -23,9 +23,10 @@ import pandas as pd
 from epicyclic.analysis.contact import solve_contact
 from epicyclic.case.contact import load_contact_case
 from epicyclic.case.values import parse_value
-from epicyclic.kernels.line_contact import pan_hamrock_minimum_film
+from epicyclic.contact import LineContacts, contacts_at
 from epicyclic.kernels.mixed_ehl import sliding_friction
 from epicyclic.lubricant.properties import oil_state
+from epicyclic.oilmodel.regressions import regression_groups
 
 LEVELS = {
     "temperature": (25.0, 50.0, 75.0, 100.0),
@@ -37,34 +38,12 @@ LEVELS = {
     "slip": (0.025, 0.05, 0.10, 0.25, 0.50, 0.75, 1.00),
 }
 """Table 5.1: degC, mm, um, um, GPa, m/s, 1."""
-SECOND_OVER_FIRST_SLOPE, TRANSITION = 0.41, "0.38 GPa"
-
-
-def lubricant_of(temperature: float, law: str) -> dict[str, str]:
-    """Table of the test fluid."""
-    table = {
-        "oil": "atf-talbot-2012",
-        "temperature": f"{temperature} degC",
-        "pressure_law": law,
-    }
-    if law == "two-slope":
-        oil = load_contact_case({"contact": DUMMY, "lubricant": {**table, "pressure_law": "barus"}})
-        state = oil_state(oil.lubricant.oil, oil.lubricant.temperature)
-        slope = SECOND_OVER_FIRST_SLOPE * state.pressure_viscosity * 1e9
-        table |= {"second_slope": f"{slope} 1/GPa", "transition_pressure": TRANSITION}
-    return table
-
-
 NUMERICS = {"most_blocks": 256, "friction_tolerance": 0.04}
 """Friction known to a sixth of the band that is asked for."""
-DUMMY = {"radius": "10 mm", "hertz_pressure": "1 GPa", "rolling_speed": "1 m/s"}
-"""Any contact, to read an oil with."""
 
 
-def compare(
-    point: dict[str, float], law: str, changes: Mapping[str, Any]
-) -> dict[str, float | str]:
-    """Friction of both, and how the solution ended."""
+def compare(point: Mapping[str, float], number: int, changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Friction of both, and how the solution ended; each point has profiles of its own."""
     case = load_contact_case(
         {
             "contact": {
@@ -73,55 +52,81 @@ def compare(
                 "rolling_speed": f"{point['speed']} m/s",
                 "slide_to_roll_ratio": point["slip"],
             },
-            "lubricant": lubricant_of(point["temperature"], law),
-            "surface1": {"roughness": f"{point['rough1']} um"},
-            "surface2": {"roughness": f"{point['rough2']} um"},
+            "lubricant": {
+                "oil": "atf-talbot-2012",
+                "temperature": f"{point['temperature']} degC",
+            },
+            "surface1": {"roughness": f"{point['rough1']} um", "seed": 2 * number},
+            "surface2": {"roughness": f"{point['rough2']} um", "seed": 2 * number + 1},
             "numerics": NUMERICS,
         },
         changes,
     )
-    start = time.perf_counter()
+    start = time.process_time()
     result = solve_contact(case)
-    seconds = time.perf_counter() - start
-    rough, contact = result.rough, result.smooth.contact
+    seconds = time.process_time() - start
+    rough = result.rough
     assert rough is not None
-    state = oil_state(case.lubricant.oil, case.lubricant.temperature)
-    e_eq, r_eq = contact.equivalent_modulus, contact.radius
-    u = contact.rolling_speed * state.dynamic_viscosity / (e_eq * r_eq)
-    g = state.pressure_viscosity * e_eq
-    rq1, rq2 = point["rough1"] * 1e-6 / r_eq, point["rough2"] * 1e-6 / r_eq
-    s_co = float(np.hypot(rq1, rq2))
-    lam = pan_hamrock_minimum_film(u, g, contact.line_load / (e_eq * r_eq)) / s_co
+    states = conditions(point, result.smooth.contact.equivalent_modulus)
     published = sliding_friction(
-        point["slip"], u, g, contact.hertz_pressure / e_eq, r_eq / contact.half_width, s_co,
-        rq1 * rq2 / (rq1 + rq2), lam,
-    )  # fmt: skip
+        *(float(np.ravel(group)[0]) for group in regression_groups(states))
+    )
     return {
         **point,
-        "film_ratio": lam,
+        "film_ratio": float(states.film_ratio[0]),
         "published": published,
         "computed": rough.friction_coefficient,
+        "error": rough.friction_error,
         "smooth": result.smooth.friction_coefficient,
         "ratio": rough.friction_coefficient / published,
         "asperity_load": rough.asperity_load_share,
         "status": str(rough.status),
         "unsolved": rough.unsolved_steps / max(rough.steps, 1),
-        "steps": rough.steps,
+        "kept": rough.roughness_kept,
         "seconds": seconds,
     }
 
 
-def main(count: int, seed: int, law: str, changes: Mapping[str, Any]) -> None:
+def conditions(point: Mapping[str, float], modulus: float) -> LineContacts:
+    """A point as the regressions take it."""
+    oil = load_contact_case(
+        {
+            "contact": {"radius": "1 mm", "hertz_pressure": "1 GPa", "rolling_speed": "1 m/s"},
+            "lubricant": {"oil": "atf-talbot-2012", "temperature": f"{point['temperature']} degC"},
+        }
+    ).lubricant
+    state = oil_state(oil.oil, oil.temperature)
+    values = {
+        "slide_to_roll_ratio": point["slip"],
+        "rolling_speed": point["speed"],
+        "radius": point["radius"] * 1e-3,
+        "hertz_pressure": point["pressure"] * 1e9,
+        "roughness1": point["rough1"] * 1e-6,
+        "roughness2": point["rough2"] * 1e-6,
+        "dynamic_viscosity": state.dynamic_viscosity,
+        "pressure_viscosity": state.pressure_viscosity,
+    }
+    arrays = {name: np.array([value]) for name, value in values.items()}
+    return contacts_at(**arrays, equivalent_modulus=modulus)
+
+
+def main(file: Path, count: int, seed: int, changes: Mapping[str, Any]) -> None:
     rng = np.random.default_rng(seed)
-    rows: list[dict[str, float | str]] = []
-    for _ in range(count):
-        point = {name: float(rng.choice(levels)) for name, levels in LEVELS.items()}
-        rows.append(compare(point, law, changes))
-        print(rows[-1], file=sys.stderr, flush=True)
-    table = pd.DataFrame(rows)
-    name = "_".join([law, *(f"{key}-{value}" for key, value in changes.items())])
-    table.to_csv(Path(f"line_contacts_{name}.csv"), index=False)
-    report(table)
+    points = [
+        {name: float(rng.choice(levels)) for name, levels in LEVELS.items()} for _ in range(count)
+    ]
+    done = len(pd.read_csv(file)) if file.exists() else 0
+    for number in range(done, count):
+        row = compare(points[number], number, changes)
+        new = not file.exists()
+        with file.open("a", newline="") as stream:
+            writer = csv.DictWriter(stream, list(row))
+            if new:
+                writer.writeheader()
+            writer.writerow(
+                {key: f"{v:.6g}" if isinstance(v, float) else v for key, v in row.items()}
+            )
+    report(pd.read_csv(file))
 
 
 def report(table: pd.DataFrame) -> None:
@@ -143,10 +148,10 @@ def report(table: pd.DataFrame) -> None:
                 f"10 to 90 %: {low:.2f} to {high:.2f}, within 25 %: {near:.0%}"
             )
     print(f"not converged: {len(table) - len(solved)} of {len(table)}")
-    print(f"median {table['seconds'].median():.2f} s, {table['steps'].median():.0f} time steps")
+    print(f"median {table['seconds'].median():.2f} s of one core")
 
 
 if __name__ == "__main__":
-    count, seed, law, *others = sys.argv[1:]
+    file, count, seed, *others = sys.argv[1:]
     pairs = (other.split("=", 1) for other in others)
-    main(int(count), int(seed), law, {key: parse_value(value) for key, value in pairs})
+    main(Path(file), int(count), int(seed), {key: parse_value(value) for key, value in pairs})

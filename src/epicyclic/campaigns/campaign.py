@@ -25,7 +25,7 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.journal import Row
 from epicyclic.sweeps.runner import Plan, guarded
 
-__all__ = ["Campaign", "make_campaign", "oil_tables"]
+__all__ = ["Campaign", "command_of", "make_campaign", "oil_tables"]
 
 SCHEMA = 2
 """Version of the files of a campaign."""
@@ -190,6 +190,40 @@ def make_campaign(
     for key in (*AXES.values(), *SEEDS):
         tables = without(tables, key.split("."))
     return Campaign(json.dumps(tables, sort_keys=True), tuple(designs), seed)
+
+
+def command_of(campaign: Campaign) -> str:
+    """The command that makes a campaign; of an oil that is not of the library, ``OIL.toml``."""
+    settings = json.loads(campaign.settings)
+    name = settings["lubricant"]["oil"].get("name", "")
+    oil = name if name in library.oil_names() else None
+    words = ["epicyclic oil characterise", oil or "OIL.toml"]
+    for design, size in zip(campaign.designs, ("--size", "--bearing-size"), strict=False):
+        before = "" if design.part == "gear" else "bearing."
+        table = GEAR_TABLE if design.part == "gear" else BEARING_TABLE
+        if design.size is not None:
+            words.append(f"{size} {design.size}")
+        for (axis, values), (_, levels) in zip(design.axes, table.axes, strict=True):
+            if values != levels:
+                unit = f" {quantity_of_axis(axis).display}".rstrip()
+                words.append(f'--range "{before}{axis}={min(values):g}:{max(values):g}{unit}"')
+    words.append(f"--seed {campaign.seed}")
+    if oil is not None:
+        usual_settings = json.loads(make_campaign(oil, size=1).settings)
+        given, usual = _flat(settings), _flat(usual_settings)
+        words += [f'--set "{key}={given[key]}"' for key in given if given[key] != usual.get(key)]
+    return " ".join(words)
+
+
+def _flat(tables: Mapping[str, Any], before: str = "") -> dict[str, Any]:
+    """Values by dotted key, without those of the oil."""
+    found: dict[str, Any] = {}
+    for key, value in tables.items():
+        if isinstance(value, Mapping) and key != "oil":
+            found |= _flat(value, f"{before}{key}.")
+        elif key != "oil":
+            found[f"{before}{key}"] = value
+    return found
 
 
 def _ranges_of(

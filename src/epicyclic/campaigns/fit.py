@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.campaigns.campaign import make_campaign
+from epicyclic.campaigns.campaign import command_of, make_campaign
 from epicyclic.campaigns.design import AXES, quantity_of_axis
 from epicyclic.campaigns.folder import CampaignFolder, column_of, write_whole
 from epicyclic.case.contact import contact_model
@@ -139,6 +139,7 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
         settings=campaign.describe()["settings"],
         designs=tuple(campaign.describe()["designs"]),
         seed=campaign.seed,
+        command=command_of(campaign),
         simulations={
             "simulated": len(frame),
             "not converged": int(frame["status"].eq("failed").sum()),

@@ -128,6 +128,8 @@ class OilModel(_Data):
     designs : list
         The simulated points.
     seed : int
+    command : str
+        That makes the file.
     simulations : dict of str to int
         How many were simulated, failed, and were fitted.
     notes : tuple of str
@@ -143,6 +145,7 @@ class OilModel(_Data):
     settings: dict[str, Any]
     designs: tuple[dict[str, Any], ...]
     seed: int
+    command: str = ""
     simulations: dict[str, int]
     notes: tuple[str, ...] = ()
     equivalent_modulus: float
