@@ -273,7 +273,9 @@ def test_names_are_not_empty():
     assert any("is no name for a set" in allowed for allowed in told(tables).values())
 
 
-@pytest.mark.parametrize("name", ["\x1b[31m", "a\u2028b", "\x00", "\u202e", "tab\there", "two\nlines"])
+@pytest.mark.parametrize(
+    "name", ["\x1b[31m", "a\u2028b", "\x00", "\u202e", "tab\there", "two\nlines"]
+)
 def test_names_with_control_characters_are_told_in_one_printable_line(name):
     tables = eight_speed()
     tables["sets"][name] = tables["sets"].pop("P1")
