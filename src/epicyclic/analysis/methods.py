@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from epicyclic.builders.build import build
-from epicyclic.builders.models import friction_of, resolve_models, rolling_of
+from epicyclic.builders.models import friction_of, pocketing_of, resolve_models, rolling_of
 from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.listed_set import ListedCase
@@ -39,7 +39,7 @@ def _methods_of_set(
         methods["rolling"] = (rolling.title, rolling.source)
     distribution = LOAD_DISTRIBUTIONS[case.models.load_distribution]
     methods["load distribution"] = (distribution.title, distribution.source)
-    methods["pocketing"] = (pocketing_method(case.models.pocketing, None), POCKETING_SOURCE)
+    methods["pocketing"] = (pocketing_method(pocketing_of(case), None), POCKETING_SOURCE)
     methods["drag"] = (DRAG_METHOD, DRAG_SOURCE)
     if own.sharing is not None:
         methods["load sharing"] = SHARING_METHODS[own.sharing.method]

@@ -241,7 +241,7 @@ def _dataset(
     }
     attributes = {
         "title": f"Pockets of {_words(key)} of {title or 'the case'}",
-        "notes": "\n".join(pocket_notes(mesh, flow_figures(flow), fluids.pressure)),
+        "notes": "\n".join(pocket_notes(duty, flow_figures(flow), fluids, meshes)),
         "model": POCKETING_MODELS[duty.models.pockets.model],
         "drives": mesh.gear1.name if duty.drives1 else mesh.gear2.name,
         "members": f"{mesh.gear1.name} {mesh.gear2.name}",

@@ -29,6 +29,7 @@ from epicyclic.losses.rolling import ROLLING_MODELS, MixedEhlRolling, RollingMod
 from epicyclic.losses.standing import STANDING, standing
 from epicyclic.oilmodel.builtin import builtin_model
 from epicyclic.oilmodel.model import OilModel, read_oil_model
+from epicyclic.pocketing.fluid import PocketModel, automatic_pocketing
 from epicyclic.pocketing.memory import FlowMemory
 from epicyclic.pocketing.table import FlowTables
 
@@ -43,6 +44,7 @@ __all__ = [
     "gear_tables",
     "loss_choices",
     "mesh_models",
+    "pocketing_of",
     "resolve_models",
     "rolling_of",
     "standing_of",
@@ -58,6 +60,7 @@ def resolve_models(case: SetCase) -> dict[str, str]:
     automatic = {
         "friction": _automatic(case, "friction", FittedOrSchlenk.name, "schlenk"),
         "rolling": _automatic(case, "rolling_loss", FittedOrGoksem.name, "goksem-hargreaves"),
+        "pocketing": automatic_pocketing(case.surroundings.oil_air_ratio),
     }
     keys = ["friction", "rolling", "load_distribution", "mesh", "pocketing", "drag"]
     chosen = {key: str(getattr(case.models, key)) for key in keys}
@@ -210,9 +213,16 @@ def loss_choices(case: SetCase) -> dict[str, LossChoice]:
     return {name: LossChoice(option.include, option.factor) for name, option in found.items()}
 
 
+def pocketing_of(case: SetCase) -> PocketModel:
+    """The model of the flow through the pockets, ``auto`` replaced by what it stands for."""
+    chosen = case.models.pocketing
+    return automatic_pocketing(case.surroundings.oil_air_ratio) if chosen == "auto" else chosen
+
+
 def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]:
     """How the losses of each mesh of a case are computed, by the key of the mesh."""
     choices, friction, rolling = loss_choices(case), friction_of(case), rolling_of(case)
+    pocketing = pocketing_of(case)
     file = case.models.pocketing_table
     memory = None if case.models.temperatures == "inlet" else FlowMemory()
     return {
@@ -226,7 +236,8 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
             pockets=PocketSettings(
                 include=choices[f"{key}_pocketing"].include,
                 oil_fraction=case.surroundings.oil_air_ratio,
-                model=case.models.pocketing,
+                model=pocketing,
+                void_pressure=case.models.pocket_void_pressure,
                 slices=case.numerics.pocket_slices,
                 steps=case.numerics.pocket_steps,
                 end_length=case.models.pocket_end_length,

@@ -23,7 +23,12 @@ from epicyclic.case.model_tables import (
     PlanetaryModels,
 )
 from epicyclic.case.oil_laws import law_problems
-from epicyclic.case.operation_tables import GearPairOperation, Lubricant, PlanetaryOperation
+from epicyclic.case.operation_tables import (
+    GearPairOperation,
+    Lubricant,
+    PlanetaryOperation,
+    Surroundings,
+)
 from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.case.schema import Table
 from epicyclic.case.thermal_checks import check_outlet, check_thermal, check_ways_out
@@ -34,6 +39,7 @@ from epicyclic.geometry.assembly import are_evenly_spaced
 from epicyclic.oilmodel.builtin import builtin_model
 from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.stored import read_stored
+from epicyclic.units import BAR
 
 __all__ = ["check_bore", "check_cage", "check_rollers", "cross_check"]
 
@@ -315,6 +321,20 @@ def _check_pocketing_table(models: GearPairModels, folder: Path) -> list[Problem
     return []
 
 
+def _check_void(models: GearPairModels, surroundings: Surroundings) -> list[Problem]:
+    """A void has less pressure than the surroundings."""
+    if models.pocket_void_pressure < surroundings.pressure:
+        return []
+    return [
+        Problem(
+            "models.pocket_void_pressure",
+            BAR.text(models.pocket_void_pressure),
+            f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}.",
+            "Take 0.01 bar.",
+        )
+    ]
+
+
 def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Problem]:
     """Influence coefficients of all positions must fit into memory."""
     positions, segments = numerics.mesh_positions, numerics.contact_segments
@@ -352,6 +372,7 @@ _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_load_sharing, ("load_sharing", "sun", "planet", "ring")),
     (_check_friction_table, ("friction_table",)),
     (_check_resolution, ("models", "numerics")),
+    (_check_void, ("models", "surroundings")),
     (check_thermal, ("thermal",)),
     (_check_ways_out, ("thermal", "models")),
     (_check_outlet, ("thermal", "operation")),

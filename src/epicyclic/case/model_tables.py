@@ -31,6 +31,7 @@ from epicyclic.units import (
     as_stated,
 )
 
+_VoidPressure = Annotated[float, Quantity("a pressure", "Pa", "bar", low=0.0, high=1.0)]
 _PinStiffness = Annotated[
     float, Quantity("a stiffness", "N/m", "N/um", low=0.0, high=1e7, open_low=True)
 ]
@@ -205,6 +206,7 @@ class GearPairModels(Table):
         "mesh_loads": None,
         "mesh": None,
         "pocketing": None,
+        "pocket_void_pressure": None,
         "pocketing_table": None,
         "pocket_end_length": None,
         "drag": None,
@@ -270,13 +272,24 @@ class GearPairModels(Table):
         default="local",
         description="local: along the contact lines; loss-factor: mean friction times Ohlendorf's.",
     )
-    pocketing: Literal["isentropic", "mean-density", "incompressible", "central-differences"] = (
-        Field(
-            default="mean-density",
-            description="Fluid in the pockets: isentropic and mean-density: compressible mixture; "
-            "incompressible: mixture of constant density; central-differences: mean-density with "
-            "the convective term of the source, for low speed.",
-        )
+    pocketing: Literal[
+        "auto",
+        "incompressible",
+        "isentropic",
+        "mean-density",
+        "central-differences",
+        "talbot-2012",
+    ] = Field(
+        default="auto",
+        description="Fluid in the pockets: incompressible: mixture of constant density above the "
+        "pressure of a void; isentropic, mean-density: compressible mixture; auto: incompressible, "
+        "isentropic with less oil than 0.005; central-differences: mean-density with the "
+        "convective term of the source, for low speed; talbot-2012: for comparison with that "
+        "study.",
+    )
+    pocket_void_pressure: _VoidPressure = Field(
+        default=as_stated("0.01 bar"),
+        description="Absolute pressure of a void in the pockets, for pocketing = incompressible.",
     )
     pocketing_table: str | None = Field(
         default=None,

@@ -38,7 +38,7 @@ from epicyclic.losses.mesh import (
 )
 from epicyclic.losses.mesh_warmth import MeshWarmth, mesh_warmth
 from epicyclic.losses.rolling import RollingModel
-from epicyclic.losses.validity import SomeFlags
+from epicyclic.losses.validity import SMALLEST_SHOWN_SHARE, SomeFlags
 from epicyclic.lubricant.properties import OilState
 from epicyclic.pocketing.similarity import FlowFigures
 from epicyclic.thermal.solids import Solid
@@ -284,7 +284,8 @@ def solve_mesh(
     }
     elastic = None if loads is None else loads.elastic
     figures = _mesh_figures(duty, contact, loss.mean_friction, elastic, flow.figures, warmth)
-    notes = pocket_notes(duty.mesh, flow.figures, fluids.pressure)
+    least = SMALLEST_SHOWN_SHARE * sum(term.watts for term in losses.values())
+    notes = pocket_notes(duty, flow.figures, fluids, count, least)
     notes += stored_note(duty.models.pockets, duty.mesh, flow.figures)
     if duty.models.by_loss_factor:
         notes += loss_factor_notes(duty.mesh)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -11,22 +12,39 @@ from typing import TYPE_CHECKING
 
 from epicyclic.elements.fluids import Fluids
 from epicyclic.geometry.mesh import Mesh
+from epicyclic.losses.validity import Range
 from epicyclic.lubricant.properties import MixtureState
-from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow, PocketModel
+from epicyclic.pocketing.fluid import (
+    NETWORK_MODELS,
+    POCKETING_MODELS,
+    PocketFlow,
+    PocketModel,
+    sound_speed,
+)
 from epicyclic.pocketing.memory import FlowMemory
 from epicyclic.pocketing.similarity import FlowFamily, FlowFigures
 from epicyclic.pocketing.stored import stored_table
 from epicyclic.pocketing.table import FlowTables
+from epicyclic.units import (
+    BAR,
+    DEGREE,
+    METRE_PER_SECOND,
+    MILLIMETRE,
+    WATT,
+    format_number,
+)
 
 if TYPE_CHECKING:
     from epicyclic.elements.gear_mesh import MeshDuty
 
 __all__ = [
     "POCKETING_SOURCE",
+    "FlowRequest",
     "MeshFlow",
     "PocketSettings",
     "flow_family",
     "flow_numbers",
+    "flow_request",
     "mesh_flows",
     "pocket_notes",
     "pocketing_method",
@@ -35,8 +53,24 @@ __all__ = [
 ]
 
 POCKETING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), chapter 4"
+STUDY_SOURCE = "Talbot (2012), section 4.4"
+STUDY_RANGES = (
+    Range("transverse_module", "transverse module", 1.786, 2.174, MILLIMETRE, STUDY_SOURCE),
+    Range("face_width", "face width", 15.0, 35.0, MILLIMETRE, STUDY_SOURCE),
+    Range("helix_angle", "helix angle", 0.0, 35.0, DEGREE, STUDY_SOURCE),
+    Range("pitch_line_speed", "pitch line speed", 0.0, 26.2, METRE_PER_SECOND, STUDY_SOURCE),
+)
+"""Of the parametric study: modules of Figure 4.13, face widths and helix angles of Figure 4.9, and
+10000 rpm on a pitch circle of 50 mm."""
+LARGEST_MACH = 0.5
+"""Fastest flow over the speed of sound above which waves matter. [1]"""
+_EDGE = 1e-3
+"""By how much a value may leave a range that is printed with three or four digits. [1]"""
+_AT_VOID = 1e-3
+"""Pressures nearer than this to that of a void are it. [1]"""
 
-_Request = tuple[FlowFamily, float, MixtureState, float]
+FlowRequest = tuple[FlowFamily, float, MixtureState, float]
+"""A flow: its family, then as for `FlowFamily.flow`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +84,8 @@ class PocketSettings:
     oil_fraction : float
         Oil share by volume at ambient pressure. [1]
     model : PocketModel
+    void_pressure : float
+        Absolute pressure of a void in an incompressible mixture. [Pa]
     slices, steps : int
         Resolution: across the face, in one pitch.
     end_length : float
@@ -65,6 +101,7 @@ class PocketSettings:
     include: bool
     oil_fraction: float
     model: PocketModel
+    void_pressure: float
     slices: int
     steps: int
     end_length: float
@@ -96,7 +133,7 @@ def flow_family(duty: MeshDuty) -> FlowFamily:
         mesh=duty.mesh,
         tools=duty.tools,
         drives1=duty.drives1,
-        oil_fraction=settings.oil_fraction,
+        oil_fraction=1.0 if settings.model in NETWORK_MODELS else settings.oil_fraction,
         model=settings.model,
         slices=settings.slices,
         steps=settings.steps,
@@ -116,13 +153,14 @@ def solve_pockets(duty: MeshDuty, fluids: Fluids) -> PocketFlow | None:
     """
     if duty.speed1 == 0:
         return None
-    return flow_family(duty).flow(abs(duty.speed1), fluids.mixture, fluids.pressure)
+    family, speed, mixture, pressure = flow_request(duty, fluids)
+    return family.flow(speed, mixture, pressure)
 
 
 def flow_numbers(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[tuple[FlowFamily, float]]:
     """Family and number of the flow of each mesh whose loss is included.
 
-    Those that a stored table holds are left out.
+    Those that a stored table holds are left out, and those that another flow gives by scaling.
 
     Raises
     ------
@@ -131,15 +169,16 @@ def flow_numbers(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[tuple[F
     """
     for duty in duties:
         if duty.models.pockets.include and duty.speed1 != 0:
-            request = _request(duty, fluids)
-            if _stored_figures(duty.models.pockets, request) is None:
+            request = flow_request(duty, fluids)
+            if _stored_figures(duty.models.pockets, request) is None and not _scales(request):
                 yield request[0], FlowFamily.number(*request[1:])
 
 
 def mesh_flows(duties: Sequence[MeshDuty], fluids: Fluids) -> Mapping[str, MeshFlow]:
     """Flow through the pockets of each mesh, by its key.
 
-    Read from the stored table of its settings, else from the tables of a sweep, where they have it.
+    Read from the stored table of its settings, else scaled from another flow where that can be,
+    else from the tables of a sweep, where they have it.
 
     Raises
     ------
@@ -149,17 +188,15 @@ def mesh_flows(duties: Sequence[MeshDuty], fluids: Fluids) -> Mapping[str, MeshF
         If the stored table was made for other pockets.
     """
     flows: dict[str, MeshFlow] = {duty.key: MeshFlow() for duty in duties}
-    direct: dict[str, _Request] = {}
+    direct: dict[str, FlowRequest] = {}
     for duty in duties:
         settings = duty.models.pockets
         if not settings.include or duty.speed1 == 0:
             continue
-        request = _request(duty, fluids)
+        request = flow_request(duty, fluids)
         figures = _stored_figures(settings, request)
-        if figures is None and request[0] in settings.tables:
-            figures = settings.tables[request[0]].figures(*request[1:])
-        if figures is None and settings.memory is not None:
-            figures = settings.memory.figures(*request)
+        if figures is None and not _scales(request):
+            figures = _interpolated(settings, request)
         if figures is None:
             direct[duty.key] = request
         else:
@@ -173,11 +210,32 @@ def mesh_flows(duties: Sequence[MeshDuty], fluids: Fluids) -> Mapping[str, MeshF
     return flows | solved
 
 
-def _request(duty: MeshDuty, fluids: Fluids) -> _Request:
-    return flow_family(duty), abs(duty.speed1), fluids.mixture, fluids.pressure
+def flow_request(duty: MeshDuty, fluids: Fluids) -> FlowRequest:
+    """The flow through the pockets of a mesh: family, and as for `FlowFamily.flow`."""
+    settings = duty.models.pockets
+    lowest = settings.void_pressure if settings.model == "incompressible" else 0.0
+    return flow_family(duty), abs(duty.speed1), fluids.mixture, fluids.pressure - lowest
 
 
-def _stored_figures(settings: PocketSettings, request: _Request) -> FlowFigures | None:
+def _scales(request: FlowRequest) -> bool:
+    """Whether the flow is another one times density and powers of the speed."""
+    try:
+        return request[0].scales(FlowFamily.number(*request[1:]))
+    except ValueError:  # no tooth outline: the solution says so
+        return False
+
+
+def _interpolated(settings: PocketSettings, request: FlowRequest) -> FlowFigures | None:
+    """From the tables of a sweep or the flows found before; None if they do not hold the flow."""
+    figures = None
+    if request[0] in settings.tables:
+        figures = settings.tables[request[0]].figures(*request[1:])
+    if figures is None and settings.memory is not None:
+        figures = settings.memory.figures(*request)
+    return figures
+
+
+def _stored_figures(settings: PocketSettings, request: FlowRequest) -> FlowFigures | None:
     """From the stored table; None if there is none, or it does not hold the flow."""
     if settings.file is None:
         return None
@@ -185,7 +243,7 @@ def _stored_figures(settings: PocketSettings, request: _Request) -> FlowFigures 
 
 
 @lru_cache(maxsize=256)
-def _solve_all(requests: tuple[_Request, ...]) -> tuple[MeshFlow, ...]:
+def _solve_all(requests: tuple[FlowRequest, ...]) -> tuple[MeshFlow, ...]:
     """All flows at once: their kernels release the interpreter."""
     if len(requests) < 2:
         return tuple(map(_solve, requests))
@@ -193,7 +251,7 @@ def _solve_all(requests: tuple[_Request, ...]) -> tuple[MeshFlow, ...]:
         return tuple(pool.map(_solve, requests))
 
 
-def _solve(request: _Request) -> MeshFlow:
+def _solve(request: FlowRequest) -> MeshFlow:
     family, speed, mixture, pressure = request
     try:
         return MeshFlow(family.figures(speed, mixture, pressure))
@@ -211,22 +269,80 @@ def pocketing_method(model: PocketModel, figures: FlowFigures | None) -> str:
     return f"{method}, interpolated between {figures.nodes} flows within {figures.error:.2%}"
 
 
-def pocket_notes(mesh: Mesh, figures: FlowFigures | None, ambient: float) -> tuple[str, ...]:
-    """What a user must know about the flow."""
+def pocket_notes(
+    duty: MeshDuty, figures: FlowFigures | None, fluids: Fluids, count: int, least: float = 0.0
+) -> tuple[str, ...]:
+    """What a user must know about the flow, with the watts that `count` such meshes lose by it.
+
+    Of a loss below `least` watts only whether it was found.
+    """
     if figures is None:
         return ()
+    settings, name = duty.models.pockets, duty.mesh.name
+    lost = f"the pockets lose {WATT.text(count * figures.power, 3)}"
     notes = []
     if not figures.periodic:
         notes.append(
-            f"The flow through the pockets of the {mesh.name} does not repeat from one mesh period "
+            f"The flow through the pockets of the {name} does not repeat from one mesh period "
             f"to the next; its loss is the mean of {figures.periods // 2} periods."
         )
-    if figures.pressure_min < -ambient:
+    if count * figures.power < least:
+        return tuple(notes)
+    lowest = fluids.pressure + figures.pressure_min
+    if lowest < 0:
         notes.append(
-            f"The pressure in the pockets of the {mesh.name} falls below zero, where the "
-            "fluid would cavitate: models.pocketing = incompressible is meant for lower speeds."
+            f"The pressure in the pockets of the {name} falls to {BAR.text(lowest, 3)} absolute, "
+            f"which no fluid can have ({lost}): models.pocketing = {settings.model} is meant for "
+            "lower speeds."
         )
+    elif settings.model == "incompressible" and lowest <= settings.void_pressure * (1 + _AT_VOID):
+        notes.append(
+            f"The pockets of the {name} open faster than they fill and hold voids at "
+            f"models.pocket_void_pressure ({lost})."
+        )
+    notes += _sound_note(duty, figures, fluids, lost)
+    notes += _study_note(duty, lost)
     return tuple(notes)
+
+
+def _sound_note(duty: MeshDuty, figures: FlowFigures, fluids: Fluids, lost: str) -> Iterator[str]:
+    """That waves matter to a model without them, or without choking."""
+    model, sound = duty.models.pockets.model, sound_speed(fluids.mixture, fluids.pressure)
+    if model != "isentropic" and figures.speed_max > LARGEST_MACH * sound:
+        yield (
+            f"The flow out of the pockets of the {duty.mesh.name} reaches "
+            f"{format_number(figures.speed_max / sound, 3)} times the speed of sound of an even "
+            f"mixture, {METRE_PER_SECOND.text(sound, 3)} ({lost}). The loss lies "
+            "between those of models.pocketing = incompressible and isentropic; epicyclic pockets "
+            "shows both."
+        )
+
+
+def _study_note(duty: MeshDuty, lost: str) -> Iterator[str]:
+    """That the mesh lies outside the parametric study of the source."""
+    gear = duty.mesh.gear1
+    found = {
+        "transverse_module": gear.rack.transverse_module,
+        "face_width": duty.mesh.face_width,
+        "helix_angle": abs(gear.rack.helix_angle),
+        "pitch_line_speed": abs(duty.speed1) * duty.mesh.operating_radius1,
+    }
+    left = [
+        f"{limit.label} {limit.unit.text(found[limit.name], 3)} "
+        f"({format_number(limit.low or 0.0)} to {format_number(limit.high or 0.0)})"
+        for limit in STUDY_RANGES
+        if not _within(limit, found[limit.name])
+    ]
+    if left:
+        yield (
+            f"The {duty.mesh.name} lies outside the study of {STUDY_SOURCE}: {', '.join(left)}. "
+            f"No other values of the model were published; {lost}."
+        )
+
+
+def _within(limit: Range, value: float) -> bool:
+    low, high = limit.limits()
+    return (low or 0.0) * (1 - _EDGE) <= value <= (high or math.inf) * (1 + _EDGE)
 
 
 def stored_note(

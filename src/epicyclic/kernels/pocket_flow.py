@@ -24,7 +24,7 @@ from epicyclic.kernels.pocket_stage import (
     solve_stage,
 )
 
-__all__ = ["SDIRK", "periodic_flow"]
+__all__ = ["NEW_INERTIA", "SDIRK", "mark_fresh", "periodic_flow"]
 
 SDIRK = 1 - math.sqrt(0.5)
 """Coefficient of the two-stage, second-order, L-stable Runge-Kutta method. Alexander (1977). [1]"""
@@ -40,7 +40,7 @@ def _excess(q: Floats, volume: Floats, live: Flags, xi: float, excess: Floats) -
     for i in range(q.shape[0]):
         for j in range(q.shape[1]):
             excess[i, j] = 0.0
-            if live[i, j] and xi < 1.0:
+            if live[i, j]:
                 swelling = mixture(q[i, j], xi)[4]
                 excess[i, j] = -volume[i, j] * swelling / (1 + swelling)
 
@@ -243,7 +243,7 @@ def periodic_flow(
         stored = _stored(q, shape[0][0], alive, xi, excess)
         for n in range(steps):
             volume0 = shape[0][2 * n]
-            _mark_fresh(live[n], alive, fresh, 1 / steps)
+            mark_fresh(live[n], alive, fresh, 1 / steps)
             for i in range(pockets):
                 for j in range(slices):
                     if live[n, i, j] == alive[i, j]:
@@ -299,7 +299,7 @@ def periodic_flow(
 
 
 @kernel
-def _mark_fresh(live: Flags, alive: Flags, fresh: Fresh, step: float) -> None:
+def mark_fresh(live: Flags, alive: Flags, fresh: Fresh, step: float) -> None:
     """Age the openings by a step, a share of the period, and mark those beside new pockets only.
 
     Theory (Q20).

@@ -36,8 +36,6 @@ def mixture(q: float, xi: float) -> Mixture:
         The pressure; the density over rho_m, and its derivative by q; the integral of dp/rho from
         ambient pressure, over p_a/rho_m; rho_m/rho - 1.
     """
-    if xi >= 1.0:
-        return q, 1.0, 0.0, q, 0.0
     log_p = math.log1p(q)
     swelling = (1 - xi) * math.expm1(-log_p / GAMMA)
     slope = (1 - xi) / GAMMA * math.exp(-log_p * (1 / GAMMA + 1))
@@ -53,12 +51,10 @@ def choking_table(xi: float) -> Floats:
     Theory (Q13).
 
     On a grid of the logarithm of the stagnation pressure, ``CHOKE_STEP`` apart from ``-CHOKE_END``
-    to ``CHOKE_END``; all zero for pure oil, which does not choke.
+    to ``CHOKE_END``.
     """
     count = round(2 * CHOKE_END / CHOKE_STEP) + 1
     ratio = np.zeros(count)
-    if xi >= 1.0:
-        return ratio
     guess = 0.53
     for n in range(count):
         p = math.exp(-CHOKE_END + n * CHOKE_STEP)
@@ -127,11 +123,10 @@ def _nozzle_down(
     """`nozzle` for a pressure that is not lower at a."""
     _, rho_up, _, total, _ = a
     q, rho, rho_p, enthalpy, _ = b
-    if xi < 1.0:
-        throat, slope = _throat(a[0], choke)
-        if throat > q:
-            _, rho, rho_p, enthalpy, _ = mixture(throat, xi)
-            return total - enthalpy, 1 / rho_up - slope / rho, 0.0, rho, rho_p * slope, 0.0
+    throat, slope = _throat(a[0], choke)
+    if throat > q:
+        _, rho, rho_p, enthalpy, _ = mixture(throat, xi)
+        return total - enthalpy, 1 / rho_up - slope / rho, 0.0, rho, rho_p * slope, 0.0
     return total - enthalpy, 1 / rho_up, -1 / rho, rho, 0.0, rho_p
 
 

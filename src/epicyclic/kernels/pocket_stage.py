@@ -23,6 +23,7 @@ __all__ = [
     "Indices",
     "Numbers",
     "Shape",
+    "downstream_share",
     "kinetic_shares",
     "number",
     "solve_stage",
@@ -117,7 +118,7 @@ def number(live: Flags, cell_at: Indices, face_at: Indices) -> tuple[int, int]:
 
 
 @kernel
-def _downstream_share(axial: Floats, spread: Floats, alive: Flags, j: int) -> float:
+def downstream_share(axial: Floats, spread: Floats, alive: Flags, j: int) -> float:
     """Share of faces downstream in the kinetic energy of cell j of one pocket. Theory (Q24)."""
     here = (axial[j + 1] - axial[j]) * spread[j]
     share = 0.5
@@ -151,7 +152,7 @@ def kinetic_shares(
             left, right = axial[i, j], axial[i, j + 1]
             share = 0.0
             if new[i, j] <= 0.0 and new[i, j + 1] <= 0.0:
-                share = _downstream_share(axial[i], spread, alive, j)
+                share = downstream_share(axial[i], spread, alive, j)
                 if max(left, -right) > max(-left, right):
                     mach2 = slowness2 * max(left**2, right**2)
                     share *= max(0.0, 1 - mach2 / SHOCK_MACH**2)
@@ -379,7 +380,7 @@ def _add_faces(
 
 
 @kernel
-def _move(step: Floats, fields: Fields, numbers: Numbers, xi: float) -> bool:
+def _move(step: Floats, fields: Fields, numbers: Numbers) -> bool:
     """Add a Newton step to the fields; whether it was small enough to be the last."""
     q, axial, _ = fields
     cell_at, face_at = numbers[0], numbers[1]
@@ -396,9 +397,7 @@ def _move(step: Floats, fields: Fields, numbers: Numbers, xi: float) -> bool:
                 continue
             k = cell_at[i, j]
             if k >= 0:
-                moved = q[i, j] + step[k]
-                if xi < 1.0:
-                    moved = max(moved, 0.2 * (1 + q[i, j]) - 1)
+                moved = max(q[i, j] + step[k], 0.2 * (1 + q[i, j]) - 1)
                 step_q = max(step_q, abs(moved - q[i, j]))
                 q[i, j] = moved
                 largest_q = max(largest_q, abs(moved))
@@ -476,6 +475,6 @@ def solve_stage(
         _solve_banded(matrix, right, width)
         if not np.isfinite(right).all():
             return -iteration
-        if _move(right, fields, numbers, fluid[0]):
+        if _move(right, fields, numbers):
             return iteration
     return -NEWTON_MOST

@@ -71,7 +71,9 @@ class Cells:
 
 
 @lru_cache(maxsize=32)
-def pocket_cells(geometry: PocketGeometry, slices: int, steps: int, end: float) -> Cells:
+def pocket_cells(
+    geometry: PocketGeometry, slices: int, steps: int, end: float | None, inner: float = SDIRK
+) -> Cells:
     """Cells of the pockets. Theory (Q7), (Q23).
 
     Parameters
@@ -81,15 +83,18 @@ def pocket_cells(geometry: PocketGeometry, slices: int, steps: int, end: float) 
         Across the face, at least; more where the helix turns far.
     steps : int
         Time steps in one pitch.
-    end : float
-        Width of the first and of the last slice, if the face is wide enough. [m]
+    end : float or None
+        Width of the first and of the last slice, if the face is wide enough; None for `slices`
+        equal ones, however far the helix turns. [m]
+    inner : float
+        Where in a step its inner point lies. [1]
     """
     pitch = geometry.pitch
     face = _faces(geometry, slices, end)
     width = np.diff(face)
     start = np.arange(steps) / steps
-    inner = np.column_stack([start + SDIRK / steps, start + 1 / steps]).ravel()
-    times = np.concatenate([[0.0], inner]) * pitch
+    points = np.column_stack([start + inner / steps, start + 1 / steps]).ravel()
+    times = np.concatenate([[0.0], points]) * pitch
     stations = _twist(geometry) * face / face[-1]
     teeth = _teeth(geometry, float(stations[-1]))
     # Every tooth of gear 1, and one more for the last gap: (times, teeth, stations).
@@ -168,9 +173,11 @@ def _live(geometry: PocketGeometry, spaces: list[Floats]) -> NDArray[np.bool_]:
     return flags
 
 
-def _faces(geometry: PocketGeometry, slices: int, end: float) -> Floats:
+def _faces(geometry: PocketGeometry, slices: int, end: float | None) -> Floats:
     """Places of the faces between slices along the face width. Theory (Q23). [m]"""
     width = geometry.mesh.face_width
+    if end is None:
+        return np.linspace(0.0, width, slices + 1)
     count = max(slices, math.ceil(SLICES_PER_PITCH * _twist(geometry) / geometry.pitch))
     end = min(end, LARGEST_END * width)
     return np.concatenate([[0.0], np.linspace(end, width - end, count - 1), [width]])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,30 +14,47 @@ from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.pocket_flow import periodic_flow
 from epicyclic.kernels.pocket_fluid import GAMMA, choking_table
 from epicyclic.lubricant.properties import MixtureState
-from epicyclic.pocketing.cells import pocket_cells
+from epicyclic.pocketing.cells import Cells, pocket_cells
 from epicyclic.pocketing.geometry import PocketGeometry
+from epicyclic.pocketing.network import (
+    PERIOD_TOLERANCE,
+    PERIODS_MOST,
+    POCKETS_PER_PITCH,
+    NetworkFlow,
+    bounded_flow,
+    study_flow,
+)
 
-__all__ = ["POCKETING_MODELS", "PocketFlow", "PocketModel", "pocket_flow"]
+__all__ = [
+    "NETWORK_MODELS",
+    "POCKETING_MODELS",
+    "PocketFlow",
+    "PocketModel",
+    "automatic_pocketing",
+    "pocket_flow",
+    "sound_speed",
+]
 
 Floats = NDArray[np.float64]
 
-PocketModel = Literal["isentropic", "mean-density", "incompressible", "central-differences"]
+PocketModel = Literal[
+    "incompressible", "isentropic", "mean-density", "central-differences", "talbot-2012"
+]
 POCKETING_MODELS: dict[PocketModel, str] = {
+    "incompressible": "flow of an incompressible mixture above the pressure of a void",
     "isentropic": "flow of a compressible mixture, isentropic openings",
     "mean-density": "flow of a compressible mixture, mean density at the openings",
-    "incompressible": "flow of an incompressible mixture",
     "central-differences": "flow of a compressible mixture, mean density, central differences",
+    "talbot-2012": "flow of an incompressible mixture as a reading of the source has it",
 }
+NETWORK_MODELS: tuple[PocketModel, ...] = ("incompressible", "talbot-2012")
+"""Those without sound waves, whose flow scales with density and speed."""
 
-POCKETS_PER_PITCH = 2
-"""A tooth of either gear."""
+LEAST_OIL = 0.005
+"""Share of oil below which `automatic_pocketing` takes the mixture for compressible. [1]"""
 LEAST_AIR = 1e-4
 """Air in a compressible mixture, at least: with it pure oil cavitates near zero pressure. The loss
 is that without a lower bound within a percent. [1]"""
-PERIODS_MOST = 60
-PERIOD_TOLERANCE = 1e-4
-"""The flow repeats if the power of two periods differs less than this, and the fields by less than
-ten times this of their largest value. [1]"""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,7 +67,7 @@ class PocketFlow:
         Mean power that the teeth put into the fluid, from the work at the boundaries. [W]
     power_from_flow : float
         The same from what the flow loses: kinetic energy, unexpanded pressure at choked openings,
-        and what ended pockets leave behind. [W]
+        and what ended pockets leave behind; of "talbot-2012" the work at the boundaries. [W]
     mass_error : float
         What comes in less what goes out and what is stored, over what comes in, in a period. [1]
     periods : int
@@ -58,7 +75,7 @@ class PocketFlow:
     periodic : bool
         False if it did not; powers are then means of the last half of the periods.
     sound_speed : float
-        Of the mixture at ambient pressure; infinite for an incompressible one. [m/s]
+        Of the mixture in the model at ambient pressure; infinite for an incompressible one. [m/s]
     angle : ndarray, shape (steps,)
         Rotation of gear 1 at the end of each step, one pitch in all. [rad]
     place : ndarray, shape (pockets,)
@@ -114,7 +131,7 @@ def pocket_flow(
     speed: float,
     mixture: MixtureState,
     pressure: float,
-    model: PocketModel = "mean-density",
+    model: PocketModel = "incompressible",
     slices: int = 24,
     steps: int = 32,
     end_length: float = 1.0,
@@ -131,7 +148,7 @@ def pocket_flow(
     mixture : MixtureState
         At ambient pressure.
     pressure : float
-        Ambient. [Pa]
+        Ambient; for "incompressible" ambient pressure less that of a void. [Pa]
     model : str
         Key of `POCKETING_MODELS`.
     slices : int
@@ -140,6 +157,7 @@ def pocket_flow(
         Time steps in one pitch.
     end_length : float
         Width of the slice at either end of the face, in normal modules. [1]
+        "talbot-2012" has its own resolution.
 
     Returns
     -------
@@ -150,6 +168,12 @@ def pocket_flow(
     ConvergenceError
         If a time step has no solution.
     """
+    if model == "talbot-2012":
+        return _scaled_up(study_flow(geometry), geometry, abs(speed), mixture.density)
+    if model == "incompressible":
+        number = abs(speed) * math.sqrt(mixture.density / pressure)
+        flow = bounded_flow(geometry, number, slices, steps, end_length)
+        return _scaled_up(flow, geometry, abs(speed), mixture.density)
     cells = pocket_cells(
         geometry, slices, steps, end_length * geometry.mesh.gear1.rack.normal_module
     )
@@ -175,10 +199,7 @@ def pocket_flow(
         figures,
     )
     if periods == 0:
-        raise ConvergenceError(
-            f"pocketing of the {geometry.mesh.name}: a time step has no solution; raise "
-            "numerics.pocket_steps, or leave the term out (losses)."
-        )
+        raise _no_solution(geometry)
     for array in (*history, work):
         array.flags.writeable = False
     work_done, lost, come, out, gone, stored = map(float, figures[:6])
@@ -188,30 +209,72 @@ def pocket_flow(
         mass_error=(come - out - gone - stored) / come,
         periods=abs(periods),
         periodic=periods > 0,
-        sound_speed=_sound_speed(*fluid[:2]),
-        angle=geometry.pitch * np.arange(1, steps + 1) / steps,
-        place=cells.place,
-        station=cells.station,
-        face=cells.face,
-        live=cells.live,
+        sound_speed=sound_speed(mixture, pressure),
         pressure=pressure * history[0],
         axial_speed=history[1],
         gap_speed=history[2],
         instant_power=pressure * work * steps / period,
+        **_places(cells, geometry),
     )
+
+
+def _no_solution(geometry: PocketGeometry) -> ConvergenceError:
+    return ConvergenceError(
+        f"pocketing of the {geometry.mesh.name}: a time step has no solution; raise "
+        "numerics.pocket_steps, or leave the term out (losses)."
+    )
+
+
+def _scaled_up(
+    flow: NetworkFlow, geometry: PocketGeometry, speed: float, density: float
+) -> PocketFlow:
+    """A flow without sound waves at a speed and a density. Theory (Q22)."""
+    if not math.isfinite(flow.power):
+        raise _no_solution(geometry)
+    head = density * speed**2
+    return PocketFlow(
+        power=head * speed * flow.power,
+        power_from_flow=head * speed * flow.power_from_flow,
+        mass_error=flow.mass_error,
+        periods=abs(flow.periods),
+        periodic=flow.periods > 0,
+        sound_speed=math.inf,
+        pressure=head * flow.pressure,
+        axial_speed=speed * flow.axial_speed,
+        gap_speed=speed * flow.gap_speed,
+        instant_power=head * speed * flow.instant_power,
+        **_places(flow.cells, geometry),
+    )
+
+
+def _places(cells: Cells, geometry: PocketGeometry) -> dict[str, Any]:
+    """Attributes of `PocketFlow` that tell where and when its fields are."""
+    steps = len(cells.live)
+    return {
+        "angle": geometry.pitch * np.arange(1, steps + 1) / steps,
+        "place": cells.place,
+        "station": cells.station,
+        "face": cells.face,
+        "live": cells.live,
+    }
+
+
+def automatic_pocketing(oil_fraction: float) -> PocketModel:
+    """The model where the user leaves the choice: air with hardly any oil in it is a gas."""
+    return "isentropic" if oil_fraction < LEAST_OIL else "incompressible"
 
 
 def _fluid(
     model: PocketModel, mixture: MixtureState, pressure: float
 ) -> tuple[float, float, Floats, bool]:
     """What the kernel takes of the fluid: see `kernels.pocket_stage.solve_stage`."""
-    oil = min(mixture.oil_fraction, 1 - LEAST_AIR)
-    xi = 1.0 if model == "incompressible" else oil
+    xi = min(mixture.oil_fraction, 1 - LEAST_AIR)
     central = model == "central-differences"
     choke = np.empty(0) if central or model == "mean-density" else choking_table(xi)
     return xi, pressure / mixture.density, choke, central
 
 
-def _sound_speed(xi: float, c2: float) -> float:
-    """Speed of sound at ambient pressure. Theory (Q10). [m/s]"""
-    return math.inf if xi >= 1.0 else math.sqrt(GAMMA * c2 / (1 - xi))
+def sound_speed(mixture: MixtureState, pressure: float) -> float:
+    """Speed of sound of a homogeneous mixture at ambient pressure. Theory (Q10). [m/s]"""
+    air = max(1 - mixture.oil_fraction, LEAST_AIR)
+    return math.sqrt(GAMMA * pressure / (air * mixture.density))

@@ -17,8 +17,9 @@ from epicyclic.errors import ConvergenceError
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.tools import Tool
 from epicyclic.lubricant.properties import MixtureState
-from epicyclic.pocketing.fluid import PocketFlow, PocketModel, pocket_flow
+from epicyclic.pocketing.fluid import NETWORK_MODELS, PocketFlow, PocketModel, pocket_flow
 from epicyclic.pocketing.geometry import PocketGeometry, pocket_geometry
+from epicyclic.pocketing.network import void_number
 from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT, Quantity
 
 __all__ = [
@@ -88,7 +89,10 @@ FLOW_NUMBERS: dict[str, tuple[str, Quantity]] = {
 
 @dataclass(frozen=True, slots=True)
 class FlowFamily:
-    """All flows through the same pockets. Attributes as for `pocket_geometry` and `pocket_flow`."""
+    """All flows through the same pockets. Attributes as for `pocket_geometry` and `pocket_flow`.
+
+    The share of oil is 1 for the models in which it enters through the density alone.
+    """
 
     mesh: Mesh
     tools: tuple[Tool | None, Tool | None]
@@ -121,6 +125,13 @@ class FlowFamily:
     def number(speed: float, mixture: MixtureState, pressure: float) -> float:
         """Speed over the root of pressure over density, held at the least. Theory (Q21). [1/m]"""
         return max(speed * math.sqrt(mixture.density / pressure), LEAST_NUMBER)
+
+    def scales(self, number: float) -> bool:
+        """Whether the flow at a number is another one times density and powers of the speed."""
+        if self.model == "incompressible":
+            size = (self.slices, self.steps, self.end_length)
+            return number <= void_number(self.geometry, *size)
+        return self.model in NETWORK_MODELS
 
     def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures:
         """Figures of the flow itself. Parameters as for `pocket_flow`."""

@@ -135,7 +135,7 @@ def _attributes(plan: StudyPlan, name: str) -> dict[str, str]:
         "title": f"Pocketing loss of the {mesh} of {plan.case.title or 'the case'}",
         "figure": STUDIES[name].figure,
         "mesh": plan.duty.key,
-        "model": plan.case.models.pocketing,
+        "model": plan.duty.models.pockets.model,
         "source": f"epicyclic {used['epicyclic']}",
         "versions": json.dumps(used),
         "case": json.dumps(plan.case.inputs()),

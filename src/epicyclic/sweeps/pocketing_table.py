@@ -15,7 +15,7 @@ from epicyclic.analysis.pocket_details import mesh_duties
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
 from epicyclic.case.operating import AXES
-from epicyclic.elements.pocket_flow import POCKETING_SOURCE, flow_family, pocketing_method
+from epicyclic.elements.pocket_flow import POCKETING_SOURCE, flow_request, pocketing_method
 from epicyclic.errors import InputError, Problem
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.similarity import FLOW_NUMBERS, FlowFamily, FlowFigures
@@ -115,10 +115,9 @@ def _flows(case: Case, index: int) -> Iterator[_Flow]:
     """Every mesh, either member driving."""
     built = build(case)
     for duty in built.mean_duties().values():
-        family = flow_family(duty)
-        request = (abs(duty.speed1), built.fluids.mixture, built.fluids.pressure)
+        family, speed, mixture, pressure = flow_request(duty, built.fluids)
         for driver in _DRIVERS:
-            yield _Flow(index, replace(family, drives1=driver == 1), request)
+            yield _Flow(index, replace(family, drives1=driver == 1), (speed, mixture, pressure))
 
 
 @dataclass(frozen=True, slots=True)
@@ -285,7 +284,7 @@ def table_dataset(plan: TablePlan, rows: Rows) -> xr.Dataset:
         "source": f"epicyclic {used['epicyclic']}",
         "versions": json.dumps(used),
         "case": json.dumps(case.inputs()),
-        "method": f"{pocketing_method(case.models.pocketing, None)}; {POCKETING_SOURCE}",
+        "method": f"{pocketing_method(plan.flows[0].family.model, None)}; {POCKETING_SOURCE}",
         "conventions": "power in W of one mesh; member 1: sun, planet in the ring mesh, pinion",
         ATTRIBUTE: store(tables),
     }

@@ -1,0 +1,507 @@
+"""Flow of an incompressible mixture through the pockets of a mesh, periodic in time.
+
+Density and speed are the units: pressures are above ambient and over rho_m Omega^2 [m^2],
+velocities over Omega [m], times are angles of gear 1 [rad]. Openings are numbered as in
+`pocket_stage`; arrays of cells have a margin of one, which stands for the surroundings, as all
+cells do that are no pockets. Symbols follow the theory manual, page on pocketing.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from epicyclic.kernels._jit import kernel
+from epicyclic.kernels.pocket_flow import NEW_INERTIA, mark_fresh
+from epicyclic.kernels.pocket_stage import Flags, Floats, Fresh, Indices, downstream_share
+
+__all__ = ["periodic_network"]
+
+Openings = tuple[Floats, Floats, Floats, Floats]
+"""Of axial faces and of gaps: areas [m^2], distances from the cells before and behind [m]."""
+Rules = tuple[float, float, bool]
+"""Time step [rad]; pressure of a void; whether kinetic energy goes on inside a pocket."""
+Pair = tuple[Floats, Floats]
+"""Of axial faces and of gaps, unless said otherwise."""
+State = tuple[Floats, Floats, Floats, Floats]
+"""Pressure and full share of the cells, velocities through axial faces and gaps."""
+
+Work = tuple[Floats, Floats, Indices, tuple[Pair, Pair]]
+"""Memory of `_advance`: matrix, right side, rows of the cells, laws of the openings."""
+
+SHOCK_VOID = 0.1
+"""Void in a cell from which on its kinetic energy is taken from upstream. [1]"""
+ITERATIONS_MOST = 30
+"""Iterations of one time step, which does not count as solved if they are too few."""
+TOLERANCE = 1e-5
+"""Last change of pressures and velocities over the largest of the field. [1]"""
+LOOSE = 0.1
+"""The same over the change of the work in the period before, while that is large. [1]"""
+
+
+@kernel
+def _number(live: Flags, full: Floats, row: Indices) -> tuple[int, int]:
+    """Rows of the cells without a void, slice by slice; their count, and how far neighbours differ.
+
+    Other cells get -1: their pressure is known.
+    """
+    pockets, slices = live.shape
+    count, width = 0, 1
+    row[0], row[-1] = -1, -1
+    for j in range(slices):
+        for i in range(pockets):
+            row[i + 1, j + 1] = -1
+            if live[i, j] and full[i + 1, j + 1] >= 1.0:
+                row[i + 1, j + 1] = count
+                if row[i + 1, j] >= 0:
+                    width = max(width, count - row[i + 1, j])
+                count += 1
+    return count, width
+
+
+@kernel
+def _solve_symmetric(matrix: Floats, right: Floats, width: int) -> None:
+    """Gauss elimination of a positive definite banded matrix; the solution replaces `right`.
+
+    `matrix[r, d]` is the element in row r and column r + d.
+    """
+    n = right.size
+    for k in range(n):
+        row = matrix[k]
+        for c in range(1, min(width, n - 1 - k) + 1):
+            if row[c] != 0.0:
+                factor = row[c] / row[0]
+                below = matrix[k + c]
+                for d in range(width + 1 - c):
+                    below[d] -= factor * row[c + d]
+                right[k + c] -= factor * right[k]
+    for k in range(n - 1, -1, -1):
+        total = right[k]
+        for c in range(1, min(width, n - 1 - k) + 1):
+            total -= matrix[k, c] * right[k + c]
+        right[k] = total / matrix[k, 0]
+
+
+@kernel
+def _linear_law(
+    law: tuple[float, float, float], inertia: float, before: float, last: float, drop: float
+) -> tuple[float, float]:
+    """Velocity in an opening without a drop of pressure, and its derivative by the drop.
+
+    Newton's method about the velocity of the last iteration, for which the law is convex. Where
+    that is too small for the drop, or the neighbours have more influence than the inertia, the
+    velocity is held back, or it would overshoot. Theory (Q26).
+    """
+    loss, head, influence = law
+    drive = inertia * before + drop - head
+    stiffness = max(
+        inertia + loss * abs(last), math.sqrt(inertia * inertia + 2 * loss * abs(drive))
+    )
+    stiffness += influence * influence / (2 * stiffness)
+    lacking = inertia * (last - before) + loss * abs(last) * last / 2 + head
+    return last - lacking / stiffness, 1 / stiffness
+
+
+@kernel
+def _carried(
+    axial: Floats, share: Floats, live: Flags, i: int, j: int
+) -> tuple[float, float, float]:
+    """What an axial face has to do with its neighbours. Theory (Q24), (Q26).
+
+    Returns
+    -------
+    loss, head, slope : float
+        Part of its own velocity head that it takes; head that is carried on from and to the
+        neighbours; change of that with their velocities.
+    """
+    loss, head, slope = 1.0, 0.0, 0.0
+    if j > 0 and live[i, j - 1]:
+        u = axial[i, j - 1]
+        part = 1 - share[i, j - 1] if u > 0.0 else share[i, j - 1]
+        loss -= share[i, j - 1]
+        head -= part * u * u / 2
+        slope += part * abs(u)
+    if j < live.shape[1] and live[i, j]:
+        u = axial[i, j + 1]
+        part = 1 - share[i, j] if u < 0.0 else share[i, j]
+        loss -= share[i, j]
+        head += part * u * u / 2
+        slope += part * abs(u)
+    return loss, head, slope
+
+
+@kernel
+def _face_law(
+    axial: Floats, share: Floats, live: Flags, i: int, j: int, carries: bool
+) -> tuple[float, float, float]:
+    """As `_carried`; without it, only faces to the surroundings take their velocity head."""
+    if carries:
+        return _carried(axial, share, live, i, j)
+    inside = j > 0 and j < live.shape[1] and live[i, j - 1] and live[i, j]
+    return (0.0 if inside else 1.0), 0.0, 0.0
+
+
+@kernel
+def _put(
+    ka: int, kb: int, qa: float, qb: float, rest: float, slope: float, matrix: Floats, right: Floats
+) -> None:
+    """Put a flow from a to b, `rest + slope (q_a - q_b)`, into the balances of both."""
+    if ka >= 0:
+        matrix[ka, 0] += slope
+        right[ka] -= rest
+        if kb >= 0:
+            matrix[ka, kb - ka] -= slope
+        else:
+            right[ka] += slope * qb
+    if kb >= 0:
+        matrix[kb, 0] += slope
+        right[kb] += rest
+        if ka < 0:
+            right[kb] += slope * qa
+
+
+@kernel
+def _inertias(
+    live: Flags, openings: Openings, fresh: Fresh, turn: float, axial: Floats, gap: Floats
+) -> None:
+    """Length over time step of every opening beside a pocket, zero of all others. Theory (Q20)."""
+    pockets, slices = live.shape
+    for i in range(pockets + 1):
+        for j in range(slices):
+            length = openings[3][0, i, j] if i > 0 and live[i - 1, j] else 0.0
+            length += openings[3][1, i, j] if i < pockets and live[i, j] else 0.0
+            length = length if openings[1][i, j] > 0.0 else 0.0
+            gap[i, j] = length / turn * (fresh[2] if fresh[0][i, j] > 0.0 else 1.0)
+    for i in range(pockets):
+        for j in range(slices + 1):
+            length = openings[2][0, i, j] if j > 0 and live[i, j - 1] else 0.0
+            length += openings[2][1, i, j] if j < slices and live[i, j] else 0.0
+            axial[i, j] = length / turn * (fresh[2] if fresh[1][i, j] > 0.0 else 1.0)
+
+
+@kernel
+def _assemble(
+    live: Flags, openings: Openings, carries: bool, share: Floats, inertias: Pair, start: State,
+    state: State, laws: tuple[Pair, Pair], row: Indices, matrix: Floats, right: Floats,
+) -> None:  # fmt: skip
+    """Flows through all openings in the balances of volume of their cells.
+
+    Leaves for faces and gaps the velocity without a drop and its slope in `laws`.
+    """
+    q, full, axial, cross = state
+    pockets, slices = live.shape
+    area, inertia, before, (rest, slope) = openings[1], inertias[1], start[3], laws[1]
+    for i in range(pockets + 1):
+        for j in range(slices):
+            if inertia[i, j] == 0.0:
+                continue
+            u, qa, qb = cross[i, j], q[i, j + 1], q[i + 1, j + 1]
+            law = (1.0, 0.0, 0.0)
+            u0, s = _linear_law(law, inertia[i, j], before[i, j], u, qa - qb)
+            rest[i, j], slope[i, j] = u0, s
+            wet = area[i, j] * (full[i, j + 1] if u > 0.0 else full[i + 1, j + 1])
+            _put(row[i, j + 1], row[i + 1, j + 1], qa, qb, wet * u0, wet * s, matrix, right)
+    area, inertia, before, (rest, slope) = openings[0], inertias[0], start[2], laws[0]
+    for i in range(pockets):
+        for j in range(slices + 1):
+            if inertia[i, j] == 0.0:
+                continue
+            u, qa, qb = axial[i, j], q[i + 1, j], q[i + 1, j + 1]
+            law = _face_law(axial, share, live, i, j, carries)
+            u0, s = _linear_law(law, inertia[i, j], before[i, j], u, qa - qb)
+            rest[i, j], slope[i, j] = u0, s
+            wet = area[i, j] * (full[i + 1, j] if u > 0.0 else full[i + 1, j + 1])
+            _put(row[i + 1, j], row[i + 1, j + 1], qa, qb, wet * u0, wet * s, matrix, right)
+
+
+@kernel
+def _update_velocities(
+    inertias: Pair, laws: tuple[Pair, Pair], state: State
+) -> tuple[float, float]:
+    """Velocities in all openings after the pressures; their largest change, and the largest."""
+    q, _, axial, cross = state
+    moved, largest = 0.0, 0.0
+    inertia, (rest, slope) = inertias[0], laws[0]
+    for i in range(axial.shape[0]):
+        for j in range(axial.shape[1]):
+            if inertia[i, j] > 0.0:
+                u = rest[i, j] + slope[i, j] * (q[i + 1, j] - q[i + 1, j + 1])
+                moved, largest = max(moved, abs(u - axial[i, j])), max(largest, abs(u))
+                axial[i, j] = u
+    inertia, (rest, slope) = inertias[1], laws[1]
+    for i in range(cross.shape[0]):
+        for j in range(cross.shape[1]):
+            u = 0.0
+            if inertia[i, j] > 0.0:
+                u = rest[i, j] + slope[i, j] * (q[i, j + 1] - q[i + 1, j + 1])
+            moved, largest = max(moved, abs(u - cross[i, j])), max(largest, abs(u))
+            cross[i, j] = u
+    return moved, largest
+
+
+@kernel
+def _update_voids(
+    live: Flags, volume: tuple[Floats, Floats], openings: Openings, rules: Rules, start: State,
+    state: State, row: Indices,
+) -> float:  # fmt: skip
+    """Which cells hold a void, and how much of them is full; the largest change. Theory (Q25)."""
+    q, full, axial, cross = state
+    turn, lowest, _ = rules
+    ends, gaps, held, volume0, volume1 = openings[0], openings[1], start[1], volume[0], volume[1]
+    changed = 0.0
+    for i in range(live.shape[0]):
+        for j in range(live.shape[1]):
+            known = row[i + 1, j + 1] < 0
+            if not live[i, j] or (not known and q[i + 1, j + 1] >= lowest * (1 + TOLERANCE)):
+                continue
+            comes, leaves = 0.0, 0.0
+            for u, share in (
+                (axial[i, j] * ends[i, j], full[i + 1, j]),
+                (-axial[i, j + 1] * ends[i, j + 1], full[i + 1, j + 2]),
+                (cross[i, j] * gaps[i, j], full[i, j + 1]),
+                (-cross[i + 1, j] * gaps[i + 1, j], full[i + 2, j + 1]),
+            ):
+                comes += max(u, 0.0) * share
+                leaves += max(-u, 0.0)
+            kept = held[i + 1, j + 1] * volume0[i, j] + turn * comes
+            share = min(1.0, kept / (volume1[i, j] + turn * leaves))
+            if not known:
+                share = min(share, 1 - TOLERANCE)
+            if known == (share >= 1.0):
+                changed = 1.0
+            changed = max(changed, abs(share - full[i + 1, j + 1]))
+            full[i + 1, j + 1] = share
+            q[i + 1, j + 1] = lowest
+    return changed
+
+
+@kernel
+def _advance(
+    live: Flags, volume: Pair, openings: Openings, rules: Rules, share: Floats, inertias: Pair,
+    start: State, state: State, work: Work, tolerance: float,
+) -> int:  # fmt: skip
+    """One implicit Euler step; iterations, negative if they were too few. Theory (Q25), (Q26)."""
+    q, full = state[0], state[1]
+    matrix, right, row, laws = work
+    count, width = _number(live, full, row)
+    for iteration in range(1, ITERATIONS_MOST + 1):
+        matrix[:count] = 0.0
+        for i in range(live.shape[0]):
+            for j in range(live.shape[1]):
+                k = row[i + 1, j + 1]
+                if k >= 0:
+                    held = start[1][i + 1, j + 1] * volume[0][i, j]
+                    right[k] = (held - volume[1][i, j]) / rules[0]
+        _assemble(live, openings, rules[2], share, inertias, start, state, laws, row, matrix, right)
+        _solve_symmetric(matrix[:count], right[:count], width)
+        moved_q, largest_q = 0.0, 0.0
+        for i in range(1, q.shape[0] - 1):
+            for j in range(1, q.shape[1] - 1):
+                k = row[i, j]
+                if k >= 0:
+                    moved_q = max(moved_q, abs(right[k] - q[i, j]))
+                    largest_q = max(largest_q, abs(right[k]))
+                    q[i, j] = right[k]
+        moved, largest = _update_velocities(inertias, laws, state)
+        changed = _update_voids(live, volume, openings, rules, start, state, row)
+        if changed >= 1.0:
+            count, width = _number(live, full, row)
+        elif (
+            changed <= tolerance
+            and moved <= tolerance * largest
+            and moved_q <= tolerance * largest_q
+        ):
+            return iteration
+    return -ITERATIONS_MOST
+
+
+@kernel
+def _shares(
+    axial: Floats, area: Floats, volume: Floats, live: Flags, new: Floats, full: Floats,
+    share: Floats,
+) -> None:  # fmt: skip
+    """Share of faces downstream in the kinetic energy of each cell. Theory (Q24).
+
+    No pressure keeps jets apart that meet in a void: there it is taken from upstream.
+    """
+    for i in range(live.shape[0]):
+        spread = (area[i, 1:] + area[i, :-1]) / volume[i]
+        for j in range(live.shape[1]):
+            share[i, j] = 0.0
+            if live[i, j] and new[i, j] <= 0.0 and new[i, j + 1] <= 0.0:
+                share[i, j] = downstream_share(axial[i], spread, live[i], j)
+                share[i, j] *= max(0.0, 1 - (1 - full[i + 1, j + 1]) / SHOCK_VOID)
+
+
+@kernel
+def _laws(
+    axial: Floats, share: Floats, live: Flags, inertias: Floats, carries: bool, laws: Floats
+) -> None:
+    """Drop of pressure that each axial face takes beside its inertia. Theory (Q26)."""
+    for i in range(axial.shape[0]):
+        for j in range(axial.shape[1]):
+            laws[i, j] = 0.0
+            if inertias[i, j] > 0.0:
+                loss, head, _ = _face_law(axial, share, live, i, j, carries)
+                laws[i, j] = loss * abs(axial[i, j]) * axial[i, j] / 2 + head
+
+
+@kernel
+def _move_on(rows: Floats, shift: int, last: float) -> None:
+    """Give every pocket the number of the one that it has replaced one period later."""
+    for i in range(rows.shape[0]):
+        if i + shift < rows.shape[0]:
+            rows[i] = rows[i + shift]
+        else:
+            rows[i] = last
+
+
+@kernel
+def _begin(live: Flags, alive: Flags, state: State) -> None:
+    """Put new cells, and those that have ended, to ambient state; stop openings without a cell."""
+    q, full, axial, cross = state
+    for i in range(live.shape[0]):
+        for j in range(live.shape[1]):
+            if live[i, j] != alive[i, j]:
+                q[i + 1, j + 1], full[i + 1, j + 1] = 0.0, 1.0
+                alive[i, j] = live[i, j]
+    for i in range(live.shape[0]):
+        for j in range(live.shape[1] + 1):
+            before, behind = j > 0 and live[i, j - 1], j < live.shape[1] and live[i, j]
+            if not (before or behind):
+                axial[i, j] = 0.0
+    for i in range(live.shape[0] + 1):
+        for j in range(live.shape[1]):
+            before, behind = i > 0 and live[i - 1, j], i < live.shape[0] and live[i, j]
+            if not (before or behind):
+                cross[i, j] = 0.0
+
+
+@kernel
+def _span(live: Flags) -> tuple[int, int]:
+    """The first pocket that is one, and the one after the last."""
+    first, last = 0, live.shape[0]
+    while last > first + 1 and not live[last - 1].any():
+        last -= 1
+    while first < last - 1 and not live[first].any():
+        first += 1
+    return first, last
+
+
+@kernel
+def periodic_network(
+    volume: Floats, live: Flags, openings: Openings, rules: Rules, eased: bool, shift: int,
+    limits: tuple[int, float], history: tuple[Floats, ...], figures: Floats,
+) -> int:  # fmt: skip
+    """Flow through the pockets, mesh period after mesh period until it repeats. Theory (Q18).
+
+    Parameters
+    ----------
+    volume : ndarray, shape (n + 1, pockets, slices)
+        At the start of the period and at the end of each of its n steps. [m^3]
+    live : ndarray of bool, shape (n, pockets, slices)
+        Which cells are pockets during each step.
+    openings : tuple of ndarray
+        As `Openings`, with a first axis of n steps.
+    rules : tuple
+        As `Rules`.
+    eased : bool
+        Whether openings beside new pockets have next to no inertia at first.
+    shift : int
+        Pockets by which the numbering moves on from one period to the next.
+    limits : tuple
+        Most periods, and the change of the boundary work, relative, below which the flow is
+        periodic; pressures may change by ten times that of their largest value.
+    history : tuple of ndarray
+        Receives for each step of the last period pressures and full shares (n, pockets + 2,
+        slices + 2), velocities in axial faces (n, pockets, slices + 1) and gaps (n, pockets + 1,
+        slices), the inertias of both, and the drops that axial faces take.
+    figures : ndarray, shape (2,)
+        Receives the change of the work in the last period and the iterations in all.
+
+    Returns
+    -------
+    int
+        Periods; negative if the flow did not repeat.
+    """
+    steps, pockets, slices = live.shape
+    q, full = np.zeros((pockets + 2, slices + 2)), np.ones((pockets + 2, slices + 2))
+    axial, cross = np.zeros((pockets, slices + 1)), np.zeros((pockets + 1, slices))
+    state = (q, full, axial, cross)
+    alive = np.zeros((pockets, slices), np.bool_)
+    fresh = (np.zeros((pockets + 1, slices)), np.zeros((pockets, slices + 1)), NEW_INERTIA / steps)
+    inertias = (np.zeros((pockets, slices + 1)), np.zeros((pockets + 1, slices)))
+    share = np.zeros((pockets, slices))
+    row = np.full((pockets + 2, slices + 2), -1)
+    laws = (
+        (np.zeros_like(axial), np.zeros_like(axial)), (np.zeros_like(cross), np.zeros_like(cross))
+    )  # fmt: skip
+    work = (np.zeros((pockets * slices, pockets + 1)), np.zeros(pockets * slices), row, laws)
+    last_work = 0.0
+    figures[0] = 1.0
+    for period in range(1, limits[0] + 1):
+        done, moved, largest, solved = 0.0, 0.0, 0.0, True
+        tolerance = max(TOLERANCE, LOOSE * figures[0])
+        for n in range(steps):
+            now = (openings[0][n], openings[1][n], openings[2][n], openings[3][n])
+            if eased:
+                mark_fresh(live[n], alive, fresh, 1 / steps)
+            _begin(live[n], alive, state)
+            _inertias(live[n], now, fresh, rules[0], *inertias)
+            if rules[2]:
+                _shares(axial, now[0], volume[n], live[n], fresh[1], full, share)
+            start = (q.copy(), full.copy(), axial.copy(), cross.copy())
+            if period > 1:  # the last period is the first guess
+                q[:], full[:] = history[0][n], history[1][n]
+                axial[:], cross[:] = history[2][n], history[3][n]
+            first, last = _span(live[n])
+            part, cells = slice(first, last), slice(first, last + 2)
+            gaps = slice(first, last + 1)
+            iterations = _advance(
+                live[n, part],
+                (volume[n, part], volume[n + 1, part]),
+                (now[0][part], now[1][gaps], now[2][:, part], now[3][:, gaps]),
+                rules,
+                share[part],
+                (inertias[0][part], inertias[1][gaps]),
+                (start[0][cells], start[1][cells], start[2][part], start[3][gaps]),
+                (q[cells], full[cells], axial[part], cross[gaps]),
+                (
+                    work[0],
+                    work[1],
+                    row[cells],
+                    (
+                        (work[3][0][0][part], work[3][0][1][part]),
+                        (work[3][1][0][gaps], work[3][1][1][gaps]),
+                    ),
+                ),
+                tolerance,
+            )
+            figures[1] += abs(iterations)
+            solved = solved and iterations > 0
+            for i in range(pockets):
+                for j in range(slices):
+                    pressure = q[i + 1, j + 1]
+                    done -= pressure * (volume[n + 1, i, j] - volume[n, i, j])
+                    moved = max(moved, abs(pressure - history[0][n, i + 1, j + 1]))
+                    largest = max(largest, abs(pressure))
+            history[0][n], history[1][n], history[2][n], history[3][n] = q, full, axial, cross
+            history[4][n], history[5][n] = inertias
+            _laws(axial, share, live[n], inertias[0], rules[2], history[6][n])
+        _move_on(q[1:-1], shift, 0.0)
+        _move_on(full[1:-1], shift, 1.0)
+        _move_on(axial, shift, 0.0)
+        _move_on(cross, shift, 0.0)
+        _move_on(fresh[0], shift, 0.0)
+        _move_on(fresh[1], shift, 0.0)
+        for i in range(pockets):
+            if i + shift < pockets:
+                alive[i] = alive[i + shift]
+            else:
+                alive[i] = False
+        figures[0] = abs(done - last_work) / max(abs(done), 1e-300)
+        last_work = done
+        if solved and figures[0] <= limits[1] and moved <= 10 * limits[1] * largest:
+            return period
+    return -limits[0]
