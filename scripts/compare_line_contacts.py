@@ -2,9 +2,9 @@
 
 Run: python scripts/compare_line_contacts.py FILE.csv POINTS SEED [KEY=VALUE ...]
 
-KEY is any key of a line contact, as in preset=as-published or asperities.film=30nm. Points are drawn
-from the levels of his Table 5.1 for the test fluid. Each solved point is kept in FILE.csv at once;
-the same command goes on where it stopped. The source states neither profiles nor the laws of
+KEY is any key of a line contact, as in preset=as-published or asperities.film=30nm. Points are
+drawn from the levels of his Table 5.1 for the test fluid. Each solved point is kept in FILE.csv at
+once; the same command goes on where it stopped. The source states neither profiles nor the laws of
 viscosity nor the boundary friction of its simulations: those are the assumptions of the preset.
 """
 

@@ -13,6 +13,7 @@ from epicyclic.errors import InputError, Problem
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from epicyclic.validation.closures import ClosureFigure
     from epicyclic.validation.compare import Comparison
 
 __all__ = ["validate"]
@@ -43,9 +44,11 @@ def validate(temperatures: bool, output: Path | None) -> None:
             raise InputError([problem], "the command")
         terminal().print(_settled())
     elif output is None:
-        from epicyclic.report.validation_table import validation_table
+        from epicyclic.report.tables import as_on_page
+        from epicyclic.report.validation_table import closure_table, validation_table
 
         terminal().print(validation_table(_compared()))
+        terminal().print(as_on_page(closure_table(_closures())))
     else:
         _write(output)
 
@@ -57,7 +60,7 @@ def _write(output: Path) -> None:
     from epicyclic.validation.compare import summary
 
     rows = _compared()
-    write_page(output, validation_html(rows))
+    write_page(output, validation_html(rows, _closures()))
     click.echo(summary(rows))
 
 
@@ -67,6 +70,14 @@ def _compared() -> tuple[Comparison, ...]:
 
     with progress_bar("figures") as progress:
         return compare_published(progress)
+
+
+def _closures() -> tuple[ClosureFigure, ...]:
+    from epicyclic.cli.progress import progress_bar
+    from epicyclic.validation.closures import closure_figures
+
+    with progress_bar("closures of the flow through pockets") as progress:
+        return closure_figures(progress)
 
 
 def _settled() -> RenderableType:

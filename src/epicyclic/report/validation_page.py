@@ -10,9 +10,15 @@ from epicyclic.report.drawings import svg_text
 from epicyclic.report.explore import explorable
 from epicyclic.report.html import page_html
 from epicyclic.report.page import Cell, Drawing, Gallery, KeyFigure, Listing, Section, Table, number
-from epicyclic.report.validation_table import published_text, remarks, verdict_text
+from epicyclic.report.validation_table import (
+    closure_table,
+    published_text,
+    remarks,
+    verdict_text,
+)
 from epicyclic.results.result import versions
 from epicyclic.units import unit_text
+from epicyclic.validation.closures import ClosureFigure
 from epicyclic.validation.compare import Comparison, by_topic, summary
 
 __all__ = ["comparison_sections", "validation_html"]
@@ -28,7 +34,7 @@ _HEAD = (
 )
 
 
-def validation_html(rows: Sequence[Comparison]) -> str:
+def validation_html(rows: Sequence[Comparison], closures: Sequence[ClosureFigure] = ()) -> str:
     """Every published figure, pictured and listed, as one page that needs nothing else."""
     return page_html(
         title="Published figures, computed",
@@ -36,7 +42,7 @@ def validation_html(rows: Sequence[Comparison]) -> str:
         operation=summary(rows),
         source=f"Computed with epicyclic {versions()['epicyclic']}",
         key_figures=_key_figures(rows),
-        sections=list(comparison_sections(rows)),
+        sections=[*comparison_sections(rows), *_closure_section(closures)],
     )
 
 
@@ -60,6 +66,11 @@ def comparison_sections(rows: Sequence[Comparison]) -> Iterator[Section]:
         "count.",
     )
     yield Section("signs", "Signs", (Listing(text),))
+
+
+def _closure_section(rows: Sequence[ClosureFigure]) -> Iterator[Section]:
+    if rows:
+        yield Section("closures", "Pocketing by every closure", (closure_table(rows),))
 
 
 def _drawing(key: str, rows: Sequence[Comparison]) -> Drawing:

@@ -7,12 +7,21 @@ from collections.abc import Sequence
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from epicyclic.report.page import Cell, Table, aligned
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import plain_table
+from epicyclic.validation.closures import CLOSURES, STUDY, ClosureFigure
 from epicyclic.validation.compare import Comparison, summary
 from epicyclic.validation.settled import Estimate, SettledFigure
 
-__all__ = ["published_text", "remarks", "settled_table", "validation_table", "verdict_text"]
+__all__ = [
+    "closure_table",
+    "published_text",
+    "remarks",
+    "settled_table",
+    "validation_table",
+    "verdict_text",
+]
 
 _STYLES = {"agrees": "green", "differs": "bold red", "calibrated": "dim", "no verdict": "dim"}
 
@@ -33,6 +42,34 @@ def validation_table(rows: Sequence[Comparison]) -> RenderableType:
             Text(verdict_text(row), style=_STYLES[row.verdict]),
         )
     return Group(table, Text(summary(rows)))
+
+
+def closure_table(rows: Sequence[ClosureFigure]) -> Table:
+    """One row for each open figure of the study of pocketing, one column for each closure."""
+    causes = dict.fromkeys(f"{row.tolerance:.0%}: {row.cause}" for row in rows)
+    cells = [
+        (
+            Cell(f"{row.what}, {row.unit}".rstrip(", ")),
+            aligned(
+                shown(row.low) if row.low == row.high else f"{shown(row.low)} to {shown(row.high)}"
+            ),
+            *(
+                aligned(f"{shown(row.computed[name])} {'holds' if row.holds(name) else 'misses'}")
+                for name in CLOSURES
+            ),
+        )
+        for row in rows
+    ]
+    held = (f"{sum(row.holds(name) for row in rows)} of {len(rows)}" for name in CLOSURES)
+    cells.append((Cell("holds"), Cell(""), *map(aligned, held)))
+    return Table(
+        ("", "published", *CLOSURES),
+        tuple(cells),
+        f"Pocketing, open figures of {STUDY}, by models.pocketing",
+        frozenset([len(rows)]),
+        f"Sources: {'; '.join(dict.fromkeys(row.source for row in rows))}. Tolerances beyond the "
+        f"band: {'; '.join(causes)}.",
+    )
 
 
 def settled_table(rows: Sequence[SettledFigure], estimates: Sequence[Estimate]) -> RenderableType:
