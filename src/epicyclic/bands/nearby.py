@@ -55,7 +55,7 @@ class Nearby:
     @property
     def active(self) -> tuple[bool, ...]:
         """Which values change any loss."""
-        moved = np.abs(self.ends - self.losses).max(axis=(1, 2))
+        moved = np.abs(self.ends - self.losses).max(axis=(1, 2), initial=0.0)
         return tuple(
             value.is_model_form or change != 0.0
             for value, change in zip(self.values, moved, strict=True)
@@ -69,7 +69,7 @@ class Band:
     Attributes
     ----------
     low, high : mapping of str to float
-        By result, `Outputs.names`.
+        By result, `Outputs.names`, but for those that some draws do not have.
     drivers : tuple of (str, float)
         Keys of uncertain values with their shares of the variance of the total loss, the largest
         first.
@@ -103,6 +103,7 @@ def look_nearby(case: Case, result: Result, solved: Callable[[Case], Result] = s
             for value in values
         ]
     )
+    ends = ends.reshape(len(values), 2, losses.size)
     return Nearby(values, outputs, losses, result.input_power, ends)
 
 
@@ -145,11 +146,14 @@ def quick_band(nearby: Nearby) -> Band:
     losses = np.maximum(nearby.losses[:, None] + shifts.sum(axis=0), 0.0)
     power = np.full(DRAWN, nearby.input_power)
     whole = outputs.of(losses, power, factors)
-    low, high = (np.nanquantile(whole, share, axis=1) for share in (TAIL, 1 - TAIL))
-    names = outputs.names
+    ends = {
+        name: np.quantile(row, [TAIL, 1 - TAIL]).tolist()
+        for name, row in zip(outputs.names, whole, strict=True)
+        if np.isfinite(row).all()
+    }
     return Band(
-        dict(zip(names, low.tolist(), strict=True)),
-        dict(zip(names, high.tolist(), strict=True)),
+        {name: low for name, (low, _) in ends.items()},
+        {name: high for name, (_, high) in ends.items()},
         _drivers(nearby, shifts, factors),
     )
 

@@ -14,6 +14,7 @@ from epicyclic.cli.output import beside, check_ending, draw, show
 
 if TYPE_CHECKING:
     from epicyclic.case.case import Case
+    from epicyclic.results.result import Result
 
 __all__ = ["check", "friction", "mesh", "run"]
 
@@ -46,7 +47,19 @@ def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path |
         from epicyclic.records.record import record
 
         save_result(record(loaded, result=result), save)
-    show(lambda: result_tables(result, tuple(remarks(loaded, result))), result.to_json, json_file)
+    show(
+        lambda: result_tables(result, tuple(remarks(loaded, result)), _known(loaded, result)),
+        result.to_json,
+        json_file,
+    )
+
+
+def _known(case: Case, result: Result) -> list[str]:
+    """How well a result is known, unless that takes minutes."""
+    from epicyclic.analysis.heat import takes_minutes
+    from epicyclic.report.uncertainty_tables import band_texts
+
+    return [] if takes_minutes(result) else band_texts(case, result)
 
 
 @contextmanager

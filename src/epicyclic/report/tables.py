@@ -64,7 +64,9 @@ def terminal() -> Console:
     return console if console.is_terminal else Console(highlight=False, width=PIPE_WIDTH)
 
 
-def result_tables(result: Result, remarks: Sequence[str] = ()) -> RenderableType:
+def result_tables(
+    result: Result, remarks: Sequence[str] = (), known: Sequence[str] = ()
+) -> RenderableType:
     """Everything an engineer reads first: losses, figures, warnings, sources.
 
     Parameters
@@ -72,10 +74,12 @@ def result_tables(result: Result, remarks: Sequence[str] = ()) -> RenderableType
     result : Result
     remarks : sequence of str
         On its temperatures.
+    known : sequence of str
+        How well the total loss and the efficiency are known.
     """
     contents = contents_of(result)
     labels = {field.key: field.label for field in number_fields(result.layout)}
-    parts: list[RenderableType] = [_headline(contents)]
+    parts: list[RenderableType] = [_headline(contents), *known]
     parts += map(as_on_page, standing_items(contents))
     parts += map(as_on_page, _tables(contents, labels))
     if result.heat is not None:

@@ -7,19 +7,23 @@ from typing import TYPE_CHECKING
 
 from rich.console import RenderableType
 
+from epicyclic.bands.nearby import look_nearby, quick_band
+from epicyclic.case.case import Case
 from epicyclic.case.uncertain_values import MODEL_FORM
 from epicyclic.case.wording import one_line
 from epicyclic.report.page import Cell, Listing, Table, aligned, number
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import as_on_page, titled
-from epicyclic.results.result import in_words
+from epicyclic.results.result import Result, in_words
 from epicyclic.units import unit_text
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["driver_name", "pair_tables", "uncertainty_items", "uncertainty_tables"]
+__all__ = ["band_texts", "driver_name", "pair_tables", "uncertainty_items", "uncertainty_tables"]
 
+MOST, LEAST = 3, 0.005
+"""Inputs and models that are named after a band, and their share of its variance."""
 CUT_OFF = 1e-3
 """Probability of impossible values that is worth a sentence. [1]"""
 
@@ -64,6 +68,25 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
     if data.attrs["failed"]:
         notes.append(f"{data.attrs['failed']} of {data.attrs['pairs']} pairs have no result.")
     return titled(one_line(title), as_on_page(table), as_on_page(Listing(tuple(notes), "Notes")))
+
+
+def band_texts(case: Case, result: Result) -> list[str]:
+    """How well a single result is known and what that is due to; nothing if all is exact."""
+    nearby = look_nearby(case, result)
+    if not any(nearby.active):
+        return []
+    band = quick_band(nearby)
+    text = f"95 % band: total loss {band.low['total']:.0f} to {band.high['total']:.0f} W"
+    if "efficiency" in band.low:
+        low, high = (100 * ends["efficiency"] for ends in (band.low, band.high))
+        text += f", efficiency {low:.2f} to {high:.2f} %"
+    drivers = ", ".join(
+        f"{driver_name(key)} {share:.0%}".replace("%", " %") for key, share in band.drivers[:MOST]
+    )
+    return [
+        f"{text}; most of it from {drivers}. Assumed where [uncertainty] of the case says nothing: "
+        "'epicyclic uncertainty' shows all."
+    ]
 
 
 def driver_name(key: str) -> str:
