@@ -18,8 +18,9 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import form_radius, tooth_outline
 from epicyclic.kernels import pocket_fluid
 from epicyclic.lubricant.properties import MixtureState
-from epicyclic.pocketing.fluid import POCKETING_MODELS, pocket_flow
+from epicyclic.pocketing.fluid import pocket_flow
 from epicyclic.pocketing.geometry import pocket_geometry
+from epicyclic.pocketing.network import bounded_flow, void_number
 
 AMBIENT = 101325.0
 RPM = math.pi / 30
@@ -52,8 +53,8 @@ def pair():
     return geometry
 
 
-def solve(geometry, rpm=10000.0, xi=0.05, **kwargs):
-    return pocket_flow(geometry, rpm * RPM, mixture(xi), AMBIENT, **kwargs)
+def solve(geometry, rpm=10000.0, xi=0.05, model="mean-density", **kwargs):
+    return pocket_flow(geometry, rpm * RPM, mixture(xi), AMBIENT, model, **kwargs)
 
 
 # --- geometry -------------------------------------------------------------------------------------
@@ -182,42 +183,100 @@ def test_power_is_the_mean_of_the_instants(pair):
     assert flow.instant_power.mean() == pytest.approx(flow.power, rel=1e-12)
 
 
-@pytest.mark.parametrize("model", POCKETING_MODELS)
-def test_slow_flow_is_incompressible(pair, model):
-    """At 100 rpm the Mach number is below 0.02, and its square below 4e-4."""
-    geometry = pair(20.0)
-    incompressible = solve(geometry, 100.0, model="incompressible")
-    flow = solve(geometry, 100.0, model=model)
-    # central differences leave out the limiter: the error of the slices differs
-    bound = 1e-2 if model == "central-differences" else 2e-3
-    assert flow.power == pytest.approx(incompressible.power, rel=bound)
+@pytest.mark.parametrize("model", ["isentropic", "mean-density", "central-differences"])
+@pytest.mark.parametrize("beta", [0.0, 20.0])
+def test_slow_flow_is_incompressible(pair, model, beta):
+    """At 100 rpm the Mach number is below 0.02; what is left are two methods of time stepping."""
+    geometry = pair(beta)
+    fine = {"slices": 48, "steps": 96}
+    incompressible = solve(geometry, 100.0, model="incompressible", **fine)
+    flow = solve(geometry, 100.0, model=model, **fine)
+    assert flow.power == pytest.approx(incompressible.power, rel=0.012)
 
 
 def test_slow_oil_is_incompressible_and_fast_oil_cavitates(pair):
     slow = solve(pair(0.0), 500.0, 1.0)
     exact = solve(pair(0.0), 500.0, 1.0, model="incompressible")
     # air of 1e-4 by volume is left: half a percent of the loss
-    assert slow.power == pytest.approx(exact.power, rel=0.01)
-    assert solve(pair(0.0), 10000.0, 1.0).pressure.min() >= -AMBIENT
-    assert solve(pair(0.0), 10000.0, 1.0, model="incompressible").pressure.min() < -AMBIENT
+    assert slow.power == pytest.approx(exact.power, rel=0.015)
+    for model in ("mean-density", "incompressible"):
+        assert solve(pair(0.0), 10000.0, 1.0, model=model).pressure.min() >= -AMBIENT * 1.001
+    assert solve(pair(0.0), 10000.0, 1.0, model="talbot-2012").pressure.min() < -AMBIENT
+
+
+def test_no_pressure_falls_below_that_of_a_void(pair):
+    """Where the flow alone would fall to 1.7 times ambient pressure below it."""
+    geometry = pair(0.0)
+    bounded, alone = (
+        pocket_flow(geometry, 10000 * RPM, mixture(0.05), pressure)
+        for pressure in (0.97 * AMBIENT, 100 * AMBIENT)
+    )
+    assert alone.pressure.min() < -1.5 * AMBIENT
+    assert bounded.pressure.min() == pytest.approx(-0.97 * AMBIENT, rel=1e-3)
+    assert bounded.power > alone.power
+    assert abs(bounded.difference) < 2e-3
+    assert abs(bounded.mass_error) < 1e-5
+
+
+@pytest.mark.parametrize("beta", [0.0, 15.0, 30.0])
+def test_the_loss_goes_smoothly_over_to_voids(pair, beta):
+    """Scaled power in steps of 1 % of the number: no jump where voids begin, nor beyond.
+
+    In the spur pair, where a whole pocket holds or fills a void at once, it rises by 4 % within one
+    such step at 1.19 times the first number, however short the time steps: the manual tells.
+    """
+    geometry = pair(beta)
+    start = void_number(geometry, 24, 32, 1.0)
+    numbers = start * np.exp(np.arange(-3, 30) / 100)
+    power = np.array([bounded_flow(geometry, n, 24, 32, 1.0).power for n in numbers])
+    assert power[:3] == pytest.approx([power[0]] * 3, rel=1e-12)
+    assert np.abs(np.diff(np.log(power))).max() < (0.042 if beta == 0 else 0.015)
+    assert abs(np.log(power[4] / power[3])) < 5e-4
+
+
+@pytest.mark.parametrize("beta", [0.0, 10.0, 15.0, 25.0, 35.0])
+def test_the_default_resolution_is_near_the_limit_without_waves(pair, beta):
+    """Within 2 % of twice as many slices and four times as many steps, with and without voids."""
+    geometry = pair(beta)
+    start = void_number(geometry, 24, 32, 1.0)
+    for number in (start / 2, 1.6 * start):
+        default, fine = (
+            bounded_flow(geometry, number, *size, 1.0).power for size in ((24, 32), (48, 128))
+        )
+        assert default == pytest.approx(fine, rel=0.02)
+
+
+def test_a_closed_channel_without_inertia_is_bernoulli(pair):
+    """Power of the flow without voids from what its openings lose, to the last step's tolerance."""
+    for beta in (0.0, 25.0):
+        flow = solve(pair(beta), 5000.0, model="incompressible")
+        assert flow.power_from_flow == pytest.approx(flow.power, rel=1e-4)
+        assert abs(flow.mass_error) < 1e-12
+
+
+def test_the_reading_of_the_source_has_the_power_of_its_openings(pair):
+    """Spur pair at 10000 rpm: power after Eq. 4.16 against the boundary work of the same flow."""
+    flow = solve(pair(0.0), model="talbot-2012")
+    assert flow.power == pytest.approx(125.2, rel=1e-3)
+    assert flow.power_from_flow == pytest.approx(157.6, rel=1e-3)
 
 
 def test_incompressible_loss_is_proportional_to_density(pair):
-    oil, thin = (solve(pair(), xi=xi, model="incompressible").power for xi in (1.0, 0.05))
+    oil, thin = (solve(pair(), 1000.0, xi=xi, model="incompressible").power for xi in (1.0, 0.05))
     assert oil / thin == pytest.approx(824.1 / mixture(0.05).density, rel=1e-6)
 
 
 def test_incompressible_loss_grows_with_the_cube_of_speed(pair):
-    low, high = (solve(pair(), rpm, model="incompressible").power for rpm in (100.0, 10000.0))
-    assert high / low == pytest.approx(1e6, rel=1e-6)
+    low, high = (solve(pair(), rpm, model="incompressible").power for rpm in (100.0, 7000.0))
+    assert high / low == pytest.approx(70**3, rel=1e-9)
 
 
 def test_power_scales_with_density_at_one_mach_number(pair):
     """Density and ambient pressure times ten: the same flow with ten times the power."""
     geometry, state = pair(), mixture(0.05)
     heavy = replace(state, density=10 * state.density)
-    one = pocket_flow(geometry, 5000 * RPM, state, AMBIENT)
-    ten = pocket_flow(geometry, 5000 * RPM, heavy, 10 * AMBIENT)
+    one = pocket_flow(geometry, 5000 * RPM, state, AMBIENT, "mean-density")
+    ten = pocket_flow(geometry, 5000 * RPM, heavy, 10 * AMBIENT, "mean-density")
     assert ten.power == pytest.approx(10 * one.power, rel=1e-6)
     assert ten.axial_speed == pytest.approx(one.axial_speed, abs=1e-5)
 
@@ -300,11 +359,23 @@ def box_mesh(module, beta, backlash, teeth, internal, width):
     module=st.floats(math.log(0.5e-3), math.log(10e-3)),
     internal=st.booleans(),
     drives1=st.booleans(),
+    model=st.sampled_from(["mean-density", "incompressible"]),
 )
-@example(math.log(16845), 0.74, 19.9, math.log(1e-5), math.log(9.2e-3), False, False)
-@example(math.log(17463), 0.907, 36.5, math.log(1.8e-4), math.log(3.3e-3), False, True)
-@example(math.log(13434), 0.872, 15.8, math.log(1.3e-4), math.log(6.2e-3), False, True)
-def test_every_point_of_the_box_has_an_answer(rpm, xi, beta, backlash, module, internal, drives1):
+@example(
+    math.log(16845), 0.74, 19.9, math.log(1e-5), math.log(9.2e-3), False, False, "mean-density"
+)
+@example(
+    math.log(17463), 0.907, 36.5, math.log(1.8e-4), math.log(3.3e-3), False, True, "mean-density"
+)
+@example(
+    math.log(13434), 0.872, 15.8, math.log(1.3e-4), math.log(6.2e-3), False, True, "mean-density"
+)
+@example(
+    math.log(13434), 0.872, 15.8, math.log(1.3e-4), math.log(6.2e-3), False, True, "incompressible"
+)
+def test_every_point_of_the_box_has_an_answer(
+    rpm, xi, beta, backlash, module, internal, drives1, model
+):
     teeth = (23, 76) if internal else (23, 41)
     size = math.exp(module)
     mesh = box_mesh(size, beta, math.exp(backlash), teeth, internal, 8 * size)
@@ -316,10 +387,11 @@ def test_every_point_of_the_box_has_an_answer(rpm, xi, beta, backlash, module, i
         )
     except ValueError:
         assume(False)
-    flow = solve(pocket_geometry(mesh, tools, drives1), math.exp(rpm), xi, slices=8)
+    geometry = pocket_geometry(mesh, tools, drives1)
+    flow = solve(geometry, math.exp(rpm), xi, model, slices=8)
     assert math.isfinite(flow.power)
     assert flow.power > 0
-    assert abs(flow.mass_error) < 1e-6
+    assert abs(flow.mass_error) < (1e-3 if model == "incompressible" else 1e-6)
 
 
 # --- in the solution of a case --------------------------------------------------------------------

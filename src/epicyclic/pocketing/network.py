@@ -59,6 +59,8 @@ class NetworkFlow:
         Over the speed. [m]
     instant_power : ndarray, shape (steps,)
         [m^5]
+    damped : ndarray, shape (steps,)
+        Work of each step that the method of time stepping damps. [m^5]
     """
 
     cells: Cells
@@ -70,6 +72,7 @@ class NetworkFlow:
     axial_speed: Floats
     gap_speed: Floats
     instant_power: Floats
+    damped: Floats
 
 
 def void_number(geometry: PocketGeometry, slices: int, steps: int, end_length: float) -> float:
@@ -91,24 +94,23 @@ def bounded_flow(
     slices, steps, end_length
         As for `pocket_flow`.
     """
+    free = _free_flow(geometry, slices, steps, end_length)
     if number <= void_number(geometry, slices, steps, end_length):
-        return _free_flow(geometry, slices, steps, end_length)
-    return _flow_above(-1 / number**2, geometry, slices, steps, end_length)
+        return free
+    return _network(geometry, slices, steps, end_length).flow(-1 / number**2, free.damped)
 
 
 @lru_cache(maxsize=64)
 def _free_flow(geometry: PocketGeometry, slices: int, steps: int, end_length: float) -> NetworkFlow:
     """The flow while no pocket holds a void."""
-    return _flow_above(-math.inf, geometry, slices, steps, end_length)
+    return _network(geometry, slices, steps, end_length).flow(-math.inf)
 
 
-def _flow_above(
-    lowest: float, geometry: PocketGeometry, slices: int, steps: int, end_length: float
-) -> NetworkFlow:
-    """The flow above a lowest pressure. Openings are those in the middle of each step."""
+def _network(geometry: PocketGeometry, slices: int, steps: int, end_length: float) -> _Network:
+    """With the openings in the middle of each step."""
     end = end_length * geometry.mesh.gear1.rack.normal_module
     cells = pocket_cells(geometry, slices, steps, end, inner=0.5)
-    return _Network(cells, geometry.pitch / steps, slice(1, None, 2)).flow(lowest)
+    return _Network(cells, geometry.pitch / steps, slice(1, None, 2))
 
 
 @lru_cache(maxsize=32)
@@ -165,25 +167,25 @@ class _Network:
             )
         )
 
-    def flow(self, lowest: float) -> NetworkFlow:
-        """Eased births, kinetic energy carried on, power from the boundary work. Theory (Q27)."""
+    def flow(self, lowest: float, damped: Floats | None = None) -> NetworkFlow:
+        """Eased births, kinetic energy carried on, power from the boundary work. Theory (Q27).
+
+        `damped` is of the flow without voids, if this is not the one.
+        """
         periods = self._solve(lowest, carries=True, eased=True)
         _, full, axial, gap, inertia, gap_inertia, law = self._history
-        damped, lost = np.zeros(len(axial)), 0.0
-        filled = (full >= 1.0) & (_before(full, 1.0) < 1.0)
-        for u, area, mass, drop, near, by in (
-            (axial, self._openings[0], inertia, law, _sides(filled, 2), _sides(full, 2)),
-            (gap, self._openings[1], gap_inertia, np.abs(gap) * gap / 2,
-             _sides(filled, 1), _sides(full, 1)),
-        ):  # fmt: skip
-            wet = area * np.where(u > 0, *by) * self._turn
+        lost, damping = 0.0, np.zeros(len(axial))
+        for u, area, mass, drop, axis in (
+            (axial, self._openings[0], inertia, law, 2),
+            (gap, self._openings[1], gap_inertia, np.abs(gap) * gap / 2, 1),
+        ):
+            wet = area * np.where(u > 0, *_sides(full, axis)) * self._turn
             step = u - _before(u, 0.0)
-            damping = wet * mass * step**2 / 2
-            hit = near[0] | near[1]
-            damped += np.where(hit, 0.0, damping).sum(axis=(1, 2))
-            lost += float((wet * u * (drop + mass * step) - np.where(hit, 0.0, damping)).sum())
-        works = self._works() - damped
-        return self._made(periods, works, lost + self._left(lowest))
+            damping += (wet * mass * step**2 / 2).sum(axis=(1, 2))
+            lost += float((wet * u * (drop + mass * step)).sum())
+        damped = damping if damped is None else damped
+        lost += self._voids() - float(damped.sum())
+        return self._made(periods, self._works() - damped, lost, damped)
 
     def study(self) -> NetworkFlow:
         """New pockets from rest, no kinetic energy inside, power at the openings. Theory (Q28)."""
@@ -198,19 +200,19 @@ class _Network:
             alpha = np.where(out > 0, 2.0, 1.0)
             power = area * out * (pressure + alpha * u**2) / 2
             works += np.where(one != other, power, 0.0).sum(axis=(1, 2)) * self._turn
-        return self._made(periods, works, float(self._works().sum()))
+        return self._made(periods, works, float(self._works().sum()), np.zeros(len(q)))
 
     def _works(self) -> Floats:
         """Boundary work of each step."""
         works: Floats = -(self._history[0][:, 1:-1, 1:-1] * self._growth).sum(axis=(1, 2))
         return works
 
-    def _left(self, lowest: float) -> float:
-        """Work that voids take with them when their pockets end."""
-        if math.isinf(lowest):
-            return 0.0
-        share = _before(1 - self._history[1], 0.0)[:, 1:-1, 1:-1]
-        return float(-lowest * (share * self._volume[:-1])[~self._cells.live].sum())
+    def _voids(self) -> float:
+        """Work that opening voids store, less what they give back when they fill up."""
+        q, full = self._history[0][:, 1:-1, 1:-1], self._history[1]
+        volume = (1 - full[:, 1:-1, 1:-1]) * self._volume[1:]
+        before = (1 - _before(full, 1.0)[:, 1:-1, 1:-1]) * self._volume[:-1]
+        return float(-(q * (volume - before))[self._cells.live].sum())
 
     def _mass_error(self) -> float:
         """What comes in less what goes out, over what comes in, in a period."""
@@ -229,12 +231,12 @@ class _Network:
             out += float(flow[one & ~other].sum() - flow[other & ~one].sum())
         return (come - out - gone) / come
 
-    def _made(self, periods: int, works: Floats, other: float) -> NetworkFlow:
+    def _made(self, periods: int, works: Floats, other: float, damped: Floats) -> NetworkFlow:
         period = self._turn * len(works)
         cell, _, axial, gap, *_ = self._history
         pressure = np.ascontiguousarray(cell[:, 1:-1, 1:-1])
         instants = works / self._turn
-        for array in (pressure, axial, gap, instants):
+        for array in (pressure, axial, gap, instants, damped):
             array.flags.writeable = False
         return NetworkFlow(
             cells=self._cells,
@@ -246,6 +248,7 @@ class _Network:
             axial_speed=axial,
             gap_speed=gap,
             instant_power=instants,
+            damped=damped,
         )
 
 
