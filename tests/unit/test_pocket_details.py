@@ -128,7 +128,7 @@ def test_table_shows_balance_and_extremes_with_their_place(meshes):
     assert f"{float(mesh['power']):.3f}" in text
     assert f"{float(mesh['pressure'].max()):.4f}" in text
     assert f"{float(abs(mesh['axial_speed']).max()):.2f}" in text
-    assert "mean density" in text
+    assert "incompressible mixture" in text
 
 
 def test_pictures_have_labels_with_units(mesh):

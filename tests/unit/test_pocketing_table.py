@@ -20,6 +20,7 @@ COARSE = {
     "numerics.pocket_slices": 4,
     "numerics.pocket_steps": 12,
     "models.load_distribution": "uniform",
+    "models.pocketing": "mean-density",
 }
 SPEEDS = ["0 rpm", "6000 rpm", "12000 rpm"]
 CLOSE = 0.005

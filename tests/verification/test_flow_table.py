@@ -8,14 +8,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+import asymmetric
 import epicyclic as ep
 from epicyclic.builders.build import build
-from epicyclic.elements.pocket_flow import flow_family
+from epicyclic.elements.pocket_flow import flow_family, flow_request
 from epicyclic.lubricant.properties import MixtureState
+from epicyclic.pocketing import network
+from epicyclic.pocketing.memory import FlowMemory
 from epicyclic.pocketing.similarity import LEAST_NUMBER, flow_figures, scaled_figures
 from epicyclic.pocketing.table import make_tables
 
-COARSE = {"numerics.pocket_slices": 4, "numerics.pocket_steps": 12}
+COARSE = {
+    "numerics.pocket_slices": 4,
+    "numerics.pocket_steps": 12,
+    "models.pocketing": "mean-density",
+}
 BOUND = 0.002
 UNIT = MixtureState(0.05, 1.0, 0.0)
 
@@ -134,3 +141,67 @@ def test_a_single_case_and_few_points_are_solved(case):
     assert math.isnan(ep.solve(case).meshes["mesh"].pocket_interpolation_error)
     few = ep.sweep(case, {"operation.speed": ["1000 rpm", "2000 rpm"]}, jobs=1)
     assert few["mesh_pocket_interpolation_error"].isnull().all()
+
+
+def test_memory_gives_what_is_solved():
+    """The asymmetric set: flows between two that are known, within a hundred-thousandth."""
+    case = ep.load_case(asymmetric.planetary())
+    built = build(case)
+    for duty in built.mean_duties().values():
+        family, speed, mixture, pressure = flow_request(duty, built.fluids)
+        memory = FlowMemory()
+        read = 0
+        for factor in (1.0, 1.0012, 1.0005, 1.0021, 1.0016):
+            state = (speed * factor, mixture, pressure)
+            solved = family.figures(*state)
+            told = memory.figures(family, *state)
+            if told is not None:
+                read += 1
+                assert told.power == pytest.approx(solved.power, rel=1e-5)
+            memory.add(family, *state, solved)
+        assert read == 2
+        assert memory.figures(family, 1.1 * speed, mixture, pressure) is None
+
+
+def test_a_flow_without_voids_serves_all_speeds_oils_and_shares(monkeypatch):
+    """One is solved; other operating points are that one times density and powers of the speed."""
+    plain = ep.load_case("talbot-2012-pair").updated(
+        {"operation.speed": "3000 rpm", "numerics.pocket_slices": 7, "numerics.pocket_steps": 18}
+    )
+    first = ep.solve(plain)
+    monkeypatch.setattr(network, "periodic_network", None)
+    faster = ep.solve(plain.updated({"operation.speed": "4200 rpm"}))
+    ratio = faster.losses["mesh_pocketing"] / first.losses["mesh_pocketing"]
+    assert ratio == pytest.approx(1.4**3, rel=1e-12)
+    changes = {"surroundings.oil_air_ratio": 0.083, "operation.oil_inlet_temperature": "61 degC"}
+    other = plain.updated(changes)
+    densities = [build(case).fluids.mixture.density for case in (other, plain)]
+    ratio = ep.solve(other).losses["mesh_pocketing"] / first.losses["mesh_pocketing"]
+    assert ratio == pytest.approx(densities[0] / densities[1], rel=1e-12)
+
+
+def test_hardly_any_oil_is_a_gas_and_a_void_has_its_pressure():
+    """What "auto" stands for, and the pressure of a void as an input."""
+    case = ep.load_case("talbot-2012-pair").updated({"numerics.pocket_slices": 5})
+    losses = {}
+    for share in (0.0049, 0.0051):
+        for model in ("auto", "isentropic", "incompressible"):
+            changes = {"surroundings.oil_air_ratio": share, "models.pocketing": model}
+            losses[share, model] = ep.solve(case.updated(changes)).losses["mesh_pocketing"]
+    assert losses[0.0049, "auto"] == losses[0.0049, "isentropic"]
+    assert losses[0.0051, "auto"] == losses[0.0051, "incompressible"]
+    assert losses[0.0049, "isentropic"] != losses[0.0049, "incompressible"]
+    for void in (0.0, 0.2):
+        result = ep.solve(case.updated({"models.pocket_void_pressure": f"{void} bar"}))
+        lowest = 1.01325 + result.meshes["mesh"].pocket_pressure_min / 1e5
+        assert lowest == pytest.approx(void, abs=2e-3)
+        assert any("hold voids" in text for text in result.warnings)
+
+
+def test_a_void_has_less_pressure_than_the_surroundings():
+    changes = {"models.pocket_void_pressure": "0.9 bar", "surroundings.pressure": "0.83 bar"}
+    with pytest.raises(ep.InputError) as error:
+        ep.load_case("talbot-2012-pair").updated(changes)
+    (problem,) = error.value.problems
+    assert problem.key == "models.pocket_void_pressure"
+    assert "less than surroundings.pressure, 0.83 bar" in problem.allowed

@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 from epicyclic.builders.models import fluids_of
 from epicyclic.case.case import Case
 from epicyclic.elements.gear_mesh import MeshDuty
-from epicyclic.elements.pocket_flow import flow_family
+from epicyclic.elements.pocket_flow import flow_request
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.cutting import mated_tools
 from epicyclic.geometry.gear import BasicRack, Gear, half_angle_from_thickness
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.lubricant.properties import mixture_state
-from epicyclic.pocketing.fluid import PocketFlow
+from epicyclic.pocketing.fluid import NETWORK_MODELS, PocketFlow
 
 __all__ = [
     "PocketVariant",
@@ -134,12 +134,14 @@ def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketF
     ConvergenceError
         If the flow is not found.
     """
-    pressure = case.surroundings.pressure
-    mixture = mixture_state(fluids_of(case).oil, variant.oil_fraction, pressure)
+    fluids = fluids_of(case)
+    mixture = mixture_state(fluids.oil, variant.oil_fraction, fluids.pressure)
     try:
-        family = flow_family(varied_duty(duty, variant))
-        family = replace(family, oil_fraction=variant.oil_fraction)
-        return family.flow(variant.speed, mixture, pressure)
+        varied = varied_duty(duty, variant)
+        family, speed, _, pressure = flow_request(varied, fluids)
+        if family.model not in NETWORK_MODELS:
+            family = replace(family, oil_fraction=variant.oil_fraction)
+        return family.flow(speed, mixture, pressure)
     except ValueError as error:
         problem = Problem(duty.key, "", f"cannot be so: {error}.", "Vary over a smaller range.")
         raise InputError([problem], "the study") from None
