@@ -190,10 +190,12 @@ def clear_caches() -> None:
     from epicyclic.elasticity import loaded_mesh, mesh_compliance, tooth_plate
     from epicyclic.geometry import contact_lines
     from epicyclic.losses import load_distribution, planet_bearing
-    from epicyclic.pocketing import cells, fluid, geometry
+    from epicyclic.pocketing import cells, fluid, geometry, network
 
     for function in (
         fluid.pocket_flow,
+        network._free_flow,
+        network.study_flow,
         cells.pocket_cells,
         geometry.pocket_geometry,
         build.basic_rack,
@@ -271,27 +273,61 @@ def contact_seconds(roughness: str) -> tuple[float, int]:
     return seconds, rough.steps if rough else 0
 
 
-def pocket_seconds() -> tuple[float, float]:
-    """Geometry of the pockets of one mesh, and one periodic flow through them; the slower mesh."""
+def cpu_seconds(action: Callable[[], object], repeats: int = REPEATS) -> float:
+    """Median processor time of `action`, all threads."""
+    times = []
+    for _ in range(repeats):
+        start = time.process_time()
+        action()
+        times.append(time.process_time() - start)
+    return statistics.median(times)
+
+
+def pocket_seconds() -> tuple[float, float, float, float]:
+    """Processor time of the pockets of the set, sun and ring mesh of a planet.
+
+    Returns
+    -------
+    shapes, new, compressible, scaled : float
+        Their geometry; geometry and flow of a new set; flow of a compressible mixture; a whole
+        operating point at a new speed, the flow known.
+    """
     from epicyclic.builders.build import build
-    from epicyclic.pocketing.fluid import pocket_flow
+    from epicyclic.pocketing import cells, geometry, network
+    from epicyclic.pocketing.fluid import PocketModel, pocket_flow
     from epicyclic.pocketing.geometry import pocket_geometry
 
     case = test_article()
     built = build(case)
-    geometry_times, flow_times = [], []
-    for duty in built.mean_duties().values():
-        shape = partial(pocket_geometry.__wrapped__, duty.mesh, duty.tools, True)
-        flow = partial(
-            pocket_flow.__wrapped__,
-            pocket_geometry(duty.mesh, duty.tools, True),
-            abs(duty.speed1),
-            built.fluids.mixture,
-            built.fluids.pressure,
-        )
-        geometry_times.append(median_seconds(shape))
-        flow_times.append(median_seconds(flow))
-    return max(geometry_times), max(flow_times)
+    duties = list(built.mean_duties().values())
+
+    def shapes() -> None:
+        for function in (geometry.pocket_geometry, cells.pocket_cells, network._free_flow):
+            function.cache_clear()
+        for duty in duties:
+            pocket_geometry(duty.mesh, duty.tools, True)
+
+    def flows(model: PocketModel) -> None:
+        shapes()
+        for duty in duties:
+            pocket_flow.__wrapped__(
+                pocket_geometry(duty.mesh, duty.tools, True),
+                abs(duty.speed1),
+                built.fluids.mixture,
+                built.fluids.pressure,
+                model,
+            )
+
+    flows("incompressible")
+    flows("isentropic")
+    speeds = itertools.count(1000)
+    ep.solve(case)
+    return (
+        cpu_seconds(shapes),
+        cpu_seconds(partial(flows, "incompressible")),
+        cpu_seconds(partial(flows, "isentropic")),
+        cpu_seconds(lambda: ep.solve(case.updated({"operation.speed": f"{next(speeds)} rpm"})), 20),
+    )
 
 
 CAMPAIGN_SIZE = 24
@@ -363,7 +399,7 @@ def main() -> None:
     segments = (10, 20, 30, 60, 120)
     elastic = {count: compliance_seconds(count) for count in segments}
     ep.solve(case)
-    pocket_shape, pocket_flow = pocket_seconds()
+    pocket_shape, pocket_new, pocket_waves, pocket_scaled = pocket_seconds()
     matrix_seconds = median_seconds(lambda: matrix(None), repeats=3)
     settled_matrix = median_seconds(lambda: matrix(None, SETTLED), repeats=1)
     settled = itertools.cycle([each.updated(SETTLED) for each in points()])
@@ -393,10 +429,12 @@ def main() -> None:
          f"{elastic[30][0] / elastic[30][1]:.0f}", "loading both meshes"),
         ("loading both meshes, 30 segments", f"{1e3 * elastic[30][1]:.2f} ms", "30 ms",
          f"{elastic[30][1] / point:.2f}", "one operating point"),
-        ("geometry of pockets, one mesh", f"{1e3 * pocket_shape:.1f} ms", "300 ms",
-         f"{pocket_shape / point:.2f}", "one operating point"),
-        ("periodic pocket flow, one mesh", f"{1e3 * pocket_flow:.0f} ms", "300 ms",
-         f"{pocket_flow / pocket_shape:.0f}", "its geometry"),
+        ("pockets of a new set, processor time", f"{1e3 * pocket_new:.0f} ms", "150 ms",
+         f"{pocket_new / pocket_shape:.1f}", "their geometry"),
+        ("the same with a compressible mixture", f"{1e3 * pocket_waves:.0f} ms", "",
+         f"{pocket_waves / pocket_new:.1f}", "an incompressible one"),
+        ("new speed, pockets known, processor time", f"{1e3 * pocket_scaled:.1f} ms", "10 ms",
+         f"{pocket_new / pocket_scaled:.0f}", "times faster than pockets of a new set"),
         ("test matrix, 300 points", f"{matrix_seconds:.2f} s", "15 s",
          f"{matrix_seconds / (300 * point):.2f}", "300 single points"),
         ("the same in a new process", f"{matrix_process:.2f} s", "15 s",

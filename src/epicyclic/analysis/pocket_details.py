@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,7 +23,7 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.outline import tooth_outline
 from epicyclic.geometry.tools import Tool
-from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow
+from epicyclic.pocketing.fluid import POCKETING_MODELS, PocketFlow, PocketModel, sound_speed
 from epicyclic.pocketing.geometry import (
     PocketGeometry,
     contact_clearances,
@@ -372,15 +372,34 @@ def _tooth(gear: Gear, tool: Tool, dimension: str) -> Variable:
     return variable((dimension, _AXIS), points, label, MILLIMETRE)
 
 
+def _with_model(duty: MeshDuty, model: PocketModel) -> MeshDuty:
+    """The same mesh with another fluid in its pockets."""
+    pockets = replace(duty.models.pockets, model=model)
+    models = replace(duty.models, pockets=pockets)
+    return replace(duty, gears=replace(duty.gears, models=models))
+
+
 def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Variable]:
     """What holds for the whole mesh."""
+    model = duty.models.pockets.model
+    other: PocketModel = "incompressible" if model == "isentropic" else "isentropic"
+    end = solve_pockets(_with_model(duty, other), fluids)
+    assert end is not None  # it turns
+    origins = ("from the work at the boundaries", "from the energy balance")
+    if model == "talbot-2012":
+        origins = ("after Eq. 4.16 of the source", origins[0])
     numbers: dict[str, tuple[float, str, Quantity]] = {
-        "power": (flow.power, "power, from the work at the boundaries", WATT),
-        "power_from_flow": (flow.power_from_flow, "power, from the energy balance", WATT),
+        "power": (flow.power, f"power, {origins[0]}", WATT),
+        "power_from_flow": (flow.power_from_flow, f"power, {origins[1]}", WATT),
+        "power_other_end": (end.power, f"power, other end of the band ({other})", WATT),
         "power_difference": (flow.difference, *FLOW_NUMBERS["difference"]),
         "mass_error": (flow.mass_error, "mass lost in a period over mass that came in", NUMBER),
         "periods": (flow.periods, "mesh periods until the flow repeated", NUMBER),
-        "sound_speed": (flow.sound_speed, "speed of sound of the mixture", METRE_PER_SECOND),
+        "sound_speed": (
+            sound_speed(fluids.mixture, fluids.pressure),
+            "speed of sound of an even mixture",
+            METRE_PER_SECOND,
+        ),
         "speed_max": (flow.speed_max, *FLOW_NUMBERS["speed_max"]),
         "ambient_pressure": (fluids.pressure, "ambient pressure", BAR),
         "speed": (

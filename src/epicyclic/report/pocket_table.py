@@ -24,6 +24,7 @@ FloatArray = NDArray[np.float64]
 _BALANCE = (
     "power",
     "power_from_flow",
+    "power_other_end",
     "power_difference",
     "mass_error",
     "periods",
