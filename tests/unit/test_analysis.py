@@ -39,7 +39,7 @@ def test_bearing_load_is_that_of_the_printed_equations(case):
 
 
 def test_centrifugal_force_turns_the_load_and_not_the_couple(case):
-    plain = build(case).planet_loads()["planet_bearing"]
+    plain = build(case.updated({"planet.mass": "0 kg"})).planet_loads()["planet_bearing"]
     heavy = build(case.updated({"planet.mass": "5000 g"}))
     loaded = heavy.planet_loads()["planet_bearing"]
     force = 5.0 * case.gears.center_distance * heavy.state().speeds["carrier"] ** 2
@@ -54,10 +54,35 @@ def test_planet_mass_loads_the_bearing(case):
     case = case.updated({"models.mesh_loads": "without-losses"})
     result = solve(case, planet__mass="0.2 kg")
     speed = result.flow.members["carrier"].speed
-    expected = math.hypot(ep.solve(case).bearing.radial_force, 0.2 * 0.09213 * speed**2)
+    light = solve(case, planet__mass="0 kg")
+    expected = math.hypot(light.bearing.radial_force, 0.2 * 0.09213 * speed**2)
     assert result.bearing.radial_force == pytest.approx(expected, rel=1e-9)
     idle = solve(case, planet__mass="0.2 kg", operation__torque="0 N*m")
     assert idle.losses["planet_bearing_mechanical"] > 0
+
+
+def test_mass_that_is_not_given_is_that_of_gear_and_rollers(case):
+    """A disc to the reference circle less the bore of 34.025 mm, 24.4 mm wide, and 32 rollers of
+    4.015 mm by 9.52 mm, of 7850 kg/m3."""
+    z, module = 26, 1.813 / math.cos(math.radians(13.124))
+    disc = math.pi / 4 * ((z * module) ** 2 - 34.025**2) * 24.4
+    rollers = 32 * math.pi / 4 * 4.015**2 * 9.52
+    mass = 7850e-9 * (disc + rollers)
+    given = case.updated({"planet.mass": f"{mass!r} kg"})
+    one, two = (build(each).planet_loads()["planet_bearing"].force for each in (case, given))
+    light = build(case.updated({"planet.mass": "0 kg"})).planet_loads()["planet_bearing"].force
+    assert one == pytest.approx(two, rel=1e-9)
+    assert one > light * (1 + 1e-4)
+
+
+def test_estimated_mass_is_told_where_it_matters(case):
+    def told(**changes):
+        return [note for note in solve(case, **changes).notes if "mass of a planet" in note]
+
+    assert told() == []
+    (note,) = told(operation__torque="20 N*m")
+    assert "N on the bearing" in note
+    assert told(operation__torque="20 N*m", planet__mass="0.2 kg") == []
 
 
 def test_defaults_of_the_models_follow_the_oil(case):

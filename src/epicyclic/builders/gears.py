@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
+
 from epicyclic.case import flanks
 from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.contact import Flanks
 from epicyclic.elements.gear_mesh import GearMesh, MeshModels
+from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.tools import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus
 
-__all__ = ["gear_mesh"]
+__all__ = ["gear_mesh", "planet_mass"]
 
 
 def gear_mesh(
@@ -38,6 +43,25 @@ def gear_mesh(
         models=models,
         materials=(tables[0].material.solid, tables[1].material.solid),
         nodes=nodes,
+    )
+
+
+def planet_mass(gears: Iterable[tuple[Gear, GearTable]], bearing: PlanetBearing | None) -> float:
+    """Mass of a planet with its rollers, from its sizes: discs to the reference circles. [kg]
+
+    Theory (B19).
+    """
+    bore = rollers = 0.0
+    if bearing is not None:
+        bore = bearing.pin_diameter + 2 * bearing.roller_diameter + bearing.diametral_clearance
+        volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
+        rollers = bearing.rows * bearing.rollers_per_row * volume * bearing.material.density
+    return rollers + sum(
+        math.pi
+        * (gear.reference_radius**2 - (bore / 2) ** 2)
+        * gear.face_width
+        * table.material.density
+        for gear, table in gears
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from epicyclic.builders.gears import gear_mesh
+from epicyclic.builders.gears import gear_mesh, planet_mass
 from epicyclic.builders.models import loss_choices, mesh_models
 from epicyclic.builders.planetary import planet_bearing
 from epicyclic.case import build
@@ -115,12 +115,18 @@ def _planets(key: str, case: ListedCase, bodies: Mapping[str, str]) -> Iterator[
             if shape.bodies[name] == body and gear.mass is not None
         ]
         bearing = bearing_of(table, body)
+        gears = [
+            (gear_of(table, name), gear)
+            for name, gear in table.members.items()
+            if shape.bodies[name] == body
+        ]
         yield Planet(
             key=f"{body}_bearing",
             body=bodies[body],
             pin_radius=pins[body].radius,
             meshes=tuple(_planet_meshes(case, body)),
-            mass=sum(masses) if masses else None,
+            mass=sum(masses) if masses else planet_mass(gears, bearing),
+            mass_estimated=not masses,
             bearing=planet_bearing(case, bearing),
             no_bearing=f"the case has no bearing of {body}",
             tilts=case.models.planet_tilt == "coupled",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from epicyclic.builders.built import Built
-from epicyclic.builders.gears import gear_mesh
+from epicyclic.builders.gears import gear_mesh, planet_mass
 from epicyclic.builders.models import (
     bearing_model,
     fitted_rolling,
@@ -184,6 +184,10 @@ def _tools(case: PlanetaryCase, sun_mesh: Mesh, ring_mesh: Mesh) -> tuple[Tool, 
 
 
 def _planet(key: str, case: PlanetaryCase, body: str) -> Planet:
+    mass, estimated = case.planet.mass, case.planet.mass is None
+    if mass is None:
+        gear = build.gear("planet", case.planet, case.gears)
+        mass = planet_mass([(gear, case.planet)], case.planet_bearing)
     return Planet(
         key="planet_bearing",
         body=body,
@@ -192,7 +196,8 @@ def _planet(key: str, case: PlanetaryCase, body: str) -> Planet:
             PlanetMesh("sun_mesh", 2, (0.0, 1.0)),
             PlanetMesh("ring_mesh", 1, (0.0, -1.0)),
         ),
-        mass=case.planet.mass,
+        mass=mass,
+        mass_estimated=estimated,
         bearing=planet_bearing(case, case.planet_bearing),
         no_bearing="the case has no [planet_bearing]",
         tilts=case.models.planet_tilt == "coupled",

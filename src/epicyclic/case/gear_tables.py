@@ -186,8 +186,8 @@ class Planet(GearTable):
     )
     mass: Mass | None = Field(
         default=None,
-        description="Of one planet with its rollers. If given, its centrifugal force loads the "
-        "planet bearing.",
+        description="Of one planet with its rollers: its centrifugal force loads the planet "
+        "bearing. Default: from the sizes of gear and rollers and the density of their materials.",
     )
     micro_geometry_ring_side: MicroGeometryTable | None = Field(
         default=None,

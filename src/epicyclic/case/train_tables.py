@@ -177,8 +177,8 @@ class ListedGear(PairGear):
     )
     mass: Mass | None = Field(
         default=None,
-        description="Of one planet with its rollers, at one of the gears of its body. If given, "
-        "its centrifugal force loads the planet bearing.",
+        description="Of one planet with its rollers, at one of the gears of its body: its "
+        "centrifugal force loads the planet bearing. Default: from its sizes.",
     )
     axial_position: Position | None = Field(
         default=None,

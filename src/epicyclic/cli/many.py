@@ -116,6 +116,11 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
 )
 @click.option("--format", "name", metavar="NAME", help="Default: by the ending of the file.")
 @click.option(
+    "--even-torques",
+    is_flag=True,
+    help="Add no torques that crowd at zero to start:stop:count.",
+)
+@click.option(
     "--temperature-state",
     "heated",
     is_flag=True,
@@ -130,19 +135,22 @@ def loss_map(
     vary: tuple[str, ...],
     output: Path,
     name: str | None,
+    even_torques: bool,
     heated: bool,
     runner: Runner,
     **values: str | None,
 ) -> None:
     """Compute a loss map: torque loss, losses and efficiency over speed and torque.
 
-    VALUES are a,b,c or start:stop:count with a unit. The torque loss is that at the input member;
-    the file states the signs. A train has a map of each of its states. An interrupted map goes on
-    where it stopped, as a sweep does.
+    VALUES are a,b,c or start:stop:count with a unit. Near zero torque losses rise steeply: to
+    start:stop:count from or through zero torques are added that crowd there. The torque loss is
+    that at the input member; the file states the signs. A train has a map of each of its states.
+    An interrupted map goes on where it stopped, as a sweep does.
     """
     from epicyclic.case.operating import AXES
     from epicyclic.maps.compute import coordinates, map_plan, states_left_out
     from epicyclic.maps.lumped import check_axis, lumped
+    from epicyclic.maps.near_zero import resolving_texts
     from epicyclic.sweeps.plan import parse_vary
 
     loaded = load_with(case, changes)
@@ -154,6 +162,8 @@ def loss_map(
     axes = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]
     given, further = parse_vary(loaded, axes), parse_vary(loaded, vary)
     speed, torque = given[AXES["speed"]], given[AXES["torque"]]
+    if ":" in (values["torque"] or "") and not even_torques:
+        torque = resolving_texts(torque)
     plan = map_plan(loaded, speed, torque, given.get(AXES["temperature"]), further, chosen)
     for state, reason in ({} if chosen else states_left_out(loaded)).items():
         click.echo(f"State {state} is left out: it {reason}", err=True)
@@ -170,7 +180,7 @@ def map_writer(
     lumped: Mapping[str, float] | None = None,
 ) -> Write:
     """Writes a map, with the attributes `lumped`; raises `InputError` if it cannot."""
-    from epicyclic.maps.compute import coordinates, held_shaft, to_map
+    from epicyclic.maps.compute import checked_map, coordinates, held_shaft
     from epicyclic.maps.formats import check_map_output, files_of_map, write_map
 
     axes = coordinates(plan)
@@ -178,8 +188,11 @@ def map_writer(
     files = ", ".join(map(str, files_of_map(output, chosen, axes).values()))
 
     def write(rows: Rows) -> str:
-        write_map(to_map(plan, rows).assign_attrs(lumped or {}), output, format)
-        return points_written(rows, files)
+        data = checked_map(plan, rows)
+        write_map(data.assign_attrs(lumped or {}), output, format)
+        error = data.attrs.get("torque_interpolation", "")
+        told = f" Interpolated {error}." if error else ""
+        return points_written(rows, files) + told
 
     return write
 

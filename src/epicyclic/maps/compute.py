@@ -24,6 +24,7 @@ from epicyclic.case.operating import AXES, STATE, STATE_KEY
 from epicyclic.case.wording import written
 from epicyclic.elements.base import HOUSING
 from epicyclic.errors import InputError, Problem
+from epicyclic.maps.near_zero import resolving_texts, torque_interpolation
 from epicyclic.results.result import Layout, number_fields
 from epicyclic.sweeps.dataset import to_dataset
 from epicyclic.sweeps.journal import Rows
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 __all__ = [
     "MapPlan",
     "axis_name",
+    "checked_map",
     "coordinates",
     "held_shaft",
     "loss_map",
@@ -93,6 +95,7 @@ def loss_map(
     vary: Mapping[str, Iterable[Any]] | None = None,
     *,
     states: Iterable[Any] | None = None,
+    resolve_zero: bool = False,
     jobs: int | None = None,
     dask: str | None = None,
     shard: tuple[int, int] | None = None,
@@ -114,6 +117,9 @@ def loss_map(
     states : iterable, optional
         States of a train. Default: all in which it can run; the attribute ``states_left_out``
         names the others.
+    resolve_zero : bool
+        True to add torques that crowd at zero, where losses rise steeply, if zero is among the
+        torques or between them.
     jobs, dask, shard, journal, progress
         As for `sweep`.
 
@@ -129,7 +135,8 @@ def loss_map(
         powers are zero, and torques, torque loss and efficiency are the limits of slow motion in
         positive direction; but the torque loss is NaN there if a second member is driven. The
         efficiency is NaN where nothing is lost. Points that failed are NaN, with status
-        ``"failed"``. The attributes state the reference shaft and the signs.
+        ``"failed"``. The attributes state the reference shaft, the signs, and how far linear
+        interpolation between the torques is off.
 
     Raises
     ------
@@ -138,8 +145,15 @@ def loss_map(
         or in which the train cannot run.
     """
     runner = Runner(jobs, dask, shard, journal, progress)
-    plan = map_plan(case, speed, torque, temperature, vary, states)
-    return to_map(plan, runner.run(plan))
+    torques = resolving_texts(torque) if resolve_zero else torque
+    plan = map_plan(case, speed, torques, temperature, vary, states)
+    return checked_map(plan, runner.run(plan))
+
+
+def checked_map(plan: MapPlan, rows: Rows) -> xr.Dataset:
+    """The map of `plan`, with what it states about interpolation between its torques."""
+    data = to_map(plan, rows)
+    return data.assign_attrs(torque_interpolation(data, plan.case))
 
 
 def map_plan(

@@ -31,6 +31,7 @@ from epicyclic.maps.interpolation_error import (
     solve_sample,
 )
 from epicyclic.maps.lookup import Lookup, loss_power, make_lookup
+from epicyclic.maps.near_zero import resolving_zero
 from epicyclic.maps.tables import map_case
 from epicyclic.sweeps.runner import HERE, Progress, Runner
 from epicyclic.units import (
@@ -68,6 +69,8 @@ _SPEEDS, _TORQUES, _TEMPERATURES = 9, 9, 4
 """Values of the axes of a map that is made for a cycle."""
 _CROWDING = 1.5
 """Exponent by which its speeds and torques crowd at zero, where losses bend most."""
+_CROWD = 6
+"""Further torques next to zero, on each side. [1]"""
 SAMPLES = 20
 """Points that are solved to measure the error of the interpolation."""
 
@@ -169,7 +172,7 @@ def cycle_map(
 ) -> xr.Dataset:
     """A map of `case` that covers a cycle."""
     speeds = crowded(*cycle.ranges["speed"], _SPEEDS)
-    torques = crowded(*cycle.ranges["torque"], _TORQUES)
+    torques = resolving_zero(crowded(*cycle.ranges["torque"], _TORQUES), _CROWD)
     temperatures, states = celsius, None
     if case.states:
         check_states(cycle, tuple(case.states))

@@ -41,6 +41,7 @@ _STATED = (
     "torque_loss_definition",
     "zero_speed",
     "zero_torque",
+    "torque_interpolation",
     "temperatures",
     "conventions",
 )

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm
+from matplotlib.ticker import NullLocator
+from numpy.typing import NDArray
 
 from epicyclic.case.operating import PLANE
 from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of
@@ -12,7 +17,14 @@ from epicyclic.units import unit_text
 
 __all__ = ["map_at", "plot_map", "plot_map_lines", "plot_map_parts"]
 
+FloatArray = NDArray[np.float64]
+
 LEVELS = 7
+EFFICIENCIES = (0, 20, 40, 60, 70, 80, 85, 90, 92, 94, 95, 96, 97, 98, 99, 100)
+"""Where the colours of an efficiency change: it bends most where it is lowest. [%]"""
+LINED_EFFICIENCIES = (60, 80, 90, 94, 96, 97, 98, 99)
+STRETCHED = 0.02
+"""Part of the torque axis of an efficiency that is linear, over the largest torque. [1]"""
 MOST_LINES = 5
 LOSS_SUMS = ("load_dependent", "load_independent", "total", "input_power")
 """Powers of a map that are no components."""
@@ -40,20 +52,40 @@ def plot_map(data: xr.Dataset, name: str, ax: Axes) -> Axes:
         longest = "torque" if data.sizes["torque"] > data.sizes["speed"] else "speed"
         return plot_map_lines(data, name, longest, ax)
     speed, torque = (data[axis].to_numpy() for axis in PLANE)
+    of_efficiency = name == "efficiency"
+    norm = BoundaryNorm(EFFICIENCIES, 256) if of_efficiency else None
     field = ax.pcolormesh(
-        speed, torque, values, shading="gouraud", cmap=COLOUR_MAP, rasterized=True
+        speed, torque, values, shading="gouraud", cmap=COLOUR_MAP, norm=norm, rasterized=True
     )
     figure = ax.get_figure()
     assert figure is not None
-    figure.colorbar(field, ax=ax, label=label_of(values))
+    bar = figure.colorbar(field, ax=ax, label=label_of(values))
+    if of_efficiency:
+        bar.set_ticks(list(EFFICIENCIES))
     if float(values.max()) > float(values.min()):
-        lines = ax.contour(speed, torque, values, levels=LEVELS, colors="white", linewidths=0.7)
+        levels = LINED_EFFICIENCIES if of_efficiency else LEVELS
+        with warnings.catch_warnings():  # a map need not reach any of them
+            warnings.filterwarnings("ignore", message="No contour levels")
+            lines = ax.contour(speed, torque, values, levels=levels, colors="white", linewidths=0.7)
         ax.clabel(lines, fontsize="x-small")
+    if of_efficiency and torque.min() <= 0 <= torque.max():
+        _stretch_zero(ax, torque)
     ax.grid(visible=False)
     ax.set(
         title=_title(values), xlabel=_axis_label(data, "speed"), ylabel=_axis_label(data, "torque")
     )
     return ax
+
+
+def _stretch_zero(ax: Axes, torque: FloatArray) -> None:
+    """A torque axis that is linear next to zero and logarithmic beyond."""
+    full = float(np.abs(torque).max())
+    ax.set_yscale("symlog", linthresh=full * STRETCHED, linscale=0.5)
+    ticks = full * np.array([STRETCHED, 0.1, 0.3, 1.0])
+    ticks = np.concatenate([-ticks[::-1], [0.0], ticks])
+    ax.set_yticks(ticks[(ticks >= torque.min()) & (ticks <= torque.max())])
+    ax.yaxis.set_major_formatter("{x:.3g}")
+    ax.yaxis.set_minor_locator(NullLocator())
 
 
 def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes) -> Axes:

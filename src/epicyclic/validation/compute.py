@@ -51,8 +51,8 @@ TEST_TORQUES = (250, 500, 750, 1000)
 """Loaded tests: torque on the sun. [N m]"""
 TEST_SPEEDS = (1000, 2000, 3000, 4000)
 """Speeds of the sun. [rpm]"""
-AS_IN_THE_SOURCE = {"models.mesh_loads": "without-losses"}
-"""Talbot (2012), Eq. 3.7, p. 68."""
+AS_IN_THE_SOURCE = {"models.mesh_loads": "without-losses", "planet.mass": "0 kg"}
+"""Talbot (2012), Eq. 3.7 and 3.8, p. 68: no losses, no centrifugal force."""
 KELVIN = 273.15
 """0 degC in kelvin."""
 

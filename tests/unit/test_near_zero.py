@@ -1,0 +1,72 @@
+"""Torques of a map that resolve zero, and what a map says of its interpolation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import epicyclic as ep
+from epicyclic.cli.main import cli
+from epicyclic.maps.near_zero import resolving_zero
+
+COARSE = {"numerics.pocket_slices": 6, "numerics.pocket_steps": 10}
+
+
+@pytest.fixture(scope="module")
+def case():
+    return ep.load_case("talbot-2012").updated(COARSE)
+
+
+def test_torques_crowd_on_each_side_that_reaches_zero():
+    found = resolving_zero([-80.0, -40.0, 0.0, 100.0], crowd=3)
+    assert found == [-80.0, -40.0, -20.0, -10.0, -5.0, 0.0, 12.5, 25.0, 50.0, 100.0]
+    assert resolving_zero([-7.0, 7.0], crowd=1) == [-7.0, -3.5, 0.0, 3.5, 7.0]
+    assert resolving_zero([0.0, 6.0], crowd=1) == [0.0, 3.0, 6.0]
+    assert resolving_zero([300.0, 100.0]) == [100.0, 300.0]
+    assert resolving_zero([0.0]) == [0.0]
+
+
+@pytest.mark.parametrize("rpm", [190.0, 2300.0])
+def test_interpolation_is_off_by_less_than_two_per_cent_at_any_torque(case, rpm):
+    """Even torques alone are off by more than twice as much."""
+    asked = {"speed": [f"{rpm} rpm"], "torque": [f"{t} N*m" for t in np.linspace(-900, 900, 13)]}
+    even = ep.loss_map(case, **asked, jobs=1)
+    dense = ep.loss_map(case, **asked, resolve_zero=True, jobs=1)
+    torques = [-700.0, -260.0, -41.0, -9.0, -1.3, -0.2, 0.07, 0.5, 1.9, 14.0, 77.0, 380.0, 810.0]
+    at = {"operation.speed": f"{rpm} rpm"}
+    direct = np.array(
+        [ep.solve(case.updated(at | {"operation.torque": f"{t} N*m"})).total for t in torques]
+    )
+
+    def off(data):
+        total = data["total"].isel(temperature=0).sel(speed=rpm)
+        return np.abs(np.interp(torques, data["torque"], total) / direct - 1).max()
+
+    assert off(dense) < 0.02
+    assert off(even) > 2 * off(dense)
+    told = dense.attrs["torque_interpolation_error"]
+    assert 0 < told < 0.02 < even.attrs["torque_interpolation_error"]
+    assert f"{100 * told:.2g} %" in dense.attrs["torque_interpolation"]
+
+
+@pytest.mark.parametrize(
+    ("options", "count"),
+    [
+        (["--torque", "0:300:4 N*m"], 14),
+        (["--torque", "0:300:4 N*m", "--even-torques"], 4),
+        (["--torque", "0,100,300 N*m"], 3),
+        (["--torque", "100:300:3 N*m"], 3),
+    ],
+)
+def test_command_adds_torques_to_a_range_and_tells_the_error(tmp_path, options, count):
+    file = tmp_path / "map.csv"
+    changes = [part for key, value in COARSE.items() for part in ("--set", f"{key}={value}")]
+    done = CliRunner().invoke(
+        cli, ["map", "talbot-2012", *changes, "--speed", "1500 rpm", *options, "-o", str(file)]
+    )
+    assert done.exit_code == 0, done.output
+    lines = file.read_text().splitlines()
+    assert len([line for line in lines if not line.startswith("#")]) == count + 1
+    assert "the total loss is off by" in done.output
+    assert any(line.startswith("# torque interpolation: ") for line in lines)
