@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 
 import pytest
+from rich.console import Console
 
 import epicyclic as ep
 from epicyclic.analysis.compare import compare_friction
 from epicyclic.builders.build import build
 from epicyclic.builders.models import resolve_models
+from epicyclic.report.tables import result_tables
 
 IDENTITY = 1e-12  # rounding only
 
@@ -26,7 +29,7 @@ def solve(case, **changes):
 
 def test_bearing_load_is_that_of_the_printed_equations(case):
     """Talbot (2012), Eq. 3.7 and 3.8, with operating radii."""
-    load = build(case).planet_loads()["planet_bearing"]
+    load = build(case.updated({"planet.mass": "0 kg"})).planet_loads()["planet_bearing"]
     branch = 1000 / 3
     sun_radius = 0.09213 * 73 / 99
     planet_radius = 0.09213 * 26 / 99
@@ -279,3 +282,26 @@ def test_parallel_pair_internal_and_external():
     )
     # sliding is the difference of the speeds, not the sum: less loss at the same torque
     assert ring.losses["mesh_sliding"] < result.losses["mesh_sliding"]
+
+
+@pytest.mark.parametrize("torque", ["640 N*m", "-75 N*m"])
+def test_losses_grouped_as_a_test_rig_does(case, torque):
+    """What torque adds to the total, and the total without torque."""
+    plain = solve(case, operation__torque=torque)
+    tested = solve(case, operation__torque=torque, models__load_dependent="as-tested")
+    idle = solve(case, operation__torque="0 N*m")
+    assert tested.losses == plain.losses
+    assert tested.total == plain.total
+    assert tested.load_independent == idle.total
+    assert tested.load_dependent == pytest.approx(plain.total - idle.total, rel=1e-12)
+    # teeth and bearings that drive the input without torque
+    assert tested.load_independent - plain.load_independent > 2.0
+    written = json.loads(tested.to_json())
+    assert written["load_dependent"] == tested.load_dependent
+    assert "load-dependent, as tested" in told_by_tables(tested)
+
+
+def told_by_tables(result):
+    console = Console(width=120, record=True, file=io.StringIO())
+    console.print(result_tables(result))
+    return console.export_text()

@@ -13,6 +13,7 @@ from epicyclic.builders.temperatures import oil_medium
 from epicyclic.case.case import Case
 from epicyclic.case.fields import quantity_of
 from epicyclic.case.wording import sentence, written
+from epicyclic.elements.base import LOAD_DEPENDENT
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.losses.direct import EhlDirect
 from epicyclic.machine.settle import COLDEST, HOTTEST
@@ -156,7 +157,8 @@ def beyond_range(case: Case, result: Result) -> BeyondRange | None:
     low, high = hot[0].low, hot[0].high
     assert low is not None
     assert high is not None
-    return BeyondRange(watts / result.load_dependent, low, high)
+    loaded = sum(term.watts for term in result.terms if term.group == LOAD_DEPENDENT)
+    return BeyondRange(watts / loaded, low, high)
 
 
 def without_holding(case: Case) -> Result:

@@ -8,11 +8,13 @@ that a sweep does them once.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from epicyclic.analysis.sets_of import build_computed
 from epicyclic.builders.assembly import assemble
 from epicyclic.builders.build import build
-from epicyclic.case.case import Case
+from epicyclic.case.case import Case, TrainCase
+from epicyclic.case.operating import AXES
 from epicyclic.elasticity.loaded_mesh import LoadedMesh
 from epicyclic.elements.base import OIL
 from epicyclic.elements.gear_mesh import elastic_loads, load_mesh
@@ -52,6 +54,9 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
     """
     built = build(case, flow_tables)
     result = assemble(case, built, built.solve())
+    if case.models.load_dependent == "as-tested":
+        unloaded = solve(_without_torque(case), flow_tables=flow_tables)
+        result = replace(result, unloaded=unloaded.total)
     bad = [term.name for term in result.terms if not math.isfinite(term.watts)]
     if bad:
         raise ConvergenceError(
@@ -59,6 +64,14 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
             "the models; choose others (models.friction, models.rolling, models.bearing)."
         )
     return result
+
+
+def _without_torque(case: Case) -> Case:
+    """The case with no torque but that which its losses cause."""
+    changes = {"models.load_dependent": "computed", AXES["torque"]: "0 N*m"}
+    if isinstance(case, TrainCase):
+        changes |= {f"operation.torques.{shaft}": "0 N*m" for shaft in case.operation.torques}
+    return case.updated(changes)
 
 
 def pocket_flow_numbers(case: Case) -> tuple[tuple[FlowFamily, float], ...]:

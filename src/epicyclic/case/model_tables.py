@@ -204,6 +204,7 @@ class GearPairModels(Table):
         "fitted_form": None,
         "load_distribution": None,
         "mesh_loads": None,
+        "load_dependent": None,
         "mesh": None,
         "pocketing": None,
         "pocket_void_pressure": None,
@@ -267,6 +268,11 @@ class GearPairModels(Table):
         default="with-losses",
         description="What the teeth carry: the torques in balance with all losses; or those of the "
         "set without its own losses, at the given torque, as in the source.",
+    )
+    load_dependent: Literal["computed", "as-tested"] = Field(
+        default="computed",
+        description="Which loss counts as load-dependent: each by its kind; or, as on a test rig, "
+        "what torque adds to the total.",
     )
     mesh: Literal["local", "loss-factor"] = Field(
         default="local",

@@ -90,6 +90,8 @@ def losses_table(result: ResultContents) -> Table:
     """The losses of a single set, group by group."""
     rows: list[tuple[Cell, ...]] = []
     strong = []
+    grouping = result.inputs["models"].get("load_dependent")
+    tested = ", as tested" if grouping == "as-tested" else ""
     for group in dict.fromkeys(result.groups.values()):
         for name, watts in result.losses.items():
             if result.groups[name] != group:
@@ -101,7 +103,7 @@ def losses_table(result: ResultContents) -> Table:
                 rows.append((words, *share_row(result, watts, f"losses.{name}")))
         key = group.replace("-", "_")
         strong.append(len(rows))
-        rows.append((Cell(group), *share_row(result, getattr(result, key), key)))
+        rows.append((Cell(f"{group}{tested}"), *share_row(result, getattr(result, key), key)))
     strong.append(len(rows))
     rows.append((Cell("total"), *share_row(result, result.total, "total")))
     head = ("", "loss, W", "of total", "of input")

@@ -230,6 +230,8 @@ class Result:
     heat : HeatBalance or None
         None if everything is at the temperature of the oil inlet.
     status : Status
+    unloaded : float or None
+        Total loss without torque, where losses are grouped as a test rig does; else None. [W]
     """
 
     title: str
@@ -254,6 +256,7 @@ class Result:
     train: Train | None = None
     heat: HeatBalance | None = None
     status: Status = Status.CONVERGED
+    unloaded: float | None = None
 
     @property
     def inputs(self) -> Mapping[str, Any]:
@@ -272,18 +275,27 @@ class Result:
 
     @property
     def load_dependent(self) -> float:
-        """Sum of the load-dependent terms, P_LD. Theory (P1). [W]"""
-        return sum(term.watts for term in self.terms if term.group == LOAD_DEPENDENT)
+        """Sum of the load-dependent terms, P_LD. Theory (P1). [W]
+
+        As tested: what torque adds to the total. Theory (P9).
+        """
+        return self._sum(LOAD_DEPENDENT) if self.unloaded is None else self.total - self.unloaded
 
     @property
     def load_independent(self) -> float:
-        """Sum of the load-independent terms, P_LI. Theory (P2). [W]"""
-        return sum(term.watts for term in self.terms if term.group == LOAD_INDEPENDENT)
+        """Sum of the load-independent terms, P_LI. Theory (P2). [W]
+
+        As tested: the total without torque.
+        """
+        return self._sum(LOAD_INDEPENDENT) if self.unloaded is None else self.unloaded
 
     @property
     def total(self) -> float:
         """Total loss. Theory (P3). [W]"""
-        return self.load_dependent + self.load_independent
+        return self._sum(LOAD_DEPENDENT) + self._sum(LOAD_INDEPENDENT)
+
+    def _sum(self, group: str) -> float:
+        return sum(term.watts for term in self.terms if term.group == group)
 
     @property
     def mesh_load_factor(self) -> float:
