@@ -47,8 +47,9 @@ def validate(temperatures: bool, output: Path | None) -> None:
         from epicyclic.report.tables import as_on_page
         from epicyclic.report.validation_table import closure_table, validation_table
 
-        terminal().print(validation_table(_compared()))
-        terminal().print(as_on_page(closure_table(_closures())))
+        rows, closures = _compared(), _closures()
+        terminal().print(as_on_page(closure_table(closures)))
+        terminal().print(validation_table(rows))
     else:
         _write(output)
 
@@ -56,11 +57,15 @@ def validate(temperatures: bool, output: Path | None) -> None:
 def _write(output: Path) -> None:
     """The page of all figures, and what it comes to."""
     check_page(output)
+    from epicyclic.cli.progress import progress_bar
     from epicyclic.report.validation_page import validation_html
     from epicyclic.validation.compare import summary
 
     rows = _compared()
-    write_page(output, validation_html(rows, _closures()))
+    closures = _closures()
+    with progress_bar("pictures") as progress:
+        page = validation_html(rows, closures, progress)
+    write_page(output, page)
     click.echo(summary(rows))
 
 

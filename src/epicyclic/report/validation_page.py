@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from epicyclic.plots.style import styled_figure
 from epicyclic.plots.validation import deviations_size, plot_deviations
@@ -34,15 +34,28 @@ _HEAD = (
 )
 
 
-def validation_html(rows: Sequence[Comparison], closures: Sequence[ClosureFigure] = ()) -> str:
-    """Every published figure, pictured and listed, as one page that needs nothing else."""
+def validation_html(
+    rows: Sequence[Comparison],
+    closures: Sequence[ClosureFigure] = (),
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> str:
+    """Every published figure, pictured and listed, as one page that needs nothing else.
+
+    Parameters
+    ----------
+    rows : sequence of Comparison
+    closures : sequence of ClosureFigure
+        Open figures of pocketing losses.
+    progress : callable, optional
+        Called with the numbers of pictures drawn and to draw.
+    """
     return page_html(
         title="Published figures, computed",
         kind="Validation",
         operation=summary(rows),
         source=f"Computed with epicyclic {versions()['epicyclic']}",
         key_figures=_key_figures(rows),
-        sections=[*comparison_sections(rows), *_closure_section(closures)],
+        sections=[*comparison_sections(rows, progress), *_closure_section(closures)],
     )
 
 
@@ -54,9 +67,13 @@ def _key_figures(rows: Sequence[Comparison]) -> list[KeyFigure]:
     ]
 
 
-def comparison_sections(rows: Sequence[Comparison]) -> Iterator[Section]:
+def comparison_sections(
+    rows: Sequence[Comparison], progress: Callable[[int, int], None] = lambda done, total: None
+) -> Iterator[Section]:
     """A picture and a table for each topic, and what the signs mean."""
-    for topic, own in by_topic(rows).items():
+    topics = by_topic(rows)
+    for done, (topic, own) in enumerate(topics.items()):
+        progress(done, len(topics))
         key = topic.lower().replace(" ", "-").replace(",", "")
         yield Section(key, topic, (Gallery((_drawing(key, own),), is_wide=True), _table(own)))
     text = (
