@@ -49,7 +49,7 @@ def validate(temperatures: bool, output: Path | None) -> None:
 
         rows, closures = _compared(), _closures()
         terminal().print(as_on_page(closure_table(closures)))
-        terminal().print(validation_table(rows))
+        terminal().print(validation_table(rows, closures))
     else:
         _write(output)
 
@@ -66,7 +66,7 @@ def _write(output: Path) -> None:
     with progress_bar("pictures") as progress:
         page = validation_html(rows, closures, progress)
     write_page(output, page)
-    click.echo(summary(rows))
+    click.echo(summary(rows, closures))
 
 
 def _compared() -> tuple[Comparison, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -87,6 +87,7 @@ def _plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) ->
         )
     if published is not None:
         _mark(loss, over, ax, published)
+        _mark_bands(loss, over, ax, published)
     held = [_described(study[name]) for name in study.coords if study[name].ndim == 0]
     ax.set(title=", ".join(held) or "Loss", xlabel=label_of(loss[over]), ylabel="pocketing loss, W")
     ax.set_ylim(bottom=0)
@@ -124,12 +125,8 @@ def _mark(loss: xr.DataArray, over: str, ax: Axes, published: PublishedStudy) ->
         "face_width": published.face_width,
         "speed": published.speed,
     }
-    if not values.keys() >= set(loss.coords):
+    if not _has(loss, values):
         return
-    for name, value in values.items():
-        known = np.atleast_1d(loss[name].to_numpy()) if name in loss.coords else np.array([])
-        if not np.isclose(known, value, rtol=SAME).any():
-            return
     ax.plot(
         values[over],
         published.loss,
@@ -138,6 +135,36 @@ def _mark(loss: xr.DataArray, over: str, ax: Axes, published: PublishedStudy) ->
         ms=12,
         label=f"{PUBLISHED}, {published.speed:g} rpm",
         zorder=3,
+    )
+
+
+def _mark_bands(loss: xr.DataArray, over: str, ax: Axes, published: PublishedStudy) -> None:
+    """Between which losses the axes of the source enclose its curve of the highest speed."""
+    for helix, width, low, high in published.bands:
+        values = {"helix_angle": helix, "face_width": width, "speed": published.speed}
+        if not _has(loss, values):
+            continue
+        ax.errorbar(
+            values[over],
+            (low + high) / 2,
+            yerr=(high - low) / 2,
+            ls="none",
+            color=COLOURS[-1],
+            capsize=4,
+            lw=1.2,
+            zorder=3,
+            label=f"{PUBLISHED}, between ticks of its axes, {published.speed:g} rpm",
+        )
+
+
+def _has(loss: xr.DataArray, values: Mapping[str, float]) -> bool:
+    """Whether a panel has a curve and a point of these values."""
+    if not values.keys() >= set(loss.coords):
+        return False
+    return all(
+        name in loss.coords
+        and bool(np.isclose(np.atleast_1d(loss[name].to_numpy()), value, rtol=SAME).any())
+        for name, value in values.items()
     )
 
 

@@ -52,7 +52,7 @@ def validation_html(
     return page_html(
         title="Published figures, computed",
         kind="Validation",
-        operation=summary(rows),
+        operation=summary(rows, closures),
         source=f"Computed with epicyclic {versions()['epicyclic']}",
         key_figures=_key_figures(rows),
         sections=[*comparison_sections(rows, progress), *_closure_section(closures)],

@@ -26,7 +26,9 @@ __all__ = [
 _STYLES = {"agrees": "green", "differs": "bold red", "calibrated": "dim", "no verdict": "dim"}
 
 
-def validation_table(rows: Sequence[Comparison]) -> RenderableType:
+def validation_table(
+    rows: Sequence[Comparison], closures: Sequence[ClosureFigure] = ()
+) -> RenderableType:
     """One row for each figure, and a count of the verdicts."""
     table = plain_table("Published against computed")
     table.add_column("figure, source")
@@ -41,7 +43,7 @@ def validation_table(rows: Sequence[Comparison]) -> RenderableType:
             f"{row.difference:+z.1%}",
             Text(verdict_text(row), style=_STYLES[row.verdict]),
         )
-    return Group(table, Text(summary(rows)))
+    return Group(table, Text(summary(rows, closures)))
 
 
 def closure_table(rows: Sequence[ClosureFigure]) -> Table:

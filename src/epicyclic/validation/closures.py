@@ -12,7 +12,7 @@ from typing import Any
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import read_case
 
-__all__ = ["CLOSURES", "STUDY", "ClosureFigure", "closure_figures"]
+__all__ = ["CLOSURES", "STUDY", "ClosureFigure", "closure_figures", "open_figures"]
 
 STUDY = "Talbot (2012), section 4.4"
 CLOSURES = ("incompressible", "isentropic", "mean-density", "talbot-2012")
@@ -55,8 +55,7 @@ def closure_figures(
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> tuple[ClosureFigure, ...]:
     """All open figures, computed with every model."""
-    text = resources.files("epicyclic.validation").joinpath("pocketing.toml").read_text("utf-8")
-    content = tomllib.loads(text)
+    content = _content()
     figures = []
     for number, figure in enumerate(content["figure"]):
         allowed = figure if "tolerance" in figure else content["default"]
@@ -74,6 +73,18 @@ def closure_figures(
         )
         progress(number + 1, len(content["figure"]))
     return tuple(figures)
+
+
+def open_figures() -> list[dict[str, Any]]:
+    """The entries of `pocketing.toml`."""
+    found: list[dict[str, Any]] = _content()["figure"]
+    return found
+
+
+@cache
+def _content() -> dict[str, Any]:
+    file = resources.files("epicyclic.validation").joinpath("pocketing.toml")
+    return tomllib.loads(file.read_text("utf-8"))
 
 
 def _computed(figure: dict[str, Any], model: str) -> float:

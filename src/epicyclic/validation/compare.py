@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from importlib import resources
 from typing import Any, Literal
 
+from epicyclic.validation.closures import CLOSURES, ClosureFigure
 from epicyclic.validation.compute import FIGURES
 
 __all__ = ["Comparison", "by_topic", "compare_published", "published_figures", "summary"]
@@ -119,9 +120,24 @@ def _topic(figure: Mapping[str, Any]) -> str:
     return next(topic for topic, names in _TOPICS.items() if name in names)
 
 
-def summary(rows: Sequence[Comparison]) -> str:
-    """How many figures agree, and how much each kind of agreement says."""
-    return " ".join(_sentences(rows))
+def summary(rows: Sequence[Comparison], closures: Sequence[ClosureFigure] = ()) -> str:
+    """How many figures agree, and how much each kind of agreement says.
+
+    Parameters
+    ----------
+    rows : sequence of Comparison
+    closures : sequence of ClosureFigure
+        Open figures of pocketing losses, which are counted apart.
+    """
+    return " ".join((*_sentences(rows), *_of_closures(closures)))
+
+
+def _of_closures(closures: Sequence[ClosureFigure]) -> Iterator[str]:
+    if closures:
+        held = (
+            f"{sum(figure.holds(model) for figure in closures)} with {model}" for model in CLOSURES
+        )
+        yield f"Of {len(closures)} open figures of pocketing hold {', '.join(held)}."
 
 
 def _sentences(rows: Sequence[Comparison]) -> Iterator[str]:

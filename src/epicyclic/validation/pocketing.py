@@ -11,6 +11,7 @@ from epicyclic.sweeps.pocketing_plan import STUDIES, make_study
 from epicyclic.sweeps.pocketing_study import study_datasets
 from epicyclic.sweeps.runner import HERE, Runner
 from epicyclic.units import DEGREE, MILLIMETRE, RPM
+from epicyclic.validation.closures import open_figures
 from epicyclic.validation.compare import published_figures
 
 if TYPE_CHECKING:
@@ -33,6 +34,9 @@ class PublishedStudy:
         A loss and where it holds. [deg], [mm], [rpm], [W]
     exponent : float
         Of the speed in the loss of the spur pair. [1]
+    bands : tuple of (float, float, float, float)
+        Helix angle, face width, and the losses between which the one at `speed` lies, by the axes
+        of the figures. [deg], [mm], [W], [W]
     """
 
     helix_angle: float
@@ -40,17 +44,22 @@ class PublishedStudy:
     speed: float
     loss: float
     exponent: float
+    bands: tuple[tuple[float, float, float, float], ...] = ()
 
 
 FIGURES_AGAIN = {study.figure.removeprefix("Fig. "): name for name, study in STUDIES.items()}
 """Figures of section 4.4, and the study behind each."""
 
 
+AS_IN_THE_SOURCE = {"models.pocketing": "talbot-2012"}
+"""The flow that is meant for this comparison."""
+
+
 def study_again(
     figures: Sequence[str], runner: Runner = HERE
 ) -> tuple[Case, dict[str, xr.Dataset]]:
     """The example of the source, and the studies of its figures by their numbers."""
-    case = read_case(EXAMPLE)
+    case = read_case(EXAMPLE).updated(AS_IN_THE_SOURCE)
     names = {FIGURES_AGAIN[figure]: figure for figure in figures if figure in FIGURES_AGAIN}
     if not names:
         return case, {}
@@ -72,6 +81,16 @@ def published_study(case: Case) -> PublishedStudy | None:
         speed=RPM.to_display(example.operation.speed),
         loss=loss["value"],
         exponent=exponent["value"],
+        bands=tuple(
+            (
+                DEGREE.to_display(DEGREE.parse(item["helix_angle"])),
+                MILLIMETRE.to_display(MILLIMETRE.parse(item["face_width"])),
+                item["low"],
+                item["high"],
+            )
+            for item in open_figures()
+            if "over" not in item and item["low"] < item["high"]
+        ),
     )
 
 
