@@ -25,7 +25,7 @@ from epicyclic.losses.friction import DRY_FRICTION, FrictionModel, FrictionSetti
 from epicyclic.losses.friction.user import FrictionMap
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN
-from epicyclic.losses.rolling import ROLLING_MODELS, MixedEhlRolling, RollingModel
+from epicyclic.losses.rolling import ROLLING_MODELS, MixedEhlRolling, PairedRolling, RollingModel
 from epicyclic.losses.standing import STANDING, standing
 from epicyclic.oilmodel.builtin import builtin_model
 from epicyclic.oilmodel.model import OilModel, read_oil_model
@@ -166,8 +166,9 @@ def rolling_of(case: SetCase) -> RollingModel:
     if name in (FittedRolling.name, FittedOrGoksem.name):
         fitted = fitted_rolling(case, "rolling_loss")
         return fitted if name == FittedRolling.name else FittedOrGoksem(fitted)
-    if name == MixedEhlRolling.name:
-        return MixedEhlRolling(case.models.oil_beyond_range == "held")
+    for model in (MixedEhlRolling, PairedRolling):
+        if name == model.name:
+            return model(case.models.oil_beyond_range == "held")
     return ROLLING_MODELS[name]
 
 

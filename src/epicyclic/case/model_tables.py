@@ -90,6 +90,7 @@ class LoadSharing(Table):
 FrictionName = Literal[
     "auto",
     "mixed-ehl",
+    "mixed-ehl+pairing",
     "schlenk",
     "niemann-winter",
     "benedict-kelley",
@@ -246,7 +247,12 @@ class GearPairModels(Table):
         description="K_gamma, in the same place; what planets carry is up to load_sharing.",
     )
     rolling: Literal[
-        "auto", "mixed-ehl", "goksem-hargreaves", "fitted", "fitted-or-goksem-hargreaves"
+        "auto",
+        "mixed-ehl",
+        "mixed-ehl+pairing",
+        "goksem-hargreaves",
+        "fitted",
+        "fitted-or-goksem-hargreaves",
     ] = Field(
         default="auto",
         description="auto: mixed-ehl for the fluid it was made for, fitted-or-goksem-hargreaves "

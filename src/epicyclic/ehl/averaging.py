@@ -25,6 +25,8 @@ little of how many it takes. [1]"""
 STUDENT = 0.6
 """Student's t at one standard error is 1 + 0.6/nu of the normal one with nu degrees of freedom,
 within 2 % from two of them on. [1]"""
+ROUNDING = 1e-20
+"""Variation over the sum of squares of a coarse series that is nothing but rounding. [1]"""
 MOST_AID = 32
 """Blocks on the coarse grid for each on the fine one at most. [1]"""
 
@@ -88,11 +90,12 @@ def aided_mean(fine: FloatArray, coarse: FloatArray) -> Estimate:
     count, aid_count = fine.size, coarse.size
     if not np.isfinite(fine).all():
         return Estimate(math.nan, math.nan, 0.0, count, 0)
-    value, same, power = float(fine.mean()), np.zeros(count), 0.0
+    value, same, power, steady = float(fine.mean()), np.zeros(count), 0.0, True
     if aid_count >= count and np.isfinite(coarse).all():
         same = coarse[:count] - coarse[:count].mean()
         power = float(same @ same)
-    if power == 0:
+        steady = power <= ROUNDING * float(coarse @ coarse)
+    if steady:
         return Estimate(value, _variance(fine, 1) * _widening(count - 1), 0.0, count, 0)
     slope = float(fine @ same) / power
     value += slope * float(coarse.mean() - coarse[:count].mean())

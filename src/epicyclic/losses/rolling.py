@@ -8,6 +8,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.contact import LineContacts
 from epicyclic.kernels.line_contact import goksem_hargreaves_force, martin_force
 from epicyclic.kernels.mixed_ehl import rolling_loss_number_at
 from epicyclic.losses.contact import MeshContact
@@ -17,6 +18,7 @@ from epicyclic.losses.mixed_ehl_groups import (
     beyond_data,
     held_in_table,
 )
+from epicyclic.losses.pairing import equally_rough, pairing_ratio
 from epicyclic.losses.validity import Range, RegressionFluid
 from epicyclic.oilmodel.regressions import regression_groups, rolling_scale
 from epicyclic.units import NUMBER
@@ -66,11 +68,38 @@ class MixedEhlRolling:
     made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
     ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
 
-    def loss_density(self, contact: MeshContact) -> FloatArray:
+    def loss_density(self, contact: LineContacts) -> FloatArray:
         """See the class. [W/m]"""
         held = held_in_table(contact, oil_held=self.oil_held)
         number = rolling_loss_number_at(*regression_groups(held))
         density: FloatArray = number * rolling_scale(held) * beyond_data(contact, held)
+        return density
+
+
+@dataclass(frozen=True, slots=True)
+class PairedRolling:
+    """`MixedEhlRolling` of two flanks as rough as the rougher one, times what the smoother changes.
+
+    Theory (O13).
+
+    Attributes
+    ----------
+    oil_held : bool
+        False to continue the formula beyond its oil.
+    """
+
+    oil_held: bool = True
+
+    name: ClassVar = "mixed-ehl+pairing"
+    title: ClassVar = "mixed-EHL rolling-loss regression, pairing of unequal flanks from the solver"
+    source: ClassVar = f"{MixedEhlRolling.source}; solver for line contacts of this package"
+    made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
+    ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
+
+    def loss_density(self, contact: LineContacts) -> FloatArray:
+        """See the class. [W/m]"""
+        published = MixedEhlRolling(self.oil_held).loss_density(equally_rough(contact))
+        density: FloatArray = published * pairing_ratio("rolling_loss", contact)
         return density
 
 
@@ -123,5 +152,5 @@ class GoksemHargreaves:
         return density
 
 
-_MODELS: tuple[RollingModel, ...] = (MixedEhlRolling(), GoksemHargreaves())
+_MODELS: tuple[RollingModel, ...] = (MixedEhlRolling(), PairedRolling(), GoksemHargreaves())
 ROLLING_MODELS = {model.name: model for model in _MODELS}

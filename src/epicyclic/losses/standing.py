@@ -14,6 +14,8 @@ STANDING: dict[str, dict[str, str]] = {
         "mixed-ehl": "regression of simulated contacts, its error against them not printed; with "
         "it the measured loss of the sets it was made for is predicted 3.5 % low in its slope at "
         "90 degC (Talbot 2012, Fig. 5.9), lower at 40 and 60 degC",
+        "mixed-ehl+pairing": "mixed-ehl where both flanks are equally rough; the effect of a "
+        "smoother one is that of the solver of this package, not compared with measurements",
         "xu-2007": "regression of simulated contacts; 24 to 36 % off the measured loss of one "
         "jet-lubricated spur pair (tests of Petry-Johnson et al., second hand)",
         "benedict-kelley": f"fitted to disc tests; {_NOT_KNOWN}",
@@ -29,6 +31,8 @@ STANDING: dict[str, dict[str, str]] = {
     "rolling": {
         "mixed-ehl": "its scale is a reconstruction, right within a factor of about 2 against "
         "smooth contacts (R4)",
+        "mixed-ehl+pairing": "as mixed-ehl where both flanks are equally rough, the effect of a "
+        "smoother one from the solver of this package",
         "goksem-hargreaves": "within some 15 % of solved smooth contacts without heating; rough "
         "contacts lose more",
     },

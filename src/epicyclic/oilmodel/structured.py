@@ -164,7 +164,7 @@ def _faster(states: LineContacts) -> FloatArray:
 
 def _friction(states: LineContacts, c: FloatArray) -> FloatArray:
     """A sheared film and, the more the thinner it is, touching asperities. Theory (O5). [1]"""
-    stress, light, factor, pairing, faster, fine, ratio, slip, load, width, steep, dry, wide = c
+    stress, light, factor, pairing, faster, fine, ratio, load, width, steep, dry, wide, slip = c
     film = math.exp(factor) * eyring_friction(
         states, EYRING_STRESS * math.exp(stress), math.exp(light)
     )
@@ -176,14 +176,9 @@ def _friction(states: LineContacts, c: FloatArray) -> FloatArray:
         * np.exp(faster * _faster(states))
         * _pairing(states) ** -pairing
     )
-    even = (
-        math.exp(ratio)
-        * (states.slide_to_roll_ratio + SMALLEST_SLIP) ** slip
-        * states.moes_load**load
-        * half_width**width
-    )
+    even = math.exp(ratio) * states.moes_load**load * half_width**width
     share = 1 / (1 + (thickness / even) ** steep)
-    touching = dry * half_width**wide
+    touching = dry * half_width**wide * (states.slide_to_roll_ratio + SMALLEST_SLIP) ** slip
     friction: FloatArray = film + np.maximum(touching - film, 0.0) * share
     return friction
 
@@ -218,13 +213,13 @@ STRUCTURED_FRICTION = Structured(
         "ln of the Eyring stress over 5 MPa", "ln of the load number at half the pressure",
         "ln of the film's factor", "exponent of the pairing", "exponent of the faster roughness",
         "film that counts as roughness, over 100 nm", "ln of the film ratio of even shares",
-        "exponent of the slip in that ratio", "exponent of the load number in it",
-        "exponent of the half-width in it", "steepness of the shares",
-        "friction where all is dry, at a half-width of 0.2 mm", "exponent of the half-width in it",
+        "exponent of the load number in that ratio", "exponent of the half-width in it",
+        "steepness of the shares", "friction where all is dry, at a half-width of 0.2 mm",
+        "exponent of the half-width in it", "exponent of the slip in it",
     ),
-    start=(0.0, -0.5, 0.0, 0.2, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, 2.0, 0.06, 0.0),
-    low=(-3.0, -3.0, -2.0, 0.0, -1.0, 0.0, -8.0, -1.0, -2.0, -2.0, 0.2, 0.0, -2.0),
-    high=(3.0, 2.0, 2.0, 3.0, 1.0, 10.0, 3.0, 1.0, 2.0, 2.0, 8.0, 1.0, 2.0),
+    start=(0.0, -0.5, 0.0, 0.2, 0.0, 1.0, -1.0, 0.0, 0.0, 2.0, 0.06, 0.0, 0.0),
+    low=(-3.0, -3.0, -2.0, 0.0, -1.0, 0.0, -8.0, -2.0, -2.0, 0.2, 0.0, -2.0, -1.0),
+    high=(3.0, 2.0, 2.0, 3.0, 1.0, 10.0, 3.0, 2.0, 2.0, 8.0, 1.0, 2.0, 1.0),
     function=_friction,
 )  # fmt: skip
 STRUCTURED_ROLLING = Structured(

@@ -4,6 +4,7 @@
 name               kind          source
 =================  ============  ==================================================================
 mixed-ehl          local         Talbot (2012), Eq. 5.8: regression of mixed-EHL simulations
+mixed-ehl+pairing  local         as above, for flanks of unequal roughness: solver of this package
 xu-2007            local         Xu, Kahraman, Anderson, Maddock (2007): regression, full film
 benedict-kelley    local         Benedict and Kelley (1961)
 matsumoto          local         Matsumoto and Morikawa (2014): film share
@@ -25,6 +26,7 @@ from epicyclic.losses.friction.classical import BenedictKelley, NiemannWinter, S
 from epicyclic.losses.friction.film_share import Doleschel, Matsumoto
 from epicyclic.losses.friction.regressions import MixedEhl, Xu2007
 from epicyclic.losses.friction.user import Constant, FrictionMap
+from epicyclic.losses.pairing import PairedFriction
 
 __all__ = ["DRY_FRICTION", "FRICTION_MODELS", "FrictionModel", "FrictionSettings", "friction_model"]
 
@@ -66,6 +68,7 @@ def _table(settings: FrictionSettings) -> FrictionModel:
 
 FRICTION_MODELS: dict[str, Callable[[FrictionSettings], FrictionModel]] = {
     MixedEhl.name: lambda settings: MixedEhl(settings.oil_held),
+    PairedFriction.name: lambda settings: PairedFriction(settings.oil_held),
     Xu2007.name: lambda _: Xu2007(),
     BenedictKelley.name: lambda _: BenedictKelley(),
     Matsumoto.name: lambda settings: Matsumoto(settings.boundary, settings.fluid),

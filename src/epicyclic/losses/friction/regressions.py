@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.contact import LineContacts
 from epicyclic.kernels.mixed_ehl import sliding_friction_at
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.mixed_ehl_groups import (
@@ -53,7 +54,7 @@ class MixedEhl:
     takes_oil_temperature: ClassVar[bool] = False
     ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
 
-    def coefficient(self, contact: MeshContact) -> FloatArray:
+    def coefficient(self, contact: LineContacts) -> FloatArray:
         """See the class. [1]"""
         held = held_in_table(contact, oil_held=self.oil_held)
         return sliding_friction_at(*regression_groups(held))

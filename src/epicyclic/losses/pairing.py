@@ -1,0 +1,104 @@
+"""The published regressions for flanks of unequal roughness.
+
+They know the composite roughness only, which hardly falls when one of two rough flanks is polished;
+but a polished flank keeps the ridges of the other from meeting any. The regression is therefore
+taken where both flanks are as rough as the rougher one, and from there the solver of this package
+tells what the smoother flank changes, by its fit to contacts of the same oil.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic import library
+from epicyclic.contact import LineContacts
+from epicyclic.losses.friction.regressions import MixedEhl
+from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID, TALBOT_GEAR_RANGES
+from epicyclic.losses.validity import Range, RegressionFluid
+from epicyclic.oilmodel.model import OilModel, read_oil_model
+
+__all__ = ["PairedFriction", "equally_rough", "pairing_ratio"]
+
+FloatArray = NDArray[np.float64]
+
+SIMULATED = "atf-talbot-2012"
+"""The oil of the regressions, whose contacts were simulated."""
+
+
+def equally_rough(contact: LineContacts) -> LineContacts:
+    """The contacts with both surfaces as rough as the rougher one."""
+    rougher = np.maximum(*contact.roughness) + np.zeros(contact.radius.shape)
+    return contact.changed(roughness1=rougher, roughness2=rougher)
+
+
+def pairing_ratio(quantity: str, contact: LineContacts) -> FloatArray:
+    """A quantity over what it is with both surfaces as rough as the rougher one. Theory (O13). [1]
+
+    Parameters
+    ----------
+    quantity : str
+        ``"friction"`` or ``"rolling_loss"``.
+    contact : LineContacts
+        n of them.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from epicyclic.contact import contacts_at
+    >>> given = dict(
+    ...     slide_to_roll_ratio=0.3, rolling_speed=10.0, radius=0.01, hertz_pressure=1e9,
+    ...     roughness1=0.4e-6, roughness2=0.4e-6, dynamic_viscosity=6e-3, pressure_viscosity=11e-9,
+    ... )
+    >>> arrays = {name: np.array([value]) for name, value in given.items()}
+    >>> pairing_ratio("friction", contacts_at(**arrays, equivalent_modulus=2.3e11))
+    array([1.])
+    """
+    model = _simulated()
+    ratio: FloatArray = model.value(quantity, contact) / model.value(
+        quantity, equally_rough(contact)
+    )
+    return ratio
+
+
+@lru_cache(maxsize=1)
+def _simulated() -> OilModel:
+    file = library.oil_model_file(SIMULATED)
+    assert file is not None
+    return read_oil_model(file)
+
+
+@dataclass(frozen=True, slots=True)
+class PairedFriction:
+    """`MixedEhl` of two flanks as rough as the rougher one, times the effect of the smoother one.
+
+    Theory (O13).
+
+    Attributes
+    ----------
+    oil_held : bool
+        False to continue the formula beyond its oil.
+    """
+
+    oil_held: bool = True
+
+    name: ClassVar = "mixed-ehl+pairing"
+    title: ClassVar = "mixed-EHL friction regression, pairing of unequal flanks from the solver"
+    source: ClassVar = f"{MixedEhl.source}; solver for line contacts of this package"
+    made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
+    takes_oil_temperature: ClassVar[bool] = False
+    ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
+
+    def coefficient(self, contact: LineContacts) -> FloatArray:
+        """See the class. [1]"""
+        published = MixedEhl(self.oil_held).coefficient(equally_rough(contact))
+        coefficient: FloatArray = published * pairing_ratio("friction", contact)
+        return coefficient

@@ -1,0 +1,79 @@
+"""Means over time, aided by a coarse grid: unbiased, and with the error that is stated."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from epicyclic.ehl.averaging import Estimate, Plan, aided_mean, next_plan
+
+MEAN = 0.03
+
+
+def series(rng, blocks, correlation=0.95, scatter=0.3):
+    """Blocks on both grids; the coarse one has another mean and shares with the block before."""
+    noise = rng.standard_normal(blocks + 1)
+    coarse = (noise[1:] + 0.3 * noise[:-1]) / math.hypot(1, 0.3)
+    own = math.sqrt(1 - correlation**2) * rng.standard_normal(blocks)
+    return MEAN * (1 + scatter * (correlation * coarse + own)), 0.04 + 0.011 * coarse
+
+
+def simulated(rng, tolerance, correlation=0.95, scatter=0.3):
+    """An estimate by as many blocks as it takes, and what they cost."""
+    fine, coarse = series(rng, 3000, correlation, scatter)
+    plan, before = Plan(6, 6), None
+    while plan != before:
+        estimate = aided_mean(fine[: plan.blocks], coarse[: plan.aid_blocks])
+        if estimate.within(tolerance):
+            break
+        before, plan = plan, next_plan(estimate, tolerance, 0.07, 1024)
+    return estimate
+
+
+@pytest.mark.parametrize(("tolerance", "scatter"), [(0.02, 0.3), (0.05, 0.15)])
+def test_the_error_is_the_one_stated(tolerance, scatter):
+    rng = np.random.default_rng(4)
+    found = [simulated(rng, tolerance, scatter=scatter) for _ in range(300)]
+    off = np.array([item.value / MEAN - 1 for item in found])
+    assert all(item.within(tolerance) for item in found)
+    # 300 draws tell the mean to tolerance/17; stopping at a lucky look costs up to a fifth
+    assert abs(off.mean()) < 0.2 * tolerance
+    assert np.sqrt(np.mean(off**2)) < 1.3 * tolerance
+
+
+def test_the_coarse_grid_saves_most_of_the_blocks():
+    rng = np.random.default_rng(5)
+    aided = np.mean([simulated(rng, 0.02).blocks for _ in range(50)])
+    alone = (0.3 / 0.02) ** 2
+    assert aided < alone / 3
+
+
+def test_a_coarse_grid_that_tells_nothing_or_broke_down_is_left_out():
+    fine, coarse = series(np.random.default_rng(6), 20)
+    plain = aided_mean(fine, np.empty(0))
+    assert plain.value == pytest.approx(fine.mean())
+    assert plain.aid_blocks == 0
+    for useless in (np.full(20, 3.7), np.append(coarse, np.nan), coarse[:11]):
+        assert aided_mean(fine, useless) == plain
+
+
+def test_a_fine_grid_that_broke_down_gives_no_mean():
+    assert math.isnan(aided_mean(np.array([1.0, np.nan, 2.0]), np.arange(5.0)).value)
+
+
+def test_a_coarse_grid_that_tells_all_gives_its_long_mean():
+    coarse = np.random.default_rng(7).random(40)
+    estimate = aided_mean(3.1 * coarse[:9] + 0.7, coarse)
+    assert estimate.value == pytest.approx(3.1 * coarse.mean() + 0.7)
+    assert estimate.own == pytest.approx(0.0, abs=1e-25)
+
+
+def test_a_plan_grows_until_no_more_is_allowed():
+    estimate = Estimate(1.0, own=1.0, aid=0.0, blocks=60, aid_blocks=0)
+    assert next_plan(estimate, 0.01, 0.1, 64) == Plan(64, 0)
+    full = Estimate(1.0, own=1.0, aid=1.0, blocks=64, aid_blocks=64 * 32)
+    assert next_plan(full, 0.01, 0.1, 64) == Plan(64, 64 * 32)
+    nothing = Estimate(0.0, own=0.0, aid=0.0, blocks=6, aid_blocks=0)
+    assert next_plan(nothing, 0.02, 0.1, 1024).blocks == 9
