@@ -7,8 +7,8 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.contact import contacts_at
-from epicyclic.losses.friction.regressions import MixedEhl
-from epicyclic.losses.pairing import PairedFriction, equally_rough, pairing_ratio
+from epicyclic.losses.friction.regressions import MixedEhl, PairedFriction
+from epicyclic.losses.pairing import equally_rough, pairing_ratio
 from epicyclic.losses.rolling import MixedEhlRolling, PairedRolling
 
 STEEL = 227.47e9

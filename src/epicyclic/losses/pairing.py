@@ -8,21 +8,16 @@ tells what the smoother flank changes, by its fit to contacts of the same oil.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic import library
 from epicyclic.contact import LineContacts
-from epicyclic.losses.friction.regressions import MixedEhl
-from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID, TALBOT_GEAR_RANGES
-from epicyclic.losses.validity import Range, RegressionFluid
 from epicyclic.oilmodel.model import OilModel, read_oil_model
 
-__all__ = ["PairedFriction", "equally_rough", "pairing_ratio"]
+__all__ = ["equally_rough", "pairing_ratio"]
 
 FloatArray = NDArray[np.float64]
 
@@ -74,31 +69,3 @@ def _simulated() -> OilModel:
     file = library.oil_model_file(SIMULATED)
     assert file is not None
     return read_oil_model(file)
-
-
-@dataclass(frozen=True, slots=True)
-class PairedFriction:
-    """`MixedEhl` of two flanks as rough as the rougher one, times the effect of the smoother one.
-
-    Theory (O13).
-
-    Attributes
-    ----------
-    oil_held : bool
-        False to continue the formula beyond its oil.
-    """
-
-    oil_held: bool = True
-
-    name: ClassVar = "mixed-ehl+pairing"
-    title: ClassVar = "mixed-EHL friction regression, pairing of unequal flanks from the solver"
-    source: ClassVar = f"{MixedEhl.source}; solver for line contacts of this package"
-    made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
-    takes_oil_temperature: ClassVar[bool] = False
-    ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
-
-    def coefficient(self, contact: LineContacts) -> FloatArray:
-        """See the class. [1]"""
-        published = MixedEhl(self.oil_held).coefficient(equally_rough(contact))
-        coefficient: FloatArray = published * pairing_ratio("friction", contact)
-        return coefficient

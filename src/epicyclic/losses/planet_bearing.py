@@ -7,6 +7,7 @@ first roller stands under the load, as in Talbot (2012), Fig. 3.1.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 
@@ -374,7 +375,7 @@ def mixed_ehl_rolling_loss(
     Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`. Without
     `oil_held` the formula is continued beyond its oil.
     """
-    contacts = _outer_contacts(bearing, loads, speed, oil)
+    contacts = _contacts(bearing, loads, speed, oil, (bearing.outer_radius,))
     if contacts is None:
         return BearingLoss(0.0)
     held = contacts.held(_HELD if oil_held else without_oil(_HELD))
@@ -401,9 +402,12 @@ def fitted_rolling_loss(
     model: FittedRolling,
     beyond: BearingLoss | None = None,
 ) -> BearingLoss:
-    """As `mixed_ehl_rolling_loss`, with rolling losses fitted to simulated contacts. [W]
+    """Rolling loss of the contacts of all rollers with both races, fitted to simulated ones. [W]
 
     Theory (O9), (O11).
+
+    What was simulated is one contact, and a roller has two; the published formula is evaluated once
+    for a slice, as its source does.
 
     Parameters
     ----------
@@ -411,7 +415,7 @@ def fitted_rolling_loss(
     beyond : BearingLoss, optional
         That of Palmgren, which takes over beyond the simulations.
     """
-    contacts = _outer_contacts(bearing, loads, speed, oil)
+    contacts = _contacts(bearing, loads, speed, oil, (bearing.outer_radius, bearing.inner_radius))
     if contacts is None:
         return BearingLoss(0.0)
     local = bearing.slice_width * model.loss_density(contacts)
@@ -427,18 +431,19 @@ def fitted_rolling_loss(
     return BearingLoss(within + (1 - within / total) * beyond.loss, (*flags, *beyond.flags))
 
 
-def _outer_contacts(
-    bearing: RollerBearing, loads: RollerLoads, speed: float, oil: OilState
+def _contacts(
+    bearing: RollerBearing, loads: RollerLoads, speed: float, oil: OilState, radii: Sequence[float]
 ) -> LineContacts | None:
-    """The loaded slices at the outer race; None without load or motion."""
+    """The loaded slices with races of some equivalent radii; None without load or motion."""
     intensity = loads.intensity[loads.intensity > 0]
     if intensity.size == 0 or speed == 0:
         return None
+    load = np.tile(intensity, len(radii))
     return LineContacts(
-        line_load=intensity,
-        radius=np.full_like(intensity, bearing.outer_radius),
-        rolling_speed=np.full_like(intensity, bearing.rolling_speed(speed)),
-        sliding_speed=np.zeros_like(intensity),
+        line_load=load,
+        radius=np.repeat(radii, intensity.size),
+        rolling_speed=np.full_like(load, bearing.rolling_speed(speed)),
+        sliding_speed=np.zeros_like(load),
         flanks=Flanks(bearing.equivalent_modulus, bearing.race_roughness, bearing.roller_roughness),
         oil=oil,
     )

@@ -24,9 +24,8 @@ from dataclasses import dataclass
 from epicyclic.losses.friction.base import FrictionModel
 from epicyclic.losses.friction.classical import BenedictKelley, NiemannWinter, Schlenk
 from epicyclic.losses.friction.film_share import Doleschel, Matsumoto
-from epicyclic.losses.friction.regressions import MixedEhl, Xu2007
+from epicyclic.losses.friction.regressions import MixedEhl, PairedFriction, Xu2007
 from epicyclic.losses.friction.user import Constant, FrictionMap
-from epicyclic.losses.pairing import PairedFriction
 
 __all__ = ["DRY_FRICTION", "FRICTION_MODELS", "FrictionModel", "FrictionSettings", "friction_model"]
 

@@ -16,6 +16,7 @@ from epicyclic.losses.mixed_ehl_groups import (
     TALBOT_GEAR_RANGES,
     held_in_table,
 )
+from epicyclic.losses.pairing import equally_rough, pairing_ratio
 from epicyclic.losses.validity import OF_THIS_PACKAGE, Range, RegressionFluid, held_in_range
 from epicyclic.oilmodel.regressions import regression_groups
 from epicyclic.units import (
@@ -27,7 +28,7 @@ from epicyclic.units import (
     NUMBER,
 )
 
-__all__ = ["MixedEhl", "Xu2007"]
+__all__ = ["MixedEhl", "PairedFriction", "Xu2007"]
 
 FloatArray = NDArray[np.float64]
 
@@ -58,6 +59,34 @@ class MixedEhl:
         """See the class. [1]"""
         held = held_in_table(contact, oil_held=self.oil_held)
         return sliding_friction_at(*regression_groups(held))
+
+
+@dataclass(frozen=True, slots=True)
+class PairedFriction:
+    """`MixedEhl` of two flanks as rough as the rougher one, times the effect of the smoother one.
+
+    Theory (O13).
+
+    Attributes
+    ----------
+    oil_held : bool
+        False to continue the formula beyond its oil.
+    """
+
+    oil_held: bool = True
+
+    name: ClassVar = "mixed-ehl+pairing"
+    title: ClassVar = "mixed-EHL friction regression, pairing of unequal flanks from the solver"
+    source: ClassVar = f"{MixedEhl.source}; solver for line contacts of this package"
+    made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
+    takes_oil_temperature: ClassVar[bool] = False
+    ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
+
+    def coefficient(self, contact: LineContacts) -> FloatArray:
+        """See the class. [1]"""
+        published = MixedEhl(self.oil_held).coefficient(equally_rough(contact))
+        coefficient: FloatArray = published * pairing_ratio("friction", contact)
+        return coefficient
 
 
 _SUCCESSOR = "none is in print; that of the later regression, Talbot (2012), Table 5.1"
