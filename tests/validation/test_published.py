@@ -26,7 +26,6 @@ KNOWN_DIFFERENCES = {
     ),
     # Eq. 3.8 gives a tilting couple that loads these rollers at 42 N m already: docs, validation
     "azimuth of the two rollers that come into contact between 42 and 333 N m on the branch",
-    # the default follows the physics, not the study: theory manual, pocketing
     # the flow reaches the speed of sound of the mixture at 10000 rpm: theory manual, pocketing
     "exponent of speed of the pocketing loss, spur, 1000 to 10000 rpm, mean-density",
 }
