@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from epicyclic.losses.planet_bearing import NEEDLE_RANGES
 from epicyclic.losses.validity import (
     ModelUse,
     Range,
+    ValidityFlag,
     check_ranges,
     describe_flags,
     held_in_range,
@@ -249,3 +251,51 @@ def test_own_oil_of_the_regression_is_told_apart(talbot):
     assert other.models["rolling"] == "goksem-hargreaves"
     own = ep.solve(talbot)
     assert own.models["friction"] == own.models["bearing"] == own.models["rolling"] == "mixed-ehl"
+
+
+# --- what they mean for the answer ----------------------------------------------------------------
+
+
+def flag_of(quantity, watts_share, where, low=1.0, high=2.0):
+    use = ModelUse("friction", "mixed-ehl", where)
+    return ValidityFlag(use, quantity, 2.5, 3.5, low, high, "mm", watts_share, "somewhere")
+
+
+def test_warnings_are_ranked_by_watts_and_small_ones_share_a_sentence():
+    losses = {"sun mesh": 40.0, "ring mesh": 700.0}
+    flags = [
+        flag_of("small", 0.1, "sun mesh"),
+        flag_of("middle", 0.5, "sun mesh"),
+        flag_of("tiny", 0.02, "sun mesh"),
+        flag_of("large", 0.3, "ring mesh"),
+    ]
+    told = describe_flags(flags, lambda use: losses[use.where], 900.0)
+    assert [text.split(";")[0] for text in told] == [
+        "Out of range: large 2.5 to 3.5 mm",
+        "Out of range: middle 2.5 to 3.5 mm",
+        "Out of range, each for 4 W at most: small 2.5 to 3.5 mm",
+    ]
+    assert "30%; 210 W in all." in told[0]
+    assert "tiny 2.5 to 3.5 mm" in told[2]
+
+
+def test_a_range_of_one_value_is_told_once():
+    (text,) = describe_flags([flag_of("speed", 0.5, "sun mesh", 4530.0, 4530.0)])
+    assert "range 4530 mm (somewhere)" in text
+
+
+def test_pressures_beyond_the_steel_are_told(talbot):
+    def told(torque):
+        notes = ep.solve(talbot.updated({"operation.torque": f"{torque} N*m"})).notes
+        return [note for note in notes if "pressed with" in note]
+
+    assert told(1000) == []
+    assert any("teeth of the sun mesh" in note for note in told(6000))
+    assert any("rollers of the planet bearing" in note for note in told(6000))
+
+
+def test_a_case_of_the_dissertation_warns_of_what_matters_only(talbot):
+    ranges = [text for text in ep.solve(talbot).warnings if text.startswith("Out of range")]
+    watts = [float(re.search(r"([\d.e+]+) W (in all|at most)", text)[1]) for text in ranges]
+    assert watts == sorted(watts, reverse=True)
+    assert len(ranges) <= 3

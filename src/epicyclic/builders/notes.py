@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
+import numpy as np
+
 from epicyclic.builders.models import (
     SetCase,
     fitted_oil_model,
@@ -18,7 +20,7 @@ from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.listed_set import ListedCase, arrangement_of, gear_of
 from epicyclic.case.model_tables import LoadSharing
-from epicyclic.elements.figures import MeshFigures
+from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.geometry.assembly import are_evenly_spaced
 from epicyclic.geometry.gear import Gear
@@ -26,11 +28,19 @@ from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.oilmodel.builtin import changed_properties
 from epicyclic.results.result import LossTerm
+from epicyclic.units import GIGAPASCAL
 
 __all__ = ["NOT_INCLUDED", "case_notes", "general_notes", "load_notes"]
 
 NOT_INCLUDED = "Not included"
 """Begins the note that names loss terms which are missing."""
+GEAR_PRESSURE = 2.4e9
+"""1.6 times the endurance limit of 1.5 GPa of case-hardened steel: life factor for static load of
+ISO 6336-2, limit of ISO 6336-5, grade MQ (general knowledge). [Pa]"""
+BEARING_PRESSURE = 4.0e9
+"""Of a roller on its race at the static load rating of ISO 76 (general knowledge). [Pa]"""
+IDLE_PART = 0.3
+"""Of the most loaded roller, from which a result says so. [1]"""
 LEAST_CONTACT = 0.75
 """Share of the contact lines that carries below which a result says so. [1]"""
 
@@ -46,7 +56,13 @@ def case_notes(case: SetCase, found: GearSetResult, turning: Collection[str]) ->
         Central gears that turn.
     """
     meshes = {key: item for key, item in found.figures.items() if isinstance(item, MeshFigures)}
-    notes = (*fluid_notes(case), *load_notes(case), *contact_notes(meshes), *found.notes)
+    notes = (
+        *fluid_notes(case),
+        *load_notes(case),
+        *contact_notes(meshes),
+        *pressure_notes(found.figures),
+        *found.notes,
+    )
     if isinstance(case, PlanetaryCase):
         return (
             *notes,
@@ -109,6 +125,41 @@ def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:
         for name, mesh in meshes.items()
         if mesh.contact_share < LEAST_CONTACT
     )
+
+
+def pressure_notes(figures: Mapping[str, object]) -> Iterator[str]:
+    """Contacts pressed beyond what steel bears, and rollers of which much carries nothing."""
+    for key, found in figures.items():
+        name = key.replace("_", " ")
+        if isinstance(found, MeshFigures) and found.hertz_pressure_max > GEAR_PRESSURE:
+            yield (
+                f"The teeth of the {name} are pressed with "
+                f"{GIGAPASCAL.text(found.hertz_pressure_max, 3)}; hardened steel bears about "
+                f"{GIGAPASCAL.text(GEAR_PRESSURE, 2)} for a few times."
+            )
+        if isinstance(found, BearingFigures):
+            if found.hertz_pressure_max > BEARING_PRESSURE:
+                yield (
+                    f"The rollers of the {name} are pressed with "
+                    f"{GIGAPASCAL.text(found.hertz_pressure_max, 3)}; at the static rating of a "
+                    f"roller bearing it is {GIGAPASCAL.text(BEARING_PRESSURE, 2)}."
+                )
+            idle = _idle_part(found)
+            if idle > IDLE_PART:
+                yield (
+                    f"{name.capitalize()}: {idle:.0%} of the most loaded roller carries nothing of "
+                    f"its {found.roller_load_max:.3g} N, because the planet is tilted by "
+                    f"{found.moment:.3g} N m."
+                )
+
+
+def _idle_part(bearing: BearingFigures) -> float:
+    """Part of the length of the most loaded roller that carries nothing. [1]"""
+    if bearing.loads is None or not bearing.roller_load_max:
+        return 0.0
+    rollers = bearing.loads.intensity.sum(axis=2)
+    row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
+    return float(np.mean(bearing.loads.intensity[row, most] == 0))
 
 
 def load_notes(case: SetCase) -> tuple[str, ...]:

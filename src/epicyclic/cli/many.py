@@ -190,9 +190,9 @@ def map_writer(
     def write(rows: Rows) -> str:
         data = checked_map(plan, rows)
         write_map(data.assign_attrs(lumped or {}), output, format)
-        error = data.attrs.get("torque_interpolation", "")
-        told = f" Interpolated {error}." if error else ""
-        return points_written(rows, files) + told
+        if "torque_interpolation" in data.attrs:
+            click.echo(f"Interpolated {data.attrs['torque_interpolation']}.", err=True)
+        return points_written(rows, files)
 
     return write
 

@@ -34,6 +34,8 @@ FloatArray = NDArray[np.float64]
 Real = TypeVar("Real", float, FloatArray)
 
 SMALLEST_SHOWN_SHARE = 0.01
+SMALLEST_TOLD = 0.01
+"""Part of the total loss below which a range left is told with others. [1]"""
 OUT_OF_RANGE = "Out of range"
 """Begins what `describe_flags` says of a flag."""
 OF_THIS_PACKAGE = "limit of this package; none is in print"
@@ -182,31 +184,63 @@ def held_in_range(value: Real, item: Range) -> Real:
     return held
 
 
-def describe_flags(flags: Iterable[ValidityFlag]) -> tuple[str, ...]:
-    """One sentence for each quantity and range left, naming every model that left it."""
+def describe_flags(
+    flags: Iterable[ValidityFlag],
+    loss_of: Callable[[ModelUse], float] = lambda use: math.nan,
+    total: float = math.nan,
+) -> tuple[str, ...]:
+    """One sentence for each quantity and range left, those that concern most of the loss first.
+
+    Parameters
+    ----------
+    flags : iterable of ValidityFlag
+    loss_of : callable
+        Loss that a model was used for; NaN if it is not known. [W]
+    total : float
+        Total loss; what concerns less than `SMALLEST_TOLD` of it is told in one sentence. [W]
+    """
     groups: dict[tuple[object, ...], list[ValidityFlag]] = {}
     for flag in flags:
         key = (flag.quantity, flag.unit, flag.low, flag.high, flag.source)
         groups.setdefault(key, []).append(flag)
-    return tuple(_sentence(group) for group in groups.values())
+    concerned = [
+        (sum(flag.share * loss_of(flag.use) for flag in group), group) for group in groups.values()
+    ]
+    small = [pair for pair in concerned if pair[0] < SMALLEST_TOLD * total]
+    large = [pair for pair in concerned if pair not in small]
+    large.sort(key=lambda pair: -math.inf if math.isnan(pair[0]) else -pair[0])
+    told = [_sentence(watts, group) for watts, group in large]
+    if len(small) == 1:
+        told.append(_sentence(*small[0]))
+    elif small:
+        ranges = "; ".join(_range_text(group) for _, group in small)
+        watts = max(watts for watts, _ in small)
+        told.append(f"{OUT_OF_RANGE}, each for {watts:.2g} W at most: {ranges}.")
+    return tuple(told)
 
 
-def _sentence(group: list[ValidityFlag]) -> str:
+def _sentence(watts: float, group: list[ValidityFlag]) -> str:
     models = ", ".join(f"{flag.use} {share_text(flag.share)}" for flag in group)
-    return f"{range_left(group)} Share of the loss: {models}."
+    size = "" if math.isnan(watts) else f"; {watts:.3g} W in all"
+    return f"{range_left(group)} Share of the loss: {models}{size}."
 
 
 def range_left(group: Sequence[ValidityFlag]) -> str:
     """A sentence for one or more flags of one quantity and range."""
+    return f"{OUT_OF_RANGE}: {_range_text(group)} ({group[0].source})."
+
+
+def _range_text(group: Sequence[ValidityFlag]) -> str:
+    """What was found, and the range."""
     first = group[0]
-    low = format_number(min(flag.found_low for flag in group), 3)
-    high = format_number(max(flag.found_high for flag in group), 3)
-    found = low if low == high else f"{low} to {high}"
-    unit = f" {first.unit}" if first.unit else ""
-    return (
-        f"{OUT_OF_RANGE}: {first.quantity} {found}{unit}; range {_limits(first)}{unit} "
-        f"({first.source})."
+    low, high = (
+        min(flag.found_low for flag in group),
+        max(flag.found_high for flag in group),
     )
+    texts = format_number(low, 3), format_number(high, 3)
+    found = texts[0] if texts[0] == texts[1] else " to ".join(texts)
+    unit = f" {first.unit}" if first.unit else ""
+    return f"{first.quantity} {found}{unit}; range {_limits(first)}{unit}"
 
 
 def _limits(flag: ValidityFlag) -> str:
@@ -214,7 +248,8 @@ def _limits(flag: ValidityFlag) -> str:
         return f"from {format_number(flag.low or 0.0)}"
     if flag.low is None:
         return f"up to {format_number(flag.high)}"
-    return f"{format_number(flag.low)} to {format_number(flag.high)}"
+    low, high = format_number(flag.low), format_number(flag.high)
+    return low if low == high else f"{low} to {high}"
 
 
 def share_text(share: float) -> str:

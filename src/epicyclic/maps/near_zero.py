@@ -17,7 +17,7 @@ from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case
 from epicyclic.case.operating import OPERATING, STATE, STATE_KEY
 from epicyclic.case.train import TrainCase
-from epicyclic.errors import ConvergenceError
+from epicyclic.errors import ConvergenceError, InputError
 from epicyclic.maps.interpolation_error import further_values
 from epicyclic.units import NEWTON_METRE, format_number
 
@@ -118,7 +118,7 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
         return {}
     worst = int(np.nanargmax(error))
     return {
-        "torque_interpolation_error": float(error[worst]),
+        "torque_interpolation_error": float(f"{error[worst]:.2g}"),
         "torque_interpolation": "linear in the torque, the total loss is off by "
         f"{100 * error[worst]:.2g} % at most, at {format_number(float(middles[worst]))} "
         f"{NEWTON_METRE.display}: {np.isfinite(error).sum()} points between torques solved "
@@ -150,7 +150,7 @@ def _checked(torques: FloatArray) -> FloatArray:
 def _total(case: Case, changes: dict[str, Any]) -> float:
     try:
         return solve(case.updated(changes)).total
-    except ConvergenceError:
+    except (ConvergenceError, InputError):  # as in the map
         return float("nan")
 
 

@@ -21,7 +21,7 @@ from epicyclic.elements.figures import (
     displayed,
     figures,
 )
-from epicyclic.losses.validity import ValidityFlag, describe_flags
+from epicyclic.losses.validity import ModelUse, ValidityFlag, describe_flags
 from epicyclic.results.heat import HeatBalance
 from epicyclic.status import Status
 from epicyclic.units import CELSIUS, DEGREE, NEWTON_METRE, RPM, WATT
@@ -42,6 +42,13 @@ __all__ = [
     "versions",
 ]
 
+LOSSES_OF_ROLES = {
+    "friction": "sliding",
+    "rolling": "rolling",
+    "bearing": "mechanical",
+    "bearing_viscous": "viscous",
+}
+"""Last word of the loss for which a model is chosen by a key."""
 _POWERS = ("losses", "load_dependent", "load_independent", "total", "input_power")
 
 
@@ -315,7 +322,15 @@ class Result:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Everything the user should know before trusting the numbers."""
-        return (*self.notes, *describe_flags(self.flags))
+        return (*self.notes, *describe_flags(self.flags, self._loss_of, self.total))
+
+    def _loss_of(self, use: ModelUse) -> float:
+        """Loss that a model was used for, or of which it is a part; NaN if there is none. [W]"""
+        last = LOSSES_OF_ROLES.get(use.role, use.role)
+        stage, colon, _ = use.where.rpartition(": ")
+        names = (f"{use.where} {last}", f"{stage}{colon}{last}")  # the drag of both gears of a pair
+        losses = {in_words(term.name): term.watts for term in self.terms}
+        return next((losses[name] for name in names if name in losses), math.nan)
 
     def numbers(self) -> Iterator[Figure]:
         """Every number of the result with key, label and unit, as sweeps store them.
