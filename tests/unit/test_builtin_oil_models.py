@@ -18,6 +18,7 @@ from epicyclic.case.plain import plain
 from epicyclic.contact import contacts_at
 from epicyclic.losses.fitted_or_formula import REACH, weight_of_fit
 from epicyclic.losses.friction import FRICTION_MODELS
+from epicyclic.losses.pairing import SIMULATED
 from epicyclic.losses.rolling import ROLLING_MODELS
 from epicyclic.losses.standing import STANDING, standing
 from epicyclic.oilmodel.fitting import fit_quantity
@@ -89,7 +90,8 @@ def case(model, tmp_path, monkeypatch):
     """A set with an oil for which models are built in."""
     file = tmp_path / f"{OIL}.json"
     file.write_text(model.model_dump_json())
-    monkeypatch.setattr(library, "oil_model_file", lambda name: file if name == OIL else None)
+    files = {OIL: file, SIMULATED: library.oil_model_file(SIMULATED)}
+    monkeypatch.setattr(library, "oil_model_file", files.get)
     return ep.load_case("talbot-2012").updated({"lubricant.oil": OIL, "planet.count": 4})
 
 
@@ -310,6 +312,9 @@ def test_recommendation_for_the_fluid_of_the_regression_and_for_an_unknown_oil()
     best, why = recommended(compare_friction(ep.load_case("talbot-2012")))
     assert best.name == "mixed-ehl"
     assert "made for this oil" in why
+    best, why = recommended(compare_friction(ep.load_case("talbot-2012-n6-polished")))
+    assert best.name == "mixed-ehl+pairing"
+    assert "unequal roughness" in why
     other = ep.load_case("talbot-2012-pair").updated({"lubricant.oil": "iso-vg-46-pao"})
     best, why = recommended(compare_friction(other))
     assert best.name == "schlenk"

@@ -28,6 +28,9 @@ __all__ = ["FrictionComparison", "compare_friction", "recommended"]
 
 MOSTLY = 0.5
 """Share of the loss outside its range up to which a model made for the oil is preferred. [1]"""
+UNEQUAL = 0.01
+"""Relative difference of sliding losses from which the pairing of the flanks matters. [1]"""
+PAIRED = "mixed-ehl+pairing"
 _FOR_ONE_OIL = ("mixed-ehl", FittedOrSchlenk.name, "xu-2007")
 """Models made for an oil, the one that is known best first."""
 _OF_ALL_OILS = ("schlenk", "niemann-winter")
@@ -134,8 +137,12 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
     """
     by_name = {row.name: row for row in rows}
     own = [by_name[name] for name in _FOR_ONE_OIL if name in by_name and by_name[name].own_oil]
+    paired = by_name.get(PAIRED)
     for row in own:
         if row.outside <= MOSTLY:
+            if row.name == "mixed-ehl" and paired is not None and _differ(row, paired):
+                why = "it was made for this oil, and tells flanks of unequal roughness apart"
+                return paired, f"{why}; {_inside(paired)}"
             fitted = row.name == FittedOrSchlenk.name
             made = "fitted to simulated contacts of" if fitted else "made for"
             return row, f"it was {made} this oil, and {_inside(row)}"
@@ -146,6 +153,11 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
     else:
         why += ", and no model was made for this oil ('epicyclic oil characterise' makes one)"
     return general, f"{why}; {_inside(general)}"
+
+
+def _differ(row: FrictionComparison, paired: FrictionComparison) -> bool:
+    """Whether the pairing of the flanks matters."""
+    return abs(paired.sliding - row.sliding) > UNEQUAL * row.sliding
 
 
 def _inside(row: FrictionComparison) -> str:
