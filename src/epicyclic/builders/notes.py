@@ -26,6 +26,7 @@ from epicyclic.geometry.assembly import are_evenly_spaced
 from epicyclic.geometry.gear import Gear
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
+from epicyclic.losses.standing import STANDING
 from epicyclic.oilmodel.builtin import changed_properties
 from epicyclic.results.result import LossTerm
 from epicyclic.units import GIGAPASCAL
@@ -109,7 +110,8 @@ def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:
     if uses_fit and case.models.oil_model is not None and model is not None and model.oil != oil:
         yield f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}."
     changed = changed_properties(oil, case.lubricant.pressure_viscosity_factor)
-    if model is None and changed:
+    asked = any(getattr(case.models, key, "") == "auto" for key in STANDING)
+    if model is None and changed and asked:
         yield (
             f"The models built in for {oil.name} are not used, because this oil differs from it in "
             f"{', '.join(changed)}; 'epicyclic oil characterise' fits models for it."
