@@ -89,10 +89,10 @@ def test_every_mistake_is_named(epicyclic):
 
 def test_laws_and_filters_that_lack_a_key_are_named(epicyclic):
     done = epicyclic(
-        *SMOOTH, "--set", "lubricant.pressure_law=two-slope", "--set", "surface1.cutoff=0.8 mm"
+        *SMOOTH, "--set", "lubricant.shear_law=carreau", "--set", "surface1.cutoff=0.8 mm"
     )
     assert done.returncode == 2
-    for key in ("second_slope", "transition_pressure", "surface1.cutoff"):
+    for key in ("shear_stress", "shear_exponent", "surface1.cutoff"):
         assert key in done.stderr
 
 
@@ -135,7 +135,9 @@ def test_the_how_to_shows_every_key():
 def test_keys_without_effect_are_refused(epicyclic, tmp_path):
     (tmp_path / "p.csv").write_text("".join(f"{n}, {n % 3}\n" for n in range(50)))
     changes = {
+        "lubricant.pressure_law": "barus",
         "lubricant.second_slope": "8 1/GPa",
+        "lubricant.slope_ratio": "0.37",
         "lubricant.shear_stress": "1 MPa",
         "surface1.skewness": "1",
         "surface2.profile": str(tmp_path / "p.csv"),
@@ -143,9 +145,10 @@ def test_keys_without_effect_are_refused(epicyclic, tmp_path):
     }
     done = epicyclic(*SMOOTH, *(f"--set={key}={value}" for key, value in changes.items()))
     assert done.returncode == 2
-    assert done.stderr.startswith("4 problems")
+    assert done.stderr.startswith("5 problems")
     for told in (
         "second_slope: is for two-slope only",
+        "slope_ratio: is for two-slope only",
         "shear_stress: is for limiting-stress and carreau only",
         "surface1.skewness: has no effect on a smooth surface",
         "surface2.correlation_length: is for a generated profile",

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from epicyclic.analysis.contact import solve_contact
-from epicyclic.case.contact import load_contact_case
+from epicyclic.case.contact import contact_model, load_contact_case
+from epicyclic.ehl.rheology import Roelands, TwoSlope
+from epicyclic.ehl.rough import AsperityContact
 
 CONTACT = {"radius": "10 mm", "hertz_pressure": "1 GPa", "rolling_speed": "10 m/s",
            "slide_to_roll_ratio": 0.2}  # fmt: skip
@@ -168,3 +170,30 @@ def test_progress_ends_at_what_was_expected():
     assert all(done <= expected <= 1024 for done, expected in calls)
     assert calls[-1] == (len(calls), len(calls))
     assert result.status == "converged"
+
+
+def test_a_preset_fills_in_what_is_not_given():
+    tables = {
+        "contact": {"radius": "7 mm", "hertz_pressure": "1.1 GPa", "rolling_speed": "6 m/s"},
+        "lubricant": {"oil": "iso-vg-100-mineral", "temperature": "80 degC"},
+    }
+    usual = contact_model(load_contact_case(tables))
+    alpha = usual.contact.oil.pressure_law.alpha
+    assert usual.contact.oil.pressure_law == TwoSlope(alpha, 0.41 * alpha, 0.38e9)
+    assert usual.asperities == AsperityContact(pytest.approx(40e-9), 0.12)
+    before = contact_model(load_contact_case(tables | {"preset": "as-published"}))
+    assert before.contact.oil.pressure_law == Roelands(alpha)
+    assert before.asperities == AsperityContact(pytest.approx(20e-9), 0.10)
+    given = contact_model(
+        load_contact_case(tables | {"preset": "as-published"}, {"asperities.friction": 0.07})
+    )
+    assert given.asperities.friction == 0.07
+
+
+def test_creeping_contacts_are_no_result():
+    creeping = solved(
+        contact={"rolling_speed": "0.005 m/s", "slide_to_roll_ratio": 0.3},
+        surface1={"roughness": "0.1 um"},
+        numerics={"most_blocks": 6},
+    )
+    assert any("below 0.01 m/s" in warning for warning in creeping.warnings)
