@@ -144,7 +144,8 @@ COMMAND = (
 def test_files_hold_the_map(data, tmp_path, epicyclic, coarse_options, suffix):
     output = tmp_path / f"map.{suffix}"
     done = epicyclic(*COMMAND, *coarse_options, "-o", str(output))
-    assert (done.returncode, done.stderr) == (0, "")
+    assert done.returncode == 0
+    assert done.stderr.startswith("Interpolated linear in the torque, the total loss is off by")
     assert done.stdout == f"Wrote 30 points to {output}.\n"
     assert names_in(tmp_path) == [output.name]
     if suffix == "nc":
