@@ -230,8 +230,9 @@ def test_every_table_may_be_something_else(name, value):
     tables = builtin_case("talbot-2012") | {name: value}
     problems = problems_of(read_case, tables)
     problem = next(problem for problem in problems if problem.key == name)
-    assert problem.allowed == "must be a table of keys."
-    assert f"[{name}]" in problem.remedy
+    what = "names" if name == "uncertainty" else "keys"
+    assert problem.allowed == f"must be a table of {what}."
+    assert f"[{name}" in problem.remedy
 
 
 def test_a_misspelt_key_counts_as_the_one_that_was_meant():

@@ -81,7 +81,9 @@ def test_without_torque_there_is_nothing_to_show(talbot):
 
 def test_the_most_loaded_planet_is_shown(talbot):
     changes = {"load_sharing.method": "mesh-load-factor", "load_sharing.mesh_load_factor": 1.2}
-    even, uneven = (ep.mesh_details(case) for case in (talbot, talbot.updated(changes)))
+    # with losses the loads of a set depend on how its planets share them, a little
+    without = talbot.updated({"models.mesh_loads": "without-losses"})
+    even, uneven = (ep.mesh_details(case) for case in (without, without.updated(changes)))
     for key, mesh in uneven.items():
         assert mesh.attrs["force_N"] == pytest.approx(1.2 * even[key].attrs["force_N"])
 

@@ -155,7 +155,8 @@ def test_damaged_and_other_tables_are_refused(table, tmp_path, old, new, said):
 def test_file_is_found_from_the_folder_of_the_case(file):
     path = file.with_name("case.toml")
     text = (files("epicyclic") / "library/cases/talbot-2012-pair.toml").read_text("utf-8")
-    path.write_text(f'{text}\n[models]\npocketing_table = "pockets.nc"\n', encoding="utf-8")
+    named = text.replace("[models]\n", '[models]\npocketing_table = "pockets.nc"\n')
+    path.write_text(named, encoding="utf-8")
     assert "table pockets.nc" in pocketing(ep.load_case(path, COARSE)).method
 
 

@@ -97,5 +97,5 @@ def test_a_train_of_one_set_is_that_set():
             one.flow.members["carrier"].torque, rel=SAME
         )
         assert other.meshes["S.sun_mesh"].film_ratio_min == pytest.approx(
-            one.meshes["sun_mesh"].film_ratio_min, nan_ok=True, abs=0
+            one.meshes["sun_mesh"].film_ratio_min, nan_ok=True, rel=SAME
         )
