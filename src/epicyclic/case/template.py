@@ -60,7 +60,9 @@ def case_template(kind: str) -> str:
         f"A case file of epicyclic, kind {kind}, filled in with the built-in case {name}.",
         "Every dimensional value carries its unit. Keys behind a # have defaults.",
     ]
-    return case_text(library.builtin_case(name), head)
+    # a case of one's own starts from the default models
+    example = {key: table for key, table in library.builtin_case(name).items() if key != "models"}
+    return case_text(example, head)
 
 
 def case_text(
