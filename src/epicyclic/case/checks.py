@@ -41,7 +41,7 @@ from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.stored import read_stored
 from epicyclic.units import BAR
 
-__all__ = ["check_bore", "check_cage", "check_rollers", "cross_check"]
+__all__ = ["check_bore", "check_cage", "check_oil_model", "check_rollers", "cross_check"]
 
 MOST_COEFFICIENTS = 5_000_000
 """Largest number of influence coefficients for each contact line: 40 MB, for three lines 120 MB."""
@@ -65,7 +65,8 @@ def cross_check(
     models = sections.get("models")
     if isinstance(models, GearPairModels):
         problems += _check_friction_model(models, {*given, *sections})
-        problems += _check_oil_model(models, folder, sections.get("lubricant"))
+        if "lubricant" in sections or models.oil_model is not None:  # a train has that of its sets
+            problems += check_oil_model(models, folder, sections.get("lubricant"))
         problems += _check_pocketing_table(models, folder)
     solver = sections.get("contact_solver")
     if isinstance(solver, ContactSolver):
@@ -270,9 +271,7 @@ def _check_friction_model(models: GearPairModels, given: Collection[str]) -> lis
     ]
 
 
-def _check_oil_model(
-    models: GearPairModels, folder: Path, lubricant: Table | None
-) -> list[Problem]:
+def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> list[Problem]:
     """A fitted model needs its file or one built in for the oil, and in it what is asked of it."""
     needed = {"friction": "friction", "rolling": "rolling_loss", "bearing": "bearing_rolling_loss"}
     asked = {

@@ -116,6 +116,9 @@ class TableWriter:
         doc = (table.__doc__ or "").strip().splitlines()[0]
         mark = "" if values or field.is_required() else "# "
         lines = ["", f"{mark}[{key}]".ljust(COMMENT_COLUMN) + f"# {self.about.get(key, doc)}"]
+        if dict_value(field.annotation) is not None:
+            lines += [f"{toml_key(name)} = {toml_value(value)}" for name, value in values.items()]
+            return [*lines, *(f'# "NAME" = {{ {name} = ... }}' for name in table.model_fields)]
         for name, inner in table.model_fields.items():
             lines += self._field_lines(key, name, inner, values)
         return lines

@@ -6,8 +6,11 @@ Every function returns the problems it finds; none stops at the first.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from epicyclic.case.checks import check_oil_model
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.thermal_checks import check_outlet
 from epicyclic.case.train_shape import TrainShape
@@ -39,6 +42,7 @@ def operation_problems(train: TrainCase, shape: TrainShape) -> list[Problem]:
     problems += _position_problems(train, shape)
     problems += check_outlet(train.thermal, operation.oil_inlet_temperature)
     problems += _temperature_problems(train)
+    problems += _oil_model_problems(train)
     if problems:
         return problems
     problems += _ends_problems(train, shape)
@@ -68,6 +72,16 @@ def _temperature_problems(train: TrainCase) -> list[Problem]:
             )
         )
     return found
+
+
+def _oil_model_problems(train: TrainCase) -> list[Problem]:
+    """Sets that ask for fitted models of an oil that has none; those with a file have told."""
+    return [
+        replace(problem, key=f"sets.{name}.{problem.key}")
+        for name, table in train.sets.items()
+        if isinstance(table, PlanetarySet | PairSet | ListedSet) and table.models.oil_model is None
+        for problem in check_oil_model(table.models, Path(), train.lubricant)
+    ]
 
 
 def state_problems(key: str, state: StateTable, shape: TrainShape) -> list[Problem]:
