@@ -212,7 +212,10 @@ def _inline(value):
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ({"models.friction": "fitted"}, "needs a file"),
+        (
+            {"models.friction": "fitted", "lubricant.oil": "iso-vg-68-mineral"},
+            "needs a file",
+        ),
         ({"models.friction": "fitted", "models.oil_model": "none.json"}, "cannot be read"),
         ({"models.bearing": "fitted"}, "no bearing rolling loss"),
         ({"models.friction": "fitted", "models.fitted_form": "regression"}, "form regression"),
@@ -307,12 +310,11 @@ def test_laws_of_the_contact_solver_have_all_they_need():
     case = ep.load_case("talbot-2012-pair")
     with pytest.raises(ep.InputError) as caught:
         case.updated(
-            {"contact_solver.pressure_law": "two-slope", "contact_solver.shear_exponent": 0.5}
+            {"contact_solver.shear_law": "limiting-stress", "contact_solver.shear_exponent": 0.5}
         )
     found = {problem.key: problem.allowed for problem in caught.value.problems}
     assert found == {
-        "contact_solver.second_slope": "is missing; two-slope needs it.",
-        "contact_solver.transition_pressure": "is missing; two-slope needs it.",
+        "contact_solver.shear_stress": "is missing; limiting-stress needs it.",
         "contact_solver.shear_exponent": "is for carreau only.",
     }
 
