@@ -60,7 +60,8 @@ _WITHOUT_POWER = (
 )
 _BOUNDED = (
     "The incompressible flow through pockets is bounded at the pressure of a void and solved by "
-    "another method, which changes its loss where no void forms by up to 2 %."
+    "another method, which changes its loss where no void forms by up to 2 % at the default "
+    "resolution, and by up to 4.4 % at coarser ones."
 )
 _INCOMPRESSIBLE = """
     pair-001 pair-020 pair-031 pair-040 pair-049 pair-069 pair-082 pair-096 pair-099
