@@ -119,7 +119,7 @@ def test_full_complement_bearings_keep_their_own_formula(case):
 @pytest.mark.parametrize(
     ("changes", "named"),
     [
-        ({"lubricant.oil": "iso-vg-220-pao"}, ""),
+        ({"lubricant.oil": "iso-vg-46-pao"}, ""),
         ({"lubricant.pressure_viscosity_factor": 1.07}, "pressure_viscosity_factor"),
     ],
 )
