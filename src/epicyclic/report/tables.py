@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from epicyclic.analysis.compare import FrictionComparison, recommended
+from epicyclic.case.wording import sentence
 from epicyclic.losses.validity import share_text
 from epicyclic.records.contents import ResultContents, contents_of
 from epicyclic.report import page
@@ -211,7 +212,9 @@ def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
         f"Spread: {low:.1f} to {high:.1f} W" + (f", a factor of {high / low:.2f}." if low else ".")
     )
     best, why = recommended(rows)
-    advice = Text.assemble(("Recommended: ", "bold"), f"{best.name}: {why}. {best.standing}.")
+    advice = Text.assemble(
+        ("Recommended: ", "bold"), f"{best.name}: {why}. {sentence(best.standing)}"
+    )
     lists = [
         _list("Out of range, and for another oil", [it for row in rows for it in _left(row)]),
         _list("How well they are known", [f"{row.name}: {row.standing}" for row in rows]),
