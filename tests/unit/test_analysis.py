@@ -90,13 +90,12 @@ def test_estimated_mass_is_told_where_it_matters(case):
 
 def test_defaults_of_the_models_follow_the_oil(case):
     assert resolve_models(case)["friction"] == "mixed-ehl"
-    other = case.updated({"lubricant.oil": "iso-vg-100-mineral"})
-    chosen = resolve_models(other)
-    assert [chosen[key] for key in ("friction", "rolling", "bearing")] == [
-        "schlenk",
-        "goksem-hargreaves",
-        "palmgren",
-    ]
+    keys = ("friction", "rolling", "bearing")
+    formulas = ["schlenk", "goksem-hargreaves", "palmgren"]
+    fitted = resolve_models(case.updated({"lubricant.oil": "iso-vg-100-mineral"}))
+    assert [fitted[key] for key in keys] == [f"fitted-or-{name}" for name in formulas]
+    chosen = resolve_models(case.updated({"lubricant.oil": "iso-vg-46-mineral"}))
+    assert [chosen[key] for key in keys] == formulas
 
 
 def test_a_regression_used_for_another_oil_is_noted(case):

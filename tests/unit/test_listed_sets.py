@@ -255,8 +255,8 @@ def test_notes_on_flanks_and_rings_carry_the_key_of_their_gear():
 
 def test_models_of_a_listed_set_are_shown():
     models = ep.solve(ep.load_case(listed_trains.ravigneaux())).models
-    assert models["S.friction"] == "schlenk"
-    assert models["S.bearing"] == "palmgren"
+    assert models["S.friction"] == "fitted-or-schlenk"
+    assert models["S.bearing"] == "fitted-or-palmgren"
     assert "S.bearing" not in ep.solve(ep.load_case(listed_trains.layshaft())).models
 
 

@@ -245,7 +245,7 @@ def test_leaving_a_range_is_flagged_and_said(talbot, changes, quantity):
 
 
 def test_own_oil_of_the_regression_is_told_apart(talbot):
-    other = ep.solve(talbot.updated({"lubricant.oil": "iso-vg-100-mineral"}))
+    other = ep.solve(talbot.updated({"lubricant.oil": "iso-vg-46-mineral"}))
     assert other.models["friction"] == "schlenk"
     assert other.models["bearing"] == "palmgren"
     assert other.models["rolling"] == "goksem-hargreaves"
