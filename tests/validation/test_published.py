@@ -16,6 +16,8 @@ from epicyclic.validation.compare import by_topic, compare_published, published_
 from epicyclic.validation.compute import FIGURES
 
 KNOWN_DIFFERENCES = {
+    # the default flow is not that of the source: theory manual, pocketing
+    "the same with an incompressible mixture above the pressure of a void (the default)",
     # the loss at the lowest share of the input power is predicted too high: docs, validation
     *(
         f"smallest load-dependent loss over input power of the {count}-planet tests, shaved, "

@@ -176,6 +176,7 @@ def test_plus_set_that_cannot_be_driven_back_is_self_locking():
     for name, (count, shift) in teeth.items():
         own["gears"][name] |= {"teeth": count, "profile_shift_coefficient": shift}
     own["gears"]["center_distance"] = "150 mm"
+    own["models"] = own.get("models", {}) | {"friction": "schlenk"}
     driven = solved(tables)
     assert driven.train.ratio == pytest.approx(-9999)
     assert 0 <= driven.efficiency < 0.1
@@ -188,6 +189,10 @@ def test_plus_set_that_cannot_be_driven_back_is_self_locking():
 
 def test_planet_that_carries_more_heats_its_meshes_more():
     tables = listed_trains.stepped()
+    own = tables["sets"]["S"]
+    own["models"] = own.get("models", {}) | {"friction": "schlenk", "bearing": "palmgren"}
+    for name in ("wide", "narrow"):
+        own["gears"][name]["mass"] = "0 kg"
     even = solved(tables)
     tables["sets"]["S"]["load_sharing"] = {"method": "mesh-load-factor", "mesh_load_factor": 1.4}
     uneven = solved(tables)

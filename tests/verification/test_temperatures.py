@@ -137,7 +137,9 @@ def test_flank_rises_by_the_flash_of_its_own_meshes():
     ],
 )
 def test_formulas_fitted_by_the_oil_take_the_oil(friction, changes_it):
-    case = ep.load_case(planetary()).updated({"models.friction": friction})
+    case = ep.load_case(planetary()).updated(
+        {"models.friction": friction, "models.mesh_loads": "without-losses"}
+    )
     cold, warm = ep.solve(case), ep.solve(case.updated({"models.temperatures": "flank"}))
     told = [note for note in warm.warnings if "by the temperature of their oil" in note]
     assert bool(told) is not changes_it

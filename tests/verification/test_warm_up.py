@@ -116,9 +116,10 @@ def test_the_course_ends_in_the_steady_state(warmed):
     case, data = warmed
     steady = ep.solve(case.updated({"models.temperatures": "network"}))
     wanted = np.array([steady.heat.temperatures[node] for node in data["node"].values]) - 273.15
-    assert data["temperature"].values[-1] == pytest.approx(wanted, abs=0.02)  # asked for: 0.1 K
-    assert data["settled_temperature"].values == pytest.approx(wanted, abs=0.02)
-    assert float(data["total_loss"][-1]) == pytest.approx(steady.total, rel=1e-3)
+    assert data["temperature"].values[-1] == pytest.approx(wanted, abs=0.1)  # what is asked for
+    assert data["settled_temperature"].values == pytest.approx(wanted, abs=0.1)
+    # interpolated between losses at every 20 K, which fitted models leave with a bend
+    assert float(data["total_loss"][-1]) == pytest.approx(steady.total, rel=2e-3)
     assert float(data["efficiency"][-1]) == pytest.approx(steady.efficiency, abs=1e-4)
 
 
