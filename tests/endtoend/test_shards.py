@@ -260,14 +260,14 @@ def test_tables_of_flows_do_not_depend_on_which_points_read_them(coarse_talbot):
         "planet.count": [3, 4],
         "operation.torque": ["-100 N*m", "500 N*m"],
     }
-    plan = make_plan(coarse_talbot, vary)
+    plan = make_plan(coarse_talbot.updated({"models.pocketing": "isentropic"}), vary)
     whole = plan.prepared(plan.order(), None).flow_tables
     assert len(whole) >= 4  # two meshes, driving and coasting
     last = plan.prepared(share_of(plan, (4, 4))[-1:], None).flow_tables
     assert 0 < len(last) < len(whole)
     for family, table in last.items():
         assert np.array_equal(table.number, whole[family].number)
-        assert np.array_equal(table.scaled, whole[family].scaled)
+        assert np.array_equal(table.scaled, whole[family].scaled, equal_nan=True)
         assert np.array_equal(table.readable, whole[family].readable)
         assert table.error == whole[family].error
 
