@@ -74,8 +74,8 @@ _WARNINGS = (
     "concern less than one per cent of the loss share one sentence."
 )
 _FITTED = (
-    "Oils with models fitted to simulated contacts take them where auto is asked; they took formulas "
-    "from gear tests."
+    "Oils with models fitted to simulated contacts take them where auto is asked; they took "
+    "formulas from gear tests."
 )
 EXCEPTIONS: dict[str, str] = {
     **{
