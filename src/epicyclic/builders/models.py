@@ -181,7 +181,7 @@ def fitted_oil_model(case: SetCase) -> OilModel | None:
     """The fitted models that the case names, or those built in for its oil; None without either."""
     if case.models.oil_model is not None:
         return read_oil_model(case.folder / case.models.oil_model)
-    return builtin_model(case.lubricant.oil, case.lubricant.pressure_viscosity_factor)
+    return builtin_model(case.lubricant.oil)
 
 
 def _given_oil_model(case: SetCase) -> OilModel:

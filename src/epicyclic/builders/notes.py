@@ -109,7 +109,7 @@ def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:
     uses_fit = any("fitted" in name for name in models.values())
     if uses_fit and case.models.oil_model is not None and model is not None and model.oil != oil:
         yield f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}."
-    changed = changed_properties(oil, case.lubricant.pressure_viscosity_factor)
+    changed = changed_properties(oil)
     asked = any(getattr(case.models, key, "") == "auto" for key in STANDING)
     if model is None and changed and asked:
         yield (

@@ -307,7 +307,7 @@ def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) ->
         return read_oil_model(folder / models.oil_model)
     if not isinstance(lubricant, Lubricant):
         return None
-    return builtin_model(lubricant.oil, lubricant.pressure_viscosity_factor)
+    return builtin_model(lubricant.oil)
 
 
 def _check_pocketing_table(models: GearPairModels, folder: Path) -> list[Problem]:

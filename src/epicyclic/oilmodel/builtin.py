@@ -23,15 +23,16 @@ _SIMULATED = (
 """Properties that a solved contact depends on."""
 
 
-def builtin_model(oil: Oil, pressure_viscosity_factor: float = 1.0) -> OilModel | None:
+def builtin_model(oil: Oil) -> OilModel | None:
     """The models of a library oil; None if there are none, or the oil is not that of the library.
+
+    `lubricant.pressure_viscosity_factor` of a case makes no other oil: the coefficient is a
+    condition of every contact, and the domain of the fits tells how far it may be off.
 
     Parameters
     ----------
     oil : Oil
         One that only bears the name, or of which a property was changed, has no models.
-    pressure_viscosity_factor : float
-        Of the case. [1]
 
     Examples
     --------
@@ -47,25 +48,24 @@ def builtin_model(oil: Oil, pressure_viscosity_factor: float = 1.0) -> OilModel 
     True
     """
     file = library.oil_model_file(oil.name)
-    if file is None or _changed(oil, file, pressure_viscosity_factor):
+    if file is None or _changed(oil, file):
         return None
     return _read(file)
 
 
-def changed_properties(oil: Oil, pressure_viscosity_factor: float = 1.0) -> tuple[str, ...]:
+def changed_properties(oil: Oil) -> tuple[str, ...]:
     """Properties in which an oil differs from the one of its name that was simulated.
 
     Wherever their values are from; none if no oil of this name was.
     """
     file = library.oil_model_file(oil.name)
-    return () if file is None else _changed(oil, file, pressure_viscosity_factor)
+    return () if file is None else _changed(oil, file)
 
 
 @lru_cache(maxsize=64)
-def _changed(oil: Oil, file: Path, factor: float) -> tuple[str, ...]:
+def _changed(oil: Oil, file: Path) -> tuple[str, ...]:
     own, simulated = map(_numbers, (oil, _read(file).oil))
-    changed = tuple(name for name in _SIMULATED if own[name] != simulated[name])
-    return changed if factor == 1 else (*changed, "pressure_viscosity_factor")
+    return tuple(name for name in _SIMULATED if own[name] != simulated[name])
 
 
 @lru_cache(maxsize=64)
