@@ -19,7 +19,7 @@ from epicyclic.plots.catalogue import available, figure_of
 from epicyclic.plots.power_flow import SLIDE
 from epicyclic.report.state_tables import state_tables
 from epicyclic.report.tables import friction_table, result_tables
-from trains import plus, published, simple, small_axle, turned_round
+from trains import one_set, plus, published, simple, small_axle, turned_round
 
 GEARS = "235R"
 """One with brakes only, one with a locked set, one with all sets at work, one with a loop."""
@@ -83,6 +83,26 @@ def test_self_locking_is_said_at_the_top():
     train = turned_round(plus(99, 100, 101, 100, "B", ("carrier", "A"), 0.99))
     text = printed(result_tables(ep.solve(ep.load_case(train))))
     assert "Self-locking: out cannot drive in" in text.partition("Losses")[0]
+
+
+def test_a_train_that_is_jammed_is_said_to_stand_still():
+    gears = {
+        "sun": {"teeth": 57},
+        "ring": {"teeth": 137, "internal": True},
+        "second_ring": {"teeth": 140, "internal": True},
+        "wide": {"teeth": 23, "body": "planet"},
+        "narrow": {"teeth": 38, "body": "planet"},
+    }
+    meshes = [["sun", "wide"], ["narrow", "ring"], ["wide", "second_ring"]]
+    train = one_set(gears, meshes, "second_ring", ("carrier", "ring"), 0.46)
+    train["operation"]["torque"] = "-30 N*m"
+    result = ep.solve(ep.load_case(train))
+    told = result.to_dict()
+    assert told["jammed"]
+    assert told["self_locking"]
+    text = printed(result_tables(result)).partition("Losses")[0]
+    assert "cannot turn the train, which stands still" in text
+    assert "must be driven too" not in text
 
 
 def test_a_train_without_circulation_has_no_sentence_on_it():

@@ -241,6 +241,7 @@ def _train(case: Case, built: Built, solution: Solution) -> Train | None:
             for name, taken in stage_torques(built.machine, solution).items()
         },
         self_locking=solution.self_locking,
+        jammed=solution.jammed,
         input=ends[0],
         output=ends[1],
     )

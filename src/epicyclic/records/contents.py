@@ -218,6 +218,7 @@ class ResultContents(_Part):
     ratio: float | None = None
     power_ratio: float | None = None
     self_locking: bool = False
+    jammed: bool = False
     rolling_power: dict[str, float] = {}
     clutches: dict[str, float] = {}
     stage_torques: dict[str, dict[str, float]] = {}

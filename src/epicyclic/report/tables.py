@@ -95,8 +95,8 @@ def _headline(contents: ResultContents) -> Group:
     """Operating point and key figures."""
     found = [f"{one.label} {one.cell.text} {one.unit}".rstrip() for one in key_figures(contents)]
     lines: list[RenderableType] = [Text(operation_line(contents)), Columns(found, padding=(0, 3))]
-    if contents.self_locking:
-        lines.append(Text(locking_text(contents.input, contents.output), style="bold"))
+    if locking := locking_text(contents):
+        lines.append(Text(locking, style="bold"))
     return Group(*lines)
 
 

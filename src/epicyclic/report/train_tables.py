@@ -75,8 +75,7 @@ def sums_table(result: ResultContents) -> Table:
     rows.append((Cell("total"), *whole, *ending(result.total, "total")))
     head = ("", *columns, "total", *(() if wide else ("of total",)), "of input")
     strong = frozenset([len(rows) - 1])
-    note = locking_text(result.input, result.output) if result.self_locking else ""
-    return Table(head, tuple(rows), "Losses in W, by set and part", strong, note)
+    return Table(head, tuple(rows), "Losses in W, by set and part", strong, locking_text(result))
 
 
 def shafts_table(result: ResultContents) -> Table:
@@ -186,12 +185,16 @@ def _loss(result: ResultContents, stage: str) -> Cell:
     return number(watts, f"stages.{stage}", text="" if watts is None else shown(watts))
 
 
-def locking_text(driven: str, output: str) -> str:
-    """That no power arrives, in a sentence."""
-    return (
-        f"Self-locking: {driven} cannot drive {output}; the losses take all power, and {output} "
-        "must be driven too."
-    )
+def locking_text(result: ResultContents) -> str:
+    """That no power arrives, in a sentence; empty where some does."""
+    if result.jammed:
+        return f"Self-locking: {result.input} cannot turn the train, which stands still."
+    if result.self_locking:
+        return (
+            f"Self-locking: {result.input} cannot drive {result.output}; the losses take all "
+            f"power, and {result.output} must be driven too."
+        )
+    return ""
 
 
 def _circulation_text(rolling: Mapping[str, float], input_power: float) -> str:

@@ -178,6 +178,8 @@ class Train:
         the shaft it is the power that enters there. [N m]
     self_locking : bool
         True if the output must be driven too.
+    jammed : bool
+        True if not even that helps: the train stands still under its torque.
     input, output : str
         Shafts.
     """
@@ -189,6 +191,7 @@ class Train:
     clutches: Mapping[str, float]
     stages: Mapping[str, Mapping[str, float]]
     self_locking: bool
+    jammed: bool
     input: str
     output: str
 
@@ -402,6 +405,7 @@ class Result:
             "ratio": train.ratio,
             "power_ratio": train.power_ratio,
             "self_locking": train.self_locking,
+            "jammed": train.jammed,
             "shafts": _members_dict(self.flow),
             "rolling_power": dict(train.rolling),
             "clutches": dict(train.clutches),
