@@ -102,20 +102,56 @@ def test_eyring_friction_of_constant_viscosity_has_a_closed_form():
     assert light == pytest.approx(expected * flatter, rel=1e-4)
 
 
-@pytest.mark.parametrize("quantity", ["friction", "rolling_loss"])
-def test_the_structured_forms_never_fall_with_the_roughness(quantity):
-    form = FORMS[quantity]["structured"]
-    rng = np.random.default_rng(3)
+def random_coefficients(form, count=50):
+    """Within the bounds of a form, and not far from one."""
     low, high = (np.maximum(np.minimum(limit, 3), -3) for limit in (form.low, form.high))
-    for _ in range(50):
-        coefficients = low + (high - low) * rng.random(form.size)
-        values = [
-            form.value(states(20, roughness1=rough, roughness2=rough), coefficients)
-            for rough in (1e-8, 1e-7, 3e-7, 1e-6, 1e-5)
-        ]
-        for smoother, rougher in pairwise(values):
+    return low + (high - low) * np.random.default_rng(3).random((count, form.size))
+
+
+def with_roughness(form, coefficients):
+    """Values of both surfaces smooth to rough, a row each."""
+    roughness = (1e-8, 1e-7, 3e-7, 1e-6, 1e-5)
+    return [
+        form.value(states(20, roughness1=rough, roughness2=rough), coefficients)
+        for rough in roughness
+    ]
+
+
+def test_the_structured_rolling_loss_never_falls_with_the_roughness():
+    form = FORMS["rolling_loss"]["structured"]
+    for coefficients in random_coefficients(form):
+        for smoother, rougher in pairwise(with_roughness(form, coefficients)):
             assert (rougher >= smoother).all()
             assert np.isfinite(rougher).all()
+
+
+def test_roughness_adds_to_the_structured_friction_where_smooth_surfaces_do_not_touch():
+    form = FORMS["friction"]["structured"]
+    contacts = states(20)
+    film = contacts.film_ratio * contacts.composite_roughness / 40e-9
+    at = form.labels.index("film at which surfaces touch, over 40 nm")
+    seen = np.zeros(2)
+    for coefficients in random_coefficients(form):
+        touching = film < coefficients[at]
+        seen += touching.sum(), (~touching).sum()
+        for smoother, rougher in pairwise(with_roughness(form, coefficients)):
+            assert (rougher[~touching] >= smoother[~touching]).all()
+            assert (rougher[touching] <= smoother[touching]).all()
+            assert np.isfinite(rougher).all()
+    assert (seen > 30).all()
+
+
+def test_the_structured_friction_of_asperities_never_falls_as_the_film_becomes_thinner():
+    form = FORMS["friction"]["structured"]
+    # a film of no friction, so that asperities are all there is
+    for coefficients in random_coefficients(form):
+        coefficients[:3] = 0.0, 0.0, -40.0
+        coefficients[form.labels.index("exponent of the flattening")] = 0.0
+        thick, thin = (
+            form.value(states(20, dynamic_viscosity=viscosity), coefficients)
+            for viscosity in (0.02, 0.002)
+        )
+        assert (thin >= thick - 1e-15).all()  # the film's
 
 
 @pytest.mark.parametrize("quantity", sorted(FORMS))
@@ -233,7 +269,7 @@ def test_every_condition_that_is_held_is_flagged(talbot):
     ("damage", "told"),
     [
         (lambda text: text[: len(text) // 2], "no sound oil model"),
-        (lambda text: text.replace("oil model 2", "oil model 7"), "format"),
+        (lambda text: text.replace("oil model 3", "oil model 7"), "format"),
         (lambda text: text.replace('"form":"structured"', '"form":"other"'), "other"),
         (lambda text: text.replace('"lubricant"', '"fluid"'), "no oil"),
         (lambda text: text.replace('"radius":', '"size":'), "domain"),

@@ -36,7 +36,7 @@ __all__ = [
 FloatArray = NDArray[np.float64]
 Form = Regression | Structured
 
-FORMAT: Literal["epicyclic oil model 2"] = "epicyclic oil model 2"
+FORMAT: Literal["epicyclic oil model 3"] = "epicyclic oil model 3"
 """Name and version of the file format."""
 FORMS: dict[str, dict[str, Form]] = {
     "friction": {form.name: form for form in (STRUCTURED_FRICTION, FRICTION_REGRESSION)},
@@ -140,7 +140,7 @@ class OilModel(_Data):
         By quantity, the keys of `FORMS`.
     """
 
-    format: Literal["epicyclic oil model 2"]
+    format: Literal["epicyclic oil model 3"]
     version: str
     settings: dict[str, Any]
     designs: tuple[dict[str, Any], ...]

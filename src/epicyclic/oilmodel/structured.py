@@ -2,9 +2,9 @@
 
 Friction is that of a sheared film and of the asperities that touch through it, rolling loss that
 of a smooth contact times what the roughness adds. Both have few coefficients, each with a meaning,
-and neither falls when the film becomes thinner than the roughness. Both see the roughness of each
-surface: a polished one keeps the ridges of the other from meeting any, and a rough surface that
-moves slower than the oil touches more than one that moves faster.
+and neither falls when the film becomes thinner. Both see the roughness of each surface: a polished
+one keeps the ridges of the other from meeting any, and a rough surface that moves slower than the
+oil touches more than one that moves faster.
 """
 
 from __future__ import annotations
@@ -39,8 +39,10 @@ LIGHT_LOAD = 0.6
 """M of Moes at which the pressure is half that of Hertz, found for smooth contacts. [1]"""
 HALF_WIDTH = 0.2e-3
 """Unit of the half-width. [m]"""
-FINE = 100e-9
-"""Unit of the film that counts as roughness. [m]"""
+TOUCHING = 40e-9
+"""Unit of the film at which surfaces touch: that of the default of the solver. [m]"""
+CORRELATION_LENGTH = 20e-6
+"""Length over which roughness is alike, that of the simulations. [m]"""
 SAME_MOTION = 0.1
 """Slide-to-roll ratio at which half of the effect of which surface is faster is there. [1]"""
 
@@ -162,24 +164,35 @@ def _faster(states: LineContacts) -> FloatArray:
     return difference
 
 
+def _flattened(states: LineContacts) -> FloatArray:
+    """The group by which a contact flattens its roughness, nabla. Theory (O14). [1]"""
+    shortest = CORRELATION_LENGTH / states.hertz_half_width
+    viscosity = states.material_number * (2 * states.speed_number) ** 0.25
+    group: FloatArray = shortest * np.sqrt(states.moes_load**1.5 / viscosity)
+    return group
+
+
 def _friction(states: LineContacts, c: FloatArray) -> FloatArray:
     """A sheared film and, the more the thinner it is, touching asperities. Theory (O5). [1]"""
-    stress, light, factor, pairing, faster, fine, ratio, load, width, steep, dry, wide, slip = c
+    stress, light, factor, flat, pairing, faster, steep, wide_part, touching, level = c[:10]
+    dry, wide, slip = c[10:]
     film = math.exp(factor) * eyring_friction(
         states, EYRING_STRESS * math.exp(stress), math.exp(light)
     )
-    half_width = states.hertz_half_width / HALF_WIDTH
-    roughness = np.maximum(states.composite_roughness, TINY)
-    thickness = (
-        states.film_ratio
-        * np.hypot(1, fine * FINE / roughness) ** -1
+    composite = np.maximum(states.composite_roughness, TINY)
+    roughness = (
+        composite
+        * _flattened(states) ** -flat
+        * _pairing(states) ** pairing
         * np.exp(faster * _faster(states))
-        * _pairing(states) ** -pairing
     )
-    even = math.exp(ratio) * states.moes_load**load * half_width**width
-    share = 1 / (1 + (thickness / even) ** steep)
-    touching = dry * half_width**wide * (states.slide_to_roll_ratio + SMALLEST_SLIP) ** slip
-    friction: FloatArray = film + np.maximum(touching - film, 0.0) * share
+    gap = (states.film_ratio * states.composite_roughness - touching * TOUCHING) / roughness
+    width = math.exp(wide_part)
+    odds = level - math.exp(steep) * width * np.arcsinh(gap / width)
+    half_width = states.hertz_half_width / HALF_WIDTH
+    asperities = dry * half_width**wide * (states.slide_to_roll_ratio + SMALLEST_SLIP) ** slip
+    share = (1 + np.tanh(odds / 2)) / 2
+    friction: FloatArray = film + np.maximum(asperities - film, 0.0) * share
     return friction
 
 
@@ -208,18 +221,18 @@ def _rolling(states: LineContacts, c: FloatArray) -> FloatArray:
 
 STRUCTURED_FRICTION = Structured(
     name="structured",
-    title="Eyring film, and asperities by film ratio and pairing",
+    title="Eyring film, and asperities by film and flattened roughness",
     labels=(
         "ln of the Eyring stress over 5 MPa", "ln of the load number at half the pressure",
-        "ln of the film's factor", "exponent of the pairing", "exponent of the faster roughness",
-        "film that counts as roughness, over 100 nm", "ln of the film ratio of even shares",
-        "exponent of the load number in that ratio", "exponent of the half-width in it",
-        "steepness of the shares", "friction where all is dry, at a half-width of 0.2 mm",
+        "ln of the film's factor", "exponent of the flattening", "exponent of the pairing",
+        "exponent of the faster roughness", "ln of the steepness of the shares",
+        "ln of the range of even steepness", "film at which surfaces touch, over 40 nm",
+        "ln of the odds of touching there", "friction where all is dry, at a half-width of 0.2 mm",
         "exponent of the half-width in it", "exponent of the slip in it",
     ),
-    start=(0.0, -0.5, 0.0, 0.2, 0.0, 1.0, -1.0, 0.0, 0.0, 2.0, 0.06, 0.0, 0.0),
-    low=(-3.0, -3.0, -2.0, 0.0, -1.0, 0.0, -8.0, -2.0, -2.0, 0.2, 0.0, -2.0, -1.0),
-    high=(3.0, 2.0, 2.0, 3.0, 1.0, 10.0, 3.0, 2.0, 2.0, 8.0, 1.0, 2.0, 1.0),
+    start=(0.2, -0.8, -0.2, 0.4, 0.2, 0.0, 2.0, 1.0, 0.75, 0.0, 0.06, -0.2, -0.1),
+    low=(-3.0, -3.0, -2.0, 0.0, 0.0, -1.0, -3.0, -2.0, 0.0, -6.0, 0.0, -2.0, -1.0),
+    high=(3.0, 2.0, 2.0, 2.0, 3.0, 1.0, 5.0, 4.0, 4.0, 8.0, 1.0, 2.0, 1.0),
     function=_friction,
 )  # fmt: skip
 STRUCTURED_ROLLING = Structured(
