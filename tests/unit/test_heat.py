@@ -201,7 +201,7 @@ def test_a_stored_result_has_the_picture_of_its_heat(tmp_path):
     assert figure_of(stored, "heat-network").axes[0].get_title(loc="left").startswith("Heat: oil")
     page = ep.report_html(stored)
     assert "Where the heat leaves" in page
-    assert "Ways of the heat" in page
+    assert "Paths of the heat" in page
     assert 'id="figure-heat-network-1"' in page
     assert "The oil has its inlet temperature at all contacts." not in page
 

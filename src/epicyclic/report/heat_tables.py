@@ -97,7 +97,7 @@ def ways_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
     for way in heat.ways:
         methods.setdefault(way.method, set()).add(way.source or "given")
     return (
-        Table(("", "from", "to", "W", "W/K", "method"), rows, "Ways of the heat", note=_SIGN),
+        Table(("", "from", "to", "W", "W/K", "method"), rows, "Paths of the heat", note=_SIGN),
         Listing(
             tuple(f"{method}: {'; '.join(sorted(found))}" for method, found in methods.items()),
             "Sources of the conductances",
