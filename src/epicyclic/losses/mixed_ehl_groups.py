@@ -12,7 +12,8 @@ is flagged.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +34,8 @@ from epicyclic.units import (
 __all__ = [
     "PRESSURE_VISCOSITY_RANGE",
     "TALBOT_FLUID",
-    "TALBOT_GEAR_RANGES",
     "VISCOSITY_RANGE",
+    "TalbotRegression",
     "beyond_data",
     "held_in_table",
     "without_oil",
@@ -79,6 +80,24 @@ TALBOT_GEAR_RANGES = (
     Range("slide_to_roll_ratio", "slide-to-roll ratio", 0.025, 1.0, NUMBER, _SOURCE),
 )
 """Ranges of the 33,600 simulations behind Eq. 5.8 and 5.10."""
+
+
+@dataclass(frozen=True, slots=True)
+class TalbotRegression:
+    """A regression of the 33,600 mixed-EHL simulations of an automatic transmission fluid.
+
+    Conditions outside Table 5.1 are held at its limits, as `held_in_table` does.
+
+    Attributes
+    ----------
+    oil_held : bool
+        False to continue the formula beyond its oil.
+    """
+
+    oil_held: bool = True
+
+    made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
+    ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
 
 
 _HELD = {

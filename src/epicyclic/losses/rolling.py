@@ -13,8 +13,7 @@ from epicyclic.kernels.line_contact import goksem_hargreaves_force, martin_force
 from epicyclic.kernels.mixed_ehl import rolling_loss_number_at
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.mixed_ehl_groups import (
-    TALBOT_FLUID,
-    TALBOT_GEAR_RANGES,
+    TalbotRegression,
     beyond_data,
     held_in_table,
 )
@@ -47,26 +46,17 @@ class RollingModel(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class MixedEhlRolling:
+class MixedEhlRolling(TalbotRegression):
     """Regression of 33,600 mixed-EHL simulations of an automatic transmission fluid.
 
     Theory (R5).
 
     Talbot (2012), Eq. 5.10 and Table 5.2(b), in the scale of `rolling_scale`.
-
-    Attributes
-    ----------
-    oil_held : bool
-        False to continue the formula beyond its oil.
     """
-
-    oil_held: bool = True
 
     name: ClassVar = "mixed-ehl"
     title: ClassVar = "mixed-EHL rolling-loss regression"
     source: ClassVar = "D. C. Talbot, PhD dissertation, Ohio State (2012), Eq. 5.10"
-    made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
-    ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
 
     def loss_density(self, contact: LineContacts) -> FloatArray:
         """See the class. [W/m]"""
@@ -77,24 +67,15 @@ class MixedEhlRolling:
 
 
 @dataclass(frozen=True, slots=True)
-class PairedRolling:
+class PairedRolling(TalbotRegression):
     """`MixedEhlRolling` of two flanks as rough as the rougher one, times what the smoother changes.
 
     Theory (O13).
-
-    Attributes
-    ----------
-    oil_held : bool
-        False to continue the formula beyond its oil.
     """
-
-    oil_held: bool = True
 
     name: ClassVar = "mixed-ehl+pairing"
     title: ClassVar = "mixed-EHL rolling-loss regression, pairing of unequal flanks from the solver"
     source: ClassVar = f"{MixedEhlRolling.source}; solver for line contacts of this package"
-    made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
-    ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
 
     def loss_density(self, contact: LineContacts) -> FloatArray:
         """See the class. [W/m]"""

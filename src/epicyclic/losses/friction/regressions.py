@@ -12,8 +12,7 @@ from epicyclic.contact import LineContacts
 from epicyclic.kernels.mixed_ehl import sliding_friction_at
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.mixed_ehl_groups import (
-    TALBOT_FLUID,
-    TALBOT_GEAR_RANGES,
+    TalbotRegression,
     held_in_table,
 )
 from epicyclic.losses.pairing import equally_rough, pairing_ratio
@@ -34,26 +33,17 @@ FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class MixedEhl:
+class MixedEhl(TalbotRegression):
     """Regression of 33,600 mixed-EHL simulations of an automatic transmission fluid.
 
     Talbot (2012), Eq. 5.8 and Table 5.2(a); branches in the film ratio blended, conditions
     outside Table 5.1 held at its limits (`mixed_ehl_groups`).
-
-    Attributes
-    ----------
-    oil_held : bool
-        False to continue the formula beyond its oil.
     """
-
-    oil_held: bool = True
 
     name: ClassVar = "mixed-ehl"
     title: ClassVar = "mixed-EHL friction regression"
     source: ClassVar = "D. C. Talbot, PhD dissertation, Ohio State (2012), Eq. 5.8"
-    made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
     takes_oil_temperature: ClassVar[bool] = False
-    ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
 
     def coefficient(self, contact: LineContacts) -> FloatArray:
         """See the class. [1]"""
@@ -62,25 +52,16 @@ class MixedEhl:
 
 
 @dataclass(frozen=True, slots=True)
-class PairedFriction:
+class PairedFriction(TalbotRegression):
     """`MixedEhl` of two flanks as rough as the rougher one, times the effect of the smoother one.
 
     Theory (O13).
-
-    Attributes
-    ----------
-    oil_held : bool
-        False to continue the formula beyond its oil.
     """
-
-    oil_held: bool = True
 
     name: ClassVar = "mixed-ehl+pairing"
     title: ClassVar = "mixed-EHL friction regression, pairing of unequal flanks from the solver"
     source: ClassVar = f"{MixedEhl.source}; solver for line contacts of this package"
-    made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
     takes_oil_temperature: ClassVar[bool] = False
-    ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
 
     def coefficient(self, contact: LineContacts) -> FloatArray:
         """See the class. [1]"""
