@@ -247,7 +247,8 @@ def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
 
     def friction(line, roughness, seeds, heating, settings):
         calls.append(line)
-        return np.nan if len(calls) == 3 else 0.05 * (line.radius / 0.01) ** 0.3
+        friction = np.nan if len(calls) == 3 else 0.05 * (line.radius / 0.01) ** 0.3
+        return friction, 1.0
 
     monkeypatch.setattr(direct, "_friction", friction)
     case = ep.load_case("talbot-2012-pair").updated(PAIR | {"models.friction": "ehl-direct"})
@@ -269,6 +270,22 @@ def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
     assert f"{share:.0%} of the sliding power is at film ratios below 0.7" in notes[0]
 
 
+@pytest.mark.parametrize(
+    ("rpm", "kept", "told"),
+    [(4000, 0.97, ()), (0.3, 0.97, ("less than 0.01 m/s",)), (4000, 0.87, ("resolve 87% of",))],
+)
+def test_creeping_speed_and_lost_roughness_are_told(monkeypatch, rpm, kept, told):
+    from epicyclic.losses import direct
+
+    shares = iter([1.0, kept])
+    monkeypatch.setattr(direct, "_friction", lambda *_: (0.05, next(shares, 1.0)))
+    changes = PAIR | {"models.friction": "ehl-direct", "operation.speed": f"{rpm} rpm"}
+    result = ep.solve(ep.load_case("talbot-2012-pair").updated(changes))
+    (note,) = (note for note in result.notes if "ehl-direct" in note)
+    found = {words for words in ("less than 0.01 m/s", "resolve 87% of") if words in note}
+    assert found == set(told)
+
+
 def test_oil_and_heat_of_the_contact_solver_reach_every_contact(monkeypatch):
     from epicyclic.ehl.rheology import LimitingStress, TwoSlope
     from epicyclic.losses import direct
@@ -277,7 +294,7 @@ def test_oil_and_heat_of_the_contact_solver_reach_every_contact(monkeypatch):
 
     def friction(line, roughness, seeds, heating, settings):
         calls.append((line.oil, heating, settings))
-        return 0.05
+        return 0.05, 1.0
 
     monkeypatch.setattr(direct, "_friction", friction)
     case = ep.load_case("talbot-2012-pair").updated(
@@ -322,7 +339,7 @@ def test_laws_of_the_contact_solver_have_all_they_need():
 def test_too_many_unsolved_contacts_are_no_result(monkeypatch):
     from epicyclic.losses import direct
 
-    monkeypatch.setattr(direct, "_friction", lambda line, *_: np.nan)
+    monkeypatch.setattr(direct, "_friction", lambda line, *_: (np.nan, 1.0))
     case = ep.load_case("talbot-2012-pair").updated(PAIR | {"models.friction": "ehl-direct"})
     with pytest.raises(ep.ConvergenceError, match="have no solution"):
         ep.solve(case)

@@ -18,7 +18,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.ehl.box import SOLVER_BOX, VALIDATED_FILM_RATIO
+from epicyclic.ehl.box import DRY_SPEED, FEWEST_KEPT, SOLVER_BOX, VALIDATED_FILM_RATIO
 from epicyclic.ehl.conditions import LineContact, contact_oil, line_contact
 from epicyclic.ehl.heating import Heating, heating_of
 from epicyclic.ehl.rheology import OilLaws
@@ -159,13 +159,14 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
     checks = _quantiles(contact.path, power, usable)
     others = np.setdiff1d(usable, checks)
     order = others[_spread_out(place[others], settings.most_contacts)]
-    known = _ratios(contact, settings, checks, base, 0)
+    known, kept = _ratios(contact, settings, checks, base, 0)
     trusted = known[np.isfinite(known)]
     ratio = np.empty(0)
     error = bias = np.inf
     while error > settings.error and ratio.size < order.size:
         more = order[ratio.size : ratio.size + BATCH]
-        ratio = np.append(ratio, _ratios(contact, settings, more, base, checks.size + ratio.size))
+        new, resolved = _ratios(contact, settings, more, base, checks.size + ratio.size)
+        ratio, kept = np.append(ratio, new), min(kept, resolved)
         found = np.isfinite(ratio)
         if found.sum() < 4:
             continue
@@ -187,19 +188,39 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
         f"models.friction ehl-direct: {found.size} contacts of the {contact.mesh.name} solved, "
         f"{np.count_nonzero(~found)} of them without convergence and left out; error of "
         f"interpolated contacts {error:.1%} in the mean{missed}, of their power {bias:+.1%}."
-        f"{_unvalidated(contact, power)}",
+        f"{_unvalidated(contact, power)}{_dry(contact, power)}{_unresolved(kept)}",
     )
 
 
 def _unvalidated(contact: MeshContact, power: FloatArray) -> str:
     """What to say of film ratios for which the solver is not validated."""
-    thin = contact.film_ratio < VALIDATED_FILM_RATIO
-    if not power[thin].sum() > SMALLEST_SHOWN_SHARE * power.sum():
+    share = power[contact.film_ratio < VALIDATED_FILM_RATIO].sum() / power.sum()
+    if not share > SMALLEST_SHOWN_SHARE:
         return ""
-    share = power[thin].sum() / power.sum()
     return (
         f" {share:.0%} of the sliding power is at film ratios below {VALIDATED_FILM_RATIO:g}, "
         "for which the solver is not validated."
+    )
+
+
+def _dry(contact: MeshContact, power: FloatArray) -> str:
+    """What to say of speeds at which real surfaces would touch more than ridges across do."""
+    share = power[contact.rolling_speed < DRY_SPEED].sum() / power.sum()
+    if not share > SMALLEST_SHOWN_SHARE:
+        return ""
+    return (
+        f" {share:.0%} of the sliding power is at less than {DRY_SPEED:g} m/s, where oil leaks out "
+        "of the valleys of real surfaces: their friction is larger."
+    )
+
+
+def _unresolved(kept: float) -> str:
+    """What to say of roughness that the grid does not resolve."""
+    if kept >= FEWEST_KEPT:
+        return ""
+    return (
+        f" In the widest contact solved the nodes resolve {kept:.0%} of the Rq: shorter waves are "
+        "lost. Raise contact_solver.correlation_length, if the finish allows it."
     )
 
 
@@ -238,21 +259,26 @@ def _interpolated(known: FloatArray, ratio: FloatArray, place: FloatArray) -> Fl
 
 def _ratios(
     contact: MeshContact, settings: DirectSettings, points: IntArray, base: FloatArray, done: int
-) -> FloatArray:
-    """Friction over `base` at some points, after others; not a number without a solution."""
+) -> tuple[FloatArray, float]:
+    """Friction over `base` at some points, after others, and the least share of Rq resolved.
+
+    Not a number without a solution.
+    """
     oil = contact_oil(contact.oil, settings.laws)
     effusivity = settings.effusivity
     heating = None if effusivity is None else heating_of(contact.oil, effusivity, effusivity)
     smooth = bool(contact.film_ratio.min() > SMOOTH_FILM_RATIO)
-    found = []
+    found, kept = [], 1.0
     for i in points:
         line = line_contact(contact, int(i), oil)
         roughness = (0.0, 0.0) if smooth else contact.roughness
         seeds = np.random.SeedSequence([settings.seed, int(i)]).generate_state(2)
         pair = (int(seeds[0]), int(seeds[1]))
-        found.append(abs(_friction(line, roughness, pair, heating, settings)))
+        friction, resolved = _friction(line, roughness, pair, heating, settings)
+        found.append(abs(friction))
+        kept = min(kept, resolved)
         _PROGRESS.get()(done + len(found), done + points.size)
-    return np.array(found) / base[points]
+    return np.array(found) / base[points], kept
 
 
 @lru_cache(maxsize=4096)
@@ -262,13 +288,13 @@ def _friction(
     seeds: tuple[int, int],
     heating: Heating | None,
     settings: DirectSettings,
-) -> float:
-    """Friction of one contact; not a number without a solution. [1]"""
+) -> tuple[float, float]:
+    """Friction of one contact, not a number without a solution, and share of Rq resolved. [1]"""
     with one_thread():
         if max(roughness) == 0:
             smooth = solve_smooth(line, heating=heating)
             converged = smooth.status is Status.CONVERGED
-            return smooth.friction_coefficient if converged else np.nan
+            return smooth.friction_coefficient if converged else np.nan, 1.0
         length = settings.correlation_length
         one, two = (
             generate_profile(rms, length, PERIOD * length, seed)
@@ -277,4 +303,7 @@ def _friction(
         rough = solve_rough(line, one, two, settings.asperities, heating=heating, most_blocks=BRIEF)
     known = rough.friction_error <= LARGEST_ERROR * abs(rough.friction_coefficient)
     unsolved = rough.unsolved_steps > LARGEST_UNSOLVED_SHARE * max(rough.steps, 1)
-    return rough.friction_coefficient if known and not unsolved else np.nan
+    if not known or unsolved:
+        return np.nan, 1.0
+    spacing = float(rough.x[1] - rough.x[0])
+    return rough.friction_coefficient, min(one.kept(spacing), two.kept(spacing))
