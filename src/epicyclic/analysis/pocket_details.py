@@ -396,7 +396,7 @@ def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Vari
         "mass_error": (flow.mass_error, "mass lost in a period over mass that came in", NUMBER),
         "periods": (flow.periods, "mesh periods until the flow repeated", NUMBER),
         "sound_speed": (
-            sound_speed(fluids.mixture, fluids.pressure),
+            sound_speed(fluids.mixed(duty.models.pockets.oil_fraction), fluids.pressure),
             "speed of sound of an even mixture",
             METRE_PER_SECOND,
         ),

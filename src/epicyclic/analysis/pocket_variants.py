@@ -71,7 +71,7 @@ def base_variant(case: Case, duty: MeshDuty) -> PocketVariant:
     return PocketVariant(
         helix_angle=mesh.gear1.rack.helix_angle,
         face_width=mesh.face_width,
-        oil_fraction=case.surroundings.oil_air_ratio,
+        oil_fraction=duty.models.pockets.oil_fraction,
         backlash=mesh.backlash,
         teeth=(mesh.gear1.teeth, mesh.gear2.teeth),
         speed=abs(duty.speed1),

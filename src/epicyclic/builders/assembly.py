@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -12,8 +12,10 @@ from epicyclic.builders.models import resolve_models, standing_of
 from epicyclic.builders.notes import case_notes, general_notes
 from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case
+from epicyclic.case.lubrication import oil_share
 from epicyclic.case.train import TrainCase
 from epicyclic.elements.base import HOUSING, OIL, Loss, joined_key
+from epicyclic.elements.disc import churned
 from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.elements.load_sharing import SHARING_METHODS
@@ -25,6 +27,7 @@ from epicyclic.machine.flow import stage_torques
 from epicyclic.machine.settle import Answer, Settled, heat_of
 from epicyclic.machine.solve import Solution
 from epicyclic.results.heat import HeatBalance, HeatWay
+from epicyclic.results.lubrication import OilSupply
 from epicyclic.results.result import LossTerm, MemberState, PowerFlow, Result, Train
 
 __all__ = ["assemble"]
@@ -47,6 +50,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
     )
     figures = dict(_figures(solution))
     methods = dict(_methods(built))
+    supplies = dict(_supplies(case, built, solution))
     fluids = None if built.known_fluids is None else solution.state.fluids
     flags: SomeFlags = () if fluids is None else fluids.flags
     sharing = built.sets[""].sharing if "" in built.sets else None
@@ -65,7 +69,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         },
         fluid=None if fluids is None else fluids.figures,
         models=dict(_models(case, built)),
-        standing=dict(_standing(case, built)),
+        standing=dict(_standing(case, built, supplies)),
         flags=(*flags, *_flags(solution)),
         notes=(
             *general_notes(terms, flow.input_power, flow.efficiency),
@@ -87,6 +91,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         ),
         train=_train(case, built, solution),
         heat=_heat(case, built, settled),
+        lubrication=supplies,
     )
 
 
@@ -174,10 +179,34 @@ def _models(case: Case, built: Built) -> Iterator[tuple[str, str]]:
             yield joined_key(key, name), model
 
 
-def _standing(case: Case, built: Built) -> Iterator[tuple[str, str]]:
+def _supplies(case: Case, built: Built, solution: Solution) -> Iterator[tuple[str, OilSupply]]:
+    """How oil gets to the gears of each set that says so."""
+    for key, own in set_cases(case, built.sets):
+        if own.lubrication is not None:
+            share = oil_share(own)
+            discs = [disc for discs in built.sets[key].discs.values() for disc in discs]
+            yield (
+                key,
+                OilSupply(
+                    own.lubrication.method,
+                    share.share,
+                    *share.band,
+                    share.grade,
+                    share.source,
+                    churned(discs, solution.state),
+                ),
+            )
+
+
+def _standing(
+    case: Case, built: Built, supplies: Mapping[str, OilSupply]
+) -> Iterator[tuple[str, str]]:
+    for key, supply in supplies.items():
+        yield joined_key(key, "lubrication"), supply.text
     for key, own in set_cases(case, built.sets):
         for role, phrase in standing_of(own).items():
-            yield joined_key(key, role), phrase
+            compared = supplies[key].comparison if role == "churning" else ""
+            yield joined_key(key, role), f"{compared}; {phrase}" if compared else phrase
     for element in built.machine.elements:
         if isinstance(element, ShaftBearing):
             name = element.model.name

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from epicyclic.builders.gears import gear_mesh, planet_mass
 from epicyclic.builders.models import loss_choices, mesh_models
 from epicyclic.builders.planetary import planet_bearing
-from epicyclic.case import build
+from epicyclic.builders.wetting import carrier_disc, gear_disc
 from epicyclic.case.listed_set import (
     ListedCase,
     arrangement_of,
@@ -177,14 +177,14 @@ def _sharing(case: ListedCase) -> LoadSharing | None:
 
 
 def _discs(case: ListedCase, bodies: Mapping[str, str]) -> Iterator[tuple[str, tuple[Disc, ...]]]:
-    """Every central gear turns in the mixture, and the carrier."""
+    """Every central gear turns in the mixture or a sump, and the carrier."""
+    gears = []
     for name, table in case.table.members.items():
         body = case.shape.bodies[name]
         if body not in case.shape.planets:
-            gear = gear_of(case.table, name)
-            radius = build.outside_radius(gear, table)
-            yield f"{name}_drag", (Disc(name, bodies[body], radius, gear.face_width),)
+            gears.append(gear_of(case.table, name))
+            yield f"{name}_drag", (gear_disc(case, bodies[body], gears[-1], table),)
     carrier = case.table.carrier
     if carrier is not None:
-        disc = Disc("carrier", bodies[CARRIER], carrier.outer_diameter / 2, carrier.width)
-        yield "carrier_drag", (disc,)
+        size = (carrier.outer_diameter, carrier.width)
+        yield "carrier_drag", (carrier_disc(case, bodies[CARRIER], *size, gears[0]),)

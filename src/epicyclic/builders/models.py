@@ -9,6 +9,7 @@ import numpy as np
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.listed_set import ListedCase
+from epicyclic.case.lubrication import oil_share
 from epicyclic.case.model_tables import LossOption
 from epicyclic.case.oil_laws import oil_laws
 from epicyclic.case.part_tables import PlanetBearing
@@ -60,11 +61,15 @@ def resolve_models(case: SetCase) -> dict[str, str]:
     automatic = {
         "friction": _automatic(case, "friction", FittedOrSchlenk.name, "schlenk"),
         "rolling": _automatic(case, "rolling_loss", FittedOrGoksem.name, "goksem-hargreaves"),
-        "pocketing": automatic_pocketing(case.surroundings.oil_air_ratio),
+        "pocketing": automatic_pocketing(oil_share(case).share),
     }
     keys = ["friction", "rolling", "load_distribution", "mesh", "pocketing", "drag"]
     chosen = {key: str(getattr(case.models, key)) for key in keys}
     found = {key: automatic[key] if choice == "auto" else choice for key, choice in chosen.items()}
+    if case.lubrication is not None:
+        found["lubrication"] = case.lubrication.method
+        if case.lubrication.method == "dip":
+            found["churning"] = case.lubrication.churning
     if isinstance(case, GearPairCase):
         return found
     bearings = case.planet_bearings if isinstance(case, ListedCase) else (case.planet_bearing,)
@@ -198,7 +203,7 @@ def fluids_of(case: Case) -> Fluids:
     return fluids_at(
         case.lubricant.oil,
         case.operation.oil_inlet_temperature,
-        oil_air_ratio=case.surroundings.oil_air_ratio,
+        oil_air_ratio=oil_share(case).share,
         pressure=case.surroundings.pressure,
         pressure_viscosity_factor=case.lubricant.pressure_viscosity_factor,
     )
@@ -217,7 +222,7 @@ def loss_choices(case: SetCase) -> dict[str, LossChoice]:
 def pocketing_of(case: SetCase) -> PocketModel:
     """The model of the flow through the pockets, ``auto`` replaced by what it stands for."""
     chosen = case.models.pocketing
-    return automatic_pocketing(case.surroundings.oil_air_ratio) if chosen == "auto" else chosen
+    return automatic_pocketing(oil_share(case).share) if chosen == "auto" else chosen
 
 
 def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]:
@@ -236,7 +241,7 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
             segments=case.numerics.contact_segments,
             pockets=PocketSettings(
                 include=choices[f"{key}_pocketing"].include,
-                oil_fraction=case.surroundings.oil_air_ratio,
+                oil_fraction=oil_share(case).share,
                 model=pocketing,
                 void_pressure=case.models.pocket_void_pressure,
                 slices=case.numerics.pocket_slices,

@@ -16,9 +16,10 @@ from epicyclic.builders.models import (
     rolling_of,
 )
 from epicyclic.case import build, flanks
-from epicyclic.case.case import PlanetaryCase
+from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.listed_set import ListedCase, arrangement_of, gear_of
+from epicyclic.case.lubrication import SHARE_KEY, share_is_given
 from epicyclic.case.model_tables import LoadSharing
 from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_set import GearSetResult
@@ -59,6 +60,7 @@ def case_notes(case: SetCase, found: GearSetResult, turning: Collection[str]) ->
     meshes = {key: item for key, item in found.figures.items() if isinstance(item, MeshFigures)}
     notes = (
         *fluid_notes(case),
+        *lubrication_notes(case),
         *load_notes(case),
         *contact_notes(meshes),
         *pressure_notes(found.figures),
@@ -101,6 +103,24 @@ def fluid_notes(case: SetCase) -> tuple[str, ...]:
     if factor != 1:
         notes.append(f"The pressure-viscosity coefficient of the oil is multiplied by {factor:g}.")
     return tuple(notes)
+
+
+def lubrication_notes(case: SetCase) -> Iterator[str]:
+    """What a stated share of oil overrides, and what churning leaves out."""
+    table = case.lubrication
+    if table is None:
+        return
+    if share_is_given(case):
+        yield (
+            f"{SHARE_KEY} is given: the share of oil is not that of lubrication.method = "
+            f"{table.method}."
+        )
+    if table.method == "dip":
+        left_out = "of planets" if not isinstance(case, GearPairCase) else ""
+        inside = "inside rings" if any(True for _ in _rings(case)) else ""
+        parts = " and ".join(filter(None, (left_out, inside)))
+        if parts:
+            yield f"Churning {parts} is not modelled: what dips turns about a fixed axis."
 
 
 def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:

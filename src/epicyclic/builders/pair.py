@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from epicyclic.builders.built import Built
 from epicyclic.builders.gears import gear_mesh
 from epicyclic.builders.models import fluids_of, loss_choices, mesh_models
+from epicyclic.builders.wetting import gear_disc
 from epicyclic.case import build
 from epicyclic.case.case import GearPairCase
 from epicyclic.elements.base import HOUSING, joined_key
-from epicyclic.elements.disc import Disc
 from epicyclic.elements.gear_set import GearSet, Reference
 from epicyclic.geometry.cutting import mated_tools
 from epicyclic.machine.machine import Machine, MeshRow, Operation
@@ -71,8 +71,8 @@ def pair_element(
     sense = -1 if mesh.internal else 1
     lever = 1.0 if reference == "pinion" else sense * case.pinion.teeth / case.gear.teeth
     discs = tuple(
-        Disc(name, bodies[name], build.outside_radius(gear, table), gear.face_width)
-        for name, gear, table in zip(PAIR_MEMBERS, (mesh.gear1, mesh.gear2), tables, strict=True)
+        gear_disc(case, bodies[gear.name], gear, table)
+        for gear, table in zip((mesh.gear1, mesh.gear2), tables, strict=True)
     )
     return GearSet(
         key=key,

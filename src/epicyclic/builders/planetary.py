@@ -13,6 +13,7 @@ from epicyclic.builders.models import (
     loss_choices,
     mesh_models,
 )
+from epicyclic.builders.wetting import carrier_disc, gear_disc
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.listed_set import ListedCase
@@ -268,13 +269,14 @@ def roller_bearing(table: BearingTable, numerics: Numerics) -> RollerBearing:
 def _discs(case: PlanetaryCase, bodies: Mapping[str, str]) -> dict[str, tuple[Disc, ...]]:
     sun = build.gear("sun", case.sun, case.gears)
     ring = build.gear("ring", case.ring, case.gears)
-    sizes = {
-        "sun": (sun.tip_radius, sun.face_width),
-        "ring": (build.outside_radius(ring, case.ring), ring.face_width),
+    discs: dict[str, tuple[Disc, ...]] = {
+        "sun_drag": (gear_disc(case, bodies["sun"], sun, case.sun),),
+        "ring_drag": (gear_disc(case, bodies["ring"], ring, case.ring),),
     }
     if case.carrier is not None:
-        sizes["carrier"] = (case.carrier.outer_diameter / 2, case.carrier.width)
-    return {f"{name}_drag": (Disc(name, bodies[name], *size),) for name, size in sizes.items()}
+        size = (case.carrier.outer_diameter, case.carrier.width)
+        discs["carrier_drag"] = (carrier_disc(case, bodies["carrier"], *size, sun),)
+    return discs
 
 
 def _missing(case: PlanetaryCase) -> dict[str, str]:

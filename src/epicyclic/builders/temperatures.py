@@ -9,6 +9,7 @@ from functools import partial
 
 from epicyclic.builders.models import fluids_of
 from epicyclic.case.case import Case
+from epicyclic.case.lubrication import oil_share
 from epicyclic.case.thermal_tables import HousingTable, ThermalTable
 from epicyclic.elements.base import OIL, joined_key
 from epicyclic.elements.fluids import Fluids, fluids_at, oil_at, oil_flags
@@ -47,7 +48,7 @@ def thermal_model(case: Case, machine: Machine) -> ThermalModel | None:
         factor = LUBRICATION_FACTORS[table.lubrication]
         return FlankModel(machine, inlet, table.bulk, factor, fluids)
     settings = _settings(table, inlet)
-    pressure, share = case.surroundings.pressure, case.surroundings.oil_air_ratio
+    pressure, share = case.surroundings.pressure, oil_share(case).share
     return NetworkModel(machine, settings, fluids, _media(case.lubricant.oil, pressure, share))
 
 
@@ -108,7 +109,7 @@ def _fluids_at(
         fluids = fluids_at(
             oil,
             around,
-            oil_air_ratio=case.surroundings.oil_air_ratio,
+            oil_air_ratio=oil_share(case).share,
             pressure=case.surroundings.pressure,
             pressure_viscosity_factor=factor,
         )

@@ -126,6 +126,7 @@ def set_case(case: TrainCase, name: str) -> SetCase:
             case.shape.sets[name],
             case.lubricant,
             case.surroundings,
+            case.thermal,
             case.friction_table,
             case.contact_solver,
             case.folder,
@@ -136,6 +137,7 @@ def set_case(case: TrainCase, name: str) -> SetCase:
         "title": name,
         "lubricant": case.lubricant,
         "surroundings": case.surroundings,
+        "thermal": case.thermal,
         "friction_table": case.friction_table,
         "contact_solver": case.contact_solver,
     }

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import PrivateAttr
 
 from epicyclic.case.checks import cross_check
 from epicyclic.case.fields import find_field, locate, to_inputs
+from epicyclic.case.lubrication import share_is_given
 from epicyclic.case.plain import plain, value_at, with_value, without
 from epicyclic.case.schema import Table
 from epicyclic.case.translation import unknown_key
@@ -18,10 +19,17 @@ from epicyclic.case.validation import tables_of, validate
 from epicyclic.case.wording import key_parts, path_of, written
 from epicyclic.errors import InputError, Problem
 
+if TYPE_CHECKING:
+    from epicyclic.case.lubrication_tables import LubricationTable
+    from epicyclic.case.operation_tables import Surroundings
+
 __all__ = ["CaseTable", "as_given", "with_changes"]
 
 
 class CaseTable(Table):
+    if TYPE_CHECKING:  # every kind has them, each in its place
+        lubrication: LubricationTable | None
+        surroundings: Surroundings
     _tables: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: str = PrivateAttr(default="")
 
@@ -110,7 +118,10 @@ class CaseTable(Table):
 
     def inputs(self) -> dict[str, Any]:
         """The case as nested tables of text and numbers, defaults included, as a file has them."""
-        return to_inputs(self)
+        inputs = to_inputs(self)
+        if not share_is_given(self):  # it would decide if it were given
+            del inputs["surroundings"]["oil_air_ratio"]
+        return inputs
 
     def __eq__(self, other: object) -> bool:
         """Equal if every key has the same value, wherever the cases were read."""

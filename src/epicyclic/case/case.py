@@ -13,6 +13,7 @@ from epicyclic import library
 from epicyclic.case.base import CaseTable, with_changes
 from epicyclic.case.fields import to_inputs
 from epicyclic.case.gear_tables import Gears, GearTable, MeshTable, PairGear, Planet, Ring
+from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
 from epicyclic.case.model_tables import (
     ContactSolver,
     FrictionTable,
@@ -84,6 +85,7 @@ class PlanetaryCase(_SetTables):
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None
     lubricant: Lubricant
+    lubrication: LubricationTable | None = LUBRICATION
     surroundings: Surroundings = Surroundings()
     thermal: ThermalTable = ThermalTable()
     friction_table: FrictionTable | None = None
@@ -105,6 +107,7 @@ class GearPairCase(_SetTables):
     gear: PairGear
     mesh: MeshTable = MeshTable()
     lubricant: Lubricant
+    lubrication: LubricationTable | None = LUBRICATION
     surroundings: Surroundings = Surroundings()
     thermal: ThermalTable = ThermalTable()
     friction_table: FrictionTable | None = None

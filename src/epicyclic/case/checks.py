@@ -14,6 +14,14 @@ from pathlib import Path
 from epicyclic.case import build
 from epicyclic.case.gear_checks import check_pair, check_planetary
 from epicyclic.case.gear_tables import Gears, GearTable, Planet, Ring
+from epicyclic.case.lubrication_checks import (
+    check_flow,
+    check_immersion,
+    check_lubrication,
+    check_sump,
+    check_wetting,
+)
+from epicyclic.case.lubrication_tables import LubricationTable
 from epicyclic.case.model_tables import (
     ContactSolver,
     FrictionTable,
@@ -361,6 +369,19 @@ def _check_outlet(
     return check_outlet(thermal, operation.oil_inlet_temperature)
 
 
+def _check_planetary_immersion(table: LubricationTable, sun: GearTable) -> list[Problem]:
+    return check_immersion(table, ("sun", "ring", "carrier"))
+
+
+def _check_pair_immersion(table: LubricationTable, pinion: GearTable) -> list[Problem]:
+    return check_immersion(table, ("pinion", "gear"))
+
+
+def _check_flow(table: LubricationTable, thermal: ThermalTable, operation: Table) -> list[Problem]:
+    """Of a single set; that of a train is the sum over its sets."""
+    return check_flow(table.oil_flow, thermal)
+
+
 _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_operation, ("operation",)),
     (check_planetary, ("gears", "sun", "planet", "ring")),
@@ -375,4 +396,10 @@ _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (check_thermal, ("thermal",)),
     (_check_ways_out, ("thermal", "models")),
     (_check_outlet, ("thermal", "operation")),
+    (check_lubrication, ("lubrication",)),
+    (check_sump, ("lubrication", "thermal")),
+    (check_wetting, ("lubrication", "thermal")),
+    (_check_flow, ("lubrication", "thermal", "operation")),
+    (_check_planetary_immersion, ("lubrication", "sun")),
+    (_check_pair_immersion, ("lubrication", "pinion")),
 )

@@ -13,6 +13,7 @@ from typing import Any
 
 from epicyclic.case import build
 from epicyclic.case.gear_tables import Gears
+from epicyclic.case.lubrication_tables import LubricationTable
 from epicyclic.case.model_tables import (
     ContactSolver,
     FrictionTable,
@@ -22,6 +23,7 @@ from epicyclic.case.model_tables import (
 )
 from epicyclic.case.operation_tables import Lubricant, Surroundings
 from epicyclic.case.part_tables import PlanetBearing
+from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.train_shape import SetShape, ShapeMesh
 from epicyclic.case.train_tables import ListedMesh, ListedSet
 from epicyclic.geometry.assembly import closing_number, nearest_places, pin_angle
@@ -66,7 +68,7 @@ class ListedCase:
     ----------
     table : ListedSet
     shape : SetShape
-    lubricant, surroundings, friction_table, contact_solver
+    lubricant, surroundings, thermal, friction_table, contact_solver
         Tables of the train.
     folder : Path
         Where the files lie that it names.
@@ -76,9 +78,15 @@ class ListedCase:
     shape: SetShape
     lubricant: Lubricant
     surroundings: Surroundings
+    thermal: ThermalTable
     friction_table: FrictionTable | None
     contact_solver: ContactSolver
     folder: Path
+
+    @property
+    def lubrication(self) -> LubricationTable | None:
+        """Of the set."""
+        return self.table.lubrication
 
     @property
     def models(self) -> PlanetaryModels:

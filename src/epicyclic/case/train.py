@@ -17,6 +17,7 @@ from epicyclic.case.checks import cross_check
 from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.listed_checks import listed_set_problems
 from epicyclic.case.listed_set import directions_of, hands_of
+from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
 from epicyclic.case.model_tables import (
     ContactSolver,
     FrictionTable,
@@ -53,7 +54,7 @@ from epicyclic.errors import InputError, Problem
 
 __all__ = ["TrainCase", "all_gears_to_members"]
 
-_SHARED = ("models", "numerics", "friction_table")
+_SHARED = ("models", "numerics", "friction_table", "lubrication")
 """Tables of a train that its computed sets take over where they have none of their own."""
 _GIVEN = ("efficiency", "mesh_efficiency")
 
@@ -69,6 +70,7 @@ class _TrainTables(CaseTable):
     states: dict[str, StateTable] = Field(default={})
     positions: dict[str, Position] = Field(default={})
     lubricant: Lubricant | None = None
+    lubrication: LubricationTable | None = LUBRICATION
     surroundings: Surroundings = Surroundings()
     thermal: ThermalTable = ThermalTable()
     friction_table: FrictionTable | None = None
@@ -316,10 +318,11 @@ def _read_set_cached(given: _Given) -> _ReadSet:
     problems = [_with_gears(problem) for problem in read.problems]
     if issubclass(form, PlanetarySet | PairSet | ListedSet):
         tables = {*raw, *given.shared}
+        checked = {k: v for k, v in read.sections.items() if k != "lubrication" or k in given.raw}
         if "planet_bearings" in raw:
             tables.add("planet_bearing")
         problems += [
-            as_given(problem, raw) for problem in cross_check(read.sections, tables, given.folder)
+            as_given(problem, raw) for problem in cross_check(checked, tables, given.folder)
         ]
     if all(key in raw for key in _GIVEN):
         problems.append(

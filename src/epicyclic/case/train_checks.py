@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from epicyclic.case.checks import check_oil_model
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.thermal_checks import check_outlet
+from epicyclic.case.train_lubrication import lubrication_problems
 from epicyclic.case.train_shape import TrainShape
 from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet, StateTable
 from epicyclic.case.wording import written
@@ -42,6 +43,7 @@ def operation_problems(train: TrainCase, shape: TrainShape) -> list[Problem]:
     problems += _position_problems(train, shape)
     problems += check_outlet(train.thermal, operation.oil_inlet_temperature)
     problems += _temperature_problems(train)
+    problems += lubrication_problems(train)
     problems += _oil_model_problems(train)
     if problems:
         return problems

@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
 from epicyclic.case.gear_tables import Gears, GearTable, MeshTable, PairGear, Planet, Ring
+from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
 from epicyclic.case.model_tables import (
     GearPairLosses,
     GearPairModels,
@@ -102,6 +103,7 @@ class PlanetarySet(Table):
     hand: Literal["right", "left"] = Field(
         default="right", description="Of the helix of the sun, for the forces on shaft bearings."
     )
+    lubrication: LubricationTable | None = LUBRICATION
     models: PlanetaryModels = PlanetaryModels()
     numerics: Numerics = Numerics()
     losses: PlanetaryLosses = PlanetaryLosses()
@@ -138,6 +140,7 @@ class PairSet(Table):
     hand: Literal["right", "left"] = Field(
         default="right", description="Of the helix of the pinion, for the same."
     )
+    lubrication: LubricationTable | None = LUBRICATION
     models: GearPairModels = GearPairModels()
     numerics: Numerics = Numerics()
     losses: GearPairLosses = GearPairLosses()
@@ -276,6 +279,7 @@ class ListedSet(_Listed):
     )
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
+    lubrication: LubricationTable | None = LUBRICATION
     models: PlanetaryModels = PlanetaryModels()
     numerics: Numerics = Numerics()
     losses: dict[str, LossOption] = Field(default={})

@@ -14,11 +14,13 @@ from pydantic_core import PydanticCustomError
 from epicyclic import library
 from epicyclic.case.base import CaseTable
 from epicyclic.case.fields import quantity_of
-from epicyclic.case.keys import field_at, known_keys
+from epicyclic.case.keys import field_at, known_keys, value_of
+from epicyclic.case.lubrication import FACTOR_KEY, SHARE_KEY, assumed_factor, share_is_given
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.parameters import Parameter, parameter_of
+from epicyclic.case.plain import value_at
 from epicyclic.case.uncertainty_tables import DistributionTable
-from epicyclic.case.wording import dotted, sentence, written
+from epicyclic.case.wording import dotted, path_of, sentence, written
 from epicyclic.errors import Problem
 from epicyclic.units import CELSIUS, Quantity, format_number
 
@@ -178,12 +180,20 @@ def _own(case: CaseTable, key: str, table: DistributionTable) -> UncertainValue 
     parameter = parameter_of(case, key)
     if isinstance(parameter, Problem):
         return replace(parameter, key=_name(key))
+    if not _has_effect(case, key):
+        allowed = "has no effect: another key decides the share of oil."
+        remedy = "State lubrication.oil_share_factor, or surroundings.oil_air_ratio where given."
+        return Problem(_name(key), _given(table), allowed, remedy)
     if table.exact:
         return None
     return _made(case, parameter, table, "given by the case")
 
 
 def _assumed(case: CaseTable, key: str) -> UncertainValue | None:
+    if not _has_effect(case, key):
+        return None
+    if key == SHARE_KEY or key.endswith(FACTOR_KEY):
+        return _assumed_share(case, key)
     for assumption in _assumptions():
         if assumption.holds_for(key):
             parameter = parameter_of(case, key)
@@ -192,6 +202,29 @@ def _assumed(case: CaseTable, key: str) -> UncertainValue | None:
             made = _made(case, parameter, assumption.table, assumption.source)
             return made if isinstance(made, UncertainValue) else None
     return None
+
+
+def _assumed_share(case: CaseTable, key: str) -> UncertainValue | None:
+    """How well the share of oil is known, by the key that it follows from; None for the others."""
+    if share_is_given(case):
+        table, source = next((one.table, one.source) for one in _assumptions() if key in one.keys)
+    else:
+        factor, source = assumed_factor(value_of(case, key.rpartition(".")[0]))
+        table = DistributionTable(lognormal_factor=factor)
+    parameter = parameter_of(case, key)
+    made = parameter if isinstance(parameter, Problem) else _made(case, parameter, table, source)
+    return made if isinstance(made, UncertainValue) else None
+
+
+def _has_effect(case: CaseTable, key: str) -> bool:
+    """False for keys of the oil around gears that others decide, or that a set shares."""
+    if key == SHARE_KEY:
+        return share_is_given(case)
+    owner, found, _ = key.rpartition("lubrication.")
+    if not found or owner.endswith("thermal."):
+        return True
+    stated = value_at(case.given(), path_of(f"{owner}lubrication")) is not None
+    return stated and not (key.endswith(FACTOR_KEY) and share_is_given(case))
 
 
 def _made(

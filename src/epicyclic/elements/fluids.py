@@ -54,6 +54,12 @@ class Fluids:
         """The oil at a contact, at the temperature of its surfaces."""
         return self.contacts.get(contact, self.oil)
 
+    def mixed(self, oil_fraction: float) -> MixtureState:
+        """The oil with another share of it in the mixture, by volume."""
+        if oil_fraction == self.mixture.oil_fraction:
+            return self.mixture
+        return mixture_state(self.oil, oil_fraction, self.pressure)
+
     @property
     def figures(self) -> FluidFigures:
         """The properties for the user."""

@@ -255,6 +255,11 @@ class GearSet:
         )
 
     @property
+    def _bodies(self) -> tuple[Disc, ...]:
+        """All its discs."""
+        return tuple(disc for discs in self.discs.values() for disc in discs)
+
+    @property
     def terms(self) -> tuple[str, ...]:
         """Names of its losses, in the order in which they are shown."""
         return tuple(self.choices)
@@ -364,8 +369,11 @@ class GearSet:
             name: Loss(LOAD_INDEPENDENT, left_out=reason) for name, reason in self.missing.items()
         }
         flags: tuple[ValidityFlag, ...] = ()
+        struck = sum(
+            disc.jets is not None and state.speeds[disc.body] != 0 for disc in self._bodies
+        )
         for name, discs in self.discs.items():
-            losses[name], found = disc_loss(discs, state)
+            losses[name], found = disc_loss(discs, state, struck)
             flags += found
         if self.thrust is not None:
             losses["thrust_bearing_viscous"], found = thrust_loss(self.thrust, state)

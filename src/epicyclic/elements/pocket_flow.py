@@ -214,7 +214,8 @@ def flow_request(duty: MeshDuty, fluids: Fluids) -> FlowRequest:
     """The flow through the pockets of a mesh: family, and as for `FlowFamily.flow`."""
     settings = duty.models.pockets
     lowest = settings.void_pressure if settings.model == "incompressible" else 0.0
-    return flow_family(duty), abs(duty.speed1), fluids.mixture, fluids.pressure - lowest
+    mixture = fluids.mixed(settings.oil_fraction)
+    return flow_family(duty), abs(duty.speed1), mixture, fluids.pressure - lowest
 
 
 def _scales(request: FlowRequest) -> bool:
@@ -307,7 +308,8 @@ def pocket_notes(
 
 def _sound_note(duty: MeshDuty, figures: FlowFigures, fluids: Fluids, lost: str) -> Iterator[str]:
     """That waves matter to a model without them, or without choking."""
-    model, sound = duty.models.pockets.model, sound_speed(fluids.mixture, fluids.pressure)
+    model, mixture = duty.models.pockets.model, fluids.mixed(duty.models.pockets.oil_fraction)
+    sound = sound_speed(mixture, fluids.pressure)
     if model != "isentropic" and figures.speed_max > LARGEST_MACH * sound:
         yield (
             f"The flow out of the pockets of the {duty.mesh.name} reaches "

@@ -19,6 +19,7 @@ __all__ = [
     "case_files",
     "case_variants",
     "finishes",
+    "lubrication_methods",
     "materials",
     "oil_model_file",
     "oil_names",
@@ -136,3 +137,9 @@ def builtin_case(name: str) -> dict[str, Any]:
 def uncertainty_table() -> dict[str, Any]:
     """What is assumed of values and models whose uncertainty a case does not state."""
     return _read(_root().joinpath("uncertainty.toml"))
+
+
+@cache
+def lubrication_methods() -> Mapping[str, Mapping[str, Any]]:
+    """Share of oil around gears by how they are lubricated, and how well it is known."""
+    return _read_only("lubrication.toml")

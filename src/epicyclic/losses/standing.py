@@ -41,6 +41,11 @@ STANDING: dict[str, dict[str, str]] = {
         "rollers, is met within 10 %",
         "palmgren": "its source gives a range of a factor of 2 for caged rollers",
     },
+    "churning": {
+        "changenet-velex": "fitted to tests of single gears, whose scatter was not found in print; "
+        "readings of its slow regime in other works lie up to 40 % lower",
+        "iso-14179-1": "coefficients of a standard, which states no error",
+    },
     "shaft_bearing": {
         "skf-2018": "formulas of a catalogue, which states no error",
         "palmgren": "mean coefficients of bearings of a type, whose scatter was not found in print",

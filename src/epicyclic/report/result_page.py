@@ -118,6 +118,8 @@ _OIL = {
     "temperature each.",
 }
 """What is assumed about temperatures."""
+_OTHER_KEYS = {"lubrication": "lubrication.method", "churning": "lubrication.churning"}
+"""Keys that choose a model elsewhere than in [models]."""
 _OF_PLANETS = (
     "Figures of meshes and bearing are those of the most loaded planet; losses are those of all.",
 )
@@ -254,7 +256,8 @@ def _methods(result: ResultContents) -> tuple[Table | Listing, ...]:
 def _model_key(key: str) -> str:
     """The key of the case that chooses a model: ``"sets.P1.models.friction"``."""
     name, dot, model = key.rpartition(".")
-    return f"sets.{name}.models.{model}" if dot else f"models.{key}"
+    own = _OTHER_KEYS.get(model, f"models.{model}")
+    return f"sets.{name}.{own}" if dot else own
 
 
 def _versions(result: ResultContents) -> Table:

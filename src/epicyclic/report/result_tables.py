@@ -33,6 +33,8 @@ _FLOW_NOTE = (
     "outside; positive power enters."
 )
 _ROLES = {
+    "lubrication": "lubrication",
+    "churning": "churning",
     "friction": "friction",
     "rolling": "rolling loss",
     "bearing": "planet bearing",

@@ -23,6 +23,7 @@ from epicyclic.elements.figures import (
 )
 from epicyclic.losses.validity import ModelUse, ValidityFlag, describe_flags
 from epicyclic.results.heat import HeatBalance
+from epicyclic.results.lubrication import OilSupply
 from epicyclic.status import Status
 from epicyclic.units import CELSIUS, DEGREE, NEWTON_METRE, RPM, WATT
 
@@ -239,6 +240,8 @@ class Result:
         None for a single set.
     heat : HeatBalance or None
         None if everything is at the temperature of the oil inlet.
+    lubrication : mapping of str to OilSupply
+        Of each set that states it; the key of a single set is empty.
     status : Status
     unloaded : float or None
         Total loss without torque, where losses are grouped as a test rig does; else None. [W]
@@ -265,6 +268,7 @@ class Result:
     planet_shares: tuple[float, ...] = ()
     train: Train | None = None
     heat: HeatBalance | None = None
+    lubrication: Mapping[str, OilSupply] = dataclasses.field(default_factory=dict[str, OilSupply])
     status: Status = Status.CONVERGED
     unloaded: float | None = None
 
@@ -376,6 +380,7 @@ class Result:
             "meshes": {name: _figures_dict(mesh) for name, mesh in self.meshes.items()},
             "fluid": None if self.fluid is None else _figures_dict(self.fluid),
             **({} if self.heat is None else {"heat": self.heat.to_dict()}),
+            **({"lubrication": self._lubrication()} if self.lubrication else {}),
             **(self._planets() if self.train is None else self._train(self.train)),
             "sources": list(self.sources),
             "inputs": dict(self.inputs),
@@ -383,6 +388,11 @@ class Result:
         }
         clean: dict[str, Any] = _json_value(result)
         return clean
+
+    def _lubrication(self) -> dict[str, Any]:
+        """Of a single set itself, of a train by sets."""
+        found = {name: supply.to_dict() for name, supply in self.lubrication.items()}
+        return found.get("", found)
 
     def _planets(self) -> dict[str, Any]:
         """What only a single set states."""

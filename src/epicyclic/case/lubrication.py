@@ -1,0 +1,78 @@
+"""What follows from how oil gets to the gears: the share of oil around them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from epicyclic import library
+from epicyclic.case.lubrication_tables import LubricationTable
+from epicyclic.case.operation_tables import Surroundings
+
+__all__ = ["FACTOR_KEY", "SHARE_KEY", "OilShare", "assumed_factor", "oil_share", "share_is_given"]
+
+SHARE_KEY = "surroundings.oil_air_ratio"
+FACTOR_KEY = "lubrication.oil_share_factor"
+"""The keys that carry how well the share of oil is known: as given, or from the method."""
+BAND = 1.96
+"""Half the width of a band of 95 %, in standard deviations of a normal distribution. [1]"""
+
+
+class Lubricated(Protocol):
+    """A case, or a set of a train."""
+
+    @property
+    def lubrication(self) -> LubricationTable | None:
+        """How oil gets to its gears, if it says so."""
+
+    @property
+    def surroundings(self) -> Surroundings:
+        """What surrounds them."""
+
+
+@dataclass(frozen=True, slots=True)
+class OilShare:
+    """The share of oil by volume around gears.
+
+    Attributes
+    ----------
+    share : float
+        [1]
+    factor : float
+        Two thirds of all gearboxes lie within this factor, either way; 1 for a given share. [1]
+    grade : str
+        ``"given"``, ``"read"`` or ``"estimate"``.
+    source : str
+    """
+
+    share: float
+    factor: float = 1.0
+    grade: str = "given"
+    source: str = SHARE_KEY
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """95 % of all gearboxes."""
+        width = self.factor**BAND
+        return self.share / width, min(1.0, self.share * width)
+
+
+def share_is_given(case: Lubricated) -> bool:
+    """Whether the share of oil is that of the surroundings."""
+    return case.lubrication is None or "oil_air_ratio" in case.surroundings.model_fields_set
+
+
+def oil_share(case: Lubricated) -> OilShare:
+    """The share of oil around the gears of a case. Theory (N1)."""
+    table = case.lubrication
+    if table is None or share_is_given(case):
+        return OilShare(case.surroundings.oil_air_ratio)
+    known = library.lubrication_methods()[table.method]
+    share = min(1.0, table.oil_share_factor * known["oil_share"])
+    return OilShare(share, known["lognormal_factor"], known["grade"], known["source"])
+
+
+def assumed_factor(table: LubricationTable) -> tuple[float, str]:
+    """How well the share of oil of a method is known, as of `OilShare`, and the source of that."""
+    known = library.lubrication_methods()[table.method]
+    return known["lognormal_factor"], known["source"]

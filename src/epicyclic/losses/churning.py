@@ -1,0 +1,297 @@
+"""Churning of parts that dip into an oil sump: Changenet and Velex, and ISO/TR 14179-1."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
+from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, NUMBER
+
+__all__ = [
+    "CHURNING_MODELS",
+    "Churning",
+    "ChurningModel",
+    "Dipped",
+    "SumpOil",
+    "acceleration_parameter",
+    "changenet_velex",
+    "churning_flags",
+    "iso_14179_1",
+    "wetted_area",
+]
+
+ChurningModel = Literal["changenet-velex", "iso-14179-1"]
+
+GRAVITY = 9.80665
+"""[m/s^2]"""
+SLOW, FAST = 750.0, 1250.0
+"""Acceleration parameter up to which, and from which, flow is of one regime. [m/s^2]"""
+ARRANGEMENT = 0.2
+"""A_g of ISO/TR 14179-1. [1]"""
+LEAST_HELIX = math.radians(10.0)
+"""Smallest helix angle with which ISO/TR 14179-1 computes. [rad]"""
+LEAST_MODULE = 0.7
+"""Transverse module at which its roughness factor is held, before it reaches zero. [mm]"""
+RPM = math.pi / 30
+"""1 rpm in rad/s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Dipped:
+    """A part that turns about a level axis and dips into oil.
+
+    Attributes
+    ----------
+    radius : float
+        Of the pitch circle; of a part without teeth, its outside. [m]
+    tip_radius : float
+        [m]
+    width : float
+        [m]
+    depth : float
+        Of its lowest point below the oil at rest. [m]
+    module : float
+        Normal module; of a part without teeth, that of the gears beside it. [m]
+    teeth : int
+        0 for a part without teeth.
+    tooth_height : float
+        [m]
+    pressure_angle, helix_angle : float
+        Normal pressure angle and helix angle at the reference circle. [rad]
+    """
+
+    radius: float
+    tip_radius: float
+    width: float
+    depth: float
+    module: float
+    teeth: int = 0
+    tooth_height: float = 0.0
+    pressure_angle: float = 0.0
+    helix_angle: float = 0.0
+
+    @property
+    def immersed(self) -> float:
+        """Depth over the diameter, 0 to 1. [1]"""
+        return min(max(self.depth / (2 * self.tip_radius), 0.0), 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class SumpOil:
+    """The oil in a sump.
+
+    Attributes
+    ----------
+    density : float
+        [kg/m^3]
+    kinematic_viscosity : float
+        [m^2/s]
+    volume : float
+        [m^3]
+    """
+
+    density: float
+    kinematic_viscosity: float
+    volume: float
+
+
+@dataclass(frozen=True, slots=True)
+class Churning:
+    """A model of churning.
+
+    Attributes
+    ----------
+    title, source : str
+    torque : callable
+        From a part, its speed in rad/s and the oil to the torque in N m.
+    """
+
+    title: str
+    source: str
+    torque: Callable[[Dipped, float, SumpOil], float]
+
+
+def wetted_area(part: Dipped) -> float:
+    """Surface of a part below the oil at rest: faces, rim and flanks. Theory (N4). [m^2]
+
+    Changenet et al. (2011), second hand: S_m = R^2 (2 theta - sin 2 theta) + 2 R b theta
+    + 2 z theta H b/(pi cos(alpha) cos(beta)), cos(theta) = 1 - h/R.
+
+    Examples
+    --------
+    A spur gear of 30 teeth, module 4 mm, dipped to its axis:
+
+    >>> from math import radians
+    >>> gear = Dipped(0.06, 0.064, 0.03, 0.064, 0.004, 30, 0.009, radians(20))
+    >>> round(1e4 * wetted_area(gear), 1)  # cm^2
+    255.8
+    """
+    theta = math.acos(1 - 2 * part.immersed)
+    faces = part.radius**2 * (2 * theta - math.sin(2 * theta))
+    rim = 2 * part.radius * part.width * theta
+    angles = math.cos(part.pressure_angle) * math.cos(part.helix_angle)
+    flanks = 2 * part.teeth * theta * part.tooth_height * part.width / (math.pi * angles)
+    return faces + rim + flanks
+
+
+def acceleration_parameter(part: Dipped, speed: float) -> float:
+    """omega^2 (R b m)^(1/3), which tells the regimes of flow apart. Theory (N6). [m/s^2]
+
+    Changenet et al. (2011), second hand.
+
+    Examples
+    --------
+    >>> round(acceleration_parameter(Dipped(0.06, 0.064, 0.03, 0.02, 0.004), 200.0), 1)
+    772.4
+    """
+    return speed**2 * math.cbrt(part.radius * part.width * part.module)
+
+
+def changenet_velex(part: Dipped, speed: float, oil: SumpOil) -> float:
+    """Churning torque after Changenet and Velex (2007), second hand. Theory (N3), (N5). [N m]
+
+    C = rho omega^2 S_m R^3 C_m/2; C_m by the regime of flow, between the two regimes linear in the
+    acceleration parameter.
+
+    Parameters
+    ----------
+    part : Dipped
+    speed : float
+        Against the housing. [rad/s]
+    oil : SumpOil
+
+    Examples
+    --------
+    >>> gear = Dipped(0.06, 0.064, 0.03, 0.032, 0.004, 30, 0.009, 0.349)
+    >>> round(changenet_velex(gear, 150.0, SumpOil(850.0, 40e-6, 2e-3)), 3)
+    0.175
+    """
+    omega = abs(speed)
+    if not omega or not part.immersed:
+        return 0.0
+    parameter = acceleration_parameter(part, omega)
+    slow = min(max((FAST - parameter) / (FAST - SLOW), 0.0), 1.0)
+    coefficient = slow * _slow_coefficient(part, omega, oil)
+    coefficient += (1 - slow) * _fast_coefficient(part, omega, oil)
+    return oil.density * omega**2 * wetted_area(part) * part.radius**3 * coefficient / 2
+
+
+def _slow_coefficient(part: Dipped, omega: float, oil: SumpOil) -> float:
+    """C_m of the slow regime. Theory (N5). [1]"""
+    reynolds = omega * part.radius * part.width / oil.kinematic_viscosity
+    volume = oil.volume / (2 * part.radius) ** 3
+    froude = omega**2 * part.radius / GRAVITY
+    return (
+        1.366
+        * math.pow(part.immersed, 0.45)
+        * math.pow(volume, 0.1)
+        * math.pow(froude, -0.6)
+        * math.pow(reynolds, -0.21)
+    )
+
+
+def _fast_coefficient(part: Dipped, omega: float, oil: SumpOil) -> float:
+    """C_m of the fast regime, in which viscosity takes no part. Theory (N5). [1]"""
+    volume = oil.volume / (2 * part.radius) ** 3
+    froude = omega**2 * part.radius / GRAVITY
+    return (
+        3.644
+        * math.pow(part.immersed, 0.1)
+        * math.pow(volume, -0.35)
+        * math.pow(froude, -0.88)
+        * math.pow(part.width / (2 * part.radius), 0.85)
+    )
+
+
+def iso_14179_1(part: Dipped, speed: float, oil: SumpOil) -> float:
+    """Churning torque of ISO/TR 14179-1, second hand. Theory (N7). [N m]
+
+    Faces 1.474 f_g nu n^3 D^5.7/(A_g 10^26), rim 7.37 f_g nu n^3 D^4.7 L/(A_g 10^26), for gears
+    times R_f/sqrt(tan(beta)), R_f = 7.93 - 4.648/m_t; kW, mm^2/s, rpm, mm.
+
+    Parameters
+    ----------
+    part : Dipped
+    speed : float
+        Against the housing. [rad/s]
+    oil : SumpOil
+
+    Examples
+    --------
+    >>> gear = Dipped(0.06, 0.064, 0.03, 0.032, 0.004, 30, 0.009, 0.349)
+    >>> round(iso_14179_1(gear, 150.0, SumpOil(850.0, 40e-6, 2e-3)), 3)
+    0.295
+    """
+    omega = abs(speed)
+    if not omega:
+        return 0.0
+    diameter, width = 2e3 * part.tip_radius, 1e3 * part.width
+    group = part.immersed * 1e6 * oil.kinematic_viscosity * (omega / RPM) ** 3
+    group /= ARRANGEMENT * 1e26
+    faces = 1.474 * group * math.pow(diameter, 5.7)
+    rim = 7.37 * group * math.pow(diameter, 4.7) * width
+    if part.teeth:
+        module = max(1e3 * part.module / math.cos(part.helix_angle), LEAST_MODULE)
+        rim *= (7.93 - 4.648 / module) / math.sqrt(math.tan(max(part.helix_angle, LEAST_HELIX)))
+    return 1e3 * (faces + rim) / omega
+
+
+CHURNING_MODELS: Mapping[ChurningModel, Churning] = {
+    "changenet-velex": Churning(
+        "churning after Changenet and Velex",
+        "C. Changenet, P. Velex, J. Mech. Des. 129 (2007) 128; regimes: C. Changenet, G. Leprince, "
+        "F. Ville, P. Velex, J. Mech. Des. 133 (2011) 121009; second hand",
+        changenet_velex,
+    ),
+    "iso-14179-1": Churning(
+        "churning of ISO/TR 14179-1", "ISO/TR 14179-1:2001, second hand", iso_14179_1
+    ),
+}
+
+_SINGLE_GEARS = (
+    "single gears typical of automotive transmissions, Changenet and Velex, J. Mech. Des. 130 "
+    "(2008) 062602, abstract; the limits are of this package"
+)
+_RANGES = {
+    "changenet-velex": (
+        Range("diameter", "pitch diameter of what dips", 50.0, 300.0, MILLIMETRE, _SINGLE_GEARS),
+        Range("immersed", "depth over the diameter", None, 0.5, NUMBER, _SINGLE_GEARS),
+    ),
+    "iso-14179-1": (
+        Range(
+            "module",
+            "transverse module",
+            LEAST_MODULE,
+            None,
+            MILLIMETRE,
+            "below, the factor of the teeth nears zero and is held: limit of this package",
+        ),
+    ),
+}
+_SPLASH = Range(
+    "tip_speed",
+    "circumferential speed of what dips",
+    None,
+    20.0,
+    METRE_PER_SECOND,
+    "dip lubrication is recommended below it: P. Walter, after Forsch. Ingenieurwes. 84 (2020), "
+    "doi 10.1007/s10010-020-00423-0",
+)
+
+
+def churning_flags(
+    model: ChurningModel, where: str, part: Dipped, speed: float
+) -> tuple[ValidityFlag, ...]:
+    """Flags of the churning of the part called `where`."""
+    if not speed or not part.immersed:
+        return ()
+    values = {
+        "diameter": 2 * part.radius,
+        "immersed": part.immersed,
+        "module": part.module / math.cos(part.helix_angle) if part.teeth else math.inf,
+        "tip_speed": abs(speed) * part.tip_radius,
+    }
+    return check_ranges(ModelUse("drag", model, where), (*_RANGES[model], _SPLASH), values)
