@@ -8,8 +8,10 @@ from dataclasses import replace
 from functools import partial
 
 from epicyclic.builders.models import fluids_of
+from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case
-from epicyclic.case.lubrication import oil_share
+from epicyclic.case.lubrication import oil_share, with_lubrication
+from epicyclic.case.lubrication_tables import LubricationTable
 from epicyclic.case.thermal_tables import HousingTable, ThermalTable
 from epicyclic.elements.base import OIL, joined_key
 from epicyclic.elements.fluids import Fluids, fluids_at, oil_at, oil_flags
@@ -41,15 +43,22 @@ def thermal_model(case: Case, machine: Machine) -> ThermalModel | None:
     kind = case.models.temperatures
     if kind == "inlet" or case.lubricant is None:
         return None
-    table = case.thermal
     fluids = _fluids_at(case, contact_nodes(machine))
     inlet = fluids_of(case).oil.temperature
+    keys = [own.key for own in machine.elements if isinstance(own, GearSet)]
+    tables = {key: own.lubrication for key, own in set_cases(case, keys)}
     if kind == "flank":
-        factor = LUBRICATION_FACTORS[table.lubrication]
-        return FlankModel(machine, inlet, table.bulk, factor, fluids)
-    settings = _settings(table, inlet)
+        factors = {key: _lubrication_factor(case.thermal, table) for key, table in tables.items()}
+        return FlankModel(machine, inlet, case.thermal.bulk, factors, fluids)
+    flows = [table.oil_flow for table in tables.values() if table is not None and table.oil_flow]
+    settings = _settings(case, sum(flows) if flows else None, inlet)
     pressure, share = case.surroundings.pressure, oil_share(case).share
     return NetworkModel(machine, settings, fluids, _media(case.lubricant.oil, pressure, share))
+
+
+def _lubrication_factor(thermal: ThermalTable, table: LubricationTable | None) -> float:
+    """X_S of a set. [1]"""
+    return LUBRICATION_FACTORS[with_lubrication(thermal, table, None).lubrication]
 
 
 def contact_nodes(machine: Machine) -> dict[str, tuple[str, ...]]:
@@ -159,13 +168,14 @@ def oil_medium(oil: Oil, temperature: float) -> Fluid:
     )
 
 
-def _settings(table: ThermalTable, inlet: float) -> HeatSettings:
+def _settings(case: Case, to_gears: float | None, inlet: float) -> HeatSettings:
+    table = with_lubrication(case.thermal, case.lubrication, to_gears)
     bath = {"dip": table.bath_share, "submerged": 1.0}.get(table.lubrication, 0.0)
     return HeatSettings(
         inlet=inlet,
         outlet=table.oil_outlet_temperature,
         flow=table.oil_flow or 0.0,
-        effectiveness=0.0 if table.lubrication in IN_BATH else table.jet_effectiveness,
+        effectiveness=_effectiveness(table, to_gears),
         jet_shares=table.jet_shares,
         bath=bath,
         press_fit=table.press_fit,
@@ -184,6 +194,15 @@ def _settings(table: ThermalTable, inlet: float) -> HeatSettings:
             name: Change(change.value, change.scale) for name, change in table.capacities.items()
         },
     )
+
+
+def _effectiveness(table: ThermalTable, to_gears: float | None) -> float:
+    """How far the flow of oil reaches the temperature of the gears, what misses them included."""
+    if table.lubrication in IN_BATH:
+        return 0.0
+    if to_gears is None or not table.oil_flow or table.jet_shares:
+        return table.jet_effectiveness
+    return table.jet_effectiveness * min(1.0, to_gears / table.oil_flow)
 
 
 def _steel_mass(table: HousingTable) -> float | None:

@@ -14,8 +14,8 @@ from pathlib import Path
 from epicyclic.case import build
 from epicyclic.case.gear_checks import check_pair, check_planetary
 from epicyclic.case.gear_tables import Gears, GearTable, Planet, Ring
+from epicyclic.case.lubrication import with_lubrication
 from epicyclic.case.lubrication_checks import (
-    check_flow,
     check_immersion,
     check_lubrication,
     check_sump,
@@ -79,6 +79,11 @@ def cross_check(
     solver = sections.get("contact_solver")
     if isinstance(solver, ContactSolver):
         problems += law_problems("contact_solver", solver)
+    thermal, oil = sections.get("thermal"), sections.get("lubrication")
+    if isinstance(models, GearPairModels) and isinstance(thermal, ThermalTable):
+        table = oil if isinstance(oil, LubricationTable) else None
+        whole = with_lubrication(thermal, table, None if table is None else table.oil_flow)
+        problems += check_ways_out(whole, models.temperatures)
     if isinstance(models, PlanetaryModels):
         problems += _check_planet_tilt(models, {*given, *sections})
     for check, needed in _CHECKS:
@@ -359,10 +364,6 @@ def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Proble
     ]
 
 
-def _check_ways_out(thermal: ThermalTable, models: GearPairModels) -> list[Problem]:
-    return check_ways_out(thermal, models.temperatures)
-
-
 def _check_outlet(
     thermal: ThermalTable, operation: PlanetaryOperation | GearPairOperation
 ) -> list[Problem]:
@@ -377,11 +378,6 @@ def _check_pair_immersion(table: LubricationTable, pinion: GearTable) -> list[Pr
     return check_immersion(table, ("pinion", "gear"))
 
 
-def _check_flow(table: LubricationTable, thermal: ThermalTable, operation: Table) -> list[Problem]:
-    """Of a single set; that of a train is the sum over its sets."""
-    return check_flow(table.oil_flow, thermal)
-
-
 _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_operation, ("operation",)),
     (check_planetary, ("gears", "sun", "planet", "ring")),
@@ -394,12 +390,10 @@ _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_resolution, ("models", "numerics")),
     (_check_void, ("models", "surroundings")),
     (check_thermal, ("thermal",)),
-    (_check_ways_out, ("thermal", "models")),
     (_check_outlet, ("thermal", "operation")),
     (check_lubrication, ("lubrication",)),
     (check_sump, ("lubrication", "thermal")),
     (check_wetting, ("lubrication", "thermal")),
-    (_check_flow, ("lubrication", "thermal", "operation")),
     (_check_planetary_immersion, ("lubrication", "sun")),
     (_check_pair_immersion, ("lubrication", "pinion")),
 )

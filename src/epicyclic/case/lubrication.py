@@ -2,20 +2,42 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
 from epicyclic import library
-from epicyclic.case.lubrication_tables import LubricationTable
+from epicyclic.case.lubrication_tables import LubricationTable, Method
 from epicyclic.case.operation_tables import Surroundings
+from epicyclic.case.thermal_tables import ThermalTable
 
-__all__ = ["FACTOR_KEY", "SHARE_KEY", "OilShare", "assumed_factor", "oil_share", "share_is_given"]
+__all__ = [
+    "FACTOR_KEY",
+    "SHARE_KEY",
+    "WETTING",
+    "OilShare",
+    "assumed_factor",
+    "oil_share",
+    "share_is_given",
+    "with_lubrication",
+]
 
 SHARE_KEY = "surroundings.oil_air_ratio"
 FACTOR_KEY = "lubrication.oil_share_factor"
 """The keys that carry how well the share of oil is known: as given, or from the method."""
 BAND = 1.96
 """Half the width of a band of 95 %, in standard deviations of a normal distribution. [1]"""
+
+
+WETTING: Mapping[Method, tuple[str, ...]] = {
+    "jet": ("spray", "spray-and-dip"),
+    "spray": ("spray", "spray-and-dip"),
+    "flow": ("spray", "spray-and-dip"),
+    "drained": ("spray",),
+    "dip": ("dip", "spray-and-dip"),
+    "submerged": ("submerged",),
+}
+"""What thermal.lubrication is with each method if it is not given, and what else it may be."""
 
 
 class Lubricated(Protocol):
@@ -76,3 +98,27 @@ def assumed_factor(table: LubricationTable) -> tuple[float, str]:
     """How well the share of oil of a method is known, as of `OilShare`, and the source of that."""
     known = library.lubrication_methods()[table.method]
     return known["lognormal_factor"], known["source"]
+
+
+def with_lubrication(
+    thermal: ThermalTable, table: LubricationTable | None, flow: float | None
+) -> ThermalTable:
+    """The table [thermal] with what [lubrication] says of the oil, where it says nothing itself.
+
+    Parameters
+    ----------
+    thermal : ThermalTable
+    table : LubricationTable or None
+    flow : float or None
+        Oil that is brought to all gears. [m^3/s]
+    """
+    if table is None:
+        return thermal
+    found: dict[str, object] = {}
+    if "lubrication" not in thermal.model_fields_set:
+        found["lubrication"] = WETTING[table.method][0]
+    if thermal.oil_flow is None and thermal.oil_outlet_temperature is None:
+        found["oil_flow"] = flow
+    if thermal.oil_volume is None:
+        found["oil_volume"] = table.oil_volume
+    return thermal.model_copy(update=found)

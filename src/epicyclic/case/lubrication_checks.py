@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 
+from epicyclic.case.lubrication import WETTING
 from epicyclic.case.lubrication_tables import LubricationTable, Method
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.errors import Problem
-from epicyclic.units import LITRE, LITRE_PER_MINUTE
+from epicyclic.units import LITRE
 
 __all__ = [
-    "WETTING",
-    "check_flow",
     "check_immersion",
     "check_lubrication",
     "check_sump",
@@ -29,15 +28,6 @@ _KEYS: Mapping[Method, Collection[str]] = {
     "submerged": (),
 }
 """Keys that have an effect with each method."""
-WETTING: Mapping[Method, tuple[str, ...]] = {
-    "jet": ("spray", "spray-and-dip"),
-    "spray": ("spray", "spray-and-dip"),
-    "flow": ("spray", "spray-and-dip"),
-    "drained": ("spray",),
-    "dip": ("dip", "spray-and-dip"),
-    "submerged": ("submerged",),
-}
-"""What thermal.lubrication is with each method if it is not given, and what else it may be."""
 
 
 def check_lubrication(table: LubricationTable) -> list[Problem]:
@@ -93,22 +83,6 @@ def check_wetting(table: LubricationTable, thermal: ThermalTable) -> list[Proble
             f'"{thermal.lubrication}"',
             f'contradicts lubrication.method = "{table.method}", with which it is {fitting}.',
             "Remove it: it follows from the method.",
-        )
-    ]
-
-
-def check_flow(flow: float | None, thermal: ThermalTable) -> list[Problem]:
-    """What reaches the gears is part of all oil."""
-    whole = thermal.oil_flow
-    if flow is None or whole is None or flow <= whole:
-        return []
-    return [
-        Problem(
-            "lubrication.oil_flow",
-            LITRE_PER_MINUTE.text(flow),
-            f"must be at most thermal.oil_flow, {LITRE_PER_MINUTE.text(whole)}, the flow of all "
-            "oil.",
-            "Correct one of them, or remove thermal.oil_flow.",
         )
     ]
 

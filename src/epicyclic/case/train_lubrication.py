@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from epicyclic.case.lubrication_checks import (
-    check_flow,
     check_immersion,
     check_sump,
     check_wetting,
@@ -18,17 +17,7 @@ from epicyclic.errors import Problem
 if TYPE_CHECKING:
     from epicyclic.case.train import TrainCase
 
-__all__ = ["flow_to_gears", "lubrication_problems"]
-
-
-def flow_to_gears(train: TrainCase) -> float | None:
-    """Oil that is brought to the gears of all sets; None if no set states any. [m^3/s]"""
-    flows = [
-        table.lubrication.oil_flow
-        for _, table in _computed(train)
-        if table.lubrication is not None and table.lubrication.oil_flow is not None
-    ]
-    return sum(flows) if flows else None
+__all__ = ["lubrication_problems"]
 
 
 def lubrication_problems(train: TrainCase) -> list[Problem]:
@@ -36,7 +25,6 @@ def lubrication_problems(train: TrainCase) -> list[Problem]:
     problems: list[Problem] = []
     if train.lubrication is not None:
         problems += _shared_immersion(train)
-    problems += check_flow(flow_to_gears(train), train.thermal)
     for name, table in _computed(train):
         own = table.lubrication
         if own is None or own == train.lubrication:

@@ -54,8 +54,8 @@ class FlankModel:
         Temperature of the oil. [K]
     method : str
         One of `BULK_METHODS`.
-    lubrication_factor : float
-        X_S. [1]
+    lubrication_factors : mapping of str to float
+        X_S of each set, by its key. [1]
     fluids_at : callable
         Oil and mixture at the temperatures of all nodes.
     """
@@ -63,7 +63,7 @@ class FlankModel:
     machine: Machine
     oil: float
     method: BulkMethod
-    lubrication_factor: float
+    lubrication_factors: Mapping[str, float]
     fluids_at: Callable[[Mapping[str, float]], Fluids]
 
     @property
@@ -80,7 +80,7 @@ class FlankModel:
         rise = BULK_METHODS[self.method]
         return Answer(
             {
-                node: self.oil + rise(sides, solution, self.lubrication_factor)
+                node: self.oil + rise(sides, solution, self.lubrication_factors[sides[0].element])
                 for node, sides in _sides(self.machine).items()
             },
             given={OIL: self.oil},
