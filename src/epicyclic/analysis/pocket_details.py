@@ -18,7 +18,7 @@ from epicyclic.case.case import Case
 from epicyclic.elements.base import joined_key
 from epicyclic.elements.fluids import Fluids
 from epicyclic.elements.gear_mesh import MeshDuty
-from epicyclic.elements.pocket_flow import pocket_notes, solve_pockets
+from epicyclic.elements.pocket_flow import oil_in_mesh, pocket_notes, solve_pockets
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.outline import tooth_outline
@@ -396,7 +396,7 @@ def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Vari
         "mass_error": (flow.mass_error, "mass lost in a period over mass that came in", NUMBER),
         "periods": (flow.periods, "mesh periods until the flow repeated", NUMBER),
         "sound_speed": (
-            sound_speed(fluids.mixed(duty.models.pockets.oil_fraction), fluids.pressure),
+            sound_speed(fluids.mixed(oil_in_mesh(duty)), fluids.pressure),
             "speed of sound of an even mixture",
             METRE_PER_SECOND,
         ),
@@ -408,7 +408,7 @@ def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Vari
             RPM,
         ),
         "oil_fraction": (
-            duty.models.pockets.oil_fraction,
+            oil_in_mesh(duty),
             "share of oil in the mixture, by volume",
             NUMBER,
         ),

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from epicyclic.builders.models import fluids_of
 from epicyclic.case.case import Case
 from epicyclic.elements.gear_mesh import MeshDuty
-from epicyclic.elements.pocket_flow import flow_request
+from epicyclic.elements.pocket_flow import flow_request, oil_in_mesh
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.cutting import mated_tools
 from epicyclic.geometry.gear import BasicRack, Gear, half_angle_from_thickness
@@ -71,7 +71,7 @@ def base_variant(case: Case, duty: MeshDuty) -> PocketVariant:
     return PocketVariant(
         helix_angle=mesh.gear1.rack.helix_angle,
         face_width=mesh.face_width,
-        oil_fraction=duty.models.pockets.oil_fraction,
+        oil_fraction=oil_in_mesh(duty),
         backlash=mesh.backlash,
         teeth=(mesh.gear1.teeth, mesh.gear2.teeth),
         speed=abs(duty.speed1),

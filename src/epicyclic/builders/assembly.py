@@ -17,8 +17,9 @@ from epicyclic.case.train import TrainCase
 from epicyclic.elements.base import HOUSING, OIL, Loss, joined_key
 from epicyclic.elements.disc import churned
 from epicyclic.elements.figures import BearingFigures, MeshFigures
-from epicyclic.elements.gear_set import GearSetResult
+from epicyclic.elements.gear_set import GearSet, GearSetResult
 from epicyclic.elements.load_sharing import SHARING_METHODS
+from epicyclic.elements.pocket_flow import oil_in_mesh
 from epicyclic.elements.shaft_bearing import ShaftBearing
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.standing import standing
@@ -194,8 +195,14 @@ def _supplies(case: Case, built: Built, solution: Solution) -> Iterator[tuple[st
                     share.grade,
                     share.source,
                     churned(discs, solution.state),
+                    _in_meshes(built.sets[key], solution),
                 ),
             )
+
+
+def _in_meshes(own: GearSet, solution: Solution) -> dict[str, float]:
+    """Share of oil in the pockets of each mesh of a set."""
+    return {duty.key: oil_in_mesh(duty) for duty in own.mean_duties(solution.state)}
 
 
 def _standing(

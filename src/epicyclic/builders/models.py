@@ -9,7 +9,7 @@ import numpy as np
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.listed_set import ListedCase
-from epicyclic.case.lubrication import oil_share
+from epicyclic.case.lubrication import oil_share, share_is_given
 from epicyclic.case.model_tables import LossOption
 from epicyclic.case.oil_laws import oil_laws
 from epicyclic.case.part_tables import PlanetBearing
@@ -231,6 +231,8 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
     pocketing = pocketing_of(case)
     file = case.models.pocketing_table
     memory = None if case.models.temperatures == "inlet" else FlowMemory()
+    meshes = tuple(_before("_pocketing", choices))
+    fed = _fed(case) / (len(meshes) * _planets(case))
     return {
         key: MeshModels(
             friction=friction,
@@ -250,10 +252,27 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
                 file=None if file is None else case.folder / file,
                 tables=flow_tables,
                 memory=memory,
+                fed=fed,
             ),
         )
-        for key in _before("_pocketing", choices)
+        for key in meshes
     }
+
+
+def _fed(case: SetCase) -> float:
+    """Oil that goes into the meshes of a set as the teeth mesh. [m^3/s]"""
+    table = case.lubrication
+    if table is None or share_is_given(case) or table.oil_flow is None:
+        return 0.0
+    into = table.method == "flow" or (table.method == "jet" and table.nozzle_side == "in-mesh")
+    return table.oil_flow if into else 0.0
+
+
+def _planets(case: SetCase) -> int:
+    """Number of planets of each kind; 1 without."""
+    if isinstance(case, PlanetaryCase):
+        return case.planet.count
+    return (case.table.planets or 1) if isinstance(case, ListedCase) else 1
 
 
 def _before(ending: str, names: Iterable[str]) -> Iterator[str]:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epicyclic.elements.fluids import Fluids
+from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.losses.validity import Range
 from epicyclic.lubricant.properties import MixtureState
@@ -46,6 +47,7 @@ __all__ = [
     "flow_numbers",
     "flow_request",
     "mesh_flows",
+    "oil_in_mesh",
     "pocket_notes",
     "pocketing_method",
     "solve_pockets",
@@ -96,6 +98,8 @@ class PocketSettings:
         Tables that the points of a sweep share.
     memory : FlowMemory or None
         Flows of this very case at other temperatures, while they settle.
+    fed : float
+        Oil that is fed into the mesh of one planet as the teeth mesh. [m^3/s]
     """
 
     include: bool
@@ -108,6 +112,7 @@ class PocketSettings:
     file: Path | None = None
     tables: FlowTables = field(default_factory=dict, hash=False, compare=False)
     memory: FlowMemory | None = field(default=None, hash=False, compare=False)
+    fed: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +131,27 @@ class MeshFlow:
     left_out: str = ""
 
 
+def oil_in_mesh(duty: MeshDuty) -> float:
+    """Share of oil in the pockets of a mesh: that around it, and what is fed into it.
+
+    Theory (N9).
+    """
+    settings = duty.models.pockets
+    if not settings.fed or not duty.speed1:
+        return settings.oil_fraction
+    mesh = duty.mesh
+    turns = abs(duty.speed1) / (2 * math.pi)
+    passing = turns * (
+        _spaces(mesh.gear1) + mesh.gear1.teeth / mesh.gear2.teeth * _spaces(mesh.gear2)
+    )
+    return min(1.0, settings.oil_fraction + settings.fed / passing)
+
+
+def _spaces(gear: Gear) -> float:
+    """Volume of all tooth spaces of a gear, half of the ring that the teeth stand in. [m^3]"""
+    return math.pi * abs(gear.tip_radius**2 - gear.root_radius**2) * gear.face_width / 2
+
+
 def flow_family(duty: MeshDuty) -> FlowFamily:
     """The flows that that of a mesh belongs to."""
     settings = duty.models.pockets
@@ -133,7 +159,7 @@ def flow_family(duty: MeshDuty) -> FlowFamily:
         mesh=duty.mesh,
         tools=duty.tools,
         drives1=duty.drives1,
-        oil_fraction=1.0 if settings.model in NETWORK_MODELS else settings.oil_fraction,
+        oil_fraction=1.0 if settings.model in NETWORK_MODELS else oil_in_mesh(duty),
         model=settings.model,
         slices=settings.slices,
         steps=settings.steps,
@@ -214,7 +240,7 @@ def flow_request(duty: MeshDuty, fluids: Fluids) -> FlowRequest:
     """The flow through the pockets of a mesh: family, and as for `FlowFamily.flow`."""
     settings = duty.models.pockets
     lowest = settings.void_pressure if settings.model == "incompressible" else 0.0
-    mixture = fluids.mixed(settings.oil_fraction)
+    mixture = fluids.mixed(oil_in_mesh(duty))
     return flow_family(duty), abs(duty.speed1), mixture, fluids.pressure - lowest
 
 
@@ -308,7 +334,7 @@ def pocket_notes(
 
 def _sound_note(duty: MeshDuty, figures: FlowFigures, fluids: Fluids, lost: str) -> Iterator[str]:
     """That waves matter to a model without them, or without choking."""
-    model, mixture = duty.models.pockets.model, fluids.mixed(duty.models.pockets.oil_fraction)
+    model, mixture = duty.models.pockets.model, fluids.mixed(oil_in_mesh(duty))
     sound = sound_speed(mixture, fluids.pressure)
     if model != "isentropic" and figures.speed_max > LARGEST_MACH * sound:
         yield (

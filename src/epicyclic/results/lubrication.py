@@ -24,6 +24,8 @@ class OilSupply:
     source : str
     churning : mapping of str to float
         What parts that dip lose after each model; empty if none dips. [W]
+    meshes : mapping of str to float
+        Share of oil in the pockets of each mesh. [1]
     """
 
     method: str
@@ -33,6 +35,7 @@ class OilSupply:
     grade: str
     source: str
     churning: Mapping[str, float] = field(default_factory=dict[str, float])
+    meshes: Mapping[str, float] = field(default_factory=dict[str, float])
 
     @property
     def text(self) -> str:
@@ -40,7 +43,9 @@ class OilSupply:
         if self.grade == "given":
             return f"{self.method}: share of oil {self.share:.2g}, given by {self.source}"
         band = f"95 %: {self.low:.2g} to {self.high:.2g}"
-        return f"{self.method}: share of oil {self.share:.2g} ({band}; {self.source})"
+        fed = max(self.meshes.values(), default=0.0) - self.share
+        more = f"; up to {fed:.2g} more in the meshes" if fed > 0 else ""
+        return f"{self.method}: share of oil {self.share:.2g} ({band}; {self.source}){more}"
 
     @property
     def comparison(self) -> str:
@@ -58,6 +63,9 @@ class OilSupply:
                 "unit": "1",
                 "grade": self.grade,
                 "source": self.source,
+            },
+            "oil_share_in_meshes": {
+                name: {"value": share, "unit": "1"} for name, share in self.meshes.items()
             },
             "churning": {name: {"value": w, "unit": "W"} for name, w in self.churning.items()},
         }
