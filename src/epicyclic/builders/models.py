@@ -9,7 +9,7 @@ import numpy as np
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.listed_set import ListedCase
-from epicyclic.case.lubrication import oil_share, share_is_given
+from epicyclic.case.lubrication import oil_share
 from epicyclic.case.model_tables import LossOption
 from epicyclic.case.oil_laws import oil_laws
 from epicyclic.case.part_tables import PlanetBearing
@@ -262,7 +262,7 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
 def _fed(case: SetCase) -> float:
     """Oil that goes into the meshes of a set as the teeth mesh. [m^3/s]"""
     table = case.lubrication
-    if table is None or share_is_given(case) or table.oil_flow is None:
+    if table is None or table.oil_share is not None or table.oil_flow is None:
         return 0.0
     into = table.method == "flow" or (table.method == "jet" and table.nozzle_side == "in-mesh")
     return table.oil_flow if into else 0.0

@@ -19,7 +19,7 @@ from epicyclic.case import build, flanks
 from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.listed_set import ListedCase, arrangement_of, gear_of
-from epicyclic.case.lubrication import SHARE_KEY, share_is_given
+from epicyclic.case.lubrication import SHARE_KEY
 from epicyclic.case.model_tables import LoadSharing
 from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_set import GearSetResult
@@ -110,10 +110,10 @@ def lubrication_notes(case: SetCase) -> Iterator[str]:
     table = case.lubrication
     if table is None:
         return
-    if share_is_given(case):
+    if "oil_air_ratio" in case.surroundings.model_fields_set:
         yield (
-            f"{SHARE_KEY} is given: the share of oil is not that of lubrication.method = "
-            f"{table.method}."
+            f"{SHARE_KEY} has no effect: the share of oil follows from [lubrication], whose "
+            "oil_share states a known one."
         )
     if table.method == "dip":
         left_out = "of planets" if not isinstance(case, GearPairCase) else ""

@@ -11,7 +11,6 @@ from pydantic import PrivateAttr
 
 from epicyclic.case.checks import cross_check
 from epicyclic.case.fields import find_field, locate, to_inputs
-from epicyclic.case.lubrication import share_is_given
 from epicyclic.case.plain import plain, value_at, with_value, without
 from epicyclic.case.schema import Table
 from epicyclic.case.translation import unknown_key
@@ -118,10 +117,7 @@ class CaseTable(Table):
 
     def inputs(self) -> dict[str, Any]:
         """The case as nested tables of text and numbers, defaults included, as a file has them."""
-        inputs = to_inputs(self)
-        if not share_is_given(self):  # it would decide if it were given
-            del inputs["surroundings"]["oil_air_ratio"]
-        return inputs
+        return to_inputs(self)
 
     def __eq__(self, other: object) -> bool:
         """Equal if every key has the same value, wherever the cases were read."""

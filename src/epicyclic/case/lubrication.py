@@ -13,22 +13,21 @@ from epicyclic.case.thermal_tables import ThermalTable
 
 __all__ = [
     "FACTOR_KEY",
+    "OWN_SHARE_KEY",
     "SHARE_KEY",
     "WETTING",
     "OilShare",
     "assumed_factor",
     "oil_share",
-    "share_is_given",
     "with_lubrication",
 ]
 
 SHARE_KEY = "surroundings.oil_air_ratio"
+OWN_SHARE_KEY = "lubrication.oil_share"
 FACTOR_KEY = "lubrication.oil_share_factor"
-"""The keys that carry how well the share of oil is known: as given, or from the method."""
+"""The keys that carry how well the share of oil is known: given, or as the method has it."""
 BAND = 1.96
 """Half the width of a band of 95 %, in standard deviations of a normal distribution. [1]"""
-
-
 WETTING: Mapping[Method, tuple[str, ...]] = {
     "jet": ("spray", "spray-and-dip"),
     "spray": ("spray", "spray-and-dip"),
@@ -60,17 +59,18 @@ class OilShare:
     ----------
     share : float
         [1]
-    factor : float
-        Two thirds of all gearboxes lie within this factor, either way; 1 for a given share. [1]
+    source : str
+        Where it is from; of a given one the key.
     grade : str
         ``"given"``, ``"read"`` or ``"estimate"``.
-    source : str
+    factor : float
+        Two thirds of all gearboxes lie within this factor, either way; 1 for a given share. [1]
     """
 
     share: float
-    factor: float = 1.0
+    source: str
     grade: str = "given"
-    source: str = SHARE_KEY
+    factor: float = 1.0
 
     @property
     def band(self) -> tuple[float, float]:
@@ -79,19 +79,16 @@ class OilShare:
         return self.share / width, min(1.0, self.share * width)
 
 
-def share_is_given(case: Lubricated) -> bool:
-    """Whether the share of oil is that of the surroundings."""
-    return case.lubrication is None or "oil_air_ratio" in case.surroundings.model_fields_set
-
-
 def oil_share(case: Lubricated) -> OilShare:
     """The share of oil around the gears of a case. Theory (N1)."""
     table = case.lubrication
-    if table is None or share_is_given(case):
-        return OilShare(case.surroundings.oil_air_ratio)
+    if table is None:
+        return OilShare(case.surroundings.oil_air_ratio, SHARE_KEY)
+    if table.oil_share is not None:
+        return OilShare(table.oil_share, OWN_SHARE_KEY)
     known = library.lubrication_methods()[table.method]
     share = min(1.0, table.oil_share_factor * known["oil_share"])
-    return OilShare(share, known["lognormal_factor"], known["grade"], known["source"])
+    return OilShare(share, known["source"], known["grade"], known["lognormal_factor"])
 
 
 def assumed_factor(table: LubricationTable) -> tuple[float, str]:

@@ -18,7 +18,7 @@ __all__ = [
     "check_wetting",
 ]
 
-_EVERY = {"method", "oil_share_factor"}
+_EVERY = {"method", "oil_share", "oil_share_factor"}
 _KEYS: Mapping[Method, Collection[str]] = {
     "jet": ("oil_flow", "jet_speed", "nozzle_side"),
     "spray": ("oil_flow",),
@@ -45,6 +45,10 @@ def check_lubrication(table: LubricationTable) -> list[Problem]:
         allowed = 'is missing, and method = "dip" needs it, or immersion.'
         remedy = 'Give it from the axis of the set, as "-30 mm", or immersion = { sun = "5 mm" }.'
         problems.append(Problem("lubrication.oil_level", "", allowed, remedy))
+    if table.oil_share is not None and "oil_share_factor" in given:
+        key = "lubrication.oil_share, lubrication.oil_share_factor"
+        allowed = "exclude each other: the factor is of what follows from the method."
+        problems.append(Problem(key, "", allowed, "Give one of them."))
     if table.oil_level is not None and table.immersion:
         key = "lubrication.oil_level, lubrication.immersion"
         problems.append(Problem(key, "", "state the same thing twice.", "Give one of them."))

@@ -56,11 +56,18 @@ class LubricationTable(Table):
         default=None, description="With dip: in the sump. Default: thermal.oil_volume."
     )
     churning: ChurningModel = Field(default="changenet-velex", description="With dip.")
+    oil_share: Number | None = Field(
+        default=None,
+        ge=0,
+        le=1,
+        description="Share of oil by volume around the gears, where it is known. Default: an "
+        "estimate by method.",
+    )
     oil_share_factor: Number = Field(
         default=1.0,
         gt=0,
         le=100,
-        description="Multiplies the share of oil that follows from the method, at most to 1.",
+        description="Multiplies that estimate, at most to 1.",
     )
 
     def __hash__(self) -> int:  # a table of names cannot be hashed
@@ -68,6 +75,6 @@ class LubricationTable(Table):
 
 
 LUBRICATION: Any = Field(
-    default=None, description="Instead of surroundings.oil_air_ratio, which wins where given."
+    default=None, description="With it surroundings.oil_air_ratio has no effect."
 )
 """The field of a case."""

@@ -39,6 +39,10 @@ _TRAIN_STATES = """
 # speed = ["0 rpm", "5000 rpm", "10000 rpm"]
 # torque = ["0.1 N*m", "0.15 N*m", "0.2 N*m"]
 
+# [lubrication]                        # of all sets; a set may have its own
+# method = "jet"                       # instead of surroundings.oil_air_ratio
+# oil_flow = "2 l/min"
+
 # [models]                             # of all sets; a set may have its own, [sets.pair.models]
 # friction = "schlenk"                 # 'epicyclic friction CASE' compares them
 """

@@ -15,7 +15,7 @@ from epicyclic import library
 from epicyclic.case.base import CaseTable
 from epicyclic.case.fields import quantity_of
 from epicyclic.case.keys import field_at, known_keys, value_of
-from epicyclic.case.lubrication import FACTOR_KEY, SHARE_KEY, assumed_factor, share_is_given
+from epicyclic.case.lubrication import FACTOR_KEY, SHARE_KEY, assumed_factor
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.parameters import Parameter, parameter_of
 from epicyclic.case.plain import value_at
@@ -182,7 +182,7 @@ def _own(case: CaseTable, key: str, table: DistributionTable) -> UncertainValue 
         return replace(parameter, key=_name(key))
     if not _has_effect(case, key):
         allowed = "has no effect: another key decides the share of oil."
-        remedy = "State lubrication.oil_share_factor, or surroundings.oil_air_ratio where given."
+        remedy = f"State {FACTOR_KEY}, or lubrication.oil_share where it is given."
         return Problem(_name(key), _given(table), allowed, remedy)
     if table.exact:
         return None
@@ -192,8 +192,8 @@ def _own(case: CaseTable, key: str, table: DistributionTable) -> UncertainValue 
 def _assumed(case: CaseTable, key: str) -> UncertainValue | None:
     if not _has_effect(case, key):
         return None
-    if key == SHARE_KEY or key.endswith(FACTOR_KEY):
-        return _assumed_share(case, key)
+    if key.endswith(FACTOR_KEY):
+        return _assumed_factor(case, key)
     for assumption in _assumptions():
         if assumption.holds_for(key):
             parameter = parameter_of(case, key)
@@ -204,27 +204,26 @@ def _assumed(case: CaseTable, key: str) -> UncertainValue | None:
     return None
 
 
-def _assumed_share(case: CaseTable, key: str) -> UncertainValue | None:
-    """How well the share of oil is known, by the key that it follows from; None for the others."""
-    if share_is_given(case):
-        table, source = next((one.table, one.source) for one in _assumptions() if key in one.keys)
-    else:
-        factor, source = assumed_factor(value_of(case, key.rpartition(".")[0]))
-        table = DistributionTable(lognormal_factor=factor)
+def _assumed_factor(case: CaseTable, key: str) -> UncertainValue | None:
+    """How well the share of oil is known that follows from a method."""
+    factor, source = assumed_factor(value_of(case, key.rpartition(".")[0]))
     parameter = parameter_of(case, key)
-    made = parameter if isinstance(parameter, Problem) else _made(case, parameter, table, source)
+    assert isinstance(parameter, Parameter)
+    made = _made(case, parameter, DistributionTable(lognormal_factor=factor), source)
     return made if isinstance(made, UncertainValue) else None
 
 
 def _has_effect(case: CaseTable, key: str) -> bool:
     """False for keys of the oil around gears that others decide, or that a set shares."""
     if key == SHARE_KEY:
-        return share_is_given(case)
+        return case.lubrication is None
     owner, found, _ = key.rpartition("lubrication.")
     if not found or owner.endswith("thermal."):
         return True
-    stated = value_at(case.given(), path_of(f"{owner}lubrication")) is not None
-    return stated and not (key.endswith(FACTOR_KEY) and share_is_given(case))
+    table = f"{owner}lubrication"
+    stated = value_at(case.given(), path_of(table)) is not None
+    known = key.endswith(FACTOR_KEY) and value_of(case, f"{table}.oil_share") is not None
+    return stated and not known
 
 
 def _made(
