@@ -116,8 +116,16 @@ class CaseTable(Table):
         return self._tables or plain(self.inputs())
 
     def inputs(self) -> dict[str, Any]:
-        """The case as nested tables of text and numbers, defaults included, as a file has them."""
-        return to_inputs(self)
+        """The case as nested tables of text and numbers, defaults included, as a file has them.
+
+        Left out are defaults in place of which a value follows from [lubrication].
+        """
+        inputs = to_inputs(self)
+        if self.lubrication is not None:
+            for name, key in (("surroundings", "oil_air_ratio"), ("thermal", "lubrication")):
+                if key not in getattr(self, name).model_fields_set:
+                    del inputs[name][key]
+        return inputs
 
     def __eq__(self, other: object) -> bool:
         """Equal if every key has the same value, wherever the cases were read."""

@@ -32,7 +32,10 @@ _KEYS: Mapping[Method, Collection[str]] = {
 
 def check_lubrication(table: LubricationTable) -> list[Problem]:
     """Keys that another method needs, and those that its own one lacks."""
-    method, given = table.method, table.model_fields_set
+    method, usual = table.method, LubricationTable(method=table.method)
+    given = {
+        name for name in table.model_fields_set if getattr(table, name) != getattr(usual, name)
+    }
     problems = []
     for key in sorted(given - _EVERY - set(_KEYS[method])):
         users = [f'"{name}"' for name, keys in _KEYS.items() if key in keys]
@@ -53,6 +56,12 @@ def check_lubrication(table: LubricationTable) -> list[Problem]:
         key = "lubrication.oil_level, lubrication.immersion"
         problems.append(Problem(key, "", "state the same thing twice.", "Give one of them."))
     return problems
+
+
+def _stated(table: LubricationTable) -> set[str]:
+    """Keys that were given other values than their defaults."""
+    usual = LubricationTable(method=table.method)
+    return {key for key in table.model_fields_set if getattr(table, key) != getattr(usual, key)}
 
 
 def check_sump(table: LubricationTable, thermal: ThermalTable) -> list[Problem]:

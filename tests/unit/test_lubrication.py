@@ -1,0 +1,566 @@
+"""The table [lubrication]: what follows from it, in sets, pairs and trains, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+from click.testing import CliRunner
+
+import asymmetric
+import epicyclic as ep
+import listed_trains
+from epicyclic.bands.nearby import look_nearby, quick_band
+from epicyclic.case import build
+from epicyclic.case.uncertain_values import uncertain_values
+from epicyclic.cli.main import cli
+from epicyclic.library import lubrication_methods
+from epicyclic.losses.churning import Dipped, SumpOil, changenet_velex, iso_14179_1
+from epicyclic.losses.viscous import disc_drag
+from epicyclic.lubricant.properties import mixture_state, oil_state
+from problems import only, problems_of
+from trains import small_axle
+
+QUICK = {
+    "numerics.mesh_positions": 8,
+    "numerics.contact_segments": 6,
+    "models.pocketing": "incompressible",
+}
+DIP = {"method": "dip", "oil_level": "-21 mm", "oil_volume": "1.9 l"}
+JETS = {"method": "jet", "oil_flow": "2.3 l/min", "jet_speed": "11 m/s"}
+METHODS = {
+    "jet": {},
+    "spray": {},
+    "flow": {"oil_flow": "1.7 l/min"},
+    "drained": {},
+    "dip": {"oil_level": "-21 mm", "oil_volume": "1.9 l"},
+    "submerged": {},
+}
+DRAGS = ("sun_drag", "ring_drag", "carrier_drag")
+RPM = math.pi / 30
+
+
+def planetary(table=None, **changes):
+    changed = {"models.planet_tilt": "left-out", "losses.sun_drag": None, "load_sharing": None}
+    return _updated(asymmetric.planetary(), changed, table, changes)
+
+
+def pair(table=None, **changes):
+    return _updated(asymmetric.gear_pair(), {}, table, changes)
+
+
+def _updated(tables, changed, table, changes):
+    lubrication = {} if table is None else {"lubrication": table}
+    more = {key.replace("__", "."): value for key, value in changes.items()}
+    del tables["surroundings"]["oil_air_ratio"]
+    return ep.load_case(tables).updated(QUICK | changed | lubrication | more)
+
+
+def oil_of(case):
+    return oil_state(case.lubricant.oil, case.operation.oil_inlet_temperature)
+
+
+def sump(case, volume=1.9e-3):
+    oil = oil_of(case)
+    return SumpOil(oil.density, oil.kinematic_viscosity, volume)
+
+
+# --- the share of oil -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_share_and_band_of_each_method(method):
+    known = lubrication_methods()[method]
+    case = pair(METHODS[method] | {"method": method, "oil_share_factor": 0.9})
+    supply = ep.solve(case).lubrication[""]
+    middle = 0.9 * known["oil_share"]
+    assert supply.share == pytest.approx(middle)
+    assert supply.low == pytest.approx(middle / known["lognormal_factor"] ** 1.96)
+    assert supply.high == pytest.approx(min(1.0, middle * known["lognormal_factor"] ** 1.96))
+    assert supply.grade == ("read" if method == "jet" else "estimate")
+    assert supply.grade == "read" or supply.source.startswith("estimate")
+
+
+def test_the_share_decides_drag_and_pocketing_as_a_given_one_does():
+    by_method = ep.solve(pair({"method": "spray", "oil_share_factor": 1.3}))
+    given = ep.solve(pair(surroundings__oil_air_ratio=1.3 * 0.05))
+    known = ep.solve(pair({"method": "drained", "oil_share": 1.3 * 0.05}))
+    assert by_method.losses == pytest.approx(given.losses, rel=1e-12)
+    assert known.losses == pytest.approx(given.losses, rel=1e-12)
+    assert known.lubrication[""].grade == "given"
+
+
+def test_a_given_ratio_has_no_effect_and_says_so():
+    table = {"method": "submerged"}
+    alone = ep.solve(pair(table))
+    both = ep.solve(pair(table, surroundings__oil_air_ratio=0.02))
+    assert both.losses == alone.losses
+    assert any("oil_air_ratio has no effect" in note for note in both.notes)
+    assert not any("oil_air_ratio" in note for note in alone.notes)
+
+
+def test_more_oil_in_the_order_of_the_methods():
+    losses = [
+        ep.solve(pair(METHODS[method] | {"method": method})).load_independent
+        for method in ("drained", "spray", "submerged")
+    ]
+    assert losses == sorted(losses)
+    assert losses[0] < 0.5 * losses[1] < 0.1 * losses[2]
+
+
+@pytest.mark.parametrize(
+    ("table", "share_added"),
+    [
+        (JETS, True),
+        (JETS | {"nozzle_side": "out-of-mesh"}, False),
+        (JETS | {"oil_share": 0.05}, False),
+        ({"method": "flow", "oil_flow": "2.3 l/min"}, True),
+        ({"method": "spray", "oil_flow": "2.3 l/min"}, False),
+    ],
+)
+def test_oil_fed_into_the_mesh_fills_its_spaces(table, share_added):
+    """Flow over the volume of half the rings of teeth that pass; a pair has one mesh."""
+    case = pair(table)
+    mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
+    passing = 0.0
+    for gear, rpm in ((mesh.gear1, 3350), (mesh.gear2, 3350 * 19 / 43)):
+        ring = math.pi * (gear.tip_radius**2 - gear.root_radius**2)
+        passing += rpm / 60 * ring * gear.face_width / 2
+    added = 2.3e-3 / 60 / passing if share_added else 0.0
+    supply = ep.solve(case).lubrication[""]
+    assert supply.meshes["mesh"] == pytest.approx(0.05 + added)
+    assert added == 0.0 or 0.001 < added < 0.1
+
+
+def test_oil_is_fed_to_every_mesh_of_every_planet():
+    flow, other = (
+        ep.solve(planetary({"method": "flow", "oil_flow": f"{litres} l/min"})).lubrication[""]
+        for litres in (1.2, 3.6)
+    )
+    for mesh in ("sun_mesh", "ring_mesh"):
+        added = [supply.meshes[mesh] - supply.share for supply in (flow, other)]
+        assert added[1] == pytest.approx(3 * added[0])
+    sun = flow.meshes["sun_mesh"] - flow.share
+    case = planetary()
+    one, two = build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)[0], 8
+    members = ep.solve(case).flow.members
+    relative = abs(members["sun"].speed - members["carrier"].speed)
+    passing = 0.0
+    for gear, speed in ((one.gear1, relative), (one.gear2, relative * 31 / 23)):
+        ring = math.pi * (gear.tip_radius**2 - gear.root_radius**2)
+        passing += speed / (2 * math.pi) * ring * gear.face_width / 2
+    assert sun == pytest.approx(1.2e-3 / 60 / two / passing)
+
+
+# --- churning and jets ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("model", ["changenet-velex", "iso-14179-1"])
+def test_what_dips_churns_and_the_rest_drags(model):
+    case = planetary(DIP | {"churning": model})
+    result = ep.solve(case)
+    torque = {"changenet-velex": changenet_velex, "iso-14179-1": iso_14179_1}[model]
+    sun = build.gear("sun", case.sun, case.gears)
+    ring = build.gear("ring", case.ring, case.gears)
+    outside = build.outside_radius(ring, case.ring)
+    module = 2.1e-3
+    parts = {
+        "sun": Dipped(
+            sun.reference_radius,
+            sun.tip_radius,
+            27.2e-3,
+            sun.tip_radius - 21e-3,
+            module,
+            31,
+            sun.tip_radius - sun.root_radius,
+            math.radians(20.5),
+            math.radians(14.3),
+        ),
+        "ring": Dipped(outside, outside, ring.face_width, outside - 21e-3, module),
+        "carrier": Dipped(74e-3, 74e-3, 44e-3, 53e-3, module),
+    }
+    assert all(part.depth > 0.01 for part in parts.values())
+    for name, part in parts.items():
+        speed = result.flow.members[name].speed
+        expected = torque(part, speed, sump(case)) * abs(speed)
+        assert result.losses[f"{name}_drag"] == pytest.approx(expected, rel=1e-9)
+    churning = result.lubrication[""].churning
+    assert churning[model] == pytest.approx(sum(result.losses[f"{n}_drag"] for n in parts))
+    assert set(churning) == {"changenet-velex", "iso-14179-1"}
+    assert len(set(churning.values())) == 2
+
+
+def test_a_gear_above_the_oil_turns_in_the_mixture():
+    case = planetary(DIP | {"oil_level": "-60 mm"})
+    result = ep.solve(case)
+    sun = build.gear("sun", case.sun, case.gears)
+    mixture = mixture_state(oil_of(case), 0.1, case.surroundings.pressure)
+    expected = disc_drag(sun.tip_radius, 27.2e-3, 2900 * RPM, mixture).total
+    assert result.losses["sun_drag"] == pytest.approx(expected, rel=1e-9)
+    assert result.losses["carrier_drag"] > 0
+    assert any("Churning of planets" in note for note in result.notes)
+
+
+def test_depths_of_single_parts_are_those_of_a_level():
+    case = pair({"method": "dip", "oil_level": "-12 mm", "oil_volume": "1.9 l"})
+    mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
+    depths = {gear.name: f"{1e3 * gear.tip_radius - 12!r} mm" for gear in (mesh.gear1, mesh.gear2)}
+    single = pair({"method": "dip", "immersion": depths, "oil_volume": "1.9 l"})
+    assert ep.solve(single).losses == pytest.approx(ep.solve(case).losses, rel=1e-9)
+    only_gear = pair(
+        {"method": "dip", "immersion": {"gear": depths["gear"]}, "oil_volume": "1.9 l"}
+    )
+    assert ep.solve(only_gear).lubrication[""].churning["changenet-velex"] > 0
+    assert ep.solve(only_gear).losses["drag"] < ep.solve(case).losses["drag"]
+
+
+def test_the_volume_of_the_sump_is_stated_once():
+    table = {key: value for key, value in DIP.items() if key != "oil_volume"}
+    taken = ep.solve(planetary(table, thermal__oil_volume="1.9 l"))
+    assert taken.losses == ep.solve(planetary(DIP)).losses
+
+
+@pytest.mark.parametrize(("side", "along"), [("in-mesh", -1), ("out-of-mesh", 1), ("radial", 0)])
+def test_jets_take_momentum_from_the_gears_that_turn(side, along):
+    """Sun and ring turn and take half of 2.3 l/min each."""
+    without, jets = (
+        ep.solve(planetary(table)) for table in ({"method": "jet"}, JETS | {"nozzle_side": side})
+    )
+    case = planetary()
+    density = oil_of(case).density
+    for name, teeth in (("sun", 31), ("ring", case.ring.teeth)):
+        pitch = teeth * 2.1e-3 / math.cos(math.radians(14.3)) / 2
+        speed = abs(jets.flow.members[name].speed) * pitch
+        expected = density * 1.15e-3 / 60 * speed * max(speed + along * 11, 0)
+        taken = jets.losses[f"{name}_drag"] - without.losses[f"{name}_drag"]
+        assert taken == pytest.approx(expected, rel=1e-6, abs=1e-9)
+    assert jets.losses["carrier_drag"] == pytest.approx(without.losses["carrier_drag"])
+
+
+def test_a_held_ring_leaves_all_of_the_oil_to_the_sun():
+    held = {"operation.second_input": None, "operation.second_speed": None}
+    case = planetary(JETS).updated(held | {"operation.fixed": "ring"})
+    plain = case.updated({"lubrication.oil_flow": None, "lubrication.jet_speed": None})
+    taken = ep.solve(case).losses["sun_drag"] - ep.solve(plain).losses["sun_drag"]
+    speed = 2900 * RPM * 31 * 2.1e-3 / math.cos(math.radians(14.3)) / 2
+    expected = oil_of(case).density * 2.3e-3 / 60 * speed * max(speed - 11, 0)
+    assert taken == pytest.approx(expected, rel=1e-6, abs=1e-9)
+
+
+def test_churning_beyond_its_range_is_told_by_watts():
+    result = ep.solve(planetary(DIP | {"oil_level": "40 mm"}))
+    flags = [flag for flag in result.flags if flag.quantity == "depth over the diameter"]
+    assert {flag.use.where for flag in flags} == {"sun", "ring", "carrier"}
+    (told,) = [text for text in result.warnings if "depth over the diameter" in text]
+    churned = sum(result.losses[name] for name in DRAGS)
+    assert f"{churned:.3g} W in all" in told
+
+
+# --- the band -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "factor"),
+    [
+        (None, "surroundings.oil_air_ratio", 2.0),
+        ({"method": "drained"}, "lubrication.oil_share_factor", 3.0),
+        ({"method": "jet"}, "lubrication.oil_share_factor", 2.0),
+        ({"method": "jet", "oil_share": 0.033}, "lubrication.oil_share", 2.0),
+    ],
+)
+def test_one_key_carries_how_well_the_share_is_known(table, key, factor):
+    values, problems = uncertain_values(pair(table))
+    assert not problems
+    (value,) = [one for one in values if "oil_share" in one.key or "oil_air" in one.key]
+    assert (value.key, value.kind, value.spread) == (key, "lognormal", (factor,))
+
+
+def test_the_share_widens_the_band_of_the_total():
+    """The two ends of the share make the losses that the share itself makes."""
+    case = pair({"method": "spray"}, operation__torque="3.7 N*m")
+    nearby = look_nearby(case, ep.solve(case))
+    place = [value.key for value in nearby.values].index("lubrication.oil_share_factor")
+    for end, share in zip(nearby.ends[place], (0.05 / 2.5, 0.05 * 2.5), strict=True):
+        own = ep.solve(pair({"method": "spray", "oil_share": share}, operation__torque="3.7 N*m"))
+        assert dict(zip(nearby.outputs.losses, end, strict=True)) == pytest.approx(
+            {name: own.losses[name] for name in nearby.outputs.losses}, rel=1e-9
+        )
+    band = quick_band(nearby)
+    assert band.drivers[0][0] == "lubrication.oil_share_factor"
+    assert band.low["total"] < ep.solve(case).total < band.high["total"]
+
+
+def test_a_stated_uncertainty_counts():
+    stated = {"lubrication.oil_share_factor": {"lognormal_factor": 1.21}}
+    values, _ = uncertain_values(pair({"method": "spray"}, uncertainty=stated))
+    (value,) = [one for one in values if one.key == "lubrication.oil_share_factor"]
+    assert (value.spread, value.source) == ((1.21,), "given by the case")
+
+
+# --- temperatures ---------------------------------------------------------------------------------
+
+
+def rises(case):
+    result = ep.solve(case)
+    inlet = case.operation.oil_inlet_temperature
+    return {
+        node: kelvin - inlet for node, kelvin in result.heat.temperatures.items() if node != "oil"
+    }
+
+
+@pytest.mark.parametrize(
+    ("method", "lubrication"),
+    [("jet", "spray"), ("drained", "spray"), ("dip", "dip"), ("submerged", "submerged")],
+)
+def test_temperatures_take_the_method(method, lubrication):
+    table = METHODS[method] | {"method": method}
+    for models in ("flank", "network"):
+        common = {"models__temperatures": models, "thermal__oil_flow": "3.1 l/min"}
+        both = [
+            rises(pair(table, **common)),
+            rises(pair(table, **common, thermal__lubrication=lubrication)),
+        ]
+        assert both[0] == both[1]
+
+
+def test_flanks_are_as_warm_as_the_factor_of_the_method():
+    losses = {"losses.mesh_pocketing.include": False, "losses.drag.include": False}
+    jet, bath = (
+        rises(
+            pair(METHODS[method] | {"method": method}, models__temperatures="flank").updated(losses)
+        )
+        for method in ("jet", "submerged")
+    )
+    for node in ("pinion", "gear"):
+        assert 4 * bath[node] < jet[node] < 8 * bath[node]
+
+
+def test_the_flow_to_the_gears_is_that_of_the_heat():
+    heat = {"models__temperatures": "network"}
+    spray = {"method": "spray", "oil_flow": "2.3 l/min"}
+    own = rises(pair(spray, **heat))
+    assert own == rises(pair({"method": "spray"}, **heat, thermal__oil_flow="2.3 l/min"))
+    assert own != rises(pair(spray | {"oil_flow": "2.9 l/min"}, **heat))
+
+
+def test_of_more_oil_only_what_meets_the_gears_cools_them():
+    heat = {"models__temperatures": "network", "thermal__oil_flow": "4.6 l/min"}
+    half = pair({"method": "spray", "oil_flow": "2.3 l/min"}, **heat)
+    weaker = pair({"method": "spray"}, **heat, thermal__jet_effectiveness=0.25)
+    assert rises(half) == pytest.approx(rises(weaker), rel=1e-9)
+
+
+def test_warming_up_takes_the_volume_of_the_sump():
+    heat = {"thermal__oil_flow": "2.2 l/min", "models__temperatures": "network"}
+    curves = [
+        ep.warm_up(case, "40 s", "22 degC")
+        for case in (
+            pair(DIP, **heat),
+            pair({"method": "dip", "oil_level": "-21 mm"}, **heat, thermal__oil_volume="1.9 l"),
+        )
+    ]
+    assert curves[0].equals(curves[1])
+
+
+# --- trains ---------------------------------------------------------------------------------------
+
+
+def train_of(tables, table):
+    tables["lubrication"] = table
+    tables["surroundings"].pop("oil_air_ratio", None)
+    changes = QUICK | {"models.planet_tilt": "left-out"}
+    return ep.load_case(tables).updated(changes)
+
+
+@pytest.mark.parametrize("tables", [listed_trains.train_of_planetary, listed_trains.listed_simple])
+@pytest.mark.parametrize("table", [DIP, JETS])
+def test_a_set_of_a_train_is_lubricated_as_alone(tables, table):
+    found = ep.solve(train_of(tables(), table))
+    single = ep.solve(planetary(table))
+    assert found.lubrication["S"].share == single.lubrication[""].share
+    for name in DRAGS:
+        assert found.losses[f"S.{name}"] == pytest.approx(single.losses[name], rel=1e-9)
+
+
+def test_each_set_of_a_train_may_have_its_own_method():
+    shared = {"lubrication.method": "jet", "lubrication.oil_flow": "1.3 l/min"}
+    own = shared | {"sets.planets.lubrication.method": "drained"}
+    none, jets, both = (ep.solve(small_axle(**changes)) for changes in ({}, shared, own))
+    assert {key: item.method for key, item in both.lubrication.items()} == {
+        "pair": "jet",
+        "planets": "drained",
+    }
+    assert both.losses["pair.drag"] == pytest.approx(jets.losses["pair.drag"], rel=1e-9)
+    assert jets.losses["pair.drag"] > none.losses["pair.drag"]
+    for name in ("planets.sun_drag", "planets.carrier_drag"):
+        assert both.losses[name] < none.losses[name] <= jets.losses[name]
+    assert {key: item["method"] for key, item in both.to_dict()["lubrication"].items()} == {
+        "pair": "jet",
+        "planets": "drained",
+    }
+    keys = {value.key for value in uncertain_values(small_axle(**own))[0]}
+    factors = {key for key in keys if "oil_share" in key or "oil_air" in key}
+    assert factors == {
+        "lubrication.oil_share_factor",
+        "sets.planets.lubrication.oil_share_factor",
+    }
+
+
+def test_flanks_of_each_set_follow_its_method():
+    heat = {"models.temperatures": "flank", "lubrication.method": "spray"}
+    spray, bath = (
+        ep.solve(small_axle(**heat, **more)).heat.temperatures
+        for more in ({}, {"sets.planets.lubrication.method": "submerged"})
+    )
+    inlet = 273.15 + 80
+    assert bath["pair.pinion"] == pytest.approx(spray["pair.pinion"], abs=1.0)
+    assert bath["planets.sun"] - inlet < 0.3 * (spray["planets.sun"] - inlet)
+
+
+# --- what is refused ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "said"),
+    [
+        ({"method": "jets"}, "lubrication.method", '"jet"'),
+        ({"oil_flow": "2 l/min"}, "lubrication.method", "is missing"),
+        ({"method": "flow"}, "lubrication.oil_flow", "is missing"),
+        ({"method": "jet", "oil_flow": "2 mm"}, "lubrication.oil_flow", "l/min"),
+        ({"method": "jet", "oil_level": "-9 mm"}, "lubrication.oil_level", "has no effect"),
+        ({"method": "drained", "churning": "iso-14179-1"}, "lubrication.churning", "has no effect"),
+        ({"method": "dip", "oil_volume": "1.9 l"}, "lubrication.oil_level", "is missing"),
+        ({"method": "dip", "oil_level": "-9 mm"}, "lubrication.oil_volume", "is missing"),
+        (
+            DIP | {"immersion": {"gear": "9 mm"}},
+            "lubrication.oil_level, lubrication.immersion",
+            "twice",
+        ),
+        (
+            {"method": "dip", "immersion": {"geer": "9 mm"}, "oil_volume": "1.9 l"},
+            "lubrication.immersion.geer",
+            "pinion, gear",
+        ),
+        (
+            {"method": "jet", "oil_share": 0.031, "oil_share_factor": 1.2},
+            "lubrication.oil_share, lubrication.oil_share_factor",
+            "exclude",
+        ),
+        ({"method": "jet", "oil_share": 1.2}, "lubrication.oil_share", "<= 1"),
+        ({"method": "jet", "oil_share_factor": 0}, "lubrication.oil_share_factor", "> 0"),
+        ({"method": "jet", "side": "radial"}, "lubrication.side", "known key"),
+    ],
+)
+def test_bad_tables_have_one_clear_problem(table, key, said):
+    problem = only(problems_of(pair, table))
+    assert problem.key == key
+    assert said in f"{problem.allowed} {problem.remedy}"
+
+
+@pytest.mark.parametrize(
+    ("table", "changes", "key"),
+    [
+        (DIP, {"thermal__lubrication": "spray"}, "thermal.lubrication"),
+        (JETS, {"thermal__lubrication": "submerged"}, "thermal.lubrication"),
+        (
+            DIP,
+            {"thermal__oil_volume": "2.1 l"},
+            "lubrication.oil_volume, thermal.oil_volume",
+        ),
+        ({"method": "jet"}, {"models__temperatures": "network"}, "thermal"),
+        (
+            JETS,
+            {"uncertainty": {"surroundings.oil_air_ratio": {"lognormal_factor": 1.3}}},
+            'uncertainty."surroundings.oil_air_ratio"',
+        ),
+    ],
+)
+def test_contradictions_have_one_clear_problem(table, changes, key):
+    def read():
+        return pair(table, **changes)
+
+    assert only(problems_of(read)).key == key
+
+
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"sets.pair.lubrication.method": "jet"}, "sets.pair.lubrication"),
+        (
+            {
+                "lubrication.method": "dip",
+                "lubrication.immersion": {"gear": "7 mm"},
+                "lubrication.oil_volume": "1.9 l",
+            },
+            "lubrication.immersion",
+        ),
+        (
+            {
+                "lubrication.method": "drained",
+                "sets.pair.lubrication": {"method": "dip", "oil_level": "-7 mm"},
+            },
+            "sets.pair.lubrication.oil_volume",
+        ),
+        (
+            {
+                "lubrication.method": "jet",
+                "sets.pair.lubrication": {"method": "drained", "oil_flow": "1 l/min"},
+            },
+            "sets.pair.lubrication.oil_flow",
+        ),
+        (
+            {
+                "lubrication.method": "jet",
+                "thermal.lubrication": "spray",
+                "sets.pair.lubrication": {"method": "submerged"},
+            },
+            "thermal.lubrication",
+        ),
+    ],
+)
+def test_bad_tables_of_a_train_have_one_clear_problem(changes, key):
+    def read():
+        return small_axle(**changes)
+
+    assert only(problems_of(read)).key == key
+
+
+# --- what is shown --------------------------------------------------------------------------------
+
+
+def test_command_and_json_say_how_the_gears_are_lubricated():
+    given = ["--set", "lubrication.method=dip", "--set", "lubrication.oil_level=-9 mm"]
+    given += ["--set", "lubrication.oil_volume=1.9 l", "--set", "operation.torque=100 N*m"]
+    run = CliRunner().invoke(cli, ["run", "talbot-2012-pair", *given])
+    assert run.exit_code == 0
+    text = " ".join(run.output.split())
+    assert "lubrication: dip: share of oil 0.1 (95 %: 0.017 to 0.6; estimate:" in text
+    assert "churning: changenet-velex " in text
+    assert "iso-14179-1 " in text
+    shown = CliRunner().invoke(cli, ["run", "talbot-2012-pair", *given, "--json"])
+    found = json.loads(shown.output)
+    assert found["models"]["lubrication"] == "dip"
+    assert found["models"]["churning"] == "changenet-velex"
+    supply = found["lubrication"]
+    assert supply["method"] == "dip"
+    share = supply["oil_share"]
+    assert share["low"] < share["value"] == 0.1 < share["high"]
+    assert share["unit"] == "1"
+    assert supply["churning"]["changenet-velex"]["unit"] == "W"
+    assert found["losses"]["drag"] == pytest.approx(supply["churning"]["changenet-velex"]["value"])
+
+
+def test_without_the_table_a_result_has_none_of_it():
+    result = ep.solve(pair())
+    assert result.lubrication == {}
+    assert "lubrication" not in result.to_dict()
+    assert not {"lubrication", "churning"} & result.models.keys()
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_inputs_give_the_case_again(method):
+    case = pair(METHODS[method] | {"method": method})
+    again = ep.load_case(case.inputs())
+    assert again == case
+    assert ep.solve(again).to_dict() == ep.solve(case).to_dict()
