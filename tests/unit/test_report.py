@@ -37,11 +37,15 @@ def test_units_in_print(unit, text):
     assert unit_text(unit) == text
 
 
+NEEDY = ("[thrust_bearing]", "[lubrication]", "[friction_table]")
+"""Tables with keys that have no defaults."""
+
+
 def uncommented(text):
     """A template with every default that it shows, without the tables that need more than that."""
     text = re.sub(r"^# (?=\[|[\w.]+ = )", "", text, flags=re.MULTILINE)
     sections = re.split(r"^(?=\[)", text, flags=re.MULTILINE)
-    kept = [one for one in sections if not one.startswith(("[thrust_bearing]", "[friction_table]"))]
+    kept = [one for one in sections if not one.startswith(NEEDY)]
     lines = "".join(kept).splitlines(keepends=True)
     return "".join(line for line in lines if "..." not in line and not line.startswith("housing."))
 

@@ -22,9 +22,9 @@ DATUM = {"value", "temperature", "source"}
 MOST_VALUES = 12
 """Of an array that are shown."""
 _SCHEMAS = {"planetary": PlanetaryCase, "gear_pair": GearPairCase, "train": TrainCase}
-_SHARED = ("models", "numerics")
+_SHARED = ("models", "numerics", "lubrication")
 """Tables that the sets of a train take from it."""
-_OF_LOSSES = ("surroundings", "models", "contact_solver", "numerics")
+_OF_LOSSES = ("lubrication", "surroundings", "models", "contact_solver", "numerics")
 _TITLES_OF_PARTS = {"bearings": "Shaft bearings", "drags": "Other drags"}
 Path = tuple[str | int, ...]
 
