@@ -298,6 +298,17 @@ def test_a_stated_uncertainty_counts():
     assert (value.spread, value.source) == ((1.21,), "given by the case")
 
 
+def test_churning_has_a_factor_of_its_own():
+    nearby = look_nearby(pair(DIP), ep.solve(pair(DIP)))
+    kinds = dict(zip(nearby.outputs.losses, nearby.outputs.kinds, strict=True))
+    assert kinds["drag"] == "churning"
+    (value,) = [one for one in nearby.values if one.key == "model_form.churning"]
+    assert value.spread == (2.0,)
+    assert "model_form.drag" not in {one.key for one in nearby.values}
+    mixture = look_nearby(pair(), ep.solve(pair()))
+    assert "model_form.drag" in {one.key for one in mixture.values}
+
+
 # --- temperatures ---------------------------------------------------------------------------------
 
 

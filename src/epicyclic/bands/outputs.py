@@ -79,7 +79,7 @@ def outputs_of(result: Result) -> Outputs:
     return Outputs(
         tuple(term.name for term in terms),
         np.array([term.group == LOAD_DEPENDENT for term in terms]),
-        tuple(model_form_of(term.name) for term in terms),
+        tuple(model_form_of(term.name, term.method) for term in terms),
     )
 
 

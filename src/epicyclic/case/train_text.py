@@ -21,7 +21,14 @@ _LISTS = {
     "shafts": "what turns together, always; members not named turn alone",
     "positions": "of gears along their shafts, for the forces on bearings",
 }
-_DEFAULTS = ("surroundings", "friction_table", "models", "contact_solver", "numerics")
+_DEFAULTS = (
+    "lubrication",
+    "surroundings",
+    "friction_table",
+    "models",
+    "contact_solver",
+    "numerics",
+)
 
 
 def train_text(tables: Mapping[str, Any], head: list[str], about: Mapping[str, str]) -> str:

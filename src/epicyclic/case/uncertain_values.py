@@ -131,10 +131,11 @@ def _model_forms() -> dict[str, tuple[float, str]]:
     }
 
 
-def model_form_of(term: str) -> str:
+def model_form_of(term: str, method: str = "") -> str:
     """The kind of losses that share the error of a model, of a loss: ``"sliding"``."""
     for entry in library.uncertainty_table()["model_form"]:
-        if any(fnmatchcase(term, pattern) for pattern in entry["terms"]):
+        known = any(fnmatchcase(term, pattern) for pattern in entry["terms"])
+        if known and fnmatchcase(method, entry.get("method", "*")):
             return str(entry["kind"])
     return "other"
 
