@@ -210,14 +210,8 @@ def iso_14179_1(part: Dipped, speed: float, oil: SumpOil) -> float:
     """Churning torque of ISO/TR 14179-1, second hand. Theory (N7). [N m]
 
     Faces 1.474 f_g nu n^3 D^5.7/(A_g 10^26), rim 7.37 f_g nu n^3 D^4.7 L/(A_g 10^26), for gears
-    times R_f/sqrt(tan(beta)), R_f = 7.93 - 4.648/m_t; kW, mm^2/s, rpm, mm.
-
-    Parameters
-    ----------
-    part : Dipped
-    speed : float
-        Against the housing. [rad/s]
-    oil : SumpOil
+    times R_f/sqrt(tan(beta)), R_f = 7.93 - 4.648/m_t; kW, mm^2/s, rpm, mm. Parameters as for
+    `changenet_velex`.
 
     Examples
     --------
