@@ -202,6 +202,13 @@ def test_a_gear_above_the_oil_turns_in_the_mixture():
     assert any("Churning of planets" in note for note in result.notes)
 
 
+def test_a_result_says_if_nothing_dips():
+    result = ep.solve(pair(DIP | {"oil_level": "-400 mm"}))
+    assert result.lubrication[""].churning == {}
+    assert "nothing that turns reaches the oil" in result.standing["lubrication"]
+    assert "nothing that turns" not in ep.solve(pair(DIP)).standing["lubrication"]
+
+
 def test_depths_of_single_parts_are_those_of_a_level():
     case = pair({"method": "dip", "oil_level": "-12 mm", "oil_volume": "1.9 l"})
     mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
@@ -328,11 +335,8 @@ def test_temperatures_take_the_method(method, lubrication):
     table = METHODS[method] | {"method": method}
     for models in ("flank", "network"):
         common = {"models__temperatures": models, "thermal__oil_flow": "3.1 l/min"}
-        both = [
-            rises(pair(table, **common)),
-            rises(pair(table, **common, thermal__lubrication=lubrication)),
-        ]
-        assert both[0] == both[1]
+        given = common | {"thermal__lubrication": lubrication}
+        assert rises(pair(table, **common)) == rises(pair(table, **given))
 
 
 def test_flanks_are_as_warm_as_the_factor_of_the_method():
@@ -360,6 +364,21 @@ def test_of_more_oil_only_what_meets_the_gears_cools_them():
     half = pair({"method": "spray", "oil_flow": "2.3 l/min"}, **heat)
     weaker = pair({"method": "spray"}, **heat, thermal__jet_effectiveness=0.25)
     assert rises(half) == pytest.approx(rises(weaker), rel=1e-9)
+
+
+def test_the_bath_share_of_the_heat_follows_from_the_level():
+    """Depths of 14 mm below the axes: theta of each gear from its tip circle."""
+    heat = {"models__temperatures": "network", "thermal__oil_flow": "3.1 l/min"}
+    table = {"method": "dip", "oil_level": "-14 mm", "oil_volume": "1.9 l"}
+    case = pair(table, **heat)
+    mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
+    angles = [math.acos(14e-3 / gear.tip_radius) for gear in (mesh.gear1, mesh.gear2)]
+    share = sum(angles) / 2 / math.pi
+    assert 0.2 < share < 0.5
+    assert rises(case) == pytest.approx(
+        rises(pair(table, **heat, thermal__bath_share=share)), rel=1e-9
+    )
+    assert rises(case) != rises(pair(table, **heat, thermal__bath_share=0.3))
 
 
 def test_warming_up_takes_the_volume_of_the_sump():

@@ -51,7 +51,7 @@ def thermal_model(case: Case, machine: Machine) -> ThermalModel | None:
         factors = {key: _lubrication_factor(case.thermal, table) for key, table in tables.items()}
         return FlankModel(machine, inlet, case.thermal.bulk, factors, fluids)
     flows = [table.oil_flow for table in tables.values() if table is not None and table.oil_flow]
-    settings = _settings(case, sum(flows) if flows else None, inlet)
+    settings = _settings(case, machine, sum(flows) if flows else None, inlet)
     pressure, share = case.surroundings.pressure, oil_share(case).share
     return NetworkModel(machine, settings, fluids, _media(case.lubricant.oil, pressure, share))
 
@@ -168,9 +168,10 @@ def oil_medium(oil: Oil, temperature: float) -> Fluid:
     )
 
 
-def _settings(case: Case, to_gears: float | None, inlet: float) -> HeatSettings:
+def _settings(case: Case, machine: Machine, to_gears: float | None, inlet: float) -> HeatSettings:
     table = with_lubrication(case.thermal, case.lubrication, to_gears)
-    bath = {"dip": table.bath_share, "submerged": 1.0}.get(table.lubrication, 0.0)
+    baths = {"dip": _bath_share(table, machine), "submerged": 1.0}
+    bath = baths.get(table.lubrication, 0.0)
     return HeatSettings(
         inlet=inlet,
         outlet=table.oil_outlet_temperature,
@@ -194,6 +195,25 @@ def _settings(case: Case, to_gears: float | None, inlet: float) -> HeatSettings:
             name: Change(change.value, change.scale) for name, change in table.capacities.items()
         },
     )
+
+
+def _bath_share(table: ThermalTable, machine: Machine) -> float:
+    """Share of the gears that dips, as given or as the oil stands; the mean of all gears.
+
+    Theory (N10).
+    """
+    parts = [
+        disc.sump.part
+        for own in machine.elements
+        if isinstance(own, GearSet)
+        for discs in own.discs.values()
+        for disc in discs
+        if disc.sump is not None
+    ]
+    angles = [part.wetted_angle for part in parts if part.teeth]
+    if "bath_share" in table.model_fields_set or not angles:
+        return table.bath_share
+    return sum(angles) / (math.pi * len(angles))
 
 
 def _effectiveness(table: ThermalTable, to_gears: float | None) -> float:

@@ -25,6 +25,14 @@ if TYPE_CHECKING:
 __all__ = ["CaseTable", "as_given", "with_changes"]
 
 
+_DECIDED = (
+    ("surroundings", "oil_air_ratio"),
+    ("thermal", "lubrication"),
+    ("thermal", "bath_share"),
+)
+"""Keys in place of whose defaults a value follows from [lubrication]."""
+
+
 class CaseTable(Table):
     if TYPE_CHECKING:  # every kind has them, each in its place
         lubrication: LubricationTable | None
@@ -122,7 +130,7 @@ class CaseTable(Table):
         """
         inputs = to_inputs(self)
         if self.lubrication is not None:
-            for name, key in (("surroundings", "oil_air_ratio"), ("thermal", "lubrication")):
+            for name, key in _DECIDED:
                 if key not in getattr(self, name).model_fields_set:
                     del inputs[name][key]
         return inputs

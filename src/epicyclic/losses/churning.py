@@ -78,6 +78,11 @@ class Dipped:
         """Depth over the diameter, 0 to 1. [1]"""
         return min(max(self.depth / (2 * self.tip_radius), 0.0), 1.0)
 
+    @property
+    def wetted_angle(self) -> float:
+        """Half the angle below the oil, cos(theta) = 1 - 2 h/d_a. Theory (N4). [rad]"""
+        return math.acos(1 - 2 * self.immersed)
+
 
 @dataclass(frozen=True, slots=True)
 class SumpOil:
@@ -129,7 +134,7 @@ def wetted_area(part: Dipped) -> float:
     >>> round(1e4 * wetted_area(gear), 1)  # cm^2
     255.8
     """
-    theta = math.acos(1 - 2 * part.immersed)
+    theta = part.wetted_angle
     faces = part.radius**2 * (2 * theta - math.sin(2 * theta))
     rim = 2 * part.radius * part.width * theta
     angles = math.cos(part.pressure_angle) * math.cos(part.helix_angle)
