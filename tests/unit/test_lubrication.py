@@ -264,6 +264,28 @@ def test_churning_beyond_its_range_is_told_by_watts():
     assert f"{churned:.3g} W in all" in told
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("speed", ["0 rpm", "1e-160 rpm", "0.01 rpm", "60000 rpm"])
+def test_losses_are_finite_at_any_speed(method, speed):
+    table = METHODS[method] | {"method": method}
+    result = ep.solve(
+        pair(table, operation__speed=speed, losses__mesh_pocketing={"include": False})
+    )
+    assert all(math.isfinite(watts) and watts >= 0 for watts in result.losses.values())
+
+
+def test_drag_grows_with_the_level_and_the_speed():
+    tables = [DIP | {"oil_level": f"{level} mm"} for level in (-28, -13, 7)]
+    losses = [ep.solve(pair(table)).losses["drag"] for table in tables]
+    assert losses == sorted(losses)
+    assert len(set(losses)) == 3
+    by_speed = [
+        ep.solve(pair(DIP, operation__speed=f"{rpm} rpm")).losses["drag"]
+        for rpm in (310, 620, 1250, 2500, 4900)
+    ]
+    assert by_speed == sorted(by_speed)
+
+
 # --- the band -------------------------------------------------------------------------------------
 
 
@@ -477,6 +499,7 @@ def test_flanks_of_each_set_follow_its_method():
             "lubrication.oil_share, lubrication.oil_share_factor",
             "exclude",
         ),
+        (DIP | {"oil_volume": "0 l"}, "lubrication.oil_volume", "> 0"),
         ({"method": "jet", "oil_share": 1.2}, "lubrication.oil_share", "<= 1"),
         ({"method": "jet", "oil_share_factor": 0}, "lubrication.oil_share_factor", "> 0"),
         ({"method": "jet", "side": "radial"}, "lubrication.side", "known key"),

@@ -116,11 +116,10 @@ def lubrication_notes(case: SetCase) -> Iterator[str]:
             "oil_share states a known one."
         )
     if table.method == "dip":
-        left_out = "of planets" if not isinstance(case, GearPairCase) else ""
-        inside = "inside rings" if any(True for _ in _rings(case)) else ""
-        parts = " and ".join(filter(None, (left_out, inside)))
-        if parts:
-            yield f"Churning {parts} is not modelled: what dips turns about a fixed axis."
+        left_out = [] if isinstance(case, GearPairCase) else ["of planets"]
+        left_out += ["inside rings"] if list(_rings(case)) else []
+        if left_out:
+            yield f"Churning {' and '.join(left_out)} is not modelled."
 
 
 def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:

@@ -66,7 +66,7 @@ def _stated(table: LubricationTable) -> set[str]:
 
 def check_sump(table: LubricationTable, thermal: ThermalTable) -> list[Problem]:
     """Dipping needs the volume of the oil, once."""
-    own, other = table.oil_volume, thermal.oil_volume
+    own, other = table.oil_volume, thermal.oil_volume or None
     if table.method != "dip":
         return []
     if own is None and other is None:

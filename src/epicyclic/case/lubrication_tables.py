@@ -9,11 +9,12 @@ from pydantic import Field
 from epicyclic.case.schema import Table
 from epicyclic.losses.churning import ChurningModel
 from epicyclic.losses.jets import NozzleSide
-from epicyclic.units import Length, Number, Quantity, Speed, Volume, VolumeFlow, as_stated
+from epicyclic.units import Length, Number, Quantity, Speed, VolumeFlow, as_stated
 
 __all__ = ["LUBRICATION", "LubricationTable", "Method"]
 
 Method = Literal["jet", "spray", "flow", "drained", "dip", "submerged"]
+_Sump = Annotated[float, Quantity("a volume", "m^3", "l", low=0.0, high=1e6, open_low=True)]
 _Level = Annotated[float, Quantity("a height", "m", "mm", low=-1e5, high=1e5)]
 
 
@@ -52,7 +53,7 @@ class LubricationTable(Table):
         description="With dip, instead of oil_level: depth of the lowest point of each gear, or of "
         "the carrier, below the oil at rest.",
     )
-    oil_volume: Volume | None = Field(
+    oil_volume: _Sump | None = Field(
         default=None, description="With dip: in the sump. Default: thermal.oil_volume."
     )
     churning: ChurningModel = Field(default="changenet-velex", description="With dip.")

@@ -136,14 +136,12 @@ def oil_in_mesh(duty: MeshDuty) -> float:
 
     Theory (N9).
     """
-    settings = duty.models.pockets
-    if not settings.fed or not duty.speed1:
+    settings, mesh = duty.models.pockets, duty.mesh
+    ratio = mesh.gear1.teeth / mesh.gear2.teeth
+    spaces = _spaces(mesh.gear1) + ratio * _spaces(mesh.gear2)
+    passing = abs(duty.speed1) / (2 * math.pi) * spaces
+    if not settings.fed or not passing:
         return settings.oil_fraction
-    mesh = duty.mesh
-    turns = abs(duty.speed1) / (2 * math.pi)
-    passing = turns * (
-        _spaces(mesh.gear1) + mesh.gear1.teeth / mesh.gear2.teeth * _spaces(mesh.gear2)
-    )
     return min(1.0, settings.oil_fraction + settings.fed / passing)
 
 

@@ -175,7 +175,7 @@ def changenet_velex(part: Dipped, speed: float, oil: SumpOil) -> float:
     0.175
     """
     omega = abs(speed)
-    if not omega or not part.immersed:
+    if not (omega**2) or not part.immersed:
         return 0.0
     parameter = acceleration_parameter(part, omega)
     slow = min(max((FAST - parameter) / (FAST - SLOW), 0.0), 1.0)
@@ -188,12 +188,12 @@ def _slow_coefficient(part: Dipped, omega: float, oil: SumpOil) -> float:
     """C_m of the slow regime. Theory (N5). [1]"""
     reynolds = omega * part.radius * part.width / oil.kinematic_viscosity
     volume = oil.volume / (2 * part.radius) ** 3
-    froude = omega**2 * part.radius / GRAVITY
+    root_froude = omega * math.sqrt(part.radius / GRAVITY)  # whose square may be too small
     return (
         1.366
         * math.pow(part.immersed, 0.45)
         * math.pow(volume, 0.1)
-        * math.pow(froude, -0.6)
+        * math.pow(root_froude, 2 * -0.6)
         * math.pow(reynolds, -0.21)
     )
 
@@ -201,12 +201,12 @@ def _slow_coefficient(part: Dipped, omega: float, oil: SumpOil) -> float:
 def _fast_coefficient(part: Dipped, omega: float, oil: SumpOil) -> float:
     """C_m of the fast regime, in which viscosity takes no part. Theory (N5). [1]"""
     volume = oil.volume / (2 * part.radius) ** 3
-    froude = omega**2 * part.radius / GRAVITY
+    root_froude = omega * math.sqrt(part.radius / GRAVITY)
     return (
         3.644
         * math.pow(part.immersed, 0.1)
         * math.pow(volume, -0.35)
-        * math.pow(froude, -0.88)
+        * math.pow(root_froude, 2 * -0.88)
         * math.pow(part.width / (2 * part.radius), 0.85)
     )
 
