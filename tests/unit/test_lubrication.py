@@ -604,6 +604,15 @@ def test_command_and_json_say_how_the_gears_are_lubricated():
     assert found["losses"]["drag"] == pytest.approx(supply["churning"]["changenet-velex"]["value"])
 
 
+def test_check_says_how_the_gears_are_lubricated():
+    check = ["check", "train-eaxle", "--set", "lubrication.method=jet"]
+    shown = CliRunner().invoke(cli, [*check, "--set", "sets.planets.lubrication.method=drained"])
+    assert shown.exit_code == 0
+    assert "Lubrication of pair: jet: share of oil 0.05 (95 %: 0.013 to 0.19;" in shown.output
+    assert "Lubrication of planets: drained: share of oil 0.01 (95 %" in shown.output
+    assert "Lubrication" not in CliRunner().invoke(cli, ["check", "train-eaxle"]).output
+
+
 def test_without_the_table_a_result_has_none_of_it():
     result = ep.solve(pair())
     assert result.lubrication == {}

@@ -10,16 +10,14 @@ from typing import Any
 from epicyclic.builders.built import Built
 from epicyclic.builders.models import resolve_models, standing_of
 from epicyclic.builders.notes import case_notes, general_notes
+from epicyclic.builders.supplies import solved_supplies
 from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case
-from epicyclic.case.lubrication import oil_share
 from epicyclic.case.train import TrainCase
 from epicyclic.elements.base import HOUSING, OIL, Loss, joined_key
-from epicyclic.elements.disc import churned
 from epicyclic.elements.figures import BearingFigures, MeshFigures
-from epicyclic.elements.gear_set import GearSet, GearSetResult
+from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.elements.load_sharing import SHARING_METHODS
-from epicyclic.elements.pocket_flow import oil_in_mesh
 from epicyclic.elements.shaft_bearing import ShaftBearing
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.standing import standing
@@ -51,7 +49,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
     )
     figures = dict(_figures(solution))
     methods = dict(_methods(built))
-    supplies = dict(_supplies(case, built, solution))
+    supplies = dict(solved_supplies(case, built.sets, solution))
     fluids = None if built.known_fluids is None else solution.state.fluids
     flags: SomeFlags = () if fluids is None else fluids.flags
     sharing = built.sets[""].sharing if "" in built.sets else None
@@ -180,36 +178,13 @@ def _models(case: Case, built: Built) -> Iterator[tuple[str, str]]:
             yield joined_key(key, name), model
 
 
-def _supplies(case: Case, built: Built, solution: Solution) -> Iterator[tuple[str, OilSupply]]:
-    """How oil gets to the gears of each set that says so."""
-    for key, own in set_cases(case, built.sets):
-        if own.lubrication is not None:
-            share = oil_share(own)
-            discs = [disc for discs in built.sets[key].discs.values() for disc in discs]
-            yield (
-                key,
-                OilSupply(
-                    own.lubrication.method,
-                    share.share,
-                    *share.band,
-                    share.grade,
-                    share.source,
-                    churned(discs, solution.state),
-                    _in_meshes(built.sets[key], solution),
-                ),
-            )
-
-
-def _in_meshes(own: GearSet, solution: Solution) -> dict[str, float]:
-    """Share of oil in the pockets of each mesh of a set."""
-    return {duty.key: oil_in_mesh(duty) for duty in own.mean_duties(solution.state)}
-
-
 def _standing(
     case: Case, built: Built, supplies: Mapping[str, OilSupply]
 ) -> Iterator[tuple[str, str]]:
     for key, supply in supplies.items():
-        yield joined_key(key, "lubrication"), supply.text
+        idle = supply.method == "dip" and not supply.churning
+        remark = "; nothing that turns reaches the oil" if idle else ""
+        yield joined_key(key, "lubrication"), supply.text + remark
     for key, own in set_cases(case, built.sets):
         for role, phrase in standing_of(own).items():
             compared = supplies[key].comparison if role == "churning" else ""

@@ -17,7 +17,7 @@ from epicyclic.errors import Problem
 if TYPE_CHECKING:
     from epicyclic.case.train import TrainCase
 
-__all__ = ["lubrication_problems"]
+__all__ = ["computed_sets", "lubrication_problems"]
 
 
 def lubrication_problems(train: TrainCase) -> list[Problem]:
@@ -25,7 +25,7 @@ def lubrication_problems(train: TrainCase) -> list[Problem]:
     problems: list[Problem] = []
     if train.lubrication is not None:
         problems += _shared_immersion(train)
-    for name, table in _computed(train):
+    for name, table in computed_sets(train):
         own = table.lubrication
         if own is None or own == train.lubrication:
             continue
@@ -51,7 +51,7 @@ def _not_shared(name: str) -> Problem:
     return Problem(f"sets.{name}.lubrication", "", allowed, "Add it, for all other parts.")
 
 
-def _computed(train: TrainCase) -> Iterator[tuple[str, PlanetarySet | PairSet | ListedSet]]:
+def computed_sets(train: TrainCase) -> Iterator[tuple[str, PlanetarySet | PairSet | ListedSet]]:
     """Sets whose losses are computed."""
     for name, table in train.sets.items():
         if isinstance(table, PlanetarySet | PairSet | ListedSet):

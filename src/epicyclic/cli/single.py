@@ -82,6 +82,11 @@ def check(case: str, changes: tuple[str, ...]) -> None:
     """Check a case without computing losses; of a train also show the ratio of every state."""
     loaded = load_with(case, changes)
     click.echo(f"{case}: a sound {loaded.kind} case.")
+    if loaded.lubrication is not None:
+        from epicyclic.builders.supplies import stated_supplies
+
+        for name, supply in stated_supplies(loaded):
+            click.echo(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
     if loaded.kind == "train":
         from epicyclic.report.state_tables import state_tables
         from epicyclic.report.tables import terminal

@@ -45,8 +45,6 @@ class OilSupply:
         band = f"95 %: {self.low:.2g} to {self.high:.2g}"
         fed = max(self.meshes.values(), default=0.0) - self.share
         more = f"; up to {fed:.2g} more in the meshes" if fed > 0 else ""
-        if self.method == "dip" and not self.churning:
-            more = "; nothing that turns reaches the oil"
         return f"{self.method}: share of oil {self.share:.2g} ({band}; {self.source}){more}"
 
     @property
