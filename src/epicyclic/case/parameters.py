@@ -70,13 +70,23 @@ def make_parameters(
     InputError
         For keys that are unknown, hold no number, or have no start value.
     """
-    found: dict[str, Parameter | Problem] = {
-        key: parameter_of(case, key, set(varied)) for key in keys
-    }
-    problems = [item for item in found.values() if isinstance(item, Problem)]
+    found = [_not_zero(parameter_of(case, key, set(varied))) for key in keys]
+    problems = [item for item in found if isinstance(item, Problem)]
     if problems:
         raise InputError(problems, "the fit")
-    return tuple(item for item in found.values() if isinstance(item, Parameter))
+    return tuple(item for item in found if isinstance(item, Parameter))
+
+
+def _not_zero(item: Parameter | Problem) -> Parameter | Problem:
+    """The same unless it has no start value to be scaled by."""
+    if isinstance(item, Problem) or item.start != 0:
+        return item
+    return _no_start(item.key, "is 0 in the case")
+
+
+def _no_start(key: str, what: str) -> Problem:
+    allowed = f"{what}; it must have one to vary about."
+    return Problem(key, "", allowed, f'Add --set "{key}=...".')
 
 
 def parameter_of(case: CaseTable, key: str, varied: Collection[str] = ()) -> Parameter | Problem:
@@ -91,11 +101,8 @@ def parameter_of(case: CaseTable, key: str, varied: Collection[str] = ()) -> Par
     if key in varied:
         return Problem(key, "", "is given by a column of the table.", "Fit another key.")
     start = _start(case, key, quantity)
-    if start is None or start == 0:
-        what = "has no value in the case" if start is None else "is 0 in the case"
-        return Problem(
-            key, "", f"{what}; it must have one to vary about.", f'Add --set "{key}=...".'
-        )
+    if start is None:
+        return _no_start(key, "has no value in the case")
     low, high, is_open = _bounds(quantity, field)
     if is_open:
         low += OFF_OPEN_BOUND * (start - low)

@@ -295,7 +295,7 @@ def _impossible(parameter: Parameter, kind: Kind, spread: tuple[float, ...]) -> 
     name, unit = _name(parameter.key), f" {parameter.unit}".rstrip()
     if kind == "normal" and spread[0] <= 0:
         return Problem(name, "", "must have a standard uncertainty above 0.", "Or exact = true.")
-    if kind == "lognormal" and parameter.start < 0:
+    if kind == "lognormal" and parameter.start <= 0:
         allowed = f"is for values above 0, not {parameter.start:g}{unit}."
         return Problem(name, "", allowed, "Take normal or uniform.")
     if kind != "uniform":

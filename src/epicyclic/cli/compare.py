@@ -90,7 +90,7 @@ def compare(
     "temperature [degC]", "loss [W]"; optionally "uncertainty [W]" or [%], component, the state of a
     train, and any key of the case.
     """
-    from epicyclic.cli.progress import progress_bar
+    from epicyclic.cli.progress import progress_bar, tell
     from epicyclic.measurement.compare import compare_measured
     from epicyclic.report.measured_table import measured_tables
 
@@ -111,6 +111,7 @@ def compare(
             dask=runner.dask,
             journal=journal,
             progress=progress,
+            tell=tell,
         )
     show(lambda: measured_tables(comparison), comparison.to_json, json_file)
     if output is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -16,7 +17,17 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-__all__ = ["progress_bar"]
+__all__ = ["progress_bar", "tell"]
+
+
+def tell(text: str) -> None:
+    """Say on standard error how a long command gets on; ``EPICYCLIC_PROGRESS=0`` turns it off."""
+    if not _is_off():
+        sys.stderr.write(f"{text}\n")
+
+
+def _is_off() -> bool:
+    return os.environ.get("EPICYCLIC_PROGRESS") == "0"
 
 
 @contextmanager
@@ -36,7 +47,7 @@ def progress_bar(noun: str) -> Iterator[Callable[..., None]]:
         TextColumn("{task.fields[failures]}"),
         console=console,
         transient=True,
-        disable=not console.is_terminal or os.environ.get("EPICYCLIC_PROGRESS") == "0",
+        disable=not console.is_terminal or _is_off(),
     )
     with bar:
         task = bar.add_task(noun, total=None, failures="")

@@ -23,9 +23,12 @@ from epicyclic.case.operating import OPERATING
 from epicyclic.case.parameters import make_parameters
 from epicyclic.errors import InputError, Problem
 from epicyclic.losses.validity import OUT_OF_RANGE
+from epicyclic.measurement.calibrated import calibrated_case, uncertainty_tables
 from epicyclic.measurement.deviations import AS_GIVEN, CALIBRATED, ErrorFigures, all_errors
 from epicyclic.measurement.files import read_frame, read_grid
-from epicyclic.measurement.fit import Fit, fit_parameters
+from epicyclic.measurement.fit import Tell, fit_parameters
+from epicyclic.measurement.fit_result import Fit
+from epicyclic.measurement.identifiability import reaches
 from epicyclic.measurement.model import Computed, MeasuredPoints
 from epicyclic.measurement.table import (
     LOAD_DEPENDENT,
@@ -94,8 +97,8 @@ class MeasuredComparison:
 
     @property
     def calibrated_case(self) -> Case | None:
-        """The case with the fitted values; None without a fit."""
-        return None if self.fit is None else self.case.updated(self.fit.settings)
+        """The case with the fitted values and their uncertainties; None without a fit."""
+        return None if self.fit is None else calibrated_case(self.case, self.fit)
 
     def table(self) -> pd.DataFrame:
         """One row for each measurement, units in the column names."""
@@ -114,11 +117,23 @@ class MeasuredComparison:
         columns |= {"component": self.measured.component, "measured [W]": self.measured.loss}
         if self.measured.uncertainty is not None:
             columns["uncertainty [W]"] = self.measured.uncertainty
-        columns["computed [W]"] = self.computed
+        for state, computed in self.states.items():
+            name = "computed" if state == AS_GIVEN else state
+            columns |= {f"{name} [W]": computed, f"{name} less measured [W]": self.residuals(state)}
+            if self.measured.uncertainty is not None:
+                columns[f"{name} less measured, over uncertainty"] = self.normalised(state)
         if self.calibrated is not None:
-            columns["CALIBRATED [W]"] = self.calibrated
             columns["held out"] = self.held_out
         return pd.DataFrame(columns)
+
+    def residuals(self, state: str) -> FloatArray:
+        """Computed less measured losses of one of the `states`, shape (n,). [W]"""
+        return self.states[state] - self.measured.loss
+
+    def normalised(self, state: str) -> FloatArray:
+        """The same over the uncertainty of the measurement; NaN without uncertainties. [1]"""
+        sigma = self.measured.uncertainty
+        return self.residuals(state) / (math.nan if sigma is None else sigma)
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain numbers and text; None stands for NaN."""
@@ -157,6 +172,7 @@ def compare_measured(
     dask: str | None = None,
     journal: str | Path | None = None,
     progress: Progress | None = None,
+    tell: Tell = lambda text: None,
 ) -> MeasuredComparison:
     """Compare measured losses with those of a case, and fit uncertain inputs if asked to.
 
@@ -191,6 +207,8 @@ def compare_measured(
         As for `sweep`; the progress starts again with every round of a fit.
     journal : str or Path, optional
         Folder that keeps finished points, those of each round in a file.
+    tell : callable, optional
+        Called with a sentence on how the fit gets on, in every round.
 
     Returns
     -------
@@ -225,7 +243,8 @@ def compare_measured(
     found = calibrated = None
     if parameters:
         used = np.isfinite(given.loss) & ~held_out
-        found = fit_parameters(points, parameters, used, confidence)
+        reach = reaches(case, parameters)
+        found = fit_parameters(points, parameters, used, confidence, reach, tell)
         (calibrated,) = points.compute(found.settings)
     states = {AS_GIVEN: given.loss}
     if calibrated is not None:
@@ -366,6 +385,9 @@ def _fit_dict(fit: Fit) -> dict[str, Any]:
         "degrees_of_freedom": fit.degrees_of_freedom,
         "chi_squared": fit.chi_squared,
         "widening": fit.widening,
+        "discrepancy": fit.discrepancy,
+        "combinations": [asdict(one) for one in fit.combinations],
+        "uncertainty": uncertainty_tables(fit),
         "evaluations": fit.evaluations,
         "warnings": list(fit.warnings),
     }

@@ -8,9 +8,10 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from epicyclic.case.operating import OPERATING
 from epicyclic.measurement.compare import MeasuredComparison
 from epicyclic.measurement.deviations import CALIBRATED, ErrorFigures
-from epicyclic.measurement.fit import Fit, FittedParameter
+from epicyclic.measurement.fit_result import Fit, FittedParameter
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import plain_table
 from epicyclic.sweeps.unloaded import AS_TESTED
@@ -18,10 +19,16 @@ from epicyclic.units import unit_text
 
 __all__ = ["fitted_comment", "measured_tables"]
 
+MOST_POINTS = 40
+"""Points that are shown; JSON and the table in Python have all."""
+
 
 def measured_tables(comparison: MeasuredComparison) -> RenderableType:
     """Errors by set of points; with a fit, the calibrated values and what limits them."""
-    parts: list[RenderableType] = [_error_table(comparison), Text(_legend(comparison))]
+    parts: list[RenderableType] = [_error_table(comparison), Text(_legend(comparison)), Text()]
+    parts.append(_point_table(comparison))
+    if len(comparison.measured) > MOST_POINTS:
+        parts.append(Text(f"The first {MOST_POINTS} of {len(comparison.measured)} points."))
     if comparison.fit is not None:
         parts += [Text(), _fit_table(comparison.fit)]
         if len(comparison.fit.parameters) > 1:
@@ -44,6 +51,31 @@ def _error_table(comparison: MeasuredComparison) -> Table:
         name = f"  {row.group}" if row.group else f"{row.state}: {row.points}"
         cells = _error_cells(row)[: len(names) + weighted]
         table.add_row(name, *cells, style="" if row.group else "bold")
+    return table
+
+
+def _point_table(comparison: MeasuredComparison) -> Table:
+    """Every point: measured, computed before and after a fit, and what is left."""
+    measured, states = comparison.measured, comparison.states
+    last = list(states)[-1]
+    weighted = measured.uncertainty is not None
+    table = plain_table("Points")
+    conditions = [
+        (f"{name} {unit_text(OPERATING[name].unit)}", values)
+        for name, values in measured.conditions.items()
+    ]
+    columns = [*conditions, ("measured W", measured.loss)]
+    if measured.uncertainty is not None:
+        columns.append(("u W", measured.uncertainty))
+    columns += [(f"{name} W", values) for name, values in states.items()]
+    columns.append(("residual W", comparison.residuals(last)))
+    if weighted:
+        columns.append(("over u", comparison.normalised(last)))
+    for name in ("line", *(name for name, _ in columns)):
+        table.add_column(name, justify="right")
+    for row, line in enumerate(measured.lines[:MOST_POINTS]):
+        mark = "*" if comparison.held_out[row] else ""
+        table.add_row(f"{line}{mark}", *(shown(float(values[row])) for _, values in columns))
     return table
 
 
@@ -75,6 +107,8 @@ def _legend(comparison: MeasuredComparison) -> str:
             " Load-dependent losses as tested: total loss less that without torque at the same "
             "speed and oil inlet temperature, each at its own temperatures."
         )
+    if comparison.held_out.any():
+        text += " Lines with * were held out."
     if comparison.fit is not None:
         text += f" {CALIBRATED}: with values fitted to these measurements; that is no validation."
     return text
@@ -99,7 +133,7 @@ def _fit_table(fit: Fit) -> Table:
 
 
 def _interval(item: FittedParameter) -> str:
-    if item.at_bound:
+    if item.at_bound and math.isnan(item.low):
         return "at its bound"
     return MISSING if math.isnan(item.low) else f"{shown(item.low)} to {shown(item.high)}"
 
@@ -120,9 +154,25 @@ def _fit_line(fit: Fit) -> str:
     )
     if math.isfinite(fit.chi_squared):
         text += f", χ² {shown(fit.chi_squared, 4)}"
-    return (
-        f"{text}; {fit.evaluations} computed points. Intervals are those of the linearised model."
-    )
+    text += f"; {fit.evaluations} computed points. {_about_intervals(fit)}"
+    if fit.discrepancy > 0 and fit.widening > 1:
+        text += (
+            f" Birge ratio {shown(fit.widening, 3)}: beyond the uncertainties of the measurements "
+            f"the model is off by about {shown(fit.discrepancy, 2)} W at these points. That "
+            "variance is in the intervals."
+        )
+    elif math.isfinite(fit.discrepancy) and math.isnan(fit.widening):
+        text += (
+            f" The points scatter by {shown(fit.discrepancy, 2)} W about the fit, measurements and "
+            "model together."
+        )
+    return text
+
+
+def _about_intervals(fit: Fit) -> str:
+    if all(item.profiled for item in fit.parameters):
+        return "Intervals follow from profiles of the likelihood."
+    return "Intervals are those of the linearised model."
 
 
 def fitted_comment(item: FittedParameter, fit: Fit) -> str:

@@ -1,0 +1,59 @@
+"""A calibrated case: fitted values, and how well they are known, as its table [uncertainty]."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from epicyclic.case.case import Case
+from epicyclic.measurement.fit_result import Fit, FittedParameter
+from epicyclic.units import CELSIUS
+
+__all__ = ["calibrated_case", "uncertainty_tables"]
+
+SHRUNK = 1 - 1e-6
+"""Factor of coefficients of correlation, so that rounding leaves their matrix possible. [1]"""
+DIGITS = 8
+"""Of coefficients of correlation."""
+
+
+def calibrated_case(case: Case, fit: Fit) -> Case:
+    """The case with the fitted values and what the fit says about them."""
+    own = case.given().get("uncertainty", {})
+    fitted = {item.key for item in fit.parameters}
+    kept = {key: _without(table, fitted) for key, table in own.items() if key not in fitted}
+    tables = kept | uncertainty_tables(fit)
+    return case.updated({**fit.settings, "uncertainty": tables or None})
+
+
+def uncertainty_tables(fit: Fit) -> dict[str, dict[str, Any]]:
+    """Entries of [uncertainty] for the fitted values that have an interval. Theory (X7).
+
+    Normal, with their correlations; of a value at its bound the half that lies within.
+    """
+    known = [i for i, item in enumerate(fit.parameters) if math.isfinite(item.uncertainty)]
+    tables = {fit.parameters[i].key: {"normal": _stated(fit.parameters[i])} for i in known}
+    for i, j in itertools.combinations(known, 2):
+        coefficient = round(SHRUNK * float(fit.correlation[i, j]), DIGITS)
+        if np.isfinite(coefficient):
+            entry = tables[fit.parameters[j].key].setdefault("correlated", {})
+            entry[fit.parameters[i].key] = coefficient
+    return tables
+
+
+def _stated(item: FittedParameter) -> Any:
+    """A standard uncertainty as a case file has it."""
+    number = float(f"{item.uncertainty:.6g}")
+    unit = "K" if item.unit == CELSIUS.display else item.unit
+    return f"{number!r} {unit}" if unit else number
+
+
+def _without(table: dict[str, Any], keys: Sequence[str] | set[str]) -> dict[str, Any]:
+    """What a case states of another key, without correlations with `keys`."""
+    left = {key: value for key, value in table.get("correlated", {}).items() if key not in keys}
+    others = {key: value for key, value in table.items() if key != "correlated"}
+    return others | ({"correlated": left} if left else {})

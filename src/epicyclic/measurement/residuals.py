@@ -1,0 +1,94 @@
+"""Deviations of computed from measured losses over weights, for any values of some keys."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.case.parameters import Parameter
+from epicyclic.errors import ConvergenceError
+from epicyclic.measurement.model import MeasuredPoints
+
+__all__ = ["Residuals"]
+
+FloatArray = NDArray[np.float64]
+
+STEP = 1e-3
+"""Of the differences that give the derivatives, over the start value. [1]"""
+
+
+@dataclass(slots=True)
+class Residuals:
+    """Deviations over weights at the points of calibration, and their derivatives. Theory (X1).
+
+    Attributes
+    ----------
+    points : MeasuredPoints
+    parameters : sequence of Parameter
+        Their values are given as ratios to the start values, "scaled".
+    used : ndarray of bool, shape (n,)
+        Points of the table that the fit sees.
+    """
+
+    points: MeasuredPoints
+    parameters: Sequence[Parameter]
+    used: NDArray[np.bool_]
+    _known: dict[tuple[float, ...], FloatArray] = field(default_factory=dict)
+
+    @property
+    def evaluations(self) -> int:
+        """Computed points."""
+        return len(self._known) * len(self.points.measured)
+
+    @property
+    def uncertainty(self) -> FloatArray | None:
+        """Of the losses at the points used; None if they have none. [W]"""
+        whole = self.points.measured.uncertainty
+        return None if whole is None else whole[self.used]
+
+    @property
+    def bounds(self) -> FloatArray:
+        """Of the scaled parameters, shape (p, 2). [1]"""
+        return np.array([item.ends for item in self.parameters])
+
+    def settings(self, scaled: FloatArray) -> dict[str, Any]:
+        """The values of the keys as a case file has them."""
+        return {
+            item.key: item.value(float(z)) for item, z in zip(self.parameters, scaled, strict=True)
+        }
+
+    def __call__(self, scaled: FloatArray) -> FloatArray:
+        return self.at([scaled])[0]
+
+    def derivatives(self, scaled: FloatArray) -> FloatArray:
+        """d(residual)/d(scaled parameter), all from one batch of points, shape (n, p)."""
+        steps = [
+            -STEP if z + STEP > item.ends[1] else STEP
+            for item, z in zip(self.parameters, scaled, strict=True)
+        ]
+        moved = [
+            scaled + step * unit for step, unit in zip(steps, np.eye(scaled.size), strict=True)
+        ]
+        base, *others = self.at([scaled, *moved])
+        table = np.array([(other - base) / step for other, step in zip(others, steps, strict=True)])
+        if not np.isfinite(table).all():
+            raise ConvergenceError(
+                f"near {self.settings(scaled)} points cannot be computed; fit fewer keys, or "
+                "start from other values."
+            )
+        return table.T
+
+    def at(self, scaled: Sequence[FloatArray]) -> list[FloatArray]:
+        """Deviations for each of several parameter sets; those that are not known in one batch."""
+        sets = [tuple(map(float, one)) for one in scaled]
+        new = [one for one in dict.fromkeys(sets) if one not in self._known]
+        measured = self.points.measured.loss[self.used]
+        weight = 1.0 if self.uncertainty is None else 1 / self.uncertainty
+        settings = [self.settings(np.array(one)) for one in new]
+        for one, computed in zip(new, self.points.compute(*settings) if new else [], strict=True):
+            self._known[one] = (computed.loss[self.used] - measured) * weight
+        return [self._known[one] for one in sets]
