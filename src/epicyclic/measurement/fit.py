@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from statistics import NormalDist
 
 import numpy as np
@@ -68,7 +69,7 @@ def fit_parameters(
         raise InputError(
             [Problem("fit", "", allowed, "Fit fewer, or give more points.")], "the fit"
         )
-    residuals = Residuals(points, parameters, used)
+    residuals = Residuals(points.shared(), parameters, used)
     tell(f"fit: how {size} inputs move {count} losses")
     slopes = residuals.derivatives(np.ones(size))
     _check_influence(residuals, slopes)
@@ -83,6 +84,8 @@ def fit_parameters(
         if not one.told_apart:
             tell(one.warning)
     found = _solution(residuals, confidence, tell)
+    exact = Residuals(points, parameters, used)(found.solution)
+    found = replace(found, deviations=exact)
     return _described(residuals, found, known, tell)
 
 
@@ -119,9 +122,23 @@ def _solution(residuals: Residuals, confidence: float, tell: Tell) -> Linearised
     distance = np.abs(found.x[:, None] - ends)
     at_bound = (found.active_mask != 0) | (distance < NEAR_BOUND).any(axis=1)
     nearest = ends[np.arange(len(ends)), distance.argmin(axis=1)]
-    solution = np.where(at_bound, nearest, found.x)  # the method itself stays off the bounds
+    start = np.where(at_bound, nearest, found.x)  # the method itself stays off the bounds
+    slopes = residuals.derivatives(start, central=True)
+    solution = _last_step(residuals, start, slopes, at_bound)
     weighted = residuals.uncertainty is not None
-    return Linearised(solution, found.fun, found.jac, at_bound, weighted, confidence)
+    return Linearised(solution, residuals(solution), slopes, at_bound, weighted, confidence)
+
+
+def _last_step(
+    residuals: Residuals, start: FloatArray, slopes: FloatArray, at_bound: NDArray[np.bool_]
+) -> FloatArray:
+    """To where the better derivatives at the end put the least squares."""
+    deviations = residuals(start)
+    ends = start.copy()
+    ends[~at_bound] -= np.linalg.lstsq(slopes[:, ~at_bound], deviations)[0]
+    ends = np.clip(ends, residuals.bounds[:, 0], residuals.bounds[:, 1])
+    there = residuals(ends)
+    return ends if there @ there < deviations @ deviations else start
 
 
 def _check_influence(residuals: Residuals, slopes: FloatArray) -> None:

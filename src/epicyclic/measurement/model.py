@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
 from epicyclic.measurement.table import LOAD_DEPENDENT, Measurements, parts_of
+from epicyclic.sweeps.flow_lattice import FlowLattice, NearbyPoints
 from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.plan import PointList
 from epicyclic.sweeps.runner import HERE, Runner
@@ -55,12 +56,19 @@ class MeasuredPoints:
         With a folder as its journal; its progress starts again with every round.
     load_dependent : {"computed", "as-tested"}
         What load-dependent losses are.
+    lattice : FlowLattice, optional
+        Flows through pockets are read from it. Default: each is solved.
     """
 
     case: Case
     measured: Measurements
     runner: Runner = HERE
     load_dependent: LoadDependent = COMPUTED
+    lattice: FlowLattice | None = None
+
+    def shared(self) -> MeasuredPoints:
+        """The same points for many values of keys next to each other, as a fit asks for them."""
+        return replace(self, lattice=FlowLattice())
 
     def compute(self, *settings: Mapping[str, Any]) -> list[Computed]:
         """The losses for each of several `settings` of keys, all of them in one go."""
@@ -69,7 +77,11 @@ class MeasuredPoints:
         points, unloaded = asked, np.arange(len(asked))
         if self.load_dependent == AS_TESTED:
             points, unloaded = with_unloaded(asked)
-        plan = PointList(self.case, points)
+        plan = (
+            PointList(self.case, points)
+            if self.lattice is None
+            else NearbyPoints(self.case, points, lattice=self.lattice)
+        )
         rows = self.runner.within(plan).run(plan)
         return [self._computed(rows, unloaded, i) for i in range(0, unloaded.size, len(changes))]
 

@@ -24,9 +24,9 @@ PROFILED = 3
 """Parameters up to which profiles are made."""
 MOST_PLACES, MOST_ROUNDS = 12, 5
 """Places tried for one end, and fits of the other parameters at each."""
-CLOSE = 0.01
+CLOSE = 0.02
 """Root of the growth of the sum of squares over that wanted, less 1, that is met. [1]"""
-GAIN = 1e-3
+GAIN = 1e-2
 """Gain over the growth wanted below which the others are not fitted any further. [1]"""
 FARTHER = 3.0
 """Largest factor between places while the end is not passed, and largest step of the other
