@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.measurement.intervals import Linearised
-from epicyclic.measurement.residuals import Residuals
+from epicyclic.measurement.residuals import STEP, Residuals
 
 __all__ = ["PROFILED", "profile_ends"]
 
@@ -22,12 +22,15 @@ FloatArray = NDArray[np.float64]
 
 PROFILED = 3
 """Parameters up to which profiles are made."""
-MOST_PLACES, MOST_ROUNDS = 12, 5
+MOST_PLACES, MOST_ROUNDS = 12, 8
 """Places tried for one end, and fits of the other parameters at each."""
 CLOSE = 0.02
 """Root of the growth of the sum of squares over that wanted, less 1, that is met. [1]"""
 GAIN = 1e-2
 """Gain over the growth wanted below which the others are not fitted any further. [1]"""
+CURVED = 0.05
+"""Square of what a linear model leaves over the growth wanted, beyond which derivatives over the
+other parameters are found anew. [1]"""
 FARTHER = 3.0
 """Largest factor between places while the end is not passed, and largest step of the other
 parameters over half their intervals. [1]"""
@@ -102,22 +105,25 @@ class _Valley:
 
     def walk(self, parameter: int, side: int) -> Walk:
         """Where the sum of squares has grown enough on one side of a parameter."""
-        start = self.found.solution[parameter]
-        room = abs(float(self.bounds[parameter, side] - start))
-        if room == 0:
-            return float(start)
+        solution = self.found.solution
+        room = abs(float(self.bounds[parameter, side] - solution[parameter]))
         sign = 2.0 * side - 1.0
+        if room == 0:
+            return float(solution[parameter])
+        valley = _Way(
+            self, parameter, self.found.derivatives.copy(), np.eye(solution.size)[parameter]
+        )
         inner, outer = (0.0, -1.0), (math.inf, math.nan)
         distance = self._guess(parameter, sign)
         for _ in range(MOST_PLACES):
             distance = min(distance, room)
-            squares = yield from self._lowest(parameter, sign * distance)
+            squares = yield from valley.lowest(sign * distance)
             grown = (squares - float(self.deviations @ self.deviations)) / self.growth
             excess = math.sqrt(max(grown, 0.0)) - 1
             if math.isnan(excess):
                 return math.nan
             if abs(excess) <= CLOSE or (excess < 0 and distance == room):
-                return float(start + sign * distance)
+                return float(solution[parameter] + sign * distance)
             if excess < 0:
                 inner = (distance, excess)
             else:
@@ -125,7 +131,7 @@ class _Valley:
             distance = _between(inner, outer)
         return math.nan
 
-    def _others(self, parameter: int) -> NDArray[np.intp]:
+    def others(self, parameter: int) -> NDArray[np.intp]:
         """Free parameters beside one."""
         free = self.found.free
         others: NDArray[np.intp] = free[free != parameter]
@@ -134,50 +140,86 @@ class _Valley:
     def _guess(self, parameter: int, sign: float) -> float:
         """Distance of the end if the model were linear."""
         column = self.found.derivatives[:, parameter]
-        others = self.found.derivatives[:, self._others(parameter)]
+        others = self.found.derivatives[:, self.others(parameter)]
         alone = column - others @ np.linalg.lstsq(others, column)[0]
         curvature = float(alone @ alone)
         slope = max(0.0, sign * float(column @ self.deviations))  # not 0 at a bound
         return float((math.sqrt(slope**2 + curvature * self.growth) - slope) / curvature)
 
-    def _lowest(self, parameter: int, offset: float) -> Walk:
-        """Sum of squares with one parameter held at an offset, the others fitted.
 
-        By Gauss and Newton with the derivatives of the solution, kept up to date after Broyden.
-        """
-        others = self._others(parameter)
-        derivatives = self.found.derivatives.copy()
-        here = self.found.solution.copy()
-        here[parameter] += offset
-        here[others] += self._step(derivatives, others, derivatives[:, parameter] * offset)
-        here = np.clip(here, self.bounds[:, 0], self.bounds[:, 1])
+@dataclass(slots=True, eq=False)
+class _Way:
+    """The bottom of a valley on one side of a parameter.
+
+    Attributes
+    ----------
+    valley : _Valley
+    parameter : int
+        The one that is held.
+    derivatives : ndarray, shape (n, p)
+        Of the deviations; of the solution at first, then kept up to date after Broyden.
+    direction : ndarray, shape (p,)
+        From the solution to the bottom at the last place, for each unit of the parameter.
+    """
+
+    valley: _Valley
+    parameter: int
+    derivatives: FloatArray
+    direction: FloatArray
+
+    def lowest(self, offset: float) -> Walk:
+        """Least sum of squares with the parameter held at an offset, after Gauss and Newton."""
+        solution, others = self.valley.found.solution, self.valley.others(self.parameter)
+        here = solution + offset * self.direction
+        if self.direction[others].any():  # from where the last place led to
+            here = np.clip(here, self.valley.bounds[:, 0], self.valley.bounds[:, 1])
+        else:
+            here = self._moved(here, self.valley.deviations + self.derivatives @ (here - solution))
         deviations = yield here
+        linear = self.valley.deviations + self.valley.found.derivatives @ (here - solution)
+        if float(np.sum((deviations - linear) ** 2)) > CURVED * self.valley.growth:
+            yield from self._derive(here, deviations)
         for _ in range(MOST_ROUNDS if others.size else 0):
             if not np.isfinite(deviations).all():
                 break
-            there = here.copy()
-            there[others] += self._step(derivatives, others, deviations)
-            there = np.clip(there, self.bounds[:, 0], self.bounds[:, 1])
+            there = self._moved(here, deviations)
             step = there - here
-            if float(np.sum((derivatives @ step) ** 2)) <= GAIN * self.growth:
+            expected = self.derivatives @ step
+            if float(expected @ expected) <= GAIN * self.valley.growth:
                 break
             changed = yield there
             if not np.isfinite(changed).all():
                 break
-            derivatives += np.outer(changed - deviations - derivatives @ step, step) / (step @ step)
+            self.derivatives += np.outer(changed - deviations - expected, step) / (step @ step)
             if changed @ changed < deviations @ deviations:
                 here, deviations = there, changed
+        self.direction = (here - solution) / offset
         return float(deviations @ deviations)
 
-    def _step(
-        self, derivatives: FloatArray, others: NDArray[np.intp], deviations: FloatArray
-    ) -> FloatArray:
-        """Of the other parameters, to where deviations are least; not much past their intervals."""
-        variance = np.diag(self.found.covariance)[np.searchsorted(self.found.free, others)]
-        most = FARTHER * np.sqrt(self.growth * variance)
-        step = -np.linalg.lstsq(derivatives[:, others], deviations)[0]
-        limited: FloatArray = np.clip(step, -most, most)
-        return limited
+    def _derive(
+        self, here: FloatArray, deviations: FloatArray
+    ) -> Generator[FloatArray, FloatArray, None]:
+        """Derivatives over the other parameters by differences."""
+        for other in self.valley.others(self.parameter):
+            high = self.valley.bounds[other, 1]
+            moved = here.copy()
+            moved[other] += STEP if here[other] + STEP <= high else -STEP
+            changed = yield moved
+            if np.isfinite(changed).all():
+                self.derivatives[:, other] = (changed - deviations) / (moved[other] - here[other])
+
+    def _moved(self, here: FloatArray, deviations: FloatArray) -> FloatArray:
+        """The other parameters where a linear model puts the least squares.
+
+        At most as far from `here` as `FARTHER` times half their intervals, and within the bounds.
+        """
+        found, others = self.valley.found, self.valley.others(self.parameter)
+        variance = np.diag(found.covariance)[np.searchsorted(found.free, others)]
+        most = FARTHER * np.sqrt(self.valley.growth * variance)
+        step = -np.linalg.lstsq(self.derivatives[:, others], deviations)[0]
+        there = here.copy()
+        there[others] += np.clip(step, -most, most)
+        return np.clip(there, self.valley.bounds[:, 0], self.valley.bounds[:, 1])
 
 
 def _between(inner: tuple[float, float], outer: tuple[float, float]) -> float:

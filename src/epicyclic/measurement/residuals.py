@@ -13,7 +13,7 @@ from epicyclic.case.parameters import Parameter
 from epicyclic.errors import ConvergenceError
 from epicyclic.measurement.model import MeasuredPoints
 
-__all__ = ["Residuals"]
+__all__ = ["STEP", "Residuals"]
 
 FloatArray = NDArray[np.float64]
 

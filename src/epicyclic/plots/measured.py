@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -16,7 +17,7 @@ from epicyclic.measurement.deviations import AS_GIVEN, CALIBRATED
 from epicyclic.plots.style import COLOURS, styled_figure
 from epicyclic.units import format_number, unit_text
 
-__all__ = ["measured_figure", "plot_parity", "plot_residuals"]
+__all__ = ["measured_figure", "plot_parity", "plot_points", "plot_residuals"]
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -25,16 +26,21 @@ BAND = 0.10
 """Lines beside those of equal losses. [1]"""
 SERIES_GAP = 0.012
 """Distance between series of residuals, over the range of the axis. [1]"""
+COVERED = 2.0
+"""Uncertainties that most residuals lie within. [1]"""
+MOST_NUMBERS = 40
+"""Of lines below the residuals by point."""
 MARKERS = "osD^vP"
 """One for each group, beside its colour; for print without colours."""
 _FADED = {"color": "0.6", "mfc": "none", "ls": "none", "ms": 5, "zorder": 1}
 
 
 def measured_figure(comparison: MeasuredComparison) -> Figure:
-    """Parity, and residuals over speed, torque and temperature."""
-    with styled_figure(2, 2, _title(comparison)) as (figure, axes):
+    """Parity, residuals over speed, torque and temperature, and residuals point by point."""
+    with styled_figure(3, 2, _title(comparison)) as (figure, axes):
         plot_parity(comparison, axes[0, 0])
-        for name, ax in zip(OPERATING, axes.flat[1:], strict=True):
+        plot_points(comparison, _joined(figure, axes[2]))
+        for name, ax in zip(OPERATING, axes.flat[1:4], strict=True):
             if name in comparison.measured.conditions:
                 plot_residuals(comparison, name, ax)
             else:
@@ -65,6 +71,43 @@ def plot_parity(comparison: MeasuredComparison, ax: Axes) -> Axes:
         xlim=line,
         ylim=line,
     )
+    return ax
+
+
+def _joined(figure: Figure, row: NDArray[Any]) -> Axes:
+    """One Axes in place of a row of them."""
+    grid = row[0].get_gridspec()
+    for ax in row:
+        ax.remove()
+    joined: Axes = figure.add_subplot(grid[-1, :])
+    return joined
+
+
+def plot_points(comparison: MeasuredComparison, ax: Axes) -> Axes:
+    """Residual of each point, over its uncertainty if it has one, by the line of the table.
+
+    A fit moves points along thin lines.
+    """
+    measured, states = comparison.measured, comparison.states
+    weighted = measured.uncertainty is not None
+    left = {
+        state: comparison.normalised(state) if weighted else comparison.residuals(state)
+        for state in states
+    }
+    place = np.arange(len(measured))
+    if len(left) > 1:
+        ax.vlines(place, left[AS_GIVEN], left[CALIBRATED], color="0.75", lw=0.9, zorder=0.5)
+    for members, style in _series(comparison):
+        state = AS_GIVEN if style["label"] == AS_GIVEN else list(states)[-1]
+        del style["computed"]
+        ax.plot(place[members], left[state][members], **style)
+    if weighted:
+        ax.axhspan(-COVERED, COVERED, color="0.92", zorder=0)
+    ax.axhline(0.0, color="black", lw=0.9)
+    every = max(1, math.ceil(len(measured) / MOST_NUMBERS))
+    ax.set_xticks(place[::every], [str(line) for line in measured.lines[::every]])
+    of_what = f"residual over u (grey: ±{COVERED:g})" if weighted else "computed − measured, W"
+    ax.set(title="Residuals by point", xlabel="line of the table", ylabel=of_what)
     return ax
 
 
@@ -142,7 +185,7 @@ def _title(comparison: MeasuredComparison) -> str:
     title = comparison.case.title or "Measured and computed losses"
     if comparison.fit is None:
         return title
-    values = ", ".join(
+    values = "\n".join(
         f"{item.key} = {format_number(item.value, 4)} {unit_text(item.unit)}".rstrip()
         for item in comparison.fit.parameters
     )

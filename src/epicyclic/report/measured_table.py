@@ -61,7 +61,7 @@ def _point_table(comparison: MeasuredComparison) -> Table:
     weighted = measured.uncertainty is not None
     table = plain_table("Points")
     conditions = [
-        (f"{name} {unit_text(OPERATING[name].unit)}", values)
+        (unit_text(OPERATING[name].unit), values)
         for name, values in measured.conditions.items()
     ]
     columns = [*conditions, ("measured W", measured.loss)]
