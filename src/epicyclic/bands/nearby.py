@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.analysis.solve import solve
+from epicyclic.bands.distributions import correlations
 from epicyclic.bands.outputs import Outputs, factors_of, outputs_of
 from epicyclic.case.case import Case
 from epicyclic.case.uncertain_values import UncertainValue, uncertain_values
@@ -137,7 +138,7 @@ def quick_band(nearby: Nearby) -> Band:
     """The band from parabolas through three points of every input. Theory (U8)."""
     values, outputs = nearby.values, nearby.outputs
     rng = np.random.default_rng(SEED)
-    drawn = np.array([_drawn(value, rng) for value in values])
+    drawn = _correlated(values, np.array([_drawn(value, rng) for value in values]))
     shifts = np.array([_parabola(nearby, number, row) for number, row in enumerate(drawn)])
     factors = factors_of(values, np.array([
         value.spread[0] ** row if value.is_model_form else row
@@ -163,6 +164,20 @@ def _drawn(value: UncertainValue, rng: np.random.Generator) -> FloatArray:
     if value.kind == "uniform":
         return rng.uniform(-HALF_WIDTH, HALF_WIDTH, DRAWN)
     return rng.standard_normal(DRAWN)
+
+
+def _correlated(values: Sequence[UncertainValue], drawn: FloatArray) -> FloatArray:
+    """Independent deviations turned into correlated ones, through normal ones."""
+    from scipy import stats
+
+    if not any(value.correlated for value in values):
+        return drawn
+    level = np.array([value.kind == "uniform" for value in values])
+    scores = drawn.copy()
+    scores[level] = stats.norm.ppf((drawn[level] / HALF_WIDTH + 1) / 2)
+    scores = np.linalg.cholesky(correlations(values)) @ scores
+    scores[level] = HALF_WIDTH * (2 * stats.norm.cdf(scores[level]) - 1)
+    return scores
 
 
 def _parabola(nearby: Nearby, number: int, deviations: FloatArray) -> FloatArray:

@@ -187,13 +187,17 @@ def find_field(table: type[BaseModel], key: str) -> tuple[Any, tuple[Any, ...]] 
 
 def all_keys(table: type[BaseModel], prefix: str = "") -> Iterator[str]:
     """Every dotted key below `table` that holds a value, in the order of the schema."""
+    return (f"{prefix}{key}" for key in _keys_below(table))
+
+
+@cache
+def _keys_below(table: type[BaseModel]) -> tuple[str, ...]:
+    found: list[str] = []
     for name, field in table.model_fields.items():
         inner = table_of(field.annotation)
         named = "" if dict_value(field.annotation) is None else "NAME."
-        if inner is None:
-            yield f"{prefix}{name}"
-        else:
-            yield from all_keys(inner, f"{prefix}{name}.{named}")
+        found += [name] if inner is None else all_keys(inner, f"{name}.{named}")
+    return tuple(found)
 
 
 @dataclass(frozen=True, slots=True)

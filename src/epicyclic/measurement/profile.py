@@ -115,6 +115,8 @@ class _Valley:
         )
         inner, outer = (0.0, -1.0), (math.inf, math.nan)
         distance = self._guess(parameter, sign)
+        if math.isnan(distance):
+            return math.nan
         for _ in range(MOST_PLACES):
             distance = min(distance, room)
             squares = yield from valley.lowest(sign * distance)
@@ -138,12 +140,14 @@ class _Valley:
         return others
 
     def _guess(self, parameter: int, sign: float) -> float:
-        """Distance of the end if the model were linear."""
+        """Distance of the end if the model were linear; NaN without influence."""
         column = self.found.derivatives[:, parameter]
         others = self.found.derivatives[:, self.others(parameter)]
         alone = column - others @ np.linalg.lstsq(others, column)[0]
         curvature = float(alone @ alone)
         slope = max(0.0, sign * float(column @ self.deviations))  # not 0 at a bound
+        if curvature == 0:
+            return math.nan
         return float((math.sqrt(slope**2 + curvature * self.growth) - slope) / curvature)
 
 

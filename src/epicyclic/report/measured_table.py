@@ -61,8 +61,7 @@ def _point_table(comparison: MeasuredComparison) -> Table:
     weighted = measured.uncertainty is not None
     table = plain_table("Points")
     conditions = [
-        (unit_text(OPERATING[name].unit), values)
-        for name, values in measured.conditions.items()
+        (unit_text(OPERATING[name].unit), values) for name, values in measured.conditions.items()
     ]
     columns = [*conditions, ("measured W", measured.loss)]
     if measured.uncertainty is not None:
