@@ -80,6 +80,49 @@ def test_a_calibration_is_called_so_everywhere(call, measured, tmp_path):
     fitted = ep.load_case(case)
     assert fitted.surroundings.oil_air_ratio == values["surroundings.oil_air_ratio"]
     assert fitted.losses.carrier_drag.factor == values[key]
+    assert set(fitted.given()["uncertainty"]) == set(fit["uncertainty"])
+
+
+def test_a_fit_tells_how_it_gets_on_and_carries_its_uncertainty(call, tmp_path, monkeypatch):
+    """Sliding and oil share of a set, from losses of the model itself with 1 % off and on."""
+    path, case = tmp_path / "measured.csv", tmp_path / "fitted.toml"
+    truth = ep.load_case("talbot-2012").updated(
+        {f"losses.{mesh}_mesh_pocketing.include": False for mesh in ("sun", "ring")}
+        | {"surroundings.oil_air_ratio": 0.08, "planet.roughness": "0.3 um"}
+    )
+    lines = ["speed [rpm],torque [N*m],temperature [degC],loss [W],uncertainty [%]"]
+    for speed, torque, temperature, off in (
+        (1000, 900, 90, 1.01), (2500, 400, 70, 0.99), (3700, 0, 40, 1.005), (4200, 150, 60, 0.995)
+    ):  # fmt: skip
+        point = {
+            "operation.speed": f"{speed} rpm",
+            "operation.torque": f"{torque} N*m",
+            "operation.oil_inlet_temperature": f"{temperature} degC",
+        }
+        total = ep.solve(truth.updated(point)).total
+        lines.append(f"{speed},{torque},{temperature},{off * total:.6g},1")
+    path.write_text("\n".join(lines))
+    keys = ["surroundings.oil_air_ratio", "planet.roughness"]
+    arguments = ["talbot-2012", str(path), *QUICK, "--fit", ",".join(keys), "-o", str(case)]
+    done = call(*arguments)
+    assert done.returncode == 0, done.stderr
+    assert re.search(
+        r"^fit: off by .* of the uncertainties, rms, at surroundings", done.stderr, re.M
+    )
+    assert re.search(r"^ +4 +3700 +0 +40 ", done.stdout, re.M)
+    assert "profiles of the likelihood" in done.stdout
+
+    stated = ep.load_case(case).given()["uncertainty"]
+    assert list(stated) == keys
+    assert list(stated["planet.roughness"]["correlated"]) == keys[:1]
+    data = ep.uncertainty(ep.load_case(case), samples=16)
+    rows = dict(zip(data["input"].values, data["distribution"].values, strict=True))
+    assert rows["surroundings.oil_air_ratio"].startswith("normal, 0.00")
+    assert " + ".join(keys) in {" + ".join(sorted(name.split(" + "), key=keys.index)) for name in
+                                map(str, data["driver"].values) if " + " in name}  # fmt: skip
+
+    monkeypatch.setenv("EPICYCLIC_PROGRESS", "0")
+    assert "fit: " not in call(*arguments).stderr
 
 
 def test_json_goes_to_standard_output(call, measured):

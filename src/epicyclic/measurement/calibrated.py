@@ -31,7 +31,7 @@ def calibrated_case(case: Case, fit: Fit) -> Case:
 
 
 def uncertainty_tables(fit: Fit) -> dict[str, dict[str, Any]]:
-    """Entries of [uncertainty] for the fitted values that have an interval. Theory (X7).
+    """Entries of [uncertainty] for the fitted values that have an interval. Theory (X8).
 
     Normal, with their correlations; of a value at its bound the half that lies within.
     """

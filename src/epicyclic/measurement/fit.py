@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from statistics import NormalDist
 
 import numpy as np
@@ -83,13 +82,12 @@ def fit_parameters(
     for one in known:
         if not one.told_apart:
             tell(one.warning)
-    found = _solution(residuals, confidence, tell)
-    exact = Residuals(points, parameters, used)(found.solution)
-    found = replace(found, deviations=exact)
+    found = _solution(residuals, Residuals(points, parameters, used), confidence, tell)
     return _described(residuals, found, known, tell)
 
 
-def _solution(residuals: Residuals, confidence: float, tell: Tell) -> Linearised:
+def _solution(residuals: Residuals, exact: Residuals, confidence: float, tell: Tell) -> Linearised:
+    """The solution, at last with exact flows through pockets and better derivatives."""
     from scipy.optimize import least_squares
 
     def told(scaled: FloatArray) -> FloatArray:
@@ -123,8 +121,10 @@ def _solution(residuals: Residuals, confidence: float, tell: Tell) -> Linearised
     at_bound = (found.active_mask != 0) | (distance < NEAR_BOUND).any(axis=1)
     nearest = ends[np.arange(len(ends)), distance.argmin(axis=1)]
     start = np.where(at_bound, nearest, found.x)  # the method itself stays off the bounds
+    residuals.correct(exact, start)
     slopes = residuals.derivatives(start, central=True)
     solution = _last_step(residuals, start, slopes, at_bound)
+    residuals.correct(exact, solution)
     weighted = residuals.uncertainty is not None
     return Linearised(solution, residuals(solution), slopes, at_bound, weighted, confidence)
 
@@ -132,7 +132,7 @@ def _solution(residuals: Residuals, confidence: float, tell: Tell) -> Linearised
 def _last_step(
     residuals: Residuals, start: FloatArray, slopes: FloatArray, at_bound: NDArray[np.bool_]
 ) -> FloatArray:
-    """To where the better derivatives at the end put the least squares."""
+    """To where a linear model puts the least squares."""
     deviations = residuals(start)
     ends = start.copy()
     ends[~at_bound] -= np.linalg.lstsq(slopes[:, ~at_bound], deviations)[0]
@@ -179,7 +179,7 @@ def _described(
 
 
 def _discrepancy(residuals: Residuals, found: Linearised) -> float:
-    """Error of the model as an extra variance, after Birge. Theory (X5). [W]"""
+    """Error of the model as an extra variance, after Birge. Theory (X6). [W]"""
     if residuals.uncertainty is None:
         return found.spread
     square = float(np.mean(residuals.uncertainty**2))

@@ -41,8 +41,8 @@ class Combination:
     start, moved : tuple of float
         Their values in the case and after the move.
     change : float
-        Root mean square change of the losses over their uncertainty; over the scatter that a linear
-        model leaves, if they have none. [1]
+        Root mean square change of the losses over their scatter: that which a linear model leaves,
+        and their uncertainty if that is more. [1]
     told_apart : bool
         Whether the points know this combination better than it was known before.
     """
@@ -70,11 +70,16 @@ class Combination:
     @property
     def warning(self) -> str:
         """What this means for the fit, in words."""
-        effect = f"changes the losses by {format_number(self.change, 2)} of their uncertainty"
-        remedy = "fix all but one of them, or add points at which they act differently."
+        effect = f"changes the losses by {format_number(self.change, 2)} of their scatter"
         if len(self.keys) == 1:
-            remedy = "do not fit it, or add points at which it matters."
-        return f"these points cannot tell apart: {self.text} {effect}; {remedy}"
+            return (
+                f"these points hardly see {self.text}, which {effect}: do not fit it, or add "
+                "points at which it matters."
+            )
+        return (
+            f"these points cannot tell apart: {self.text} {effect}. Fix all but one of them, or "
+            "add points at which they act differently."
+        )
 
 
 def reaches(case: Case, parameters: Sequence[Parameter]) -> FloatArray:

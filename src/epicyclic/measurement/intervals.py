@@ -86,7 +86,7 @@ class Linearised:
 
     @property
     def spread(self) -> float:
-        """Standard deviation of the deviations.
+        """Standard deviation of the deviations. Theory (X5).
 
         With uncertainties it is 1, or what the scatter shows if that is more (R. T. Birge, Phys.
         Rev. 40 (1932) 207); without them the scatter.

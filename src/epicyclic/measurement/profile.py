@@ -39,7 +39,7 @@ Walk = Generator[FloatArray, FloatArray, float]
 
 
 def profile_ends(residuals: Residuals, found: Linearised) -> FloatArray:
-    """Both ends of the interval of every parameter, from its profile. Theory (X6).
+    """Both ends of the interval of every parameter, from its profile. Theory (X7).
 
     An end beyond a bound is the bound.
 
