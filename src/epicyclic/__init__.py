@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from epicyclic.analysis.pocket_details import pocket_details
     from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
     from epicyclic.bands.pairs import compare_cases
-    from epicyclic.bands.study import uncertainty
+    from epicyclic.bands.run import uncertainty
     from epicyclic.campaigns.fit import characterise_oil
     from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema
     from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
@@ -74,7 +74,7 @@ _HOME = {
     "solve": "epicyclic.analysis.solve",
     "solve_for": "epicyclic.analysis.heat",
     "sweep": "epicyclic.sweeps.run",
-    "uncertainty": "epicyclic.bands.study",
+    "uncertainty": "epicyclic.bands.run",
     "warm_up": "epicyclic.maps.warm_up",
     "with_temperature_state": "epicyclic.maps.lumped",
     "write_map": "epicyclic.maps.formats",

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,16 @@ from epicyclic.case.uncertain_values import UncertainValue, uncertain_values
 from epicyclic.errors import EpicyclicError, InputError
 from epicyclic.results.result import Result
 
-__all__ = ["Band", "Nearby", "known_values", "look_nearby", "quick_band"]
+__all__ = [
+    "Band",
+    "Nearby",
+    "known_values",
+    "look_nearby",
+    "nearby_of",
+    "quick_band",
+    "steps",
+    "without_table",
+]
 
 FloatArray = NDArray[np.float64]
 
@@ -90,33 +100,49 @@ def known_values(case: Case, result: Result) -> tuple[UncertainValue, ...]:
     return values
 
 
+def without_table(case: Case) -> Case:
+    """A case that is solved with given values, whatever its table [uncertainty] says of them."""
+    return case.updated({"uncertainty": None}) if case.uncertainty else case
+
+
 def look_nearby(case: Case, result: Result, solved: Callable[[Case], Result] = solve) -> Nearby:
     """Solve a case with each of its uncertain inputs changed."""
     values, outputs = known_values(case, result), outputs_of(result)
+    plain = without_table(case)
+    stepped = [_losses(plain, changes, outputs, solved) for changes in steps(values)]
     losses = np.array([result.losses[name] for name in outputs.losses])
-    plain = case.updated({"uncertainty": None}) if case.uncertainty else case
-    ends = np.array(
-        [
-            [
-                losses if value.is_model_form else _losses(plain, value, end, outputs, solved)
-                for end in (-1.0, 1.0)
-            ]
-            for value in values
-        ]
-    )
-    ends = ends.reshape(len(values), 2, losses.size)
-    return Nearby(values, outputs, losses, result.input_power, ends)
+    return nearby_of(values, outputs, losses, result.input_power, np.array(stepped))
+
+
+def steps(values: Sequence[UncertainValue]) -> list[dict[str, Any]]:
+    """What to change in a case: each input one standard deviation down, then up."""
+    return [
+        {value.key: value.stated(_at(value, end))}
+        for value in values
+        if not value.is_model_form
+        for end in (-1.0, 1.0)
+    ]
+
+
+def nearby_of(
+    values: tuple[UncertainValue, ...],
+    outputs: Outputs,
+    losses: FloatArray,
+    input_power: float,
+    stepped: FloatArray,
+) -> Nearby:
+    """What the losses of all `steps`, shape (2 d, t), say; models leave them as they are."""
+    inputs = np.array([not value.is_model_form for value in values], dtype=bool)
+    ends = np.tile(losses, (len(values), 2, 1))
+    ends[inputs] = stepped.reshape(-1, 2, losses.size)
+    return Nearby(values, outputs, losses, input_power, ends)
 
 
 def _losses(
-    case: Case,
-    value: UncertainValue,
-    end: float,
-    outputs: Outputs,
-    solved: Callable[[Case], Result],
+    case: Case, changes: Mapping[str, Any], outputs: Outputs, solved: Callable[[Case], Result]
 ) -> FloatArray:
     try:
-        result = solved(case.updated({value.key: value.stated(_at(value, end))}))
+        result = solved(case.updated(changes))
     except EpicyclicError:
         return np.full(len(outputs.losses), np.nan)
     return np.array([result.losses[name] for name in outputs.losses])

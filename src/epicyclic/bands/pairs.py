@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from epicyclic.analysis.solve import solve
 from epicyclic.bands.distributions import quantiles
-from epicyclic.bands.nearby import known_values
+from epicyclic.bands.nearby import known_values, without_table
 from epicyclic.bands.outputs import Outputs, factors_of, outputs_of
+from epicyclic.bands.plan import SamplePlan, check_samples
 from epicyclic.bands.sampling import probabilities
 from epicyclic.bands.statistics import summary
-from epicyclic.bands.study import SamplePlan, check_samples
 from epicyclic.case.case import Case
 from epicyclic.case.uncertain_values import UncertainValue
 from epicyclic.errors import ConvergenceError
@@ -123,13 +123,14 @@ def _evaluate(
     points: FloatArray,
     runner: Runner,
 ) -> tuple[Outputs, FloatArray]:
-    inputs = [(it, row) for it, row in zip(values, points, strict=True) if not it.is_model_form]
-    changes = tuple(
-        {it.key: it.stated(float(row[number])) for it, row in inputs}
-        for number in range(points.shape[1])
+    inputs = [number for number, it in enumerate(values) if not it.is_model_form]
+    plan = SamplePlan(
+        without_table(case),
+        inputs=tuple(values[number] for number in inputs),
+        count=points.shape[1],
+        drawn=(points[inputs],),
     )
-    plain = case.updated({"uncertainty": None}) if case.uncertainty else case
-    rows = runner.run(SamplePlan(plain, points=changes))
+    rows = runner.run(plan)
     outputs = outputs_of(result)
     losses = np.array([rows.numbers(name) for name in outputs.losses])
     return outputs, outputs.of(losses, rows.numbers("input_power"), factors_of(values, points))

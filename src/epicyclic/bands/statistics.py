@@ -8,7 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["COVERAGE", "Indices", "Summary", "shortest_interval", "sobol_indices", "summary"]
+__all__ = [
+    "COVERAGE",
+    "Indices",
+    "Summary",
+    "index_values",
+    "shortest_interval",
+    "sobol_indices",
+    "summary",
+]
 
 FloatArray = NDArray[np.float64]
 
@@ -90,7 +98,7 @@ class Indices:
 
 
 def sobol_indices(a: FloatArray, b: FloatArray, mixed: FloatArray, seed: int) -> Indices:
-    """First and total indices after Saltelli and Jansen, by scipy. Theory (U5), (U6).
+    """First and total indices with their intervals. Theory (U5), (U6).
 
     Parameters
     ----------
@@ -102,10 +110,10 @@ def sobol_indices(a: FloatArray, b: FloatArray, mixed: FloatArray, seed: int) ->
         Of the resampling of points that the intervals are found by.
     """
     count = a.shape[1]
-    found = _indices(a, b, mixed)
+    found = index_values(a, b, mixed)
     rng = np.random.default_rng(seed)
     drawn = (rng.integers(count, size=count) for _ in range(RESAMPLES))
-    others = [_indices(a[:, it], b[:, it], mixed[:, :, it]) for it in drawn]
+    others = [index_values(a[:, it], b[:, it], mixed[:, :, it]) for it in drawn]
     tail = (1 - COVERAGE) / 2
     first, total = (
         np.quantile([one[part] for one in others], [tail, 1 - tail], axis=0) for part in (0, 1)
@@ -113,7 +121,8 @@ def sobol_indices(a: FloatArray, b: FloatArray, mixed: FloatArray, seed: int) ->
     return Indices(*found, first, total)
 
 
-def _indices(a: FloatArray, b: FloatArray, mixed: FloatArray) -> tuple[FloatArray, FloatArray]:
+def index_values(a: FloatArray, b: FloatArray, mixed: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """First and total indices, shape (s, g), after Saltelli and Jansen, by scipy."""
     from scipy import stats
 
     found = stats.sobol_indices(func={"f_A": a, "f_B": b, "f_AB": mixed}, n=a.shape[1])

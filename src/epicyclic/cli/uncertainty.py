@@ -2,63 +2,84 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.many import compute
-from epicyclic.cli.options import case_argument, load_with, plot_option, runner_options, set_option
+from epicyclic.cli.many import check_values, compute
+from epicyclic.cli.options import (
+    load_with,
+    plot_option,
+    runner_options,
+    set_option,
+    temperature_option,
+)
 from epicyclic.cli.output import beside, check_ending, draw
+from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from epicyclic.bands.study import UncertaintyStudy
+    from epicyclic.bands.run import Study
+    from epicyclic.case.case import Case
     from epicyclic.sweeps.journal import Rows
     from epicyclic.sweeps.runner import Runner
 
 __all__ = ["compare_cases", "uncertainty"]
 
-samples_option = click.option(
-    "--samples",
-    metavar="N",
-    type=int,
-    default=256,
-    show_default=True,
-    help="Points in each set, a power of 2.",
-)
+MAP_SUFFIX = ".nc"
 seed_option = click.option(
     "--seed", type=int, default=1, show_default=True, help="Of the drawn points."
 )
 
 
 @click.command()
-@case_argument
+@click.argument("source", metavar="CASE|MAP")
+@click.argument("cycle", metavar="[CYCLE]", required=False)
 @set_option
-@samples_option
+@click.option("--speed", metavar="VALUES", help="Of a map that is computed for a CASE, as of map.")
+@click.option("--torque", metavar="VALUES", help="The same.")
+@temperature_option
+@click.option(
+    "--samples",
+    metavar="N",
+    type=int,
+    help="Points in each set, a power of 2; default: 256, over a map 32, a cycle 64.",
+)
+@click.option(
+    "--points",
+    metavar="N",
+    type=int,
+    help="Points of the CYCLE that stand for all; default: 16.",
+)
 @seed_option
 @click.option(
     "-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="Write a .nc file."
 )
-@plot_option("Draw the drivers and the distribution to FILE-drivers.png and FILE-band.png.")
+@plot_option("Draw the drivers and the band to FILE-drivers.png and FILE-band.png.")
 @runner_options
 def uncertainty(
-    case: str,
+    source: str,
+    cycle: str | None,
     changes: tuple[str, ...],
-    samples: int,
+    samples: int | None,
+    points: int | None,
     seed: int,
     output: Path | None,
     plot: Path | None,
     runner: Runner,
+    **values: str | None,
 ) -> None:
     """Show how well losses and efficiency are known, and which inputs and models that is due to.
 
-    Distributions of inputs are those of [uncertainty] of the case, or assumed ones. With -o, an
-    interrupted computation goes on where it stopped.
+    Of a CASE, over a loss MAP in a .nc file or, with --speed and --torque, over one that is
+    computed, or of the energy that a duty CYCLE loses. Distributions of inputs are those of
+    [uncertainty] of the case, or assumed ones; over a map or cycle an input is off by the same
+    everywhere. With -o, an interrupted computation goes on where it stopped.
     """
-    from epicyclic.bands.study import uncertainty_study
     from epicyclic.report.tables import terminal
     from epicyclic.report.uncertainty_tables import uncertainty_tables
     from epicyclic.sweeps.dataset import check_place
@@ -67,17 +88,126 @@ def uncertainty(
         if path is not None:
             check_ending(option, path, *endings)
             check_place(path)
-    study = uncertainty_study(load_with(case, changes), samples, seed)
+    check_values(values)
+    _check_use(source, cycle, changes, points, values)
+    loaded = _source(source, changes)
+    if cycle is not None:
+        study = _cycle_study(loaded, cycle, values["temperature"], samples, points, seed, runner)
+    else:
+        study = _study(loaded, values, samples, seed, runner)
     data = _computed(study, output, runner)
     terminal().print(uncertainty_tables(data))
     if plot is not None:
-        from epicyclic.plots.uncertainty import band_figure, drivers_figure
-
-        draw(drivers_figure(data), beside(plot, "drivers"))
-        draw(band_figure(data), beside(plot, "band"))
+        _draw(data, plot)
 
 
-def _computed(study: UncertaintyStudy, output: Path | None, runner: Runner) -> xr.Dataset:
+def _check_use(
+    source: str,
+    cycle: str | None,
+    changes: tuple[str, ...],
+    points: int | None,
+    values: Mapping[str, str | None],
+) -> None:
+    """Raise `InputError` for options that do not go together."""
+    of_map = Path(source).suffix == MAP_SUFFIX
+    plane = [name for name in ("speed", "torque") if values[name] is not None]
+    wrong = []
+    if of_map or cycle is not None:
+        wrong += [(f"--{name}", "goes with a case alone.") for name in plane]
+    elif len(plane) == 1:
+        wrong.append((f"--{plane[0]}", "needs the other of --speed and --torque too."))
+    if values["temperature"] is not None and not (cycle or plane):
+        wrong.append(("--temperature", "goes with --speed and --torque, or with a cycle."))
+    if of_map and changes:
+        wrong.append(("--set", "goes with a case, not with a map."))
+    if points is not None and cycle is None:
+        wrong.append(("--points", "goes with a cycle."))
+    if wrong:
+        remedy = "Add it, or leave this out." if "needs" in wrong[0][1] else "Leave it out."
+        raise InputError([Problem(name, "", text, remedy) for name, text in wrong], "the command")
+
+
+def _source(source: str, changes: tuple[str, ...]) -> Case | xr.Dataset:
+    from epicyclic.maps.tables import read_netcdf
+
+    if Path(source).suffix == MAP_SUFFIX:
+        return read_netcdf(Path(source))
+    loaded: Case = load_with(source, changes)
+    return loaded
+
+
+def _study(
+    source: Case | xr.Dataset,
+    values: Mapping[str, str | None],
+    samples: int | None,
+    seed: int,
+    runner: Runner,
+) -> Study:
+    """Of a case, or of a map, which is computed first if it is not given."""
+    from epicyclic.bands.over_map import map_study
+    from epicyclic.bands.plan import check_samples
+    from epicyclic.bands.study import uncertainty_study
+    from epicyclic.case.case import Case
+    from epicyclic.case.operating import AXES
+    from epicyclic.cli.progress import progress_bar
+    from epicyclic.maps.compute import checked_map, map_plan
+    from epicyclic.sweeps.plan import parse_vary
+
+    if samples is not None:
+        check_samples(samples)
+    if not isinstance(source, Case):
+        return map_study(source, samples, seed)
+    if values["speed"] is None:
+        return uncertainty_study(source, samples, seed)
+    axes = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]
+    given = {axis: parse_vary(source, axes).get(key) for axis, key in AXES.items()}
+    plan = map_plan(source, given["speed"] or (), given["torque"] or (), given["temperature"])
+    with progress_bar("points of the map") as progress:
+        data = checked_map(plan, replace(runner, progress=progress).run(plan))
+    return map_study(data, samples, seed)
+
+
+def _cycle_study(
+    source: Case | xr.Dataset,
+    cycle: str,
+    temperature: str | None,
+    samples: int | None,
+    points: int | None,
+    seed: int,
+    runner: Runner,
+) -> Study:
+    from epicyclic.bands.cycle import cycle_study
+    from epicyclic.case.case import Case
+    from epicyclic.cli.progress import progress_bar
+    from epicyclic.maps.cycle import open_cycle
+    from epicyclic.maps.duty import cycle_map, parse_temperatures
+
+    with progress_bar("rows read") as progress:
+        checked = open_cycle(cycle, progress)
+    celsius = parse_temperatures(checked, None if temperature is None else [temperature])
+    data = source
+    if isinstance(data, Case):
+        with progress_bar("points of the map") as progress:
+            data = cycle_map(data, checked, celsius, replace(runner, progress=progress))
+    with progress_bar("changed inputs") as progress:
+        own = replace(runner, progress=progress)
+        return cycle_study(data, checked, celsius, samples, points, seed, own)
+
+
+def _draw(data: xr.Dataset, plot: Path) -> None:
+    from epicyclic.plots.catalogue import figure_of
+    from epicyclic.plots.uncertainty import band_figure, drivers_figure, shares_figure
+
+    if "explained" in data:
+        draw(shares_figure(data), beside(plot, "drivers"))
+        draw(figure_of(data, "loss-band"), beside(plot, "band"))
+        draw(figure_of(data, "loss-band-lines"), beside(plot, "lines"))
+        return
+    draw(drivers_figure(data), beside(plot, "drivers"))
+    draw(band_figure(data), beside(plot, "band"))
+
+
+def _computed(study: Study, output: Path | None, runner: Runner) -> xr.Dataset:
     from epicyclic.cli.progress import progress_bar
 
     if output is None:
@@ -99,7 +229,14 @@ def _computed(study: UncertaintyStudy, output: Path | None, runner: Runner) -> x
 @click.command("compare-cases")
 @click.argument("first")
 @click.argument("second")
-@samples_option
+@click.option(
+    "--samples",
+    metavar="N",
+    type=int,
+    default=256,
+    show_default=True,
+    help="Pairs of points, a power of 2.",
+)
 @seed_option
 @runner_options
 def compare_cases(first: str, second: str, samples: int, seed: int, runner: Runner) -> None:

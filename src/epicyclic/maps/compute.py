@@ -24,7 +24,9 @@ from epicyclic.case.operating import AXES, STATE, STATE_KEY
 from epicyclic.case.wording import written
 from epicyclic.elements.base import HOUSING
 from epicyclic.errors import InputError, Problem
+from epicyclic.maps.interpolation_error import written_values
 from epicyclic.maps.near_zero import resolving_texts, torque_interpolation
+from epicyclic.maps.tables import check_map, map_case
 from epicyclic.results.result import Layout, number_fields
 from epicyclic.sweeps.dataset import to_dataset
 from epicyclic.sweeps.journal import Rows
@@ -44,6 +46,7 @@ __all__ = [
     "loss_map",
     "map_plan",
     "states_left_out",
+    "stored_plan",
     "to_map",
 ]
 
@@ -187,6 +190,27 @@ def map_plan(
     plan = make_plan(case, {**further, **given})
     turns_alone = not _drives_others(case)
     return MapPlan(case, tuple(_prepared(axis, turns_alone) for axis in plan.axes))
+
+
+def stored_plan(data: xr.Dataset) -> MapPlan:
+    """The plan by which a map was computed.
+
+    Raises
+    ------
+    InputError
+        If `data` is no map, or its case is none of this version.
+    """
+    check_map(data)
+    case = map_case(data)
+    if case is None:
+        allowed = "is none of this version of the program."
+        problem = Problem("case", "", allowed, "Compute the map again.")
+        raise InputError([problem], "the map")
+    values = {str(name): written_values(data[name]) for name in data["torque_loss"].dims}
+    own = {name: values.pop(name, None) for name in (*AXES, STATE)}
+    further = {str(data[name].attrs["case_key"]): texts for name, texts in values.items()}
+    speed, torque, temperature, states = own.values()
+    return map_plan(case, speed or (), torque or (), temperature, further, states)
 
 
 def _own_option(key: str) -> Problem:

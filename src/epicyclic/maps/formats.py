@@ -101,9 +101,10 @@ def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> 
     chosen = check_map_output(target, format, axes, data.attrs["held_shaft"])
     if chosen.axes is not None:
         tables.check_gaps(data)
+    kept = data if chosen is FORMATS["netcdf"] else tables.bare_map(data)
     with ExitStack() as stack:
         for state, file in files_of_map(target, chosen, axes).items():
-            part = data.sel({STATE: [state]}) if state else data
+            part = kept.sel({STATE: [state]}) if state else kept
             chosen.write(part, stack.enter_context(whole_file(file)))
 
 

@@ -28,7 +28,15 @@ from epicyclic.sweeps.runner import HERE, Runner
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Deviation", "Sample", "further_values", "leave_out", "solve_sample"]
+__all__ = [
+    "Deviation",
+    "Sample",
+    "changes_at",
+    "further_values",
+    "leave_out",
+    "solve_sample",
+    "written_values",
+]
 
 Array = NDArray[np.float64]
 _SEED = 0
@@ -86,23 +94,25 @@ class Sample:
 def further_values(data: xr.Dataset) -> dict[str, Any]:
     """The keys of the axes of a map beyond its own, which have one value each, and these."""
     return {
-        str(values.attrs["case_key"]): _written(values)
+        str(values.attrs["case_key"]): written_values(values)[0]
         for name, values in data.coords.items()
         if "case_key" in values.attrs and name not in (*AXES, STATE)
     }
 
 
-def _written(values: xr.DataArray) -> Any:
-    """The one value of an axis as a case has it."""
-    value, unit = values.values.ravel()[0], values.attrs.get("units", "1")
-    number = value.item() if isinstance(value, np.generic) else value
-    return number if isinstance(number, str) or unit == "1" else f"{number!r} {unit}"
+def written_values(axis: xr.DataArray) -> list[Any]:
+    """The values of an axis as a case has them."""
+    unit = axis.attrs.get("units", "1")
+    return [
+        number if isinstance(number, str) or unit == "1" else f"{number!r} {unit}"
+        for number in axis.values.ravel().tolist()
+    ]
 
 
 def solve_sample(case: Case, lookup: Lookup, sample: Sample, runner: Runner = HERE) -> Deviation:
     """The deviation by direct solution of the points of `sample`."""
     rows, chance = sample.drawn()
-    points = tuple(_changes(lookup, row) for row in rows.tolist())
+    points = tuple(changes_at(lookup, row) for row in rows.tolist())
     exact = case.updated({"numerics.pocket_interpolation": 0})
     plan = PointList(exact, points)
     direct = runner.within(plan).run(plan).numbers("total")
@@ -123,7 +133,7 @@ def solve_sample(case: Case, lookup: Lookup, sample: Sample, runner: Runner = HE
     )
 
 
-def _changes(lookup: Lookup, row: Sequence[float]) -> dict[str, str]:
+def changes_at(lookup: Lookup, row: Sequence[float]) -> dict[str, str]:
     """The keys that make a case of a point of a cycle."""
     point = dict(zip(lookup.names, row, strict=False))
     changes = {

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = [
+    "bare_map",
     "check_gaps",
     "check_map",
     "driven_problem",
@@ -108,6 +109,12 @@ def check_map(data: xr.Dataset, source: str = "the map") -> None:
         allowed = f"is no loss map; it lacks {', '.join(lacks)}."
         remedy = "Give what epicyclic map or loss_map made, all of its axes kept."
         raise InputError([Problem("", "", f"This dataset {allowed}", remedy)], source)
+
+
+def bare_map(data: xr.Dataset) -> xr.Dataset:
+    """A map without what stands beside it, over further dimensions: how well it is known."""
+    beside = [name for name in data.dims if name not in data["torque_loss"].dims]
+    return data.drop_dims(beside)
 
 
 def check_gaps(data: xr.Dataset) -> None:

@@ -18,7 +18,14 @@ from epicyclic.maps.tables import map_case
 from epicyclic.plots.bearing import plot_roller_loads, plot_roller_profile
 from epicyclic.plots.drawing import plot_gear_set, plot_teeth
 from epicyclic.plots.heat_network import plot_heat_network
-from epicyclic.plots.loss_map import map_at, plot_map, plot_map_lines, plot_map_parts
+from epicyclic.plots.loss_map import (
+    map_at,
+    plot_band_lines,
+    plot_half_width,
+    plot_map,
+    plot_map_lines,
+    plot_map_parts,
+)
 from epicyclic.plots.losses import plot_loss_sum, plot_losses
 from epicyclic.plots.mesh import (
     plot_along_path,
@@ -154,6 +161,17 @@ def _of_map(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], list
     return panels
 
 
+def _of_band(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], list[Panel]]:
+    """As `_of_map`, of a map with its uncertainty."""
+    panels = _of_map(draw, *more)
+
+    def found(stored: Stored) -> list[Panel]:
+        known = not isinstance(stored, ResultRecord) and "explained" in stored
+        return panels(stored) if known else []
+
+    return found
+
+
 def _pocket_pressure(stored: Stored) -> list[Panel]:
     """Both kinds of pocket of each mesh."""
     if not isinstance(stored, ResultRecord):
@@ -253,6 +271,12 @@ PLOTS: dict[str, Plot] = {
         "How does the loss grow with torque?", _of_map(plot_map_lines, "total", "torque")
     ),
     "loss-parts": Plot("Which components make up the loss?", _of_map(plot_map_parts)),
+    "loss-band": Plot(
+        "How well is the loss known over speed and torque?", _of_band(plot_half_width)
+    ),
+    "loss-band-lines": Plot(
+        "How far may the loss be off along a line?", _of_band(plot_band_lines, "torque")
+    ),
 }
 """By the names that ``epicyclic plot`` takes."""
 

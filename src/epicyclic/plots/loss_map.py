@@ -15,7 +15,15 @@ from epicyclic.case.operating import PLANE
 from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of
 from epicyclic.units import unit_text
 
-__all__ = ["map_at", "plot_map", "plot_map_lines", "plot_map_parts"]
+__all__ = [
+    "at_temperatures",
+    "map_at",
+    "plot_band_lines",
+    "plot_half_width",
+    "plot_map",
+    "plot_map_lines",
+    "plot_map_parts",
+]
 
 FloatArray = NDArray[np.float64]
 
@@ -35,8 +43,15 @@ def map_at(data: xr.Dataset, **values: object) -> xr.Dataset:
 
     The values chosen are left as scalar coordinates.
     """
-    others = {dim: 0 for dim in data.dims if dim not in (*PLANE, *values)}
+    others = {dim: 0 for dim in data["total"].dims if dim not in (*PLANE, *values)}
     return data.sel(values).isel(others)
+
+
+def at_temperatures(data: xr.Dataset) -> list[xr.Dataset]:
+    """The map over speed and torque at each oil temperature, at the first value of further keys."""
+    if "temperature" not in data.dims:
+        return [map_at(data)]
+    return [map_at(data, temperature=float(celsius)) for celsius in data["temperature"]]
 
 
 def plot_map(data: xr.Dataset, name: str, ax: Axes) -> Axes:
@@ -141,6 +156,34 @@ def plot_map_parts(data: xr.Dataset, ax: Axes) -> Axes:
     )
     handles, labels = ax.get_legend_handles_labels()
     ax.legend(handles[::-1], labels[::-1], fontsize="x-small", loc="upper left")
+    return ax
+
+
+def plot_half_width(data: xr.Dataset, ax: Axes) -> Axes:
+    """Half the width of the 95 % band of the total loss, over the loss, over speed and torque.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of `map_at`, from a map with its uncertainty.
+    """
+    total = data.sel(result="total", drop=True)
+    share = 50 * (total["high"] - total["low"]) / total["nominal"].where(total["nominal"] > 0)
+    about = {"long_name": "half width of the 95 % band of the total loss", "units": "%"}
+    return plot_map(data.assign(half_width=share.assign_attrs(about)), "half_width", ax)
+
+
+def plot_band_lines(data: xr.Dataset, over: str, ax: Axes) -> Axes:
+    """The total loss with its 95 % band over speed or torque, for some values of the other."""
+    plot_map_lines(data, "total", over, ax)
+    other = "torque" if over == "speed" else "speed"
+    total = data.sel(result="total")
+    for number, index in enumerate(_some(data[other])):
+        line = total.isel({other: index})
+        ax.fill_between(
+            line[over], line["low"], line["high"], color=COLOURS[number], alpha=0.2, linewidth=0
+        )
+    ax.set_title(f"{ax.get_title(loc='left')}, with its 95 % band")
     return ax
 
 

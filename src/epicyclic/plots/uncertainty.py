@@ -10,11 +10,19 @@ from matplotlib.figure import Figure
 
 from epicyclic.case.uncertain_values import MODEL_FORM
 from epicyclic.plots.style import COLOURS, legend_below, styled_figure
+from epicyclic.units import format_number
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["band_figure", "drivers_figure", "plot_band", "plot_drivers"]
+__all__ = [
+    "band_figure",
+    "drivers_figure",
+    "plot_band",
+    "plot_drivers",
+    "plot_shares",
+    "shares_figure",
+]
 
 MOST_DRIVERS = 12
 _WIDE = (7.2, 4.2)
@@ -37,6 +45,47 @@ def band_figure(data: xr.Dataset) -> Figure:
     return figure
 
 
+def shares_figure(data: xr.Dataset) -> Figure:
+    """`plot_shares` as a figure."""
+    with styled_figure(1, 1, data.attrs["title"], panel=_WIDE) as (figure, axes):
+        plot_shares(data, axes[0, 0])
+    return figure
+
+
+def plot_shares(data: xr.Dataset, ax: Axes) -> Axes:
+    """Shares of inputs and models in the variance of the total loss over a map: mean and range.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        A map with its uncertainty.
+    """
+    shares, weights = data["first_order"], data["total"].fillna(0.0)
+    mean = (shares.fillna(0.0) * weights).sum(weights.dims) / weights.sum()
+    mean = mean.sortby(mean)[-MOST_DRIVERS:]
+    drivers = [str(key) for key in mean["driver"].values]
+    own = 100 * shares.sel(driver=drivers)
+    low, high = (end.to_numpy() for end in (own.min(weights.dims), own.max(weights.dims)))
+    colours = [COLOURS[4 if key.startswith(MODEL_FORM) else 0] for key in drivers]
+    middle = 100 * mean.to_numpy()
+    ax.barh(range(len(drivers)), middle, color=colours, edgecolor="black", linewidth=0.5)
+    ax.hlines(range(len(drivers)), low, high, color="black", lw=1.2, label="least to most")
+    ax.set_yticks(range(len(drivers)), [_name(key) for key in drivers])
+    ax.set(
+        title="What the uncertainty of the total loss is due to",
+        xlabel="share of its variance over the map, weighted with the loss, %",
+    )
+    for place, label in ((0, "inputs"), (4, "models")):
+        ax.barh([0], [0], color=COLOURS[place], edgecolor="black", linewidth=0.5, label=label)
+    legend_below(ax, ncols=3)
+    return ax
+
+
+def _name(key: str) -> str:
+    """``"model: sliding"``, or the key of an input."""
+    return f"model: {key.removeprefix(MODEL_FORM)}" if key.startswith(MODEL_FORM) else key
+
+
 def plot_drivers(data: xr.Dataset, ax: Axes) -> Axes:
     """Change of the total loss for one standard deviation of each input and model, largest first.
 
@@ -50,10 +99,7 @@ def plot_drivers(data: xr.Dataset, ax: Axes) -> Axes:
     change = change.sortby(abs(change))[-MOST_DRIVERS:]
     keys = [str(key) for key in change["input"].values]
     models = [key.startswith(MODEL_FORM) for key in keys]
-    names = [
-        f"model: {key.removeprefix(MODEL_FORM)}" if model else key
-        for key, model in zip(keys, models, strict=True)
-    ]
+    names = [_name(key) for key in keys]
     for wanted, label, colour in ((False, "inputs", COLOURS[0]), (True, "models", COLOURS[4])):
         rows = [row for row, model in enumerate(models) if model == wanted]
         watts = change.values[rows]
@@ -63,16 +109,21 @@ def plot_drivers(data: xr.Dataset, ax: Axes) -> Axes:
     ax.axvline(0.0, color="black", lw=0.8)
     ax.set(
         title="What the uncertainty of the total loss is due to",
-        xlabel="change for one standard deviation up (dark) and down, W",
+        xlabel=f"change for one standard deviation up (dark) and down, {_unit(data, 'total')}",
     )
     legend_below(ax, ncols=2)
     return ax
 
 
+def _unit(data: xr.Dataset, name: str) -> str:
+    return str(data["unit"].sel(result=name).values)
+
+
 def plot_band(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     """Distribution of a result with its 95 % interval and the value of the case."""
     one = data.sel(result=name)
-    percent = str(one["unit"].values) != "W"
+    unit = _unit(data, name)
+    percent = unit == "1"
     scale = 100.0 if percent else 1.0
     values = one["value"].values * scale
     low, high, nominal = (float(one[key]) * scale for key in ("low", "high", "nominal"))
@@ -80,11 +131,11 @@ def plot_band(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     ax.hist(values[np.isfinite(values)], "auto", color=COLOURS[0], edgecolor="white", linewidth=0.3)
     ax.axvline(nominal, color=COLOURS[1], lw=1.6, label="case")
     ax.axvline(float(one["mean"]) * scale, color="black", lw=1.2, ls="--", label="mean")
-    digits = 2 if percent else 0
-    unit = "%" if percent else "W"
+    low_text, high_text = (f"{it:.2f}" if percent else format_number(it, 4) for it in (low, high))
+    what = "total loss" if unit == "W" else "energy lost"
     ax.set(
-        title=f"{low:.{digits}f} to {high:.{digits}f} {unit}",
-        xlabel="efficiency, %" if percent else "total loss, W",
+        title=f"{low_text} to {high_text} {'%' if percent else unit}",
+        xlabel="efficiency, %" if percent else f"{what}, {unit}",
         ylabel="samples",
     )
     legend_below(ax, ncols=3)

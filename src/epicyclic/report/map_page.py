@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections import Counter
 
@@ -13,11 +12,13 @@ import xarray as xr
 from epicyclic.analysis.methods import methods_of
 from epicyclic.case.operating import AXES
 from epicyclic.maps.tables import map_case, map_inputs, statements
-from epicyclic.plots.loss_map import map_at
+from epicyclic.plots.loss_map import at_temperatures, map_at
+from epicyclic.report.grids import grid_table
 from epicyclic.report.inputs import input_tables
 from epicyclic.report.page import (
     Cell,
     Drawings,
+    Item,
     KeyFigure,
     Listing,
     Section,
@@ -26,6 +27,7 @@ from epicyclic.report.page import (
     number,
 )
 from epicyclic.report.shown import MISSING
+from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.status import Status
 from epicyclic.units import format_number, unit_text
 
@@ -35,8 +37,6 @@ _WHITE = "White: no power is passed on, or the point failed."
 _FOUND = re.compile(r"(Out of range: .*?) -?\d[^;]*;")
 GRIDS = {"efficiency": "Efficiency, %", "total": "Total loss, W"}
 """Variables of which there are tables of values."""
-MOST_COLUMNS = 9
-"""Of a table of values; larger maps are shown at evenly spaced points."""
 
 
 def map_line(data: xr.Dataset) -> str:
@@ -75,6 +75,7 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
             "Over speed and torque",
             gallery(drawings, "loss-parts", "loss-over-speed", "loss-over-torque"),
         ),
+        Section("band", "How well it is known", _band(data, drawings), BAND_LEAD),
         Section("tables", "Values", tuple(_tables(data)), _further(data)),
         Section("validity", "Validity", _validity(data)),
         Section("gears", "Gears", gallery(drawings, "gear-set")),
@@ -84,6 +85,16 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
         Section("versions", "Versions", _versions(data)),
     ]
     return [section for section in sections if section.items]
+
+
+BAND_LEAD = "Inputs and models are off by the same at all points; 95 % of the samples lie within."
+
+
+def _band(data: xr.Dataset, drawings: Drawings) -> tuple[Item, ...]:
+    """The band over the map, if it was computed."""
+    if "explained" not in data:
+        return ()
+    return (*gallery(drawings, "loss-band", "loss-band-lines"), *uncertainty_items(data))
 
 
 def _span(axis: xr.DataArray) -> str:
@@ -97,43 +108,26 @@ def _span(axis: xr.DataArray) -> str:
 def _further(data: xr.Dataset) -> str:
     """Which values of further keys the tables and figures are for."""
     point = map_at(data)
-    further = [f"{name} = {point[name].item()}" for name in data.dims if name not in AXES]
+    further = [f"{name} = {point[name].item()}" for name in data["total"].dims if name not in AXES]
     return f"Tables and figures are for {', '.join(further)}." if further else ""
 
 
 def _tables(data: xr.Dataset) -> list[Table]:
     """Total loss and efficiency over speed and torque at each temperature."""
-    if "temperature" not in data.dims:
-        return [_grid(map_at(data), name) for name in GRIDS]
     return [
-        _grid(map_at(data, temperature=float(celsius)), name, number, float(celsius))
-        for number, celsius in enumerate(data["temperature"])
+        _grid(point, name, number)
+        for number, point in enumerate(at_temperatures(data))
         for name in GRIDS
     ]
 
 
-def _grid(
-    point: xr.Dataset, name: str, temperature: int = 0, celsius: float | None = None
-) -> Table:
-    speeds, torques = (_some(point.sizes[axis]) for axis in ("speed", "torque"))
+def _grid(point: xr.Dataset, name: str, temperature: int) -> Table:
     values = point[name].transpose("speed", "torque").to_numpy()
-    rows = tuple(
-        (
-            Cell(format_number(float(point["speed"][i]))),
-            *(_value(name, values[i, j], f"{name}[{i},{j},{temperature}]") for j in torques),
-        )
-        for i in speeds
+    return grid_table(
+        point,
+        GRIDS[name],
+        lambda i, j: _value(name, values[i, j], f"{name}[{i},{j},{temperature}]"),
     )
-    unit = unit_text(str(point["torque"].attrs["units"]))
-    heads = (f"{format_number(float(point['torque'][j]))} {unit}" for j in torques)
-    title = GRIDS[name] if celsius is None else f"{GRIDS[name]}, at {format_number(celsius)} °C"
-    return Table((f"speed, {unit_text(str(point['speed'].attrs['units']))}", *heads), rows, title)
-
-
-def _some(count: int) -> list[int]:
-    """Numbers of some `MOST_COLUMNS` of `count` points, evenly spaced but for the last."""
-    step = max(1, math.ceil((count - 1) / (MOST_COLUMNS - 1)))
-    return sorted({*range(0, count, step), count - 1})
 
 
 def _value(name: str, value: float, key: str) -> Cell:

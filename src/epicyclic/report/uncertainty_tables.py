@@ -9,8 +9,8 @@ from rich.console import RenderableType
 
 from epicyclic.bands.nearby import look_nearby, quick_band
 from epicyclic.case.case import Case
-from epicyclic.case.uncertain_values import MODEL_FORM
 from epicyclic.case.wording import one_line
+from epicyclic.report.map_band_tables import driver_name, map_band_tables
 from epicyclic.report.page import Cell, Listing, Table, aligned, number
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import as_on_page, titled
@@ -24,6 +24,8 @@ __all__ = ["band_texts", "driver_name", "pair_tables", "uncertainty_items", "unc
 
 MOST, LEAST = 3, 0.005
 """Inputs and models that are named after a band, and their share of its variance."""
+NO_SHARE = 1e-3
+"""Share in the variance of a loss below which curves through samples show no effect. [1]"""
 CUT_OFF = 1e-3
 """Probability of impossible values that is worth a sentence. [1]"""
 
@@ -35,8 +37,11 @@ def uncertainty_tables(data: xr.Dataset) -> RenderableType:
 
 def uncertainty_items(data: xr.Dataset) -> Iterator[Table | Listing]:
     """Results with their bands, the budget of the total loss, and what to know of it."""
-    yield _results(data)
-    yield _budget(data)
+    if "explained" in data:
+        yield from map_band_tables(data)
+    else:
+        yield _results(data)
+        yield _budget(data)
     yield Listing(tuple(_notes(data)), "Notes")
 
 
@@ -46,15 +51,13 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
     names = [str(name) for name in data["result"].values]
     for name in names:
         one = data.sel(result=name)
-        percent = str(one["unit"].values) != "W"
-        scale, digits = (100.0, 3) if percent else (1.0, 1)
-        values = [
-            float(one[key]) * scale
+        unit = str(one["unit"].values)
+        cells = (
+            _shown(float(one[key]), unit)
             for key in ("first", "second", "difference", "standard_uncertainty", "low", "high")
-        ]
-        cells = (number(value, "", text=f"{value:z.{digits}f}") for value in values)
+        )
         chance = aligned(f"{float(one['probability']):.1%}")
-        rows.append((Cell(in_words(name) + (", %" if percent else "")), *cells, chance))
+        rows.append((Cell(in_words(name) + (", %" if unit == "1" else "")), *cells, chance))
     strong = frozenset({names.index("total"), names.index("efficiency")})
     head = ("", "first", "second", "mean difference", "u", "95 % from", "to", "second smaller")
     title = f"{data.attrs['second_title']} less {data.attrs['first_title']}"
@@ -89,31 +92,35 @@ def band_texts(case: Case, result: Result) -> list[str]:
     ]
 
 
-def driver_name(key: str) -> str:
-    """What an uncertain value is called."""
-    if key.startswith(MODEL_FORM):
-        return f"model of {in_words(key.removeprefix(MODEL_FORM)).replace('-', ' ')}"
-    return key
-
-
 def _results(data: xr.Dataset) -> Table:
     rows = []
     names = [str(name) for name in data["result"].values]
     for name in names:
         one = data.sel(result=name)
-        percent = str(one["unit"].values) != "W"
-        scale, digits = (100.0, 3) if percent else (1.0, 1)
-        values = [
-            float(one[key]) * scale
+        values = (
+            _shown(float(one[key]), str(one["unit"].values))
             for key in ("nominal", "mean", "standard_uncertainty", "expanded_uncertainty",
                         "low", "high", "shortest_low", "shortest_high")
-        ]  # fmt: skip
-        cells = (number(value, "", text=f"{value:z.{digits}f}") for value in values)
-        rows.append((Cell(in_words(name) + (", %" if percent else "")), *cells))
+        )  # fmt: skip
+        percent = ", %" if name == "efficiency" else ""
+        rows.append((Cell(in_words(name) + percent), *values))
     strong = frozenset({names.index("total"), names.index("efficiency")})
     head = ("", "case", "mean", "u_c", "U", "95 % from", "to", "shortest", "to")
-    note = "u_c: combined standard uncertainty; U = 2 u_c. Losses in W."
+    what = "Losses" if _unit(data) == "W" else "Energies"
+    note = f"u_c: combined standard uncertainty; U = 2 u_c. {what} in {_unit(data)}."
     return Table(head, tuple(rows), "Results with their uncertainty", strong, note)
+
+
+def _unit(data: xr.Dataset) -> str:
+    """Of losses, or of energies lost."""
+    return str(data["unit"].sel(result="total").values)
+
+
+def _shown(value: float, unit: str) -> Cell:
+    """A number as precise as such numbers are."""
+    if unit == "W":
+        return number(value, "", text=f"{value:z.1f}")
+    return number(value, "", text=f"{100 * value:z.3f}" if unit == "1" else shown(value, 5))
 
 
 def _budget(data: xr.Dataset) -> Table:
@@ -134,23 +141,17 @@ def _budget(data: xr.Dataset) -> Table:
                     Cell(driver_name(key)),
                     Cell(str(own["distribution"].values)),
                     _value(own),
-                    number(
-                        float(own["contribution"]), "", text=f"{float(own['contribution']):z.1f}"
-                    ),
+                    _shown(float(own["contribution"]), _unit(data)),
                     aligned("" if place else f"{max(first, 0.0):.1%}"),
                     aligned("" if place else f"{max(whole, 0.0):.1%}"),
                 )
             )
-    head = ("", "distribution", "value", "per u_i, W", "share", "with others")
+    head = ("", "distribution", "value", f"per u_i, {_unit(data)}", "share", "with others")
     note = (
         "per u_i: change of the total loss for one standard deviation. Shares of its variance, "
         "alone and with all interactions; values that are correlated share one."
     )
     return Table(head, tuple(rows), "What the uncertainty of the total loss is due to", note=note)
-
-
-def _watts(value: float) -> Cell:
-    return number(value, "", text=f"{value:z.1f}")
 
 
 def _value(own: xr.Dataset) -> Cell:
@@ -160,7 +161,12 @@ def _value(own: xr.Dataset) -> Cell:
 
 def _notes(data: xr.Dataset) -> Iterator[str]:
     failed, count = int(data.attrs["failed"]), data.sizes["sample"]
-    if failed:
+    if failed and "failed_samples" in data:
+        yield (
+            f"{failed} samples at {int((data['failed_samples'] > 0).sum())} points have no result "
+            "and are left out of their intervals."
+        )
+    elif failed:
         reason = next(str(text) for text in data["message"].values if text)
         yield (
             f"{failed} of {count} samples have no result and are left out of the intervals; for "
@@ -170,12 +176,42 @@ def _notes(data: xr.Dataset) -> Iterator[str]:
         share = float(data["cut_off"].sel(input=key))
         if share > CUT_OFF:
             yield f"{key}: {share:.1%} of its distribution is beyond what it can be, and cut off."
-    idle = data["input"].values[~data["contribution"].any("result").values]
-    if idle.size:
-        yield f"Without effect here: {', '.join(map(str, idle))}."
+    idle = [str(key) for key in data["input"].values if not _moves(data, str(key))]
+    if idle:
+        yield f"Without effect here: {', '.join(idle)}."
+    yield from _of_points(data)
     sources: dict[str, list[str]] = {}
-    for key in sorted(set(map(str, data["input"].values)) - set(map(str, idle))):
+    for key in sorted(set(map(str, data["input"].values)) - set(idle)):
         source = str(data["distribution_source"].sel(input=key).values)
         sources.setdefault(source, []).append(driver_name(key))
     for source, keys in sources.items():
         yield f"{', '.join(keys)}: {source}."
+
+
+def _moves(data: xr.Dataset, key: str) -> bool:
+    """Whether an input changes any result."""
+    if "contribution" in data:
+        return bool(data["contribution"].sel(input=key).any())
+    driver = next(name for name in map(str, data["driver"].values) if key in name.split(" + "))
+    return bool((data["total_order"].sel(driver=driver) > NO_SHARE).any())
+
+
+def _of_points(data: xr.Dataset) -> Iterator[str]:
+    """How well some points stand for a whole cycle."""
+    if "point_error" not in data:
+        return
+    error, spread = (
+        float(data["point_error"]),
+        float(data["standard_uncertainty"].sel(result="total")),
+    )
+    if not error:
+        yield f"Cycle: {data.attrs['cycle']}, all solved with every sample."
+    else:
+        yield (
+            f"Cycle: {data.attrs['cycle']}; {data.attrs['points']} points stand for it, by which "
+            f"u_c of the total may be off by {error / spread:.0%} (standard error)."
+        )
+    yield (
+        "Shares by curves through the samples, which explain "
+        f"{float(data['curves_explain']):.1%} of the variance of the total."
+    )

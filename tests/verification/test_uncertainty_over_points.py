@@ -1,0 +1,263 @@
+"""Uncertainty over maps and duty cycles: the same inputs at all points."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+
+import epicyclic as ep
+from asymmetric import gear_pair
+from epicyclic.bands.curves import fit_curves
+from epicyclic.bands.outputs import Outputs
+from epicyclic.bands.sampling import make_samples
+from epicyclic.bands.statistics import index_values
+from epicyclic.case.uncertain_values import UncertainValue
+from epicyclic.cli.uncertainty import uncertainty as command
+from epicyclic.errors import InputError
+from epicyclic.report.html import report_html
+from epicyclic.sweeps.dataset import write_dataset
+
+ISOLATED = {
+    "losses.mesh_pocketing.include": False,
+    "numerics.mesh_positions": 8,
+    "numerics.contact_segments": 6,
+}
+"""Quick to solve, and no flow is interpolated."""
+SPEEDS, TORQUES, CELSIUS = (0, 1100, 2700), (-70, 0, 190), (0, 55)
+CYCLE = {
+    "duration [s]": [11.0, 7.0, 3.0, 5.0],
+    "speed [rpm]": [900.0, 1700.0, 2500.0, 2100.0],
+    "torque [N*m]": [150.0, 90.0, 40.0, -60.0],
+}
+
+
+@pytest.fixture(scope="module")
+def case():
+    return ep.load_case(gear_pair()).updated(ISOLATED)
+
+
+@pytest.fixture(scope="module")
+def plain_map(case):
+    return ep.loss_map(
+        case,
+        [f"{speed} rpm" for speed in SPEEDS],
+        [f"{torque} N*m" for torque in TORQUES],
+        [f"{celsius} degC" for celsius in CELSIUS],
+        jobs=1,
+    )
+
+
+@pytest.fixture(scope="module")
+def over_map(plain_map):
+    return ep.uncertainty(plain_map, samples=32, jobs=1)
+
+
+@pytest.fixture(scope="module")
+def over_cycle(case):
+    return ep.uncertainty(case, CYCLE, samples=32, jobs=1)
+
+
+def at(case, speed, torque, celsius="55"):
+    return case.updated(
+        {
+            "operation.speed": f"{speed} rpm",
+            "operation.torque": f"{torque} N*m",
+            "operation.oil_inlet_temperature": f"{celsius} degC",
+        }
+    )
+
+
+@pytest.mark.parametrize(("speed", "torque", "celsius"), [(2700, 190, 0), (1100, -70, 55)])
+def test_a_point_of_a_map_is_as_uncertain_as_the_case_there(case, over_map, speed, torque, celsius):
+    alone = ep.uncertainty(at(case, speed, torque, celsius), samples=32, jobs=1)
+    point = over_map.sel(speed=speed, torque=torque, temperature=celsius)
+    for name in ("nominal", "mean", "standard_uncertainty", "low", "high", "shortest_low"):
+        np.testing.assert_allclose(
+            point[name].sel(result=alone["result"]), alone[name], rtol=1e-12, err_msg=name
+        )
+    np.testing.assert_allclose(
+        point["sampled_total"], alone["value"].sel(result="total"), rtol=1e-12
+    )
+
+
+def test_the_torque_loss_has_a_band_at_rest_where_no_power_is_lost(over_map):
+    rest = over_map.sel(speed=0, torque=190, temperature=55)
+    assert rest["high"].sel(result="total") == 0
+    low, nominal, high = (
+        float(rest[name].sel(result="torque_loss")) for name in ("low", "nominal", "high")
+    )
+    assert 0 < low < nominal < high
+    moving = over_map.sel(speed=2700, torque=190, temperature=55)
+    to_watts = 2700 * np.pi / 30
+    assert float(moving["high"].sel(result="torque_loss")) * to_watts == pytest.approx(
+        float(moving["high"].sel(result="total")), rel=1e-12
+    )
+
+
+def test_drivers_over_a_map_are_those_of_the_indices_at_a_point(case, over_map):
+    alone = ep.uncertainty(at(case, 2700, 190), samples=512, jobs=1)
+    point = over_map.sel(speed=2700, torque=190, temperature=55)
+    assert float(point["explained"]) > 0.98
+    for name in ("first_order", "total_order"):
+        exact = alone[name].sel(sum="total")
+        assert float(abs(point[name] - exact).max()) < 0.06, name
+    assert float(exact.max()) > 0.3
+
+
+def test_a_map_with_its_uncertainty_remains_a_map(plain_map, over_map, tmp_path):
+    write_dataset(over_map, tmp_path / "band.nc")
+    read = ep.open_result(tmp_path / "band.nc")
+    ep.write_map(read, tmp_path / "band.csv")
+    ep.write_map(plain_map, tmp_path / "plain.csv")
+    band, plain = (pd.read_csv(tmp_path / name, comment="#") for name in ("band.csv", "plain.csv"))
+    assert set(band) - set(plain) == {"explained", "failed_samples"}
+    pd.testing.assert_frame_equal(band[list(plain)], plain)
+    cycle = {**CYCLE, "temperature [degC]": [50.0, 20.0, 40.0, 30.0]}
+    assert ep.duty_cycle(read, cycle, samples=2).identical(
+        ep.duty_cycle(plain_map, cycle, samples=2)
+    )
+    page = report_html(read)
+    assert "95 % band of the total loss, W, at 55 °C" in page
+    assert "95 % band of the total loss" not in report_html(plain_map)
+
+
+def test_energies_are_sums_of_the_same_samples_at_all_points(case, over_cycle):
+    kilo = np.zeros(64)
+    entering = 0.0
+    columns = zip(*CYCLE.values(), strict=True)
+    apart = 0.0
+    celsius = case.given()["operation"]["oil_inlet_temperature"].split()[0]
+    for seconds, speed, torque in columns:
+        alone = ep.uncertainty(at(case, speed, torque, celsius), samples=32, jobs=1)
+        watts = alone["value"].sel(result="total").values
+        kilo += watts * seconds / 1e3
+        apart = np.hypot(apart, watts.std(ddof=1) * seconds / 1e3)
+        at_shaft = speed * np.pi / 30 * torque
+        entering = entering + (at_shaft if torque > 0 else watts - at_shaft) * seconds / 1e3
+    total, efficiency = (over_cycle.sel(result=name) for name in ("total", "efficiency"))
+    np.testing.assert_allclose(total["value"], kilo, rtol=1e-9)
+    np.testing.assert_allclose(efficiency["value"], 1 - kilo / entering, rtol=1e-9)
+    # inputs that are off throughout do not average out
+    assert float(total["standard_uncertainty"]) > 1.3 * apart
+    assert float(over_cycle["point_error"]) == 0
+    assert str(total["unit"].values) == "kJ"
+
+
+def test_some_points_stand_for_a_long_cycle(case):
+    number = np.arange(40)
+    cycle = {
+        "time [s]": number * 2.0,
+        "speed [rpm]": 1500 + 1200 * np.sin(number / 7),
+        "torque [N*m]": 90 + 80 * np.cos(number / 11),
+    }
+    whole, some = (
+        ep.uncertainty(case, cycle, samples=16, points=points, jobs=1) for points in (40, 10)
+    )
+    exact, found = (
+        float(data["standard_uncertainty"].sel(result="total")) for data in (whole, some)
+    )
+    assert 0 < float(some["point_error"]) < 0.1 * exact
+    assert abs(found - exact) < 3 * float(some["point_error"])
+    assert found != exact
+    nominal = [float(data["nominal"].sel(result="total")) for data in (whole, some)]
+    assert nominal[1] == pytest.approx(nominal[0], rel=2e-3)
+    assert float(some["curves_explain"]) > 0.98
+
+
+@pytest.mark.parametrize("cycle", [None, CYCLE])
+def test_workers_give_the_same_file(case, plain_map, cycle, tmp_path):
+    source = plain_map.isel(temperature=[1]) if cycle is None else case
+    for jobs in (1, 2):
+        data = ep.uncertainty(source, cycle, samples=16, jobs=jobs)
+        write_dataset(data, tmp_path / f"{jobs}.nc")
+    one, two = (xr.load_dataset(tmp_path / f"{jobs}.nc") for jobs in (1, 2))
+    assert one.identical(two)
+
+
+def value(key, kind, spread):
+    return UncertainValue(key, "", 1.5, kind, (spread,))
+
+
+def test_curves_meet_products_of_powers():
+    """ln P is linear: the indices of one loss are those of a product of lognormal factors."""
+    values = [value("a", "lognormal", 1.2), value("model_form.sliding", "lognormal", 1.4)]
+    outputs = Outputs(("mesh_sliding", "idle"), np.array([True, False]), ("sliding", "drag"))
+    samples = make_samples(values, 16, 3)
+    drawn = np.concatenate([samples.a, samples.b], axis=1)
+    losses = np.array([7 * drawn[0] ** 2 * drawn[1], np.full(32, 4.0)])
+    curves = fit_curves(outputs, samples, losses)
+    assert curves.explained == pytest.approx(1, abs=1e-12)
+    np.testing.assert_allclose(
+        curves.at(drawn), [losses[0], losses[1], losses.sum(axis=0)], rtol=1e-12
+    )
+    sets = curves.sets(make_samples(values, 2**13, 5))[:, -1:]
+    first, total = index_values(sets[0], sets[1], sets[2:])
+    parts = np.expm1(np.array([2 * np.log(1.2), np.log(1.4)]) ** 2)
+    whole = np.prod(1 + parts) - 1
+    np.testing.assert_allclose(first[0], parts / whole, atol=0.01)
+    np.testing.assert_allclose(total[0], parts * (1 + parts[::-1]) / whole, atol=0.01)
+
+
+def test_curves_of_too_few_samples_explain_nothing():
+    values = [value(f"k{number}", "normal", 0.1 + 0.01 * number) for number in range(16)]
+    samples = make_samples(values, 16, 3)
+    outputs = Outputs(("mesh_sliding",), np.array([True]), ("sliding",))
+    drawn = np.concatenate([samples.a, samples.b], axis=1)
+    assert np.isnan(fit_curves(outputs, samples, drawn.sum(axis=0)[None]).explained)
+
+
+def test_a_key_without_a_distribution_at_some_points_is_told(case):
+    shares = {"surroundings.oil_air_ratio": [0.0, 0.3]}
+    data = ep.loss_map(case, ["900 rpm"], ["60 N*m"], vary=shares, jobs=1)
+    with pytest.raises(InputError, match=r"oil_air_ratio.*at some operating points only"):
+        ep.uncertainty(data, samples=16)
+    known = case.updated({"uncertainty": {"surroundings.oil_air_ratio": {"exact": True}}})
+    data = ep.loss_map(known, ["900 rpm"], ["60 N*m"], vary=shares, jobs=1)
+    found = ep.uncertainty(data, samples=16, jobs=1)
+    assert (found["high"] > found["low"]).sel(result="total").all()
+
+
+def test_what_cannot_be_sampled_is_told(case, plain_map):
+    for source, options, message in (
+        (case, {"cycle": CYCLE, "temperature": ["40 degC", "50 degC"]}, "must be one"),
+        (case, {"cycle": CYCLE, "points": 1}, "must be 2 or more"),
+        (plain_map, {"samples": 20}, "power of 2"),
+        (plain_map.assign_attrs(case="{}"), {}, "none of this version"),
+        (xr.Dataset(), {}, "no loss map"),
+    ):
+        with pytest.raises(InputError, match=message):
+            ep.uncertainty(source, **options)
+
+
+def test_the_command_on_a_map(plain_map, over_map, tmp_path):
+    ep.write_map(plain_map, tmp_path / "map.nc")
+    output, picture = tmp_path / "band.nc", tmp_path / "band.png"
+    run = CliRunner().invoke(
+        command,
+        [str(tmp_path / "map.nc"), "--jobs", "1", "-o", str(output), "--plot", str(picture)],
+    )
+    assert run.exit_code == 0, run.output
+    assert "95 % band of the total loss, W, at 0 °C" in run.output
+    assert xr.load_dataset(output).identical(over_map.load())
+    pictures = {path.stem for path in tmp_path.glob("*.png")}
+    assert pictures == {"band-drivers", "band-band", "band-lines"}
+    assert not list(tmp_path.glob("*.partial"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["talbot-2012", "--speed", "900 rpm"], "--speed: needs the other"),
+        (["talbot-2012", "--points", "9"], "--points: goes with a cycle"),
+        (["talbot-2012", "--temperature", "50 degC"], "--temperature: goes with"),
+        (["map.nc", "--set", "a=1", "--speed", "900 rpm"], "--speed: goes with a case alone"),
+        (["talbot-2012", "none.csv"], "is no file"),
+    ],
+)
+def test_options_that_do_not_go_together(arguments, message):
+    run = CliRunner().invoke(command, arguments)
+    assert run.exit_code != 0
+    assert message in str(run.exception)
