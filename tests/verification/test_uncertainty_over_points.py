@@ -11,7 +11,6 @@ from click.testing import CliRunner
 import epicyclic as ep
 from asymmetric import gear_pair
 from epicyclic.bands.curves import fit_curves
-from epicyclic.bands.outputs import Outputs
 from epicyclic.bands.sampling import make_samples
 from epicyclic.bands.statistics import index_values
 from epicyclic.case.uncertain_values import UncertainValue
@@ -177,6 +176,42 @@ def test_workers_give_the_same_file(case, plain_map, cycle, tmp_path):
     assert one.identical(two)
 
 
+def test_groups_are_those_of_a_test_rig_where_the_case_says_so(case):
+    """What torque adds is less, and known better, than the sum of what depends on the load."""
+    tested = at(case, 2100, 120).updated({"models.load_dependent": "as-tested"})
+    data = ep.uncertainty(tested, samples=16, jobs=1)
+    exact = ep.solve(tested)
+    for name in ("load_dependent", "load_independent", "total"):
+        assert float(data["nominal"].sel(result=name)) == pytest.approx(
+            getattr(exact, name), rel=1e-12
+        )
+    first = {key: float(data["drawn"].sel(input=key, sample=0)) for key in data["input"].values}
+    factors = {key.partition(".")[2]: first.pop(key) for key in list(first) if "model_form" in key}
+    units = dict(zip(data["input"].values, data["input_unit"].values, strict=True))
+    changes = {
+        key: f"{number!r} {units[key]}" if units[key] != "1" else number
+        for key, number in first.items()
+    }
+    changed = tested.updated({**changes, "models.load_dependent": "computed"})
+    unloaded = ep.solve(changed.updated({"operation.torque": "0 N*m"})).losses
+    alone = sum(
+        watts * factors.get(name.removeprefix("mesh_"), 1.0) for name, watts in unloaded.items()
+    )
+    assert float(data["value"].sel(result="load_independent", sample=0)) == pytest.approx(
+        alone, rel=1e-9
+    )
+    cycle = {name: column[:2] for name, column in CYCLE.items()}
+    energy = ep.uncertainty(tested, cycle, samples=32, jobs=1)
+    parts = energy["value"].sel(result=["load_dependent", "load_independent"]).sum("result")
+    np.testing.assert_allclose(parts, energy["value"].sel(result="total"), rtol=1e-12)
+    watts = [ep.solve(at(tested, *point)) for point in ((900, 150), (1700, 90))]
+    alone = sum(
+        it.load_independent * seconds / 1e3
+        for it, seconds in zip(watts, CYCLE["duration [s]"], strict=False)
+    )
+    assert float(energy["nominal"].sel(result="load_independent")) == pytest.approx(alone, rel=1e-9)
+
+
 def value(key, kind, spread):
     return UncertainValue(key, "", 1.5, kind, (spread,))
 
@@ -184,11 +219,11 @@ def value(key, kind, spread):
 def test_curves_meet_products_of_powers():
     """ln P is linear: the indices of one loss are those of a product of lognormal factors."""
     values = [value("a", "lognormal", 1.2), value("model_form.sliding", "lognormal", 1.4)]
-    outputs = Outputs(("mesh_sliding", "idle"), np.array([True, False]), ("sliding", "drag"))
+    mask = np.array([True, False])
     samples = make_samples(values, 16, 3)
     drawn = np.concatenate([samples.a, samples.b], axis=1)
     losses = np.array([7 * drawn[0] ** 2 * drawn[1], np.full(32, 4.0)])
-    curves = fit_curves(outputs, samples, losses)
+    curves = fit_curves(mask, samples, losses)
     assert curves.explained == pytest.approx(1, abs=1e-12)
     np.testing.assert_allclose(
         curves.at(drawn), [losses[0], losses[1], losses.sum(axis=0)], rtol=1e-12
@@ -204,9 +239,9 @@ def test_curves_meet_products_of_powers():
 def test_curves_of_too_few_samples_explain_nothing():
     values = [value(f"k{number}", "normal", 0.1 + 0.01 * number) for number in range(16)]
     samples = make_samples(values, 16, 3)
-    outputs = Outputs(("mesh_sliding",), np.array([True]), ("sliding",))
+    mask = np.array([True])
     drawn = np.concatenate([samples.a, samples.b], axis=1)
-    assert np.isnan(fit_curves(outputs, samples, drawn.sum(axis=0)[None]).explained)
+    assert np.isnan(fit_curves(mask, samples, drawn.sum(axis=0)[None]).explained)
 
 
 def test_a_key_without_a_distribution_at_some_points_is_told(case):

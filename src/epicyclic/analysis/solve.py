@@ -29,7 +29,7 @@ WARMER = (30.0, 60.0)
 """How much warmer than its inlet the oil is where tables are asked for flows through pockets; they
 are read between two of their flows where one between them was foretold. [K]"""
 
-__all__ = ["loaded_meshes", "mesh_contacts", "pocket_flow_numbers", "solve"]
+__all__ = ["loaded_meshes", "mesh_contacts", "pocket_flow_numbers", "solve", "without_torque"]
 
 
 def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
@@ -55,7 +55,7 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
     built = build(case, flow_tables)
     result = assemble(case, built, built.solve())
     if case.models.load_dependent == "as-tested":
-        unloaded = solve(_without_torque(case), flow_tables=flow_tables)
+        unloaded = solve(without_torque(case), flow_tables=flow_tables)
         result = replace(result, unloaded=unloaded.total)
     bad = [term.name for term in result.terms if not math.isfinite(term.watts)]
     if bad:
@@ -66,7 +66,7 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
     return result
 
 
-def _without_torque(case: Case) -> Case:
+def without_torque(case: Case) -> Case:
     """The case with no torque but that which its losses cause."""
     changes = {"models.load_dependent": "computed", AXES["torque"]: "0 N*m"}
     if isinstance(case, TrainCase):

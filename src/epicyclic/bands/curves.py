@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.bands.outputs import Outputs
 from epicyclic.bands.sampling import Samples
 from epicyclic.case.uncertain_values import UncertainValue
 
@@ -27,7 +26,8 @@ class Curves:
 
     Attributes
     ----------
-    outputs : Outputs
+    dependent : ndarray of bool, shape (t,)
+        Which of them depend on the load.
     values : tuple of UncertainValue
     slopes : ndarray of float, shape (c, t)
         Of the logarithm of each loss, over the columns of `_columns`.
@@ -38,7 +38,7 @@ class Curves:
         NaN with too few samples. [1]
     """
 
-    outputs: Outputs
+    dependent: NDArray[np.bool]
     values: tuple[UncertainValue, ...]
     slopes: FloatArray
     means: FloatArray
@@ -47,8 +47,7 @@ class Curves:
     def at(self, drawn: FloatArray) -> FloatArray:
         """Load-dependent, load-independent and total loss at some points, shape (3, n)."""
         losses = self._losses(drawn)
-        dependent = self.outputs.load_dependent
-        parts = [losses[dependent].sum(axis=0), losses[~dependent].sum(axis=0)]
+        parts = [losses[self.dependent].sum(axis=0), losses[~self.dependent].sum(axis=0)]
         return np.array([*parts, losses.sum(axis=0)])
 
     def sets(self, samples: Samples) -> FloatArray:
@@ -61,25 +60,28 @@ class Curves:
         return np.where(np.isnan(self.means)[:, None], found, self.means[:, None])
 
 
-def fit_curves(outputs: Outputs, samples: Samples, losses: FloatArray) -> Curves:
-    """Curves through the losses, shape (t, 2 n), at the points A, then B; NaN where none is."""
+def fit_curves(dependent: NDArray[np.bool], samples: Samples, losses: FloatArray) -> Curves:
+    """Curves through losses, shape (t, 2 n), at the points A, then B; NaN where there is none.
+
+    `dependent`, shape (t,), tells which depend on the load.
+    """
     sound = np.isfinite(losses).all(axis=0)
     drawn = np.concatenate([samples.a, samples.b], axis=1)[:, sound]
     known = losses[:, sound]
     columns = _columns(samples.values, drawn)
     count, size = columns.shape
     if count <= size:
-        return Curves(outputs, samples.values, np.zeros((size, len(losses))), losses.mean(axis=1))
+        return Curves(dependent, samples.values, np.zeros((size, len(losses))), losses.mean(axis=1))
     varies = (known > 0).all(axis=1) & (known.std(axis=1) > ROUNDING * known.max(axis=1))
     slopes = np.zeros((size, len(losses)))
     slopes[:, varies], *_ = np.linalg.lstsq(columns, np.log(known[varies]).T)
     means = np.where(varies, np.nan, known.mean(axis=1))
-    found = Curves(outputs, samples.values, slopes, means)
+    found = Curves(dependent, samples.values, slopes, means)
     total = known.sum(axis=0)
     variance = float(total.var(ddof=1))
     left = float(((total - found.at(drawn)[-1]) ** 2).sum()) / (count - size)
     explained = 1 - left / variance if variance > (ROUNDING * total.max()) ** 2 else 1.0
-    return Curves(outputs, samples.values, slopes, means, explained)
+    return Curves(dependent, samples.values, slopes, means, explained)
 
 
 def _columns(values: Sequence[UncertainValue], drawn: FloatArray) -> FloatArray:

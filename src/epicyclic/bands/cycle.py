@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from epicyclic.analysis.solve import solve
 from epicyclic.bands.curves import fit_curves
 from epicyclic.bands.nearby import Nearby, known_values, nearby_of, steps, without_table
-from epicyclic.bands.outputs import Outputs, outputs_of
+from epicyclic.bands.outputs import INPUT_POWER, Outputs, outputs_of
 from epicyclic.bands.plan import SampledCase, SamplePlan, check_samples, sampled_case
 from epicyclic.bands.sampling import make_samples
 from epicyclic.bands.study import about_study, contributions, indices_of, sample_variables
@@ -30,7 +30,6 @@ from epicyclic.maps.lookup import loss_power
 from epicyclic.maps.tables import map_case
 from epicyclic.results.result import Result
 from epicyclic.sweeps.journal import Rows
-from epicyclic.sweeps.plan import PointList
 from epicyclic.sweeps.runner import HERE, Runner
 from epicyclic.units import KILOJOULE
 
@@ -111,13 +110,18 @@ class Energies:
         more = _entering(self.at_shaft[:, None], results[:, -2])
         more -= _entering(self.at_shaft, self.interpolated.sum(axis=0))[:, None]
         entering = self.entering + time @ more
-        dependent = lost[self.outputs.load_dependent].sum(axis=0)
-        independent = lost[~self.outputs.load_dependent].sum(axis=0)
-        total = dependent + independent
+        total = lost.sum(axis=0)
+        if self.outputs.tested:
+            alone, whole = (np.einsum("pn,p->n", results[:, row], time) for row in (-3, -2))
+            independent = total * alone / whole
+        else:
+            independent = lost[~self.outputs.load_dependent].sum(axis=0)
         with np.errstate(divide="ignore", invalid="ignore"):
             efficiency = np.where(total < entering, 1 - total / entering, np.nan)
         kilo, _ = KILOJOULE.scale_and_offset()
-        return np.vstack([kilo * np.vstack([lost, dependent, independent, total]), efficiency])
+        return np.vstack(
+            [kilo * np.vstack([lost, total - independent, independent, total]), efficiency]
+        )
 
     def point_error(self, results: FloatArray) -> float:
         """Standard error of u_c of the total, because some points stand for all. Theory (U11). [kJ]
@@ -163,7 +167,7 @@ def cycle_study(
     case = _case_of(data, celsius, points)
     result = solve(case)
     sums = add_up(data, cycle, celsius, samples=POINTS if points is None else points)
-    energies = _energies(sums, outputs_of(result))
+    energies = _energies(sums, outputs_of(case, result))
     nearby = _nearby(case, result, energies, runner)
     sampled = sampled_case(case, result, count, seed, energies.points)
     return CycleStudy(case, cycle, energies, nearby, sampled, seed)
@@ -217,10 +221,13 @@ def _nearby(case: Case, result: Result, energies: Energies, runner: Runner) -> t
         [{**point, **step} for step in ({}, *steps(own))]
         for point, own in zip(energies.points, values, strict=True)
     ]
-    plan = PointList(without_table(case), points=tuple(it for own in changes for it in own))
+    points = tuple(it for own in changes for it in own)
+    plan = SamplePlan(
+        without_table(case), outputs, drawn=(np.empty((0, 1)),) * len(points), points=points
+    )
     rows = runner.run(plan)
-    losses = np.array([rows.numbers(name) for name in outputs.losses]).T
-    power = rows.numbers("input_power")
+    losses = np.array([rows.numbers(name) for name in outputs.numbers]).T
+    power = rows.numbers(INPUT_POWER)
     found, first = [], 0
     for own, those in zip(values, changes, strict=True):
         part = slice(first + 1, first + len(those))
@@ -278,7 +285,9 @@ class CycleStudy:
             curves_explain=((), explained, {"long_name": EXPLAINED, "units": "1"}),
             point_error=((), energies.point_error(both), error),
         ).assign_attrs(
-            **about_study(self.case, self.plan.count, self.seed),
+            **about_study(
+                self.case, energies.outputs, self.plan.count, self.seed, data.attrs["failed"]
+            ),
             cycle=f"{self.cycle.source.name}, {self.cycle.rows} rows",
             points=len(energies.points),
         )
@@ -286,7 +295,11 @@ class CycleStudy:
     def _indices(self, energies: FloatArray) -> tuple[dict[str, Any], float]:
         """Sobol indices by curves through the energies of A and B, and what these explain."""
         samples, outputs = self.sampled.samples[0], self.energies.outputs
-        curves = fit_curves(outputs, samples, energies[: len(outputs.losses)])
+        if outputs.tested:
+            mask, parts = np.array([True, False]), energies[-4:-2]
+        else:
+            mask, parts = outputs.load_dependent, energies[: len(outputs.losses)]
+        curves = fit_curves(mask, samples, parts)
         drawn = make_samples(samples.values, DRAWN, self.seed)
         groups = range(len(samples.groups))
         return indices_of(curves.sets(drawn), groups, drawn, self.seed), curves.explained

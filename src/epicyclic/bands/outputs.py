@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.analysis.solve import solve, without_torque
+from epicyclic.case.case import Case
 from epicyclic.case.uncertain_values import MODEL_FORM, UncertainValue, model_form_of
 from epicyclic.elements.base import LOAD_DEPENDENT
 from epicyclic.results.result import Result
+from epicyclic.sweeps.unloaded import AS_TESTED
 
-__all__ = ["SUMS", "Outputs", "outputs_of"]
+__all__ = ["INPUT_POWER", "SUMS", "Outputs", "factors_of", "loss_numbers", "outputs_of"]
 
 FloatArray = NDArray[np.float64]
 
 SUMS = ("load_dependent", "load_independent", "total", "efficiency")
 """Results beside the single losses."""
+UNLOADED = "unloaded."
+"""Before the name of a loss without torque."""
+INPUT_POWER = "input_power"
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,11 +38,20 @@ class Outputs:
         Which of them depend on the load.
     kinds : tuple of str
         Kind of each, see `model_form_of`.
+    tested : bool
+        True if they are grouped as a test rig does: what torque adds, and the rest.
     """
 
     losses: tuple[str, ...]
     load_dependent: NDArray[np.bool]
     kinds: tuple[str, ...]
+    tested: bool = False
+
+    @property
+    def numbers(self) -> tuple[str, ...]:
+        """What they follow from: losses, where they are grouped as tested also those unloaded."""
+        unloaded = (f"{UNLOADED}{name}" for name in self.losses if self.tested)
+        return (*self.losses, *unloaded)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -51,7 +66,7 @@ class Outputs:
         Parameters
         ----------
         losses : ndarray of float, shape (t, n)
-            [W]
+            In the order of `numbers`. [W]
         input_power : ndarray of float, shape (n,)
             [W]
         factors : mapping of str to ndarray of float, shape (n,)
@@ -59,28 +74,43 @@ class Outputs:
 
         Returns
         -------
-        ndarray of float, shape (t + 4, n)
+        ndarray of float, shape (s, n)
             In the order of `names`; efficiency NaN without power.
         """
-        scaled = np.array(
-            [row * factors.get(kind, 1.0) for row, kind in zip(losses, self.kinds, strict=True)]
+        kinds = self.kinds * (2 if self.tested else 1)
+        every = np.array(
+            [row * factors.get(kind, 1.0) for row, kind in zip(losses, kinds, strict=True)]
         )
-        dependent = scaled[self.load_dependent].sum(axis=0)
-        independent = scaled[~self.load_dependent].sum(axis=0)
-        total = dependent + independent
+        scaled, unloaded = every[: len(self.losses)], every[len(self.losses) :]
+        independent = (unloaded if self.tested else scaled[~self.load_dependent]).sum(axis=0)
+        total = scaled.sum(axis=0)
         with np.errstate(divide="ignore", invalid="ignore"):
             efficiency = np.where(total < input_power, 1 - total / input_power, np.nan)
-        return np.vstack([scaled, dependent, independent, total, efficiency])
+        return np.vstack([scaled, total - independent, independent, total, efficiency])
 
 
-def outputs_of(result: Result) -> Outputs:
+def outputs_of(case: Case, result: Result) -> Outputs:
     """The results of a case, from one of it."""
     terms = [term for term in result.terms if not term.left_out]
     return Outputs(
         tuple(term.name for term in terms),
         np.array([term.group == LOAD_DEPENDENT for term in terms]),
         tuple(model_form_of(term.name, term.method) for term in terms),
+        case.models.load_dependent == AS_TESTED,
     )
+
+
+def loss_numbers(
+    case: Case, outputs: Outputs, solved: Callable[[Case], Result] = solve
+) -> dict[str, float]:
+    """`Outputs.numbers` of a case, and its input power. [W]"""
+    plain = case.updated({"models.load_dependent": "computed"}) if outputs.tested else case
+    result = solved(plain)
+    found = {**result.losses, INPUT_POWER: result.input_power}
+    if outputs.tested:
+        unloaded = solved(without_torque(plain)).losses
+        found |= {f"{UNLOADED}{name}": watts for name, watts in unloaded.items()}
+    return found
 
 
 def factors_of(values: Sequence[UncertainValue], points: FloatArray) -> dict[str, FloatArray]:

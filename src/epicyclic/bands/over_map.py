@@ -117,7 +117,7 @@ class MapStudy:
         drawn = cache(lambda values: make_samples(values, DRAWN, self.seed))
         shares, explained = np.zeros((len(own), 2, len(own[0].groups))), np.zeros(len(own))
         for number, (samples, losses) in enumerate(zip(own, results, strict=True)):
-            curves = fit_curves(outputs, samples, losses[: len(outputs.losses)])
+            curves = fit_curves(outputs.load_dependent, samples, losses[: len(outputs.losses)])
             explained[number] = curves.explained
             sets = curves.sets(drawn(samples.values))[:, -1:]
             if not np.isfinite(curves.explained):

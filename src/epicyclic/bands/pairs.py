@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from epicyclic.analysis.solve import solve
 from epicyclic.bands.distributions import quantiles
 from epicyclic.bands.nearby import known_values, without_table
-from epicyclic.bands.outputs import Outputs, factors_of, outputs_of
+from epicyclic.bands.outputs import INPUT_POWER, Outputs, factors_of, outputs_of
 from epicyclic.bands.plan import SamplePlan, check_samples
 from epicyclic.bands.sampling import probabilities
 from epicyclic.bands.statistics import summary
@@ -124,16 +124,17 @@ def _evaluate(
     runner: Runner,
 ) -> tuple[Outputs, FloatArray]:
     inputs = [number for number, it in enumerate(values) if not it.is_model_form]
+    outputs = outputs_of(case, result)
     plan = SamplePlan(
         without_table(case),
+        outputs,
         inputs=tuple(values[number] for number in inputs),
         count=points.shape[1],
         drawn=(points[inputs],),
     )
     rows = runner.run(plan)
-    outputs = outputs_of(result)
-    losses = np.array([rows.numbers(name) for name in outputs.losses])
-    return outputs, outputs.of(losses, rows.numbers("input_power"), factors_of(values, points))
+    losses = np.array([rows.numbers(name) for name in outputs.numbers])
+    return outputs, outputs.of(losses, rows.numbers(INPUT_POWER), factors_of(values, points))
 
 
 def _dataset(

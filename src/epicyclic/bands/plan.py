@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,13 +13,20 @@ from numpy.typing import NDArray
 
 from epicyclic.analysis.solve import solve
 from epicyclic.bands.nearby import known_values, without_table
-from epicyclic.bands.outputs import Outputs, factors_of, outputs_of
+from epicyclic.bands.outputs import (
+    INPUT_POWER,
+    Outputs,
+    factors_of,
+    loss_numbers,
+    outputs_of,
+)
 from epicyclic.bands.sampling import Samples, groups_of, make_samples
 from epicyclic.case.case import Case
 from epicyclic.case.plain import plain
 from epicyclic.case.uncertain_values import UncertainValue
 from epicyclic.errors import InputError, Problem
 from epicyclic.results.result import Result
+from epicyclic.status import Status
 from epicyclic.sweeps.journal import Row, Rows
 from epicyclic.sweeps.plan import CasePlan
 
@@ -40,6 +47,7 @@ class SamplePlan(CasePlan):
 
     Attributes
     ----------
+    outputs : Outputs
     inputs : tuple of UncertainValue
     count : int
         Points in each set of samples.
@@ -51,6 +59,7 @@ class SamplePlan(CasePlan):
 
     kind: ClassVar[str] = "uncertainty"
     may_fail: ClassVar[bool] = True
+    outputs: Outputs
     inputs: tuple[UncertainValue, ...] = ()
     count: int = 1
     drawn: tuple[FloatArray, ...] = ()
@@ -91,10 +100,10 @@ class SamplePlan(CasePlan):
         }
 
     def _solve(self, index: int) -> Row:
-        """Losses and input power; nothing else is read."""
-        result = solve(self.case.updated(self.changes(index)), flow_tables=self.flow_tables)
-        numbers = {**result.losses, "input_power": result.input_power}
-        return Row(str(result.status), numbers=numbers)
+        """What the results follow from; nothing else is read."""
+        with_tables = partial(solve, flow_tables=self.flow_tables)
+        case = self.case.updated(self.changes(index))
+        return Row(str(Status.CONVERGED), numbers=loss_numbers(case, self.outputs, with_tables))
 
 
 def check_samples(samples: int) -> None:
@@ -140,9 +149,9 @@ class SampledCase:
         ndarray of float, shape (p, k, s, n)
             In the order of `Outputs.names`.
         """
-        losses = np.array([rows.numbers(name) for name in self.outputs.losses])
+        losses = np.array([rows.numbers(name) for name in self.outputs.numbers])
         losses = losses.reshape(len(losses), len(self.samples), -1, self.plan.count)
-        power = rows.numbers("input_power").reshape(losses.shape[1:])
+        power = rows.numbers(INPUT_POWER).reshape(losses.shape[1:])
         return np.array(
             [
                 [
@@ -220,14 +229,16 @@ def sampled_case(
         return found, np.concatenate(sets, axis=1)[inputs]
 
     samples, own = zip(*map(drawn, values), strict=True)
+    outputs = outputs_of(case, result)
     plan = SamplePlan(
         without_table(case),
+        outputs,
         inputs=tuple(first[number] for number in inputs),
         count=count,
         drawn=own,
         points=tuple(points),
     )
-    return SampledCase(outputs_of(result), samples, groups, plan)
+    return SampledCase(outputs, samples, groups, plan)
 
 
 def _values_at(

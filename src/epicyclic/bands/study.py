@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from epicyclic.analysis.solve import solve
 from epicyclic.bands.distributions import cut_off, standard_uncertainty
 from epicyclic.bands.nearby import Nearby, look_nearby
-from epicyclic.bands.outputs import SUMS, factors_of
+from epicyclic.bands.outputs import SUMS, Outputs, factors_of
 from epicyclic.bands.plan import (
     FEWEST,
     SampledCase,
@@ -37,6 +37,7 @@ __all__ = [
     "UncertaintyStudy",
     "about_inputs",
     "about_study",
+    "banded_variables",
     "contributions",
     "drivers_of",
     "indices_of",
@@ -105,7 +106,8 @@ class UncertaintyStudy:
         data = data.assign(
             indices_of(sums, self.sampled.groups, self.sampled.samples[0], self.seed)
         )
-        return data.assign_attrs(about_study(self.case, self.plan.count, self.seed))
+        about = about_study(self.case, outputs, self.plan.count, self.seed, data.attrs["failed"])
+        return data.assign_attrs(about)
 
 
 def sample_variables(
@@ -138,23 +140,13 @@ def sample_variables(
     status, message = sampled.ends(rows)
     sound = _sound(both[-2], message)
     variables: dict[str, Any] = {
-        "nominal": ("result", nominal, {"long_name": "result of the case"}),
-        **{
-            name: ("result", column, {"long_name": LABELS[name]})
-            for name, column in summaries(both[:, sound]).items()
-        },
-        "contribution": (
-            ("input", "result"),
-            change,
-            {"long_name": "change for one standard deviation of the input"},
-        ),
+        **banded_variables(nominal, summaries(both[:, sound]), change, both),
         **about_inputs(samples.values),
         "drawn": (
             ("input", "sample"),
             np.concatenate([samples.a, samples.b], axis=1),
-            {"long_name": "value of the input"},
+            {"long_name": "value of the input", "units": ""},
         ),
-        "value": (("result", "sample"), both, {"long_name": "result of the sample"}),
         "status": ("sample", np.array(status, dtype=object)),
         "message": ("sample", np.array(message, dtype=object)),
     }
@@ -167,12 +159,34 @@ def sample_variables(
     return xr.Dataset(variables, coords, {"failed": int((~sound).sum())})
 
 
+def banded_variables(
+    nominal: FloatArray, found: Mapping[str, FloatArray], change: FloatArray, value: FloatArray
+) -> dict[str, Any]:
+    """What every uncertainty states, however it was found: in the unit of each result."""
+    columns: dict[str, tuple[Any, FloatArray, str]] = {
+        "nominal": ("result", nominal, "result of the case"),
+        **{name: ("result", column, LABELS[name]) for name, column in found.items()},
+        "contribution": (
+            ("input", "result"),
+            change,
+            "change for one standard deviation of the input",
+        ),
+        "value": (("result", "sample"), value, "result of the sample"),
+    }
+    return {
+        name: (dims, values, {"long_name": label, "units": ""})
+        for name, (dims, values, label) in columns.items()
+    }
+
+
 def drivers_of(samples: Samples) -> list[str]:
     """Names of the inputs, of those that are correlated together."""
     return [" + ".join(samples.values[i].key for i in group) for group in samples.groups]
 
 
-def about_study(case: Case, samples: int, seed: int) -> dict[str, Any]:
+def about_study(
+    case: Case, outputs: Outputs, samples: int, seed: int, failed: int = 0
+) -> dict[str, Any]:
     """The attributes of every study."""
     used = versions()
     return {
@@ -182,7 +196,10 @@ def about_study(case: Case, samples: int, seed: int) -> dict[str, Any]:
         "case": json.dumps(case.inputs()),
         "samples": samples,
         "seed": seed,
+        "grouping": ", as tested" if outputs.tested else "",
         "coverage": COVERAGE,
+        "failed": failed,
+        "left_out": "",
     }
 
 

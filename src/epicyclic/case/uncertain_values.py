@@ -71,6 +71,11 @@ class UncertainValue:
         return self.key.startswith(MODEL_FORM)
 
     @property
+    def kind_of_loss(self) -> str:
+        """Of the factor of a model: whose losses it multiplies, ``"sliding"``."""
+        return self.key.removeprefix(MODEL_FORM)
+
+    @property
     def text(self) -> str:
         """The distribution in words: ``"normal, 0.05 um"``."""
         unit = f" {self.unit}".rstrip()

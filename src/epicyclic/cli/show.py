@@ -29,7 +29,7 @@ stored_argument = click.argument("source", metavar="CASE|FILE.nc")
 def report(source: str, changes: tuple[str, ...], output: Path) -> None:
     """Write a report as one file that needs nothing else: a page, or print.
 
-    FILE.nc is what run --save or map wrote; a CASE is solved first.
+    FILE.nc is what run --save, map or uncertainty wrote; a CASE is solved first.
     """
     from epicyclic.cli.progress import progress_bar
 
@@ -55,7 +55,7 @@ def report(source: str, changes: tuple[str, ...], output: Path) -> None:
 def plot(source: str, what: str | None, changes: tuple[str, ...], output: Path | None) -> None:
     """Draw one plot of a result or map; without WHAT, list what can be drawn.
 
-    FILE.nc is what run --save or map wrote; a CASE is solved first.
+    FILE.nc is what run --save, map or uncertainty wrote; a CASE is solved first.
     """
     if output is not None:
         check_ending("-o", output)

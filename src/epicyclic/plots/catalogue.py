@@ -37,6 +37,7 @@ from epicyclic.plots.mesh import (
 from epicyclic.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.plots.power_flow import SLIDE, plot_power_flow
 from epicyclic.plots.style import PANEL, styled_figure
+from epicyclic.plots.uncertainty import banded, plot_band, plot_drivers
 from epicyclic.records.contents import set_of
 from epicyclic.records.record import ResultRecord, sets_of
 from epicyclic.results.result import in_words
@@ -144,7 +145,7 @@ def _of_map(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], list
     """One panel for each state and temperature of a map, at the first value of further keys."""
 
     def panels(stored: Stored) -> list[Panel]:
-        if isinstance(stored, ResultRecord):
+        if isinstance(stored, ResultRecord) or "torque_loss" not in stored:
             return []
         titles = {"state": "state {}", "temperature": "{:g} °C"}
         names = [name for name in titles if name in stored.dims]
@@ -170,6 +171,26 @@ def _of_band(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], lis
         return panels(stored) if known else []
 
     return found
+
+
+def _uncertainty_of(stored: Stored) -> xr.Dataset | None:
+    """How well a result is known, or the energy of a cycle."""
+    if isinstance(stored, ResultRecord):
+        return next(iter(stored.group("uncertainty").values()), None)
+    return stored if "contribution" in stored else None
+
+
+def _drivers(stored: Stored) -> list[Panel]:
+    data = _uncertainty_of(stored)
+    return [] if data is None else [Panel("", partial(plot_drivers, data))]
+
+
+def _band(stored: Stored) -> list[Panel]:
+    """Total loss, and efficiency if it is known."""
+    data = _uncertainty_of(stored)
+    if data is None:
+        return []
+    return [Panel("", partial(plot_band, data, name)) for name in banded(data)]
 
 
 def _pocket_pressure(stored: Stored) -> list[Panel]:
@@ -206,6 +227,8 @@ PLOTS: dict[str, Plot] = {
         _power_flow,
         size=SLIDE,
     ),
+    "drivers": Plot("What is the uncertainty of the total loss due to?", _drivers),
+    "band": Plot("How well are total loss and efficiency known?", _band),
     "heat-network": Plot(
         "How warm is every part, and where does its heat flow?", _heat, size=SLIDE
     ),

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "band_figure",
+    "banded",
     "drivers_figure",
     "plot_band",
     "plot_drivers",
@@ -37,12 +38,17 @@ def drivers_figure(data: xr.Dataset) -> Figure:
 
 def band_figure(data: xr.Dataset) -> Figure:
     """`plot_band` of the total loss and of the efficiency as a figure."""
-    known = bool(np.isfinite(data["nominal"].sel(result="efficiency")))
-    names = ("total", "efficiency") if known else ("total",)
+    names = banded(data)
     with styled_figure(1, len(names), data.attrs["title"]) as (figure, axes):
         for name, ax in zip(names, axes[0], strict=True):
             plot_band(data, name, ax)
     return figure
+
+
+def banded(data: xr.Dataset) -> tuple[str, ...]:
+    """Results whose bands are drawn: the efficiency if power is passed on."""
+    known = bool(np.isfinite(data["low"].sel(result="efficiency")))
+    return ("total", "efficiency") if known else ("total",)
 
 
 def shares_figure(data: xr.Dataset) -> Figure:

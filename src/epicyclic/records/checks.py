@@ -57,13 +57,29 @@ _NEEDED: dict[str, _Needed] = {
         ("station",): "station_position",
         (): "power",
     },
+    "uncertainty": {
+        ("result",): "nominal mean standard_uncertainty expanded_uncertainty low high shortest_low "
+        "shortest_high",
+        ("input", "result"): "contribution",
+        ("sum", "driver"): "first_order",
+        ("result", "sample"): "value",
+        ("input",): "input_value input_uncertainty cut_off",
+    },
 }
 """Numbers that plots read in each group, by their dimensions."""
 _ATTRIBUTES: dict[str, tuple[tuple[str, type], ...]] = {
     "meshes": (("title", str), ("pitch_angle_deg", float)),
     "gears": (("name", str),),
+    "uncertainty": (("title", str), ("grouping", str), ("left_out", str)),
 }
-_MAY_LACK = {"meshes", "pockets"}
+_UNCERTAINTY_TEXTS = {
+    "result": ("result", "unit"),
+    "input": ("input", "input_unit", "distribution", "distribution_source"),
+    "driver": ("driver",),
+    "sum": ("sum",),
+}
+"""Of the inputs of an uncertainty, by their dimension."""
+_MAY_LACK = {"meshes", "pockets", "uncertainty"}
 """Groups with NaN where nothing touches, or no pocket is; but places are known everywhere."""
 _PLACES = {
     "roll_angle",
@@ -94,6 +110,8 @@ def field_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
             yield Problem(f"{path}/{attribute}", "", "is missing.", RUN_AGAIN)
     if group == "gears":
         yield from _gear_problems(path, data)
+    if group == "uncertainty":
+        yield from _uncertainty_problems(path, data)
 
 
 def map_problems(data: xr.Dataset) -> Iterator[Problem]:
@@ -158,3 +176,19 @@ def _gear_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
         if name in data:
             yield from _number_problems(f"{path}/{name}", data, name, ("point",))
             yield from _value_problems(f"{path}/{name}", data, name)
+
+
+def _uncertainty_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
+    """Names are text, all that tables look for among them."""
+    for dim, names in _UNCERTAINTY_TEXTS.items():
+        for name in names:
+            if name not in data.variables or data[name].dims != (dim,):
+                yield Problem(f"{path}/{name}", "", f"is missing for every {dim}.", RUN_AGAIN)
+            elif data[name].dtype.kind not in "OU":
+                yield Problem(f"{path}/{name}", "", "must be text.", RUN_AGAIN)
+    known = data["result"].values if "result" in data.variables else ()
+    lacking = {"total", "efficiency"} - set(map(str, known))
+    if lacking:
+        yield Problem(f"{path}/result", "", f"lacks {', '.join(sorted(lacking))}.", RUN_AGAIN)
+    if not isinstance(data.attrs.get("failed"), int | np.integer):
+        yield Problem(f"{path}/failed", "", "must be a number.", RUN_AGAIN)

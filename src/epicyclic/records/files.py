@@ -86,7 +86,7 @@ def is_stored(name: str | Path) -> bool:
 
 
 def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
-    """Read what `save_result` or `write_map` wrote.
+    """Read what `save_result` or `write_map` wrote, or 'epicyclic uncertainty'.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
     Returns
     -------
     ResultRecord or xarray.Dataset
-        A loss map is a dataset as `loss_map` returns it.
+        A loss map is a dataset as `loss_map` returns it, an uncertainty as `uncertainty` does.
 
     Raises
     ------
@@ -113,7 +113,10 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
             _check(map_problems(root))
             _sound(MapContents, dict(root.attrs))
             return root
-        _refuse("is neither a stored result nor a loss map.")
+        if {"contribution", "nominal"} <= set(root.data_vars):
+            _check(field_problems("uncertainty/", root))
+            return root
+        _refuse("is neither a stored result, nor a loss map, nor an uncertainty.")
     except InputError as error:
         raise InputError(error.problems, str(source)) from None
 

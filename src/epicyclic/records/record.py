@@ -9,10 +9,13 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 from epicyclic.analysis.bearing_details import bearing_details
+from epicyclic.analysis.heat import takes_minutes
 from epicyclic.analysis.mesh_details import mesh_details
 from epicyclic.analysis.pocket_details import pocket_details
 from epicyclic.analysis.shapes import gear_shapes, mesh_views
 from epicyclic.analysis.solve import solve
+from epicyclic.bands.nearby import look_nearby
+from epicyclic.bands.quick import quick_dataset
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
 from epicyclic.losses.planet_bearing import RollerBearing
@@ -42,7 +45,8 @@ class ResultRecord:
     fields : mapping of str to xarray.Dataset
         By path: ``"meshes/sun_mesh"`` as `mesh_details` returns it, ``"gears/sun"``,
         ``"views/sun_mesh"``, ``"bearings/planet_bearing"``, ``"pockets/sun_mesh"`` as
-        `pocket_details` returns it, without outlines. Of a train with the set:
+        `pocket_details` returns it, without outlines, ``"uncertainty/result"``, how well losses
+        are known. Of a train with the set:
         ``"meshes/P1.sun_mesh"``.
     """
 
@@ -99,6 +103,9 @@ def record(case: Case, *, result: Result | None = None) -> ResultRecord:
     }
     if case.operation.torque != 0 and contents.meshes:
         fields["meshes"] = mesh_details(case)
+    nearby = None if takes_minutes(result) else look_nearby(case, result)
+    if nearby is not None and any(nearby.active):
+        fields["uncertainty"] = {"result": quick_dataset(case, nearby)}
     # of sets in which every mesh turns and has the flow of its pockets solved
     lacking = {
         set_of(key)

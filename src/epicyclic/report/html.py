@@ -18,10 +18,12 @@ from epicyclic.maps.tables import map_inputs
 from epicyclic.plots.catalogue import Stored, available
 from epicyclic.records.record import ResultRecord
 from epicyclic.report.drawings import draw
+from epicyclic.report.inputs import input_tables
 from epicyclic.report.map_page import map_key_figures, map_line, map_sections
-from epicyclic.report.page import Drawings
+from epicyclic.report.page import Drawings, Section, gallery
 from epicyclic.report.result_page import result_sections
 from epicyclic.report.result_tables import key_figures, operation_line
+from epicyclic.report.uncertainty_tables import band_figures, uncertainty_items
 
 __all__ = ["page_html", "report_html"]
 
@@ -33,12 +35,12 @@ KINDS = {
 
 
 def report_html(stored: Stored, progress: Callable[[int, int], None] | None = None) -> str:
-    """The report of a result or of a loss map.
+    """The report of a result, of a loss map, or of how well one is known.
 
     Parameters
     ----------
     stored : ResultRecord or xarray.Dataset
-        As `epicyclic.record` or `epicyclic.loss_map` returns it, or `epicyclic.open_result`.
+        As `epicyclic.record`, `loss_map` or `uncertainty` returns it, or `epicyclic.open_result`.
     progress : callable, optional
         Called with the numbers of plots drawn and to draw.
 
@@ -48,11 +50,12 @@ def report_html(stored: Stored, progress: Callable[[int, int], None] | None = No
         HTML. The same for the same content, whether computed or read from a file.
     """
     drawings = _drawings(stored, progress or (lambda done, total: None))
-    content = (
-        _result_content(stored, drawings)
-        if isinstance(stored, ResultRecord)
-        else _map_content(stored, drawings)
-    )
+    if isinstance(stored, ResultRecord):
+        content = _result_content(stored, drawings)
+    elif "torque_loss" in stored:
+        content = _map_content(stored, drawings)
+    else:
+        content = _uncertainty_content(stored, drawings)
     return page_html(**content)
 
 
@@ -87,6 +90,26 @@ def _map_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
         "source": f"Computed with {data.attrs['source']}",
         "key_figures": map_key_figures(data),
         "sections": map_sections(data, drawings),
+    }
+
+
+def _uncertainty_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
+    kind = map_inputs(data)["kind"]
+    what = "Energy of a duty cycle" if "point_error" in data else "Result"
+    return {
+        "title": str(data.attrs["title"]) or kind.replace("_", " "),
+        "kind": f"How well it is known: {KINDS[kind]}",
+        "operation": str(data.attrs.get("cycle", "")),
+        "source": f"Computed with {data.attrs['source']}",
+        "key_figures": band_figures(data),
+        "sections": [
+            Section(
+                "uncertainty",
+                what,
+                (*gallery(drawings, "drivers", "band"), *uncertainty_items(data)),
+            ),
+            Section("inputs", "Inputs", tuple(input_tables(map_inputs(data), map_inputs(data)))),
+        ],
     }
 
 

@@ -42,6 +42,7 @@ from epicyclic.report.train_tables import (
     sums_table,
     terms_table,
 )
+from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.results.result import in_words
 from epicyclic.units import format_number, unit_text
 
@@ -60,6 +61,7 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
                 *(_train_losses if result.kind == "train" else _losses)(result, drawings),
             ),
         ),
+        Section("uncertainty", "How well this is known", _uncertainty(record, drawings), BAND_LEAD),
         Section("validity", "Validity", _validity(result), _validity_lead(result)),
         Section("temperatures", "Temperatures", _heat(result, drawings)),
         Section(
@@ -124,6 +126,21 @@ _OF_PLANETS = (
     "Figures of meshes and bearing are those of the most loaded planet; losses are those of all.",
 )
 _INPUT_LEAD = "Values in italics were not given: they are defaults."
+
+
+BAND_LEAD = (
+    "95 % of what the result may be, given how well inputs and models are known, from each of them "
+    "one standard deviation up and down. 'epicyclic uncertainty' finds it from samples."
+)
+
+
+def _uncertainty(record: ResultRecord, drawings: Drawings) -> tuple[Item, ...]:
+    """Bands, budget and tornado."""
+    return tuple(
+        item
+        for data in record.group("uncertainty").values()
+        for item in (*gallery(drawings, "drivers", "band"), *uncertainty_items(data))
+    )
 
 
 def _losses(result: ResultContents, drawings: Drawings) -> tuple[Item, ...]:

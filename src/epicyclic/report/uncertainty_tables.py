@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rich.console import RenderableType
 
-from epicyclic.bands.nearby import look_nearby, quick_band
+from epicyclic.bands.nearby import look_nearby
+from epicyclic.bands.quick import quick_band
 from epicyclic.case.case import Case
 from epicyclic.case.wording import one_line
 from epicyclic.report.map_band_tables import driver_name, map_band_tables
-from epicyclic.report.page import Cell, Listing, Table, aligned, number
+from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import as_on_page, titled
 from epicyclic.results.result import Result, in_words
@@ -20,7 +22,14 @@ from epicyclic.units import unit_text
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["band_texts", "driver_name", "pair_tables", "uncertainty_items", "uncertainty_tables"]
+__all__ = [
+    "band_figures",
+    "band_texts",
+    "driver_name",
+    "pair_tables",
+    "uncertainty_items",
+    "uncertainty_tables",
+]
 
 MOST, LEAST = 3, 0.005
 """Inputs and models that are named after a band, and their share of its variance."""
@@ -79,9 +88,10 @@ def band_texts(case: Case, result: Result) -> list[str]:
     if not any(nearby.active):
         return []
     band = quick_band(nearby)
-    text = f"95 % band: total loss {band.low['total']:.0f} to {band.high['total']:.0f} W"
-    if "efficiency" in band.low:
-        low, high = (100 * ends["efficiency"] for ends in (band.low, band.high))
+    (low, high), efficiency = band.ends("total") or (0.0, 0.0), band.ends("efficiency")
+    text = f"95 % band: total loss {low:.0f} to {high:.0f} W"
+    if efficiency is not None:
+        low, high = (100 * end for end in efficiency)
         text += f", efficiency {low:.2f} to {high:.2f} %"
     drivers = ", ".join(
         f"{driver_name(key)} {share:.0%}".replace("%", " %") for key, share in band.drivers[:MOST]
@@ -90,6 +100,20 @@ def band_texts(case: Case, result: Result) -> list[str]:
         f"{text}; most of it from {drivers}. Assumed where [uncertainty] of the case says nothing: "
         "'epicyclic uncertainty' shows all."
     ]
+
+
+def band_figures(data: xr.Dataset) -> list[KeyFigure]:
+    """The ends of the band, for the head of a page."""
+    found = []
+    for name, label in (("total", "lost"), ("efficiency", "efficiency")):
+        one = data.sel(result=name)
+        unit = str(one["unit"].values)
+        for key, end in (("low", "from"), ("high", "to")):
+            value = float(one[key])
+            if math.isfinite(value):
+                shown_unit = "%" if unit == "1" else unit
+                found.append(KeyFigure(f"{label} {end}", _shown(value, unit), shown_unit))
+    return found
 
 
 def _results(data: xr.Dataset) -> Table:
@@ -102,8 +126,10 @@ def _results(data: xr.Dataset) -> Table:
             for key in ("nominal", "mean", "standard_uncertainty", "expanded_uncertainty",
                         "low", "high", "shortest_low", "shortest_high")
         )  # fmt: skip
-        percent = ", %" if name == "efficiency" else ""
-        rows.append((Cell(in_words(name) + percent), *values))
+        further = ", %" if name == "efficiency" else ""
+        if name in ("load_dependent", "load_independent"):
+            further = data.attrs["grouping"]
+        rows.append((Cell(in_words(name) + further), *values))
     strong = frozenset({names.index("total"), names.index("efficiency")})
     head = ("", "case", "mean", "u_c", "U", "95 % from", "to", "shortest", "to")
     what = "Losses" if _unit(data) == "W" else "Energies"
@@ -126,14 +152,16 @@ def _shown(value: float, unit: str) -> Cell:
 def _budget(data: xr.Dataset) -> Table:
     """What makes the variance of the total loss, the largest share first."""
     total = data.sel(result="total", sum="total")
-    order = total["total_order"].sortby(-total["total_order"])["driver"].values
+    orders = [name for name in ("first_order", "total_order") if name in data]
+    largest = total[orders[-1]]
+    order = largest.sortby(-largest)["driver"].values
     rows = []
     for driver in map(str, order):
         keys = driver.split(" + ")
         if not total["contribution"].sel(input=keys).any():
             continue
         one = total.sel(driver=driver)
-        first, whole = float(one["first_order"]), float(one["total_order"])
+        shares = [f"{max(float(one[name]), 0.0):.1%}" for name in orders]
         for place, key in enumerate(keys):
             own = total.sel(input=key)
             rows.append(
@@ -142,15 +170,17 @@ def _budget(data: xr.Dataset) -> Table:
                     Cell(str(own["distribution"].values)),
                     _value(own),
                     _shown(float(own["contribution"]), _unit(data)),
-                    aligned("" if place else f"{max(first, 0.0):.1%}"),
-                    aligned("" if place else f"{max(whole, 0.0):.1%}"),
+                    *(aligned("" if place else text) for text in shares),
                 )
             )
-    head = ("", "distribution", "value", f"per u_i, {_unit(data)}", "share", "with others")
+    heads = ("", "distribution", "value", f"per u_i, {_unit(data)}", "share", "with others")
     note = (
         "per u_i: change of the total loss for one standard deviation. Shares of its variance, "
         "alone and with all interactions; values that are correlated share one."
     )
+    if len(orders) == 1:
+        note = note.replace("alone and with all interactions; ", "each alone; ")
+    head = heads[: len(heads) + len(orders) - 2]
     return Table(head, tuple(rows), "What the uncertainty of the total loss is due to", note=note)
 
 
@@ -171,6 +201,11 @@ def _notes(data: xr.Dataset) -> Iterator[str]:
         yield (
             f"{failed} of {count} samples have no result and are left out of the intervals; for "
             f"example: {reason}"
+        )
+    if data.attrs.get("left_out"):
+        yield (
+            f"Left out, because one standard deviation away there is no solution: "
+            f"{data.attrs['left_out']}."
         )
     for key in map(str, data["input"].values):
         share = float(data["cut_off"].sel(input=key))
