@@ -13,8 +13,9 @@ from epicyclic.plots.catalogue import PLOTS, available, figure_of, panels_of
 from epicyclic.plots.loss_map import map_at
 
 OF_MAPS = [name for name in PLOTS if "map" in name or name.startswith("loss-over")] + ["loss-parts"]
+OF_BANDS = ["loss-band", "loss-band-lines"]
 OF_HEAT = "heat-network"
-OF_RESULTS = [name for name in PLOTS if name not in (*OF_MAPS, OF_HEAT)]
+OF_RESULTS = [name for name in PLOTS if name not in (*OF_MAPS, *OF_BANDS, OF_HEAT)]
 
 
 def drawn_texts(figure):
@@ -65,6 +66,14 @@ def test_every_plot_of_a_map_has_labels_within_the_picture(pair_map, name):
     figure = figure_of(pair_map, name)
     check_figure(figure)
     assert "40 °C" in figure.axes[0].get_title(loc="left")
+
+
+@pytest.mark.parametrize("name", OF_BANDS)
+def test_every_plot_of_a_map_with_its_uncertainty_has_labels_within_the_picture(pair_map, name):
+    part = pair_map.isel(temperature=[0])
+    banded = ep.uncertainty(part, samples=16, jobs=1)
+    check_figure(figure_of(banded, name))
+    assert not set(available(part)).intersection(OF_BANDS)
 
 
 def test_bars_are_the_losses_and_their_sum_is_the_total(talbot_record):

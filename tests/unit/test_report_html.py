@@ -93,8 +93,8 @@ def test_every_reference_within_the_page_has_its_target(any_page):
 
 def test_the_chapters_hold_what_an_engineer_asks_for(page, map_page):
     assert Page(page).sections == [
-        "losses", "validity", "gears", "load", "friction", "bearing", "pockets", "oil", "methods",
-        "inputs", "versions",
+        "losses", "uncertainty", "validity", "gears", "load", "friction", "bearing", "pockets",
+        "oil", "methods", "inputs", "versions",
     ]  # fmt: skip
     assert Page(map_page).sections == [
         "efficiency", "losses", "lines", "tables", "validity", "gears", "methods", "conventions",

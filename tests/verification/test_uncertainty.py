@@ -11,11 +11,13 @@ import pytest
 import epicyclic as ep
 from asymmetric import gear_pair
 from epicyclic.bands.distributions import cut_off, quantiles, standard_uncertainty
-from epicyclic.bands.nearby import look_nearby, quick_band
+from epicyclic.bands.quick import quick_dataset
 from epicyclic.bands.sampling import make_samples
 from epicyclic.bands.statistics import sobol_indices, summary
 from epicyclic.case.uncertain_values import UncertainValue, uncertain_values
 from epicyclic.errors import InputError
+from epicyclic.plots.catalogue import available
+from epicyclic.sweeps.dataset import write_dataset
 
 ISOLATED = {
     "losses.mesh_pocketing.include": False,
@@ -161,14 +163,47 @@ def test_each_input_moves_the_losses_that_depend_on_it(study):
 
 
 def test_the_quick_band_is_that_of_many_samples(case, study):
-    band = quick_band(look_nearby(case, ep.solve(case)))
-    total = study.sel(result="total")
+    band = quick_dataset(case, ep.solve(case))
+    quick, total = (data.sel(result="total") for data in (band, study))
     width = float(total["high"] - total["low"])
-    assert band.low["total"] == pytest.approx(float(total["low"]), abs=0.1 * width)
-    assert band.high["total"] == pytest.approx(float(total["high"]), abs=0.15 * width)
-    shares = study["total_order"].sel(sum="total").to_series()
-    assert band.drivers[0][0] == shares.idxmax()
-    assert sum(share for _, share in band.drivers) == pytest.approx(1.0)
+    assert float(quick["low"]) == pytest.approx(float(total["low"]), abs=0.1 * width)
+    assert float(quick["high"]) == pytest.approx(float(total["high"]), abs=0.15 * width)
+    shares, alone = (data.sel(sum="total").to_series() for data in
+                     (study["total_order"], band["first_order"]))  # fmt: skip
+    assert alone.idxmax() == shares.idxmax()
+    assert alone.sum() == pytest.approx(1.0)
+
+
+def test_a_report_shows_the_band_of_a_stored_result_and_of_samples(case, study, tmp_path):
+    kept = ep.record(case)
+    ep.save_result(kept, tmp_path / "result.nc")
+    page = ep.report_html(ep.open_result(tmp_path / "result.nc"))
+    assert page == ep.report_html(kept)
+    (data,) = kept.group("uncertainty").values()
+    total = data.sel(result="total")
+    assert data.identical(quick_dataset(case, ep.solve(case)))
+    assert "How well this is known" in page
+    assert f">{float(total['low']):.1f}<" in page.replace("</data>", "<")
+    assert {"drivers", "band"} <= set(available(kept))
+    write_dataset(study, tmp_path / "samples.nc")
+    sampled = ep.report_html(ep.open_result(tmp_path / "samples.nc"))
+    assert "with others" in sampled
+    assert f">{float(study['low'].sel(result='total')):.1f}<" in sampled.replace("</data>", "<")
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("first_order", "must be numbers over sum, driver"),
+        ("distribution", "is missing for every input"),
+        ("unit", "is missing for every result"),
+    ],
+)
+def test_a_damaged_uncertainty_is_refused(study, tmp_path, name, reason):
+    damaged = study.drop_vars(name) if name != "first_order" else study.assign(first_order=3.0)
+    write_dataset(damaged, tmp_path / "damaged.nc")
+    with pytest.raises(InputError, match=reason):
+        ep.open_result(tmp_path / "damaged.nc")
 
 
 def test_correlated_inputs_share_their_part_of_the_variance(case):

@@ -14,7 +14,7 @@ from epicyclic.bands.curves import fit_curves
 from epicyclic.bands.plan import SampledCase, SamplePlan, check_samples, sampled_case
 from epicyclic.bands.sampling import make_samples
 from epicyclic.bands.statistics import COVERAGE, index_values
-from epicyclic.bands.study import LABELS, about_inputs, drivers_of, summaries
+from epicyclic.bands.study import LABELS, UNIT_OF_RESULT, about_inputs, drivers_of, summaries
 from epicyclic.case.operating import AXES
 from epicyclic.maps.compute import MapPlan, axis_name, stored_plan
 from epicyclic.sweeps.journal import Rows
@@ -97,9 +97,9 @@ class MapStudy:
             nominal=xr.concat(nominal, "result", coords="minimal", compat="override"),
             **variables,
             explained=self._over(None, explained, EXPLAINED, "1"),
-            # without a unit: what has that of losses is one of the map
-            sampled_total=self._over("sample", total, "total loss of the sample, W"),
-            failed_samples=self._over(None, failed, "samples without a result"),
+            # spelled out: what is in W is a loss of the map
+            sampled_total=self._over("sample", total, "total loss of the sample", "watt"),
+            failed_samples=self._over(None, failed, "samples without a result", "1"),
             **about_inputs(values),
         ).assign_coords(
             result=list(names),
@@ -141,7 +141,9 @@ class MapStudy:
         results[resting, :-1] *= 0.0  # all but the efficiency; failed samples stay so
         return np.concatenate([results, torque_loss], axis=1)
 
-    def _over(self, first: str | None, values: NDArray[Any], label: str, unit: str = "") -> Any:
+    def _over(
+        self, first: str | None, values: NDArray[Any], label: str, unit: str = UNIT_OF_RESULT
+    ) -> Any:
         """Values of all points, shape (p, ...), over the axes of the map behind `first`."""
         dims = [axis_name(axis.key) for axis in self.grid.axes]
         shaped = np.moveaxis(values, 0, -1).reshape(*values.shape[1:], *self.grid.shape)
@@ -151,4 +153,6 @@ class MapStudy:
     def _nominal(self, name: str) -> xr.DataArray:
         """What the map itself has."""
         known = self.data.get(name, np.nan * self.data["total"])
-        return known.assign_attrs(long_name="result of the map", units="").rename("nominal")
+        return known.assign_attrs(long_name="result of the map", units=UNIT_OF_RESULT).rename(
+            "nominal"
+        )

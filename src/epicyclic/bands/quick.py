@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.analysis.heat import takes_minutes
+from epicyclic.bands.advice import model_remarks
 from epicyclic.bands.distributions import correlations
-from epicyclic.bands.nearby import HALF_WIDTH, Nearby
+from epicyclic.bands.nearby import HALF_WIDTH, Nearby, look_nearby
 from epicyclic.bands.outputs import factors_of
 from epicyclic.bands.study import (
     about_inputs,
@@ -22,6 +24,7 @@ from epicyclic.bands.study import (
 )
 from epicyclic.case.case import Case
 from epicyclic.case.uncertain_values import UncertainValue
+from epicyclic.results.result import Result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,8 +38,6 @@ DRAWN = 4096
 KEPT = 1024
 """Of these, how many a dataset keeps."""
 SEED = 1
-TAIL = 0.025
-"""Probability of values below, and above, the band. [1]"""
 
 
 @dataclass(frozen=True)
@@ -55,19 +56,6 @@ class Band:
     nearby: Nearby
     results: FloatArray
     parts: FloatArray
-
-    def drawn(self, name: str) -> FloatArray:
-        """Draws of one result."""
-        row: FloatArray = self.results[self.nearby.outputs.names.index(name)]
-        return row
-
-    def ends(self, name: str) -> tuple[float, float] | None:
-        """95 % of what a result may be; None if some draws do not have it."""
-        row = self.drawn(name)
-        if not np.isfinite(row).all():
-            return None
-        low, high = np.quantile(row, [TAIL, 1 - TAIL])
-        return float(low), float(high)
 
     @cached_property
     def drivers(self) -> tuple[tuple[str, float], ...]:
@@ -94,11 +82,18 @@ def quick_band(nearby: Nearby) -> Band:
     return Band(nearby, outputs.of(losses, power, factors), _parts(nearby, shifts, factors))
 
 
-def quick_dataset(case: Case, nearby: Nearby) -> xr.Dataset:
-    """The band with the budget of the total loss, as `uncertainty` has them but without samples."""
+def quick_dataset(case: Case, result: Result, *, brief: bool = False) -> xr.Dataset | None:
+    """The band with the budget of the total loss, as `uncertainty` has them but without samples.
+
+    None if a solution takes minutes, or nothing is uncertain. For `brief` see `model_remarks`.
+    """
     import xarray as xr
 
+    nearby = None if takes_minutes(result) else look_nearby(case, result)
+    if nearby is None or not any(nearby.active):
+        return None
     band, outputs, values = quick_band(nearby), nearby.outputs, nearby.values
+    remarks = model_remarks(case, result, brief=brief)
     nominal = outputs.of(nearby.losses[:, None], np.array([nearby.input_power]), {})[:, 0]
     known = [np.isfinite(row).all() for row in band.results]
     found = summaries(np.where(np.array(known)[:, None], band.results, np.nan))
@@ -116,7 +111,8 @@ def quick_dataset(case: Case, nearby: Nearby) -> xr.Dataset:
         "driver": keys,
         "sum": ["total"],
     }
-    about = about_study(case, outputs, DRAWN, SEED) | {"left_out": ", ".join(lost)}
+    about = about_study(case, outputs, DRAWN, SEED)
+    about |= {"left_out": ", ".join(lost), "remarks": "\n".join(remarks)}
     return xr.Dataset({**variables, **about_inputs(values)}, coords, about)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.analysis.solve import solve
+from epicyclic.bands.advice import model_remarks
 from epicyclic.bands.distributions import cut_off, standard_uncertainty
 from epicyclic.bands.nearby import Nearby, look_nearby
 from epicyclic.bands.outputs import SUMS, Outputs, factors_of
@@ -24,7 +25,7 @@ from epicyclic.bands.plan import (
 from epicyclic.bands.sampling import Samples
 from epicyclic.bands.statistics import COVERAGE, Summary, sobol_indices, summary
 from epicyclic.case.case import Case
-from epicyclic.case.uncertain_values import UncertainValue
+from epicyclic.case.uncertain_values import UncertainValue, remedy_for
 from epicyclic.errors import ConvergenceError
 from epicyclic.results.result import versions
 from epicyclic.sweeps.journal import Rows
@@ -33,7 +34,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = [
+    "LABELS",
     "SAMPLES",
+    "UNIT_OF_RESULT",
     "UncertaintyStudy",
     "about_inputs",
     "about_study",
@@ -50,6 +53,8 @@ FloatArray = NDArray[np.float64]
 
 SAMPLES = 256
 """Points in each of the two sets."""
+UNIT_OF_RESULT = "see unit"
+"""Unit of what is stated for all results, which have different ones."""
 LABELS = {
     "mean": "mean",
     "standard_uncertainty": "combined standard uncertainty u_c",
@@ -107,7 +112,8 @@ class UncertaintyStudy:
             indices_of(sums, self.sampled.groups, self.sampled.samples[0], self.seed)
         )
         about = about_study(self.case, outputs, self.plan.count, self.seed, data.attrs["failed"])
-        return data.assign_attrs(about)
+        remarks = model_remarks(self.case, solve(self.case))
+        return data.assign_attrs(about | {"remarks": "\n".join(remarks)})
 
 
 def sample_variables(
@@ -145,7 +151,7 @@ def sample_variables(
         "drawn": (
             ("input", "sample"),
             np.concatenate([samples.a, samples.b], axis=1),
-            {"long_name": "value of the input", "units": ""},
+            {"long_name": "value of the input", "units": "see input_unit"},
         ),
         "status": ("sample", np.array(status, dtype=object)),
         "message": ("sample", np.array(message, dtype=object)),
@@ -174,7 +180,7 @@ def banded_variables(
         "value": (("result", "sample"), value, "result of the sample"),
     }
     return {
-        name: (dims, values, {"long_name": label, "units": ""})
+        name: (dims, values, {"long_name": label, "units": UNIT_OF_RESULT})
         for name, (dims, values, label) in columns.items()
     }
 
@@ -200,6 +206,7 @@ def about_study(
         "coverage": COVERAGE,
         "failed": failed,
         "left_out": "",
+        "remarks": "",
     }
 
 
@@ -283,6 +290,7 @@ def indices_of(
 
 def about_inputs(values: Sequence[UncertainValue]) -> dict[str, Any]:
     """What is known of each input."""
+    remedies = [remedy_for(value.key) for value in values]
     columns: dict[str, tuple[list[Any], str]] = {
         "input_value": ([value.value for value in values], "value of the input"),
         "input_unit": ([value.unit or "1" for value in values], "unit of the input"),
@@ -292,9 +300,11 @@ def about_inputs(values: Sequence[UncertainValue]) -> dict[str, Any]:
             [standard_uncertainty(value) for value in values],
             "standard uncertainty of the input",
         ),
+        "input_name": ([name for name, _ in remedies], "what it is called"),
+        "input_advice": ([advice for _, advice in remedies], "how to know it better"),
         "cut_off": ([cut_off(value) for value in values], "probability of what cannot be"),
     }
     return {
-        name: ("input", np.array(column), {"long_name": label, "units": ""})
+        name: ("input", np.array(column), {"long_name": label, "units": "see input_unit"})
         for name, (column, label) in columns.items()
     }

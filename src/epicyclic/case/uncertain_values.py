@@ -24,7 +24,14 @@ from epicyclic.case.wording import dotted, path_of, sentence, written
 from epicyclic.errors import Problem
 from epicyclic.units import CELSIUS, Quantity, format_number
 
-__all__ = ["MODEL_FORM", "Assumption", "UncertainValue", "model_form_of", "uncertain_values"]
+__all__ = [
+    "MODEL_FORM",
+    "Assumption",
+    "UncertainValue",
+    "model_form_of",
+    "remedy_for",
+    "uncertain_values",
+]
 
 MODEL_FORM = "model_form."
 """What keys of [uncertainty] begin with that are no keys of the case, but kinds of losses."""
@@ -113,13 +120,28 @@ class Assumption:
         return any(fnmatchcase(key, pattern) for pattern in self.keys)
 
 
+_ABOUT = ("keys", "source", "name", "advice")
+
+
+def remedy_for(key: str) -> tuple[str, str]:
+    """What a value is called where it limits the trust in a result, and what to do then."""
+    table = library.uncertainty_table()
+    for entry in (*table["inputs"], *table["elsewhere"]):
+        if any(fnmatchcase(key, pattern) for pattern in entry["keys"]):
+            return entry["name"].format(key=key), entry["advice"].format(key=key)
+    for entry in table["model_form"]:
+        if key == f"{MODEL_FORM}{entry['kind']}":
+            return entry["name"], entry["advice"]
+    return key, "state it better in [uncertainty], once it is measured"
+
+
 @cache
 def _assumptions() -> tuple[Assumption, ...]:
     return tuple(
         Assumption(
-            tuple(entry.pop("keys")),
+            tuple(entry["keys"]),
             DistributionTable.model_validate(
-                {key: value for key, value in entry.items() if key != "source"}
+                {key: value for key, value in entry.items() if key not in _ABOUT}
             ),
             entry["source"],
         )

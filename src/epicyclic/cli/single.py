@@ -14,8 +14,6 @@ from epicyclic.cli.output import beside, check_ending, draw, show
 
 if TYPE_CHECKING:
     from epicyclic.case.case import Case
-    from epicyclic.results.result import Result
-
 __all__ = ["check", "friction", "mesh", "run"]
 
 
@@ -32,8 +30,11 @@ __all__ = ["check", "friction", "mesh", "run"]
 def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path | None) -> None:
     """Compute the losses of a case and print them by component."""
     from epicyclic.analysis.solve import solve
+    from epicyclic.bands.quick import quick_dataset
+    from epicyclic.report.advice import result_json
     from epicyclic.report.heat_tables import remarks
     from epicyclic.report.tables import result_tables
+    from epicyclic.report.uncertainty_tables import band_texts
 
     loaded = load_with(case, changes)
     if save is not None:
@@ -42,24 +43,17 @@ def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path |
         check_result_output(save)
     with telling_contacts(loaded):
         result = solve(loaded)
+    known = quick_dataset(loaded, result, brief=True)
     if save is not None:
         from epicyclic.records.files import save_result
         from epicyclic.records.record import record
 
         save_result(record(loaded, result=result), save)
     show(
-        lambda: result_tables(result, tuple(remarks(loaded, result)), _known(loaded, result)),
-        result.to_json,
+        lambda: result_tables(result, tuple(remarks(loaded, result)), band_texts(known)),
+        lambda: result_json(result, known),
         json_file,
     )
-
-
-def _known(case: Case, result: Result) -> list[str]:
-    """How well a result is known, unless that takes minutes."""
-    from epicyclic.analysis.heat import takes_minutes
-    from epicyclic.report.uncertainty_tables import band_texts
-
-    return [] if takes_minutes(result) else band_texts(case, result)
 
 
 @contextmanager

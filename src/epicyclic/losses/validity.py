@@ -25,8 +25,10 @@ __all__ = [
     "ValidityFlag",
     "check_ranges",
     "describe_flags",
+    "flags_with_loss",
     "held_in_range",
     "range_left",
+    "range_text",
     "share_text",
 ]
 
@@ -199,24 +201,39 @@ def describe_flags(
     total : float
         Total loss; what concerns less than `SMALLEST_TOLD` of it is told in one sentence. [W]
     """
-    groups: dict[tuple[object, ...], list[ValidityFlag]] = {}
-    for flag in flags:
-        key = (flag.quantity, flag.unit, flag.low, flag.high, flag.source)
-        groups.setdefault(key, []).append(flag)
-    concerned = [
-        (sum(flag.share * loss_of(flag.use) for flag in group), group) for group in groups.values()
-    ]
+    concerned = flags_with_loss(flags, loss_of)
     small = [pair for pair in concerned if pair[0] < SMALLEST_TOLD * total]
     large = [pair for pair in concerned if pair not in small]
-    large.sort(key=lambda pair: -math.inf if math.isnan(pair[0]) else -pair[0])
+    large.sort(key=_unknown_first)
     told = [_sentence(watts, group) for watts, group in large]
     if len(small) == 1:
         told.append(_sentence(*small[0]))
     elif small:
-        ranges = "; ".join(_range_text(group) for _, group in small)
+        ranges = "; ".join(range_text(group) for _, group in small)
         watts = max(watts for watts, _ in small)
         told.append(f"{OUT_OF_RANGE}, each for {watts:.2g} W at most: {ranges}.")
     return tuple(told)
+
+
+def flags_with_loss(
+    flags: Iterable[ValidityFlag], loss_of: Callable[[ModelUse], float]
+) -> list[tuple[float, list[ValidityFlag]]]:
+    """Flags of one quantity and range together, with the loss that they concern; NaN if unknown.
+
+    Parameters as for `describe_flags`.
+    """
+    groups: dict[tuple[object, ...], list[ValidityFlag]] = {}
+    for flag in flags:
+        key = (flag.quantity, flag.unit, flag.low, flag.high, flag.source)
+        groups.setdefault(key, []).append(flag)
+    return [
+        (sum(flag.share * loss_of(flag.use) for flag in group), group) for group in groups.values()
+    ]
+
+
+def _unknown_first(pair: tuple[float, object]) -> float:
+    """By the loss concerned, the largest first."""
+    return -math.inf if math.isnan(pair[0]) else -pair[0]
 
 
 def _sentence(watts: float, group: list[ValidityFlag]) -> str:
@@ -227,10 +244,10 @@ def _sentence(watts: float, group: list[ValidityFlag]) -> str:
 
 def range_left(group: Sequence[ValidityFlag]) -> str:
     """A sentence for one or more flags of one quantity and range."""
-    return f"{OUT_OF_RANGE}: {_range_text(group)} ({group[0].source})."
+    return f"{OUT_OF_RANGE}: {range_text(group)} ({group[0].source})."
 
 
-def _range_text(group: Sequence[ValidityFlag]) -> str:
+def range_text(group: Sequence[ValidityFlag]) -> str:
     """What was found, and the range."""
     first = group[0]
     low, high = (

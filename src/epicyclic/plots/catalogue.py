@@ -37,7 +37,7 @@ from epicyclic.plots.mesh import (
 from epicyclic.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.plots.power_flow import SLIDE, plot_power_flow
 from epicyclic.plots.style import PANEL, styled_figure
-from epicyclic.plots.uncertainty import banded, plot_band, plot_drivers
+from epicyclic.plots.uncertainty import WIDE, banded, plot_band, plot_drivers
 from epicyclic.records.contents import set_of
 from epicyclic.records.record import ResultRecord, sets_of
 from epicyclic.results.result import in_words
@@ -85,9 +85,9 @@ class Plot:
     size: tuple[float, float] = PANEL
 
     @property
-    def is_slide(self) -> bool:
-        """True if it fills a page."""
-        return self.size == SLIDE
+    def is_wide(self) -> bool:
+        """True if it takes the width of a page."""
+        return self.size != PANEL
 
 
 def _of_result(draw: Callable[..., Axes]) -> Callable[[Stored], list[Panel]]:
@@ -227,7 +227,7 @@ PLOTS: dict[str, Plot] = {
         _power_flow,
         size=SLIDE,
     ),
-    "drivers": Plot("What is the uncertainty of the total loss due to?", _drivers),
+    "drivers": Plot("What is the uncertainty of the total loss due to?", _drivers, size=WIDE),
     "band": Plot("How well are total loss and efficiency known?", _band),
     "heat-network": Plot(
         "How warm is every part, and where does its heat flow?", _heat, size=SLIDE

@@ -180,6 +180,8 @@ def plot_band_lines(data: xr.Dataset, over: str, ax: Axes) -> Axes:
     total = data.sel(result="total")
     for number, index in enumerate(_some(data[other])):
         line = total.isel({other: index})
+        for end in ("low", "high"):
+            ax.plot(line[over], line[end], color=COLOURS[number], lw=0.6)
         ax.fill_between(
             line[over], line["low"], line["high"], color=COLOURS[number], alpha=0.2, linewidth=0
         )

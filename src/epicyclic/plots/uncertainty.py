@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from epicyclic.case.uncertain_values import MODEL_FORM
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = [
+    "WIDE",
     "band_figure",
     "banded",
     "drivers_figure",
@@ -26,12 +28,13 @@ __all__ = [
 ]
 
 MOST_DRIVERS = 12
-_WIDE = (7.2, 4.2)
+WIDE = (7.2, 4.2)
+"""Width and height of a picture with long names beside its bars. [inch]"""
 
 
 def drivers_figure(data: xr.Dataset) -> Figure:
     """`plot_drivers` as a figure."""
-    with styled_figure(1, 1, data.attrs["title"], panel=_WIDE) as (figure, axes):
+    with styled_figure(1, 1, data.attrs["title"], panel=WIDE) as (figure, axes):
         plot_drivers(data, axes[0, 0])
     return figure
 
@@ -53,7 +56,7 @@ def banded(data: xr.Dataset) -> tuple[str, ...]:
 
 def shares_figure(data: xr.Dataset) -> Figure:
     """`plot_shares` as a figure."""
-    with styled_figure(1, 1, data.attrs["title"], panel=_WIDE) as (figure, axes):
+    with styled_figure(1, 1, data.attrs["title"], panel=WIDE) as (figure, axes):
         plot_shares(data, axes[0, 0])
     return figure
 
@@ -87,6 +90,11 @@ def plot_shares(data: xr.Dataset, ax: Axes) -> Axes:
     return ax
 
 
+def _light(colour: str) -> tuple[float, ...]:
+    """A colour with two parts of white."""
+    return tuple((part + 2) / 3 for part in to_rgb(colour))
+
+
 def _name(key: str) -> str:
     """``"model: sliding"``, or the key of an input."""
     return f"model: {key.removeprefix(MODEL_FORM)}" if key.startswith(MODEL_FORM) else key
@@ -110,7 +118,7 @@ def plot_drivers(data: xr.Dataset, ax: Axes) -> Axes:
         rows = [row for row, model in enumerate(models) if model == wanted]
         watts = change.values[rows]
         ax.barh(rows, watts, color=colour, edgecolor="black", linewidth=0.5, label=label)
-        ax.barh(rows, -watts, color=colour, edgecolor="black", linewidth=0.5, alpha=0.35)
+        ax.barh(rows, -watts, color=_light(colour), edgecolor="black", linewidth=0.5)
     ax.set_yticks(range(len(names)), names)
     ax.axvline(0.0, color="black", lw=0.8)
     ax.set(
@@ -134,7 +142,8 @@ def plot_band(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     values = one["value"].values * scale
     low, high, nominal = (float(one[key]) * scale for key in ("low", "high", "nominal"))
     ax.axvspan(low, high, color=COLOURS[5], alpha=0.25, label="95 % interval")
-    ax.hist(values[np.isfinite(values)], "auto", color=COLOURS[0], edgecolor="white", linewidth=0.3)
+    counts, edges = np.histogram(values[np.isfinite(values)], "auto")
+    ax.stairs(counts, edges, fill=True, color=COLOURS[0])
     ax.axvline(nominal, color=COLOURS[1], lw=1.6, label="case")
     ax.axvline(float(one["mean"]) * scale, color="black", lw=1.2, ls="--", label="mean")
     low_text, high_text = (f"{it:.2f}" if percent else format_number(it, 4) for it in (low, high))

@@ -70,11 +70,18 @@ _NEEDED: dict[str, _Needed] = {
 _ATTRIBUTES: dict[str, tuple[tuple[str, type], ...]] = {
     "meshes": (("title", str), ("pitch_angle_deg", float)),
     "gears": (("name", str),),
-    "uncertainty": (("title", str), ("grouping", str), ("left_out", str)),
+    "uncertainty": (("title", str), ("grouping", str), ("left_out", str), ("remarks", str)),
 }
 _UNCERTAINTY_TEXTS = {
     "result": ("result", "unit"),
-    "input": ("input", "input_unit", "distribution", "distribution_source"),
+    "input": (
+        "input",
+        "input_unit",
+        "input_name",
+        "input_advice",
+        "distribution",
+        "distribution_source",
+    ),
     "driver": ("driver",),
     "sum": ("sum",),
 }
@@ -187,7 +194,8 @@ def _uncertainty_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
             elif data[name].dtype.kind not in "OU":
                 yield Problem(f"{path}/{name}", "", "must be text.", RUN_AGAIN)
     known = data["result"].values if "result" in data.variables else ()
-    lacking = {"total", "efficiency"} - set(map(str, known))
+    needed = {"total", "efficiency", "load_dependent", "load_independent"}
+    lacking = needed - set(map(str, known))
     if lacking:
         yield Problem(f"{path}/result", "", f"lacks {', '.join(sorted(lacking))}.", RUN_AGAIN)
     if not isinstance(data.attrs.get("failed"), int | np.integer):

@@ -116,7 +116,7 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
         if {"contribution", "nominal"} <= set(root.data_vars):
             _check(field_problems("uncertainty/", root))
             return root
-        _refuse("is neither a stored result, nor a loss map, nor an uncertainty.")
+        _refuse("is neither a stored result nor a loss map nor an uncertainty.")
     except InputError as error:
         raise InputError(error.problems, str(source)) from None
 

@@ -9,12 +9,10 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 from epicyclic.analysis.bearing_details import bearing_details
-from epicyclic.analysis.heat import takes_minutes
 from epicyclic.analysis.mesh_details import mesh_details
 from epicyclic.analysis.pocket_details import pocket_details
 from epicyclic.analysis.shapes import gear_shapes, mesh_views
 from epicyclic.analysis.solve import solve
-from epicyclic.bands.nearby import look_nearby
 from epicyclic.bands.quick import quick_dataset
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
@@ -103,9 +101,9 @@ def record(case: Case, *, result: Result | None = None) -> ResultRecord:
     }
     if case.operation.torque != 0 and contents.meshes:
         fields["meshes"] = mesh_details(case)
-    nearby = None if takes_minutes(result) else look_nearby(case, result)
-    if nearby is not None and any(nearby.active):
-        fields["uncertainty"] = {"result": quick_dataset(case, nearby)}
+    known = quick_dataset(case, result)
+    if known is not None:
+        fields["uncertainty"] = {"result": known}
     # of sets in which every mesh turns and has the flow of its pockets solved
     lacking = {
         set_of(key)

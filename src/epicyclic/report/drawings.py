@@ -33,7 +33,7 @@ def draw(stored: Stored, name: str) -> list[Drawing]:
     plot = PLOTS[name]
     for number, panel in enumerate(panels_of(stored, name)):
         key = f"{name}-{number + 1}"
-        size = plot.size if plot.is_slide else PANEL
+        size = plot.size if plot.is_wide else PANEL
         with styled_figure(1, 1, "", panel=size, projection=plot.projection) as (figure, axes):
             ax = panel.draw(axes[0, 0])
             title = ax.get_title(loc="left") or ax.get_title()

@@ -106,7 +106,11 @@ def _uncertainty_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]
             Section(
                 "uncertainty",
                 what,
-                (*gallery(drawings, "drivers", "band"), *uncertainty_items(data)),
+                (
+                    *gallery(drawings, "drivers", wide=True),
+                    *gallery(drawings, "band"),
+                    *uncertainty_items(data),
+                ),
             ),
             Section("inputs", "Inputs", tuple(input_tables(map_inputs(data), map_inputs(data)))),
         ],

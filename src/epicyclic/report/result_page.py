@@ -139,7 +139,11 @@ def _uncertainty(record: ResultRecord, drawings: Drawings) -> tuple[Item, ...]:
     return tuple(
         item
         for data in record.group("uncertainty").values()
-        for item in (*gallery(drawings, "drivers", "band"), *uncertainty_items(data))
+        for item in (
+            *gallery(drawings, "drivers", wide=True),
+            *gallery(drawings, "band"),
+            *uncertainty_items(data),
+        )
     )
 
 

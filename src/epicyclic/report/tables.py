@@ -66,7 +66,7 @@ def terminal() -> Console:
 
 
 def result_tables(
-    result: Result, remarks: Sequence[str] = (), known: Sequence[str] = ()
+    result: Result, remarks: Sequence[str] = (), known: Sequence[str | page.Listing] = ()
 ) -> RenderableType:
     """Everything an engineer reads first: losses, figures, warnings, sources.
 
@@ -75,12 +75,13 @@ def result_tables(
     result : Result
     remarks : sequence of str
         On its temperatures.
-    known : sequence of str
+    known : sequence of str or Listing
         How well the total loss and the efficiency are known.
     """
     contents = contents_of(result)
     labels = {field.key: field.label for field in number_fields(result.layout)}
-    parts: list[RenderableType] = [_headline(contents), *known]
+    parts: list[RenderableType] = [_headline(contents)]
+    parts += [it if isinstance(it, str) else as_on_page(it) for it in known]
     parts += map(as_on_page, standing_items(contents))
     parts += map(as_on_page, _tables(contents, labels))
     if result.heat is not None:

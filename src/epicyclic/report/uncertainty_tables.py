@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING
 
 from rich.console import RenderableType
 
-from epicyclic.bands.nearby import look_nearby
-from epicyclic.bands.quick import quick_band
-from epicyclic.case.case import Case
 from epicyclic.case.wording import one_line
+from epicyclic.report.advice import advice_texts
 from epicyclic.report.map_band_tables import driver_name, map_band_tables
 from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import as_on_page, titled
-from epicyclic.results.result import Result, in_words
+from epicyclic.results.result import in_words
 from epicyclic.units import unit_text
 
 if TYPE_CHECKING:
@@ -51,6 +49,7 @@ def uncertainty_items(data: xr.Dataset) -> Iterator[Table | Listing]:
     else:
         yield _results(data)
         yield _budget(data)
+        yield Listing(tuple(advice_texts(data)), "What limits the trust in it")
     yield Listing(tuple(_notes(data)), "Notes")
 
 
@@ -82,23 +81,26 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
     return titled(one_line(title), as_on_page(table), as_on_page(Listing(tuple(notes), "Notes")))
 
 
-def band_texts(case: Case, result: Result) -> list[str]:
-    """How well a single result is known and what that is due to; nothing if all is exact."""
-    nearby = look_nearby(case, result)
-    if not any(nearby.active):
+def band_texts(data: xr.Dataset | None) -> list[str | Listing]:
+    """How well a single result is known, and what limits that; nothing if all is exact."""
+    if data is None:
         return []
-    band = quick_band(nearby)
-    (low, high), efficiency = band.ends("total") or (0.0, 0.0), band.ends("efficiency")
+    ends = {name: [float(data[end].sel(result=name)) for end in ("low", "high")]
+            for name in ("total", "efficiency")}  # fmt: skip
+    low, high = ends["total"]
     text = f"95 % band: total loss {low:.0f} to {high:.0f} W"
-    if efficiency is not None:
-        low, high = (100 * end for end in efficiency)
+    if math.isfinite(ends["efficiency"][0]):
+        low, high = (100 * end for end in ends["efficiency"])
         text += f", efficiency {low:.2f} to {high:.2f} %"
+    shares = data["first_order"].sel(sum="total").to_series().sort_values(ascending=False)
     drivers = ", ".join(
-        f"{driver_name(key)} {share:.0%}".replace("%", " %") for key, share in band.drivers[:MOST]
+        f"{driver_name(str(key))} {share:.0%}".replace("%", " %")
+        for key, share in shares.iloc[:MOST].items()
     )
     return [
         f"{text}; most of it from {drivers}. Assumed where [uncertainty] of the case says nothing: "
-        "'epicyclic uncertainty' shows all."
+        "'epicyclic uncertainty' shows all.",
+        Listing(tuple(advice_texts(data, brief=True)), "What limits the trust in it"),
     ]
 
 

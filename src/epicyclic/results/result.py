@@ -21,7 +21,7 @@ from epicyclic.elements.figures import (
     displayed,
     figures,
 )
-from epicyclic.losses.validity import ModelUse, ValidityFlag, describe_flags
+from epicyclic.losses.validity import ModelUse, ValidityFlag, describe_flags, flags_with_loss
 from epicyclic.results.heat import HeatBalance
 from epicyclic.results.lubrication import OilSupply
 from epicyclic.status import Status
@@ -330,6 +330,11 @@ class Result:
     def warnings(self) -> tuple[str, ...]:
         """Everything the user should know before trusting the numbers."""
         return (*self.notes, *describe_flags(self.flags, self._loss_of, self.total))
+
+    @property
+    def flags_with_loss(self) -> list[tuple[float, list[ValidityFlag]]]:
+        """Ranges that models leave, with the loss that each concerns; NaN if unknown. [W]"""
+        return flags_with_loss(self.flags, self._loss_of)
 
     def _loss_of(self, use: ModelUse) -> float:
         """Loss that a model was used for, or of which it is a part; NaN if there is none. [W]"""

@@ -1,0 +1,163 @@
+"""What limits the trust in a result, and what would raise it most."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from epicyclic import library
+from epicyclic.analysis.compare import compare_friction, recommended
+from epicyclic.builders.build import layout_of
+from epicyclic.case.case import Case
+from epicyclic.case.uncertain_values import MODEL_FORM
+from epicyclic.errors import ConvergenceError
+from epicyclic.losses.validity import range_text
+from epicyclic.results.result import Result
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Limit", "Measurement", "limits_of", "measurements_of", "model_remarks"]
+
+LEAST = 0.02
+"""Share in the variance of the total from which a value is said to limit the trust. [1]"""
+CONCERNED = 0.05
+"""Part of the total loss from which a warning matters. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A value, or several that are correlated, that the band is due to.
+
+    Attributes
+    ----------
+    name : str
+    advice : str
+        What to do about it.
+    width : float
+        Of the band that it makes alone, in the unit of the total.
+    """
+
+    name: str
+    advice: str
+    width: float
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """Something that could be measured.
+
+    Attributes
+    ----------
+    name : str
+    is_input : bool
+        False for a part of the loss.
+    width : float
+        Of the band that is left once it is known, in the unit of the total.
+    """
+
+    name: str
+    is_input: bool
+    width: float
+
+
+def limits_of(data: xr.Dataset) -> list[Limit]:
+    """What makes the band, the most important first.
+
+    The band that a value makes alone is that of the total times the root of its share.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        As `uncertainty` returns it of a case or cycle, or as it is kept with a result.
+    """
+    whole, shares = _width(data), _shares(data)
+    found = []
+    for driver in sorted(shares, key=lambda it: -shares[it]):
+        if shares[driver] < LEAST:
+            break
+        advice = (str(data["input_advice"].sel(input=key).values) for key in _keys(driver))
+        width = whole * float(np.sqrt(shares[driver]))
+        found.append(Limit(_called(data, driver), "; ".join(dict.fromkeys(advice)), width))
+    return found
+
+
+def measurements_of(data: xr.Dataset) -> list[Measurement]:
+    """What could be measured, that which narrows the band most first. Theory (U12)."""
+    whole = _width(data)
+    found = [
+        Measurement(_called(data, driver), True, whole * float(np.sqrt(1 - share)))
+        for driver, share in _shares(data).items()
+        if not driver.startswith(MODEL_FORM)
+    ]
+    for entry in library.uncertainty_table()["measurements"]:
+        left = _left(data, entry["result"], entry["uncertainty"])
+        name = f"{entry['name']} (u {entry['uncertainty']:.0%})".replace("%", " %")
+        found.append(Measurement(name, False, whole * float(np.sqrt(left))))
+    return sorted(found, key=lambda it: it.width)
+
+
+def _keys(driver: str) -> list[str]:
+    """Keys of one value, or of several that are correlated."""
+    return driver.split(" + ")
+
+
+def _called(data: xr.Dataset, driver: str) -> str:
+    return " + ".join(str(data["input_name"].sel(input=key).values) for key in _keys(driver))
+
+
+def _width(data: xr.Dataset) -> float:
+    total = data.sel(result="total")
+    return float(total["high"] - total["low"])
+
+
+def _shares(data: xr.Dataset) -> dict[str, float]:
+    """Shares of the drivers in the variance of the total, each alone."""
+    own = data["first_order"].sel(sum="total").clip(0.0, 1.0)
+    return dict(zip(map(str, own["driver"].values), own.values.tolist(), strict=True))
+
+
+def _left(data: xr.Dataset, name: str, uncertainty: float) -> float:
+    """Part of the variance of the total that is left once a part of the loss is measured."""
+    part, total = (data["value"].sel(result=it).values for it in (name, "total"))
+    sound = np.isfinite(part) & np.isfinite(total)
+    (own, both), (_, whole) = np.cov(part[sound], total[sound])
+    error = uncertainty * float(data["nominal"].sel(result=name))
+    known = own + error**2
+    return float(np.clip(1 - both**2 / known / whole, 0.0, 1.0)) if known and whole else 1.0
+
+
+def model_remarks(case: Case, result: Result, *, brief: bool = False) -> list[str]:
+    """Which warnings matter, in watts, and which friction model suits the oil and the range.
+
+    With `brief` only what takes a fraction of a second.
+    """
+    return [*_warnings(result), *_friction(case, brief)]
+
+
+def _warnings(result: Result) -> Iterator[str]:
+    flags = sorted(result.flags_with_loss, key=lambda pair: -np.nan_to_num(pair[0], nan=np.inf))
+    told = [
+        f"{range_text(group)}, {watts:.0f} W"
+        for watts, group in flags
+        if watts >= CONCERNED * result.total
+    ]
+    if told:
+        yield f"Warnings that matter, with the loss that they concern: {'; '.join(told)}."
+    elif flags:
+        yield f"No warning concerns more than {CONCERNED:.0%} of the loss.".replace("%", " %")
+
+
+def _friction(case: Case, brief: bool) -> Iterator[str]:
+    quick = case.kind != "train" and case.models.temperatures == "inlet"
+    if not layout_of(case).meshes or not case.operation.torque or (brief and not quick):
+        return
+    try:
+        best, why = recommended(compare_friction(case))
+    except ConvergenceError:  # of a model that is not that of the case
+        return
+    does = "suits" if best.chosen else "would suit better than that of the case"
+    yield f"Friction: {best.name} {does}: {why}."

@@ -1,0 +1,133 @@
+"""What limits the trust in a result, and what would raise it."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+
+import epicyclic as ep
+from asymmetric import gear_pair
+from epicyclic import library
+from epicyclic.bands.advice import limits_of, measurements_of, model_remarks
+from epicyclic.bands.quick import quick_dataset
+from epicyclic.case.uncertain_values import remedy_for
+from epicyclic.cli.single import run
+from epicyclic.report.advice import advice_texts
+
+QUICK = {"numerics.mesh_positions": 8, "numerics.contact_segments": 6}
+
+
+@pytest.fixture(scope="module")
+def case():
+    return ep.load_case(gear_pair()).updated({**QUICK, "losses.mesh_pocketing.include": False})
+
+
+@pytest.fixture(scope="module")
+def band(case):
+    return quick_dataset(case, ep.solve(case))
+
+
+def width_of(data):
+    total = data.sel(result="total")
+    return float(total["high"] - total["low"])
+
+
+def test_values_that_limit_the_trust_come_in_order_with_their_own_bands(band):
+    limits = limits_of(band)
+    shares = band["first_order"].sel(sum="total").to_series().sort_values(ascending=False)
+    told = shares[shares >= 0.02]
+    assert [limit.name for limit in limits] == [remedy_for(key)[0] for key in told.index]
+    np.testing.assert_allclose(
+        [limit.width for limit in limits], width_of(band) * np.sqrt(told), rtol=1e-12
+    )
+    assert len(limits) > 3
+
+
+@pytest.mark.parametrize("key", ["surroundings.oil_air_ratio", "gear.roughness"])
+def test_a_known_input_leaves_the_band_that_was_foretold(case, band, key):
+    foretold = {it.name: it.width for it in measurements_of(band) if it.is_input}
+    known = case.updated({"uncertainty": {key: {"exact": True}}})
+    left = width_of(quick_dataset(known, ep.solve(known)))
+    assert left < width_of(band)
+    assert left == pytest.approx(foretold[remedy_for(key)[0]], rel=0.04)
+
+
+def test_a_measured_part_of_the_loss_leaves_what_a_fit_to_it_leaves():
+    """The residual of the total about a straight line through noisy measurements of the part."""
+    rng = np.random.default_rng(3)
+    size = 200_000
+    loaded = rng.normal(900, 70, size)
+    idle = rng.normal(150, 40, size) + 0.1 * (loaded - 900)
+    values = {"load_dependent": loaded, "load_independent": idle, "total": loaded + idle}
+    nominal = {"load_dependent": 900.0, "load_independent": 150.0, "total": 1050.0}
+    data = xr.Dataset(
+        {
+            "value": (("result", "sample"), np.array(list(values.values()))),
+            "nominal": ("result", list(nominal.values())),
+            "low": ("result", [0.0, 0.0, 800.0]),
+            "high": ("result", [0.0, 0.0, 1300.0]),
+            "first_order": (("sum", "driver"), np.zeros((1, 0))),
+        },
+        {"result": list(values), "sum": ["total"], "driver": []},
+    )
+    found = {it.name: it.width for it in measurements_of(data)}
+    for entry in library.uncertainty_table()["measurements"]:
+        error = entry["uncertainty"] * nominal[entry["result"]]
+        measured = values[entry["result"]] + rng.normal(0, error, size)
+        line = np.polyfit(measured, values["total"], 1)
+        left = np.std(values["total"] - np.polyval(line, measured)) / np.std(values["total"])
+        (name,) = (it for it in found if it.startswith(entry["name"]))
+        assert found[name] == pytest.approx(500 * left, rel=0.01)
+        assert found[name] < 480
+
+
+def test_every_assumption_says_what_to_do():
+    table = library.uncertainty_table()
+    for entry in [*table["inputs"], *table["model_form"]]:
+        assert entry["name"]
+        assert not entry["advice"].endswith(".")
+    assert len({entry["name"] for entry in table["inputs"]}) == len(table["inputs"])
+    assert remedy_for("surroundings.oil_air_ratio")[0] == "oil share around the gears"
+    assert remedy_for("sun.roughness")[0] == "roughness, sun.roughness"
+    assert "[uncertainty]" in remedy_for("planet.mass")[1]
+
+
+def test_the_recommended_model_and_the_largest_warning_are_told():
+    case = ep.load_case("talbot-2012").updated(QUICK)
+    result = ep.solve(case)
+    own = model_remarks(case, result)
+    assert any("mixed-ehl suits: it was made for this oil" in text for text in own)
+    other = case.updated({"models.friction": "niemann-winter"})
+    assert any("would suit better" in text for text in model_remarks(other, ep.solve(other)))
+    watts, group = max(result.flags_with_loss, key=lambda pair: pair[0])
+    assert watts > 0.05 * result.total
+    assert f"{group[0].quantity}" in own[0]
+    assert f"{watts:.0f} W" in own[0]
+    few = [watts for watts, _ in result.flags_with_loss if watts < 0.05 * result.total]
+    assert few
+    assert own[0].count(" W") == len(result.flags_with_loss) - len(few)
+
+
+def test_run_tells_it_in_four_sentences_and_as_json(band):
+    texts = list(advice_texts(band, brief=True))
+    assert 3 <= len(texts) <= 4
+    printed = CliRunner().invoke(run, ["talbot-2012-pair"])
+    assert printed.exit_code == 0, printed.output
+    assert "What limits the trust in it" in printed.output
+    assert "Measured, this would narrow the band" in " ".join(printed.output.split())
+    asked = CliRunner().invoke(run, ["talbot-2012-pair", "--json", "-"])
+    found = json.loads(asked.output)
+    pair = ep.load_case("talbot-2012-pair")
+    result = ep.solve(pair)
+    for key, value in json.loads(result.to_json()).items():
+        assert found[key] == value
+    data = quick_dataset(pair, result)
+    assert found["band"]["total"] == [
+        float(data[end].sel(result="total")) for end in ("low", "high")
+    ]
+    assert found["advice"]["limits"][0]["width"] == limits_of(data)[0].width
+    assert found["advice"]["unit"] == "W"
