@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from epicyclic.campaigns.campaign import command_of, make_campaign
 from epicyclic.campaigns.design import AXES, quantity_of_axis
-from epicyclic.campaigns.folder import CampaignFolder, column_of, write_whole
+from epicyclic.campaigns.folder import CampaignFolder, column_of
 from epicyclic.case.contact import contact_model
 from epicyclic.contact import LineContacts, contacts_at
 from epicyclic.errors import InputError, Problem
@@ -19,6 +19,7 @@ from epicyclic.lubricant.properties import oil_state
 from epicyclic.oilmodel.fitting import fit_quantity
 from epicyclic.oilmodel.model import FORMAT, OilModel, QuantityFit
 from epicyclic.sweeps.runner import Progress, Runner
+from epicyclic.whole_file import write_file
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -102,7 +103,7 @@ def characterise_oil(
 def fit_and_write(folder: CampaignFolder) -> OilModel:
     """Fit, and write the models to the folder."""
     model = fit_campaign(folder)
-    write_whole(folder.model, model.model_dump_json(indent=2) + "\n")
+    write_file(folder.model, model.model_dump_json(indent=2) + "\n")
     return model
 
 

@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING, Any
 from epicyclic.campaigns.campaign import SCHEMA, Campaign
 from epicyclic.campaigns.design import AXES, quantity_of_axis
 from epicyclic.errors import InputError, Problem
-from epicyclic.sweeps.dataset import whole_file
 from epicyclic.sweeps.journal import Journal, Rows
 from epicyclic.sweeps.runner import HERE, Runner, fingerprint
 from epicyclic.text_file import read_text
+from epicyclic.whole_file import make_folder, write_file
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["SIMULATIONS", "CampaignFolder", "column_of", "open_folder", "write_whole"]
+__all__ = ["SIMULATIONS", "CampaignFolder", "column_of", "open_folder"]
 
 SIMULATIONS = "simulations"
 """With which files of results begin."""
@@ -65,16 +65,13 @@ class CampaignFolder:
         InputError
             If it cannot be made, or holds another campaign.
         """
-        try:
-            self.path.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise _folder_error(self.path, f"cannot be made: {error.strerror}.") from None
+        make_folder(self.path)
         plan = self.path / "campaign.json"
         simulated = any(self.path.glob(f"{SIMULATIONS}.*"))  # first: shards may begin at once
         if not plan.exists():
             if simulated:
                 raise _folder_error(self.path, "holds simulations without their campaign.json.")
-            write_whole(plan, json.dumps(self.campaign.describe(), indent=2) + "\n")
+            write_file(plan, json.dumps(self.campaign.describe(), indent=2) + "\n")
         elif _read_json(plan) != json.loads(json.dumps(self.campaign.describe())):
             raise _folder_error(
                 self.path,
@@ -90,7 +87,7 @@ class CampaignFolder:
 
     def write(self, rows: Rows) -> None:
         """Write the table of all results."""
-        write_whole(self.table, self._frame(rows).to_csv(index=False))
+        write_file(self.table, self._frame(rows).to_csv(index=False))
 
     def read(self) -> pd.DataFrame:
         """The table of all results.
@@ -143,24 +140,6 @@ def open_folder(path: Path) -> CampaignFolder:
         return CampaignFolder(path, Campaign.again(data))
     except (KeyError, TypeError, AttributeError):
         raise _folder_error(path / "campaign.json", "is no plan of a campaign.") from None
-
-
-def write_whole(path: Path, text: str) -> None:
-    """Write a file whole or not at all.
-
-    Raises
-    ------
-    InputError
-        If it cannot be written.
-    """
-    try:
-        with whole_file(path) as temporary:
-            temporary.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise _folder_error(
-            path, f"cannot be written: {error.strerror}.",
-            "Nothing is lost; make room, and give the same command again.",
-        ) from None  # fmt: skip
 
 
 def column_of(name: str) -> str:

@@ -16,8 +16,9 @@ from epicyclic.cli.options import (
     runner_options,
     set_option,
 )
-from epicyclic.cli.output import check_ending, draw, show, write_file
+from epicyclic.cli.output import check_ending, draw, show
 from epicyclic.errors import InputError, Problem
+from epicyclic.whole_file import write_file
 
 if TYPE_CHECKING:
     from epicyclic.measurement.compare import MeasuredComparison

@@ -10,8 +10,9 @@ import click
 
 from epicyclic.cli.exit_codes import EXIT_NO_SOLUTION
 from epicyclic.cli.options import contact_set_option, json_option, parse_changes, plot_option
-from epicyclic.cli.output import PICTURES, check_ending, picture_bytes, show, write_file
+from epicyclic.cli.output import PICTURES, check_ending, picture_bytes, show
 from epicyclic.status import Status
+from epicyclic.whole_file import write_file
 
 __all__ = ["contact"]
 

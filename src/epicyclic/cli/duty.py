@@ -15,8 +15,9 @@ from epicyclic.cli.options import (
     runner_options,
     set_option,
 )
-from epicyclic.cli.output import show, write_file, wrong_ending
+from epicyclic.cli.output import show, wrong_ending
 from epicyclic.errors import InputError, Problem
+from epicyclic.whole_file import write_file
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -93,7 +94,7 @@ def duty(
 def _check_options(
     map_or_case: str, changes: tuple[str, ...], map_file: Path | None, output: Path | None
 ) -> None:
-    from epicyclic.sweeps.dataset import check_place
+    from epicyclic.whole_file import check_place
 
     problems = []
     if Path(map_or_case).suffix == _MAP_SUFFIX:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from epicyclic.cli.output import write_file
 from epicyclic.errors import InputError, Problem
+from epicyclic.whole_file import write_file
 
 __all__ = ["cases", "init", "oils", "schema"]
 

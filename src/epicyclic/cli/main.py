@@ -1,15 +1,13 @@
 """The command ``epicyclic``: parses, calls the library, prints.
 
-Exit codes: 0 done, 1 an error of the program, 2 bad input, 3 no solution found, 4 a sweep with
-failed points, 5 an imported case that lacks values, 130 interrupted. ``EPICYCLIC_TRACEBACK=1``
-shows where in the program an error arose.
+Exit codes: see docs/reference/errors.md. ``EPICYCLIC_TRACEBACK=1`` shows where in the program an error
+arose.
 """
 
 from __future__ import annotations
 
 import os
 import sys
-from typing import NoReturn
 
 import click
 
@@ -24,6 +22,7 @@ from epicyclic.cli.exit_codes import (
     EXIT_NO_SOLUTION,
 )
 from epicyclic.cli.heat import heat
+from epicyclic.cli.interrupt import ending_soon, tell_once, was_interrupted
 from epicyclic.cli.listing import cases, init, oils, schema
 from epicyclic.cli.many import loss_map, sweep
 from epicyclic.cli.merge import merge
@@ -91,35 +90,42 @@ for command in COMMANDS:
 
 def main() -> None:
     """Entry point: errors become messages and exit codes, never tracebacks."""
-    try:
-        cli.main(standalone_mode=False)
-    except click.ClickException as error:
-        error.show()
-        sys.exit(EXIT_INPUT)
-    except InputError as error:
-        click.echo(str(error), err=True)
-        sys.exit(EXIT_INPUT)
-    except ConvergenceError as error:
-        click.echo(f"No solution: {error}", err=True)
-        sys.exit(EXIT_NO_SOLUTION)
-    except BrokenPipeError:  # the reader of a pipe has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(EXIT_BROKEN_PIPE)
-    except (KeyboardInterrupt, click.Abort):
-        _end_interrupted()
-    except Exception as error:
-        if is_interrupt(error):
-            _end_interrupted()
-        if os.environ.get("EPICYCLIC_TRACEBACK") == "1":
-            raise
-        click.echo(
-            f"Error of the program: {type(error).__name__}: {error}\n"
-            "Set EPICYCLIC_TRACEBACK=1 to see where it arose.",
-            err=True,
-        )
-        sys.exit(EXIT_ERROR)
+    with ending_soon():
+        try:
+            cli.main(standalone_mode=False)
+        except (KeyboardInterrupt, click.Abort):
+            sys.exit(_ended_interrupted())
+        except Exception as error:
+            sys.exit(_told(error))
 
 
-def _end_interrupted() -> NoReturn:
-    click.echo("Interrupted.", err=True)
-    sys.exit(EXIT_INTERRUPTED)
+def _told(error: Exception) -> int:
+    """Say what went wrong; the exit code."""
+    if was_interrupted() or is_interrupt(error):
+        return _ended_interrupted()
+    match error:
+        case click.ClickException():
+            error.show()
+            return EXIT_INPUT
+        case InputError():
+            click.echo(str(error), err=True)
+            return EXIT_INPUT
+        case ConvergenceError():
+            click.echo(f"No solution: {error}", err=True)
+            return EXIT_NO_SOLUTION
+        case BrokenPipeError():  # the reader of a pipe has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return EXIT_BROKEN_PIPE
+    if os.environ.get("EPICYCLIC_TRACEBACK") == "1":
+        raise error
+    click.echo(
+        f"Error of the program: {type(error).__name__}: {error}\n"
+        "Set EPICYCLIC_TRACEBACK=1 to see where it arose.",
+        err=True,
+    )
+    return EXIT_ERROR
+
+
+def _ended_interrupted() -> int:
+    tell_once()
+    return EXIT_INTERRUPTED

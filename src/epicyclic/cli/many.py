@@ -22,7 +22,6 @@ from epicyclic.cli.options import (
     shard_option,
     temperature_option,
 )
-from epicyclic.cli.output import finishing
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -235,21 +234,18 @@ def compute(
         with progress_bar(noun) as progress:
             rows = replace(runner, journal=journal.path, progress=progress, output=how).run(plan)
         if runner.shard is None:
-            finish(plan, rows, write, output, journal)
+            finish(plan, rows, write, journal)
         else:
             click.echo(f"{size} of {plan.size} points are in {journal.path}.")
 
 
-def finish(
-    plan: Plan, rows: Rows, write: Write, output: Path, journal: Journal | None = None
-) -> None:
+def finish(plan: Plan, rows: Rows, write: Write, journal: Journal | None = None) -> None:
     """Write the rows of all points, and end with an exit code of its own if some failed."""
     failures = [] if plan.may_fail else rows.failures
     _print_failures(failures)
-    with finishing(f"Writing {output}."):
-        written = write(rows)
-        if journal is not None:
-            journal.remove()
+    written = write(rows)
+    if journal is not None:
+        journal.remove()
     click.echo(written)
     if failures:
         sys.exit(EXIT_FAILED_POINTS)

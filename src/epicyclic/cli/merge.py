@@ -54,4 +54,4 @@ def merge(files: tuple[Path, ...], output: Path) -> None:
 
     plans = (SweepPlan, MapPlan, StudyPlan, TablePlan, Campaign)
     plan, rows, how = gather(files, {plan.kind: plan for plan in plans})
-    finish(plan, rows, WRITERS[plan.kind](plan, output, **how), output)
+    finish(plan, rows, WRITERS[plan.kind](plan, output, **how))

@@ -1,17 +1,16 @@
-"""Files that commands write: whole or not at all."""
+"""What commands show, and the pictures and pages that they write."""
 
 from __future__ import annotations
 
 import io
-import signal
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from epicyclic.errors import InputError, Problem
+from epicyclic.whole_file import write_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,11 +22,8 @@ __all__ = [
     "check_ending",
     "check_page",
     "draw",
-    "finishing",
-    "make_folder",
     "picture_bytes",
     "show",
-    "write_file",
     "write_page",
     "wrong_ending",
 ]
@@ -101,51 +97,3 @@ def write_page(path: Path, page: str) -> None:
     else:
         write_file(path, page)
     click.echo(f"Wrote {path}.")
-
-
-def make_folder(path: Path) -> None:
-    """Make a folder for results, unless there is one."""
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        allowed = f"is no place for a folder: {error.strerror}."
-        problem = Problem("-o", str(path), allowed, "Name another folder.")
-        raise InputError([problem], "the command") from None
-
-
-def write_file(path: Path, content: str | bytes) -> None:
-    """Write `content` to a file whole or not at all, or to a device or pipe as it is."""
-    data = content.encode() if isinstance(content, str) else content
-    target = path.resolve()
-    temporary = target.with_name(f".{target.name}.tmp")
-    try:
-        if target.exists() and not target.is_file():
-            target.write_bytes(data)  # must not be replaced by a file
-            return
-        temporary.write_bytes(data)
-        temporary.replace(target)
-    except OSError as error:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
-        allowed = f"cannot be written: {error.strerror}."
-        problem = Problem("FILE", str(path), allowed, "Name another file.")
-        raise InputError([problem], "the command") from None
-
-
-@contextmanager
-def finishing(what: str) -> Iterator[None]:
-    """Put off the first interruption until all is done: it would leave the file half written.
-
-    Libraries that write files may also hang for ever when they are interrupted.
-    """
-    usual = signal.getsignal(signal.SIGINT)
-
-    def put_off(*_: object) -> None:
-        signal.signal(signal.SIGINT, usual)
-        click.echo(f"{what} Interrupt again to stop.", err=True)
-
-    signal.signal(signal.SIGINT, put_off)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, usual)

@@ -16,15 +16,8 @@ from epicyclic.cli.options import (
     set_option,
     shard_option,
 )
-from epicyclic.cli.output import (
-    PICTURES,
-    beside,
-    check_ending,
-    draw,
-    make_folder,
-    picture_bytes,
-    write_file,
-)
+from epicyclic.cli.output import PICTURES, beside, check_ending, draw, picture_bytes
+from epicyclic.whole_file import make_folder, write_file
 
 if TYPE_CHECKING:
     from epicyclic.sweeps.journal import Rows

@@ -67,8 +67,9 @@ def pockets_table(
 
 def table_writer(plan: TablePlan, output: Path) -> Write:
     """Writes tables; raises `InputError` if it cannot."""
-    from epicyclic.sweeps.dataset import check_place, write_dataset
+    from epicyclic.sweeps.dataset import write_dataset
     from epicyclic.sweeps.pocketing_table import table_dataset
+    from epicyclic.whole_file import check_place
 
     check_ending("-o", output, FORMATS)
     check_place(output)

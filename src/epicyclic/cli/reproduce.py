@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import click
 
 from epicyclic.cli.options import runner_options
-from epicyclic.cli.output import PICTURES, make_folder, picture_bytes, write_file, write_page
+from epicyclic.cli.output import PICTURES, picture_bytes, write_page
 from epicyclic.errors import InputError, Problem
+from epicyclic.whole_file import make_folder, write_file
 
 if TYPE_CHECKING:
     from epicyclic.sweeps.runner import Runner

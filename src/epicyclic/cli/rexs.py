@@ -10,8 +10,8 @@ import click
 
 from epicyclic.cli.exit_codes import EXIT_INCOMPLETE
 from epicyclic.cli.options import case_argument, from_rexs, load_with, parse_changes, set_option
-from epicyclic.cli.output import write_file
 from epicyclic.errors import InputError, Problem
+from epicyclic.whole_file import write_file
 
 if TYPE_CHECKING:
     from epicyclic.exchange.rexs.importing import RexsImport

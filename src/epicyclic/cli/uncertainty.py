@@ -82,7 +82,7 @@ def uncertainty(
     """
     from epicyclic.report.tables import terminal
     from epicyclic.report.uncertainty_tables import uncertainty_tables
-    from epicyclic.sweeps.dataset import check_place
+    from epicyclic.whole_file import check_place
 
     for option, path, endings in (("-o", output, ((".nc",),)), ("--plot", plot, ())):
         if path is not None:

@@ -59,7 +59,7 @@ def warm_up(
     from epicyclic.maps.warm_up import warm_up as compute
     from epicyclic.report.tables import terminal
     from epicyclic.report.warm_up_table import warm_up_tables
-    from epicyclic.sweeps.dataset import check_place
+    from epicyclic.whole_file import check_place
 
     for option, path, endings in (("-o", output, OUTPUTS), ("--plot", plot, None)):
         if path is not None:
@@ -79,7 +79,8 @@ def warm_up(
 
 def _write(data: xr.Dataset, output: Path) -> None:
     from epicyclic.report.warm_up_table import warm_up_rows
-    from epicyclic.sweeps.dataset import whole_file, write_dataset
+    from epicyclic.sweeps.dataset import write_dataset
+    from epicyclic.whole_file import whole_file
 
     if output.suffix == OUTPUTS[0]:
         write_dataset(data, output)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from epicyclic.case.operating import AXES, PLANE, STATE
 from epicyclic.errors import InputError, Problem
 from epicyclic.maps import fmu, simscape, simulation, tables, workbook
-from epicyclic.sweeps.dataset import check_place, whole_file
+from epicyclic.whole_file import check_place, whole_file
 
 if TYPE_CHECKING:
     import xarray as xr

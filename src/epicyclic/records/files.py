@@ -15,7 +15,7 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.records.checks import RUN_AGAIN, field_problems, map_problems
 from epicyclic.records.contents import MapContents, RecordContents
 from epicyclic.records.record import ResultRecord, record
-from epicyclic.sweeps.dataset import check_place, whole_file
+from epicyclic.whole_file import check_place, whole_file
 
 if TYPE_CHECKING:
     import xarray as xr

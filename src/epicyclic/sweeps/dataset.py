@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +13,7 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.results.result import number_fields, versions
 from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.plan import SweepPlan
+from epicyclic.whole_file import check_place, whole_file
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,10 +22,8 @@ if TYPE_CHECKING:
 __all__ = [
     "FORMATS",
     "check_output",
-    "check_place",
     "to_dataset",
     "to_table",
-    "whole_file",
     "write_dataset",
 ]
 
@@ -101,28 +96,6 @@ def check_output(path: Path) -> None:
         )
         raise InputError([problem], "the command")
     check_place(path)
-
-
-def check_place(path: Path) -> None:
-    """Raise `InputError` unless a file can be written to `path`."""
-    if (path.exists() and not path.is_file()) or not path.absolute().parent.is_dir():
-        problem = Problem("-o", str(path), "is no place for a file.", "Name a file in a folder.")
-    elif not os.access(path.absolute().parent, os.W_OK):
-        problem = Problem("-o", str(path), "lies in a folder without write permission.", "Move it.")
-    else:
-        return
-    raise InputError([problem], "the command")
-
-
-@contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
-    """A file of the same name in a temporary folder; it replaces `path` if nothing goes wrong."""
-    target = path.resolve()
-    with tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as folder:
-        temporary = Path(folder) / target.name
-        yield temporary
-        temporary.chmod(0o644)
-        temporary.replace(target)
 
 
 def write_dataset(dataset: xr.Dataset, path: Path) -> None:

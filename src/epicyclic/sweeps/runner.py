@@ -21,6 +21,7 @@ from typing import Any, ClassVar, Self
 from epicyclic.errors import EpicyclicError, InputError, Problem, is_interrupt
 from epicyclic.status import Status
 from epicyclic.sweeps.journal import Journal, Row, Rows
+from epicyclic.whole_file import make_folder
 
 __all__ = [
     "HERE",
@@ -162,12 +163,7 @@ class Runner:
         if self.journal is None:
             return self
         folder = Path(self.journal)
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            allowed = f"is no place for a folder: {error.strerror}."
-            problem = Problem("journal", str(folder), allowed, "Name another folder.")
-            raise InputError([problem], "the command") from None
+        make_folder(folder, "journal")
         return replace(self, journal=folder / f"{fingerprint(plan)}.partial")
 
 

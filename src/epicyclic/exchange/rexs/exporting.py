@@ -19,7 +19,7 @@ from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, choose
 from epicyclic.exchange.rexs.trains import Train, chosen_train
 from epicyclic.exchange.rexs.vocabulary import versions
 from epicyclic.results.result import Result
-from epicyclic.sweeps.dataset import whole_file
+from epicyclic.whole_file import whole_file
 
 __all__ = ["rexs_bytes", "write_rexs"]
 

@@ -1,0 +1,91 @@
+"""Ctrl-C ends any command soon, with exit code 130 and nothing half-written."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from epicyclic.whole_file import PREFIX
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+
+LONGEST_END = 2.0
+FINE = ("--set", "numerics.pocket_slices=60", "--set", "numerics.pocket_steps=700")
+"""Pockets that take minutes."""
+
+
+def group_of(leader):
+    """CPU seconds of every living process in a process group, by number."""
+    seconds = {}
+    for entry in Path("/proc").iterdir():
+        if not entry.name.isdigit():
+            continue
+        try:
+            fields = (entry / "stat").read_text().rpartition(")")[2].split()
+        except OSError:  # it has just ended
+            continue
+        if int(fields[2]) == leader and fields[0] != "Z":
+            seconds[entry.name] = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return seconds
+
+
+def interrupted(arguments, folder, *, after):
+    """Exit code, errors and seconds to the end of a command, interrupted in mid-work."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "epicyclic", *arguments],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    deadline = time.monotonic() + 120
+    while sum(group_of(process.pid).values()) < after:
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    start = time.monotonic()
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+    _, errors = process.communicate(timeout=60)
+    seconds = time.monotonic() - start
+    while group_of(process.pid):
+        assert time.monotonic() - start < LONGEST_END, "workers are left"
+        time.sleep(0.05)
+    return process.returncode, errors, seconds
+
+
+def slow(*arguments):
+    return pytest.param(arguments, marks=pytest.mark.slow, id=arguments[0])
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("run", "talbot-2012", *FINE, "--save", "r.nc"),
+        ("sweep", "talbot-2012", *FINE, "--vary", "operation.speed=1:4000:9 rpm", "--jobs", "2",
+         "-o", "s.nc"),
+        slow("pockets", "talbot-2012", *FINE, "--plot", "p.png"),
+        slow("pockets-table", "talbot-2012", *FINE, "--speed", "500:5000:10 rpm", "-o", "t.nc"),
+        slow("oil", "characterise", "atf-talbot-2012", "--size", "64", "--jobs", "2", "-o", "atf"),
+    ],
+    ids=lambda arguments: arguments[0],
+)  # fmt: skip
+def test_compiled_code_is_left_at_once(tmp_path, arguments):
+    code, errors, seconds = interrupted(arguments, tmp_path, after=6.0)
+    assert code == 130, errors
+    assert errors.strip().endswith("Interrupted.")
+    assert errors.count("Interrupted.") == 1
+    assert "Traceback" not in errors
+    assert "leaked" not in errors
+    assert seconds < LONGEST_END
+    left = [path for path in tmp_path.rglob("*") if path.is_file()]
+    # what is finished is kept: journals of points, the plan of the campaign
+    assert all(path.suffix == ".partial" or path.name == "campaign.json" for path in left), left
+    assert not list(tmp_path.rglob(f"{PREFIX}*"))
