@@ -1,7 +1,7 @@
 """The command ``epicyclic``: parses, calls the library, prints.
 
-Exit codes: see docs/reference/errors.md. ``EPICYCLIC_TRACEBACK=1`` shows where in the program an error
-arose.
+Its exit codes are listed in docs/reference/errors.md; ``EPICYCLIC_TRACEBACK=1`` shows where in the
+program an error arose.
 """
 
 from __future__ import annotations
