@@ -12,3 +12,5 @@ class Status(StrEnum):
 
     CONVERGED = "converged"
     FAILED = "failed"
+    UNPHYSICAL = "unphysical"
+    """There are numbers, but they cannot be: a loss below zero, or energy that does not balance."""

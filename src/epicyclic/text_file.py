@@ -6,16 +6,22 @@ other encodings end in the same messages.
 
 from __future__ import annotations
 
+import hashlib
 import io
+import json
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["check_archive", "decode", "read_bytes", "read_text", "refuse"]
+__all__ = ["check_archive", "decode", "read_bytes", "read_text", "refuse", "sealed", "unsealed"]
 
 _MEGABYTE = 1_000_000
+_SEAL = "fingerprint"
+_MAKE_AGAIN = "Make it again."
+_LONGEST_REASON = 200
 
 
 def read_text(path: Path, noun: str, largest: int) -> str:
@@ -83,6 +89,31 @@ def check_archive(content: bytes, noun: str, largest: int, remedy: str) -> None:
         refuse(f"is not {noun}.", remedy)
     if unpacked > largest:
         refuse(f"unpacks to more than {largest / _MEGABYTE:g} MB.", remedy)
+
+
+def sealed(content: Mapping[str, Any], indent: int | None = None) -> str:
+    """JSON with a fingerprint of its content, so that `unsealed` sees whether it was altered."""
+    separators = (",", ":") if indent is None else (",", ": ")
+    whole = {**content, _SEAL: _fingerprint(content)}
+    return json.dumps(whole, indent=indent, separators=separators) + "\n"
+
+
+def unsealed(text: str) -> dict[str, Any]:
+    """The content of a text from `sealed`; raises `InputError` if it is none, or was altered."""
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        refuse(f"is not JSON: {str(error)[:_LONGEST_REASON]}.", _MAKE_AGAIN)
+    if not isinstance(content, dict) or _SEAL not in content:
+        refuse("has no fingerprint.", _MAKE_AGAIN)
+    if content.pop(_SEAL) != _fingerprint(content):
+        refuse("was altered: its fingerprint is that of other content.", _MAKE_AGAIN)
+    return content
+
+
+def _fingerprint(content: Mapping[str, Any]) -> str:
+    text = json.dumps(content, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def refuse(allowed: str, remedy: str) -> NoReturn:

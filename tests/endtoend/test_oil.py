@@ -68,7 +68,7 @@ def finished(tmp_path_factory):
     folder = CampaignFolder(tmp_path_factory.mktemp("oil") / "atf", campaign())
     folder.prepare()
     folder.run(Runner(jobs=1))
-    folder.model.write_text(fit_campaign(folder).model_dump_json(indent=2) + "\n")
+    folder.model.write_text(fit_campaign(folder).to_text())
     return folder.path
 
 

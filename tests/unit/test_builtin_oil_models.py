@@ -89,7 +89,7 @@ def model():
 def case(model, tmp_path, monkeypatch):
     """A set with an oil for which models are built in."""
     file = tmp_path / f"{OIL}.json"
-    file.write_text(model.model_dump_json())
+    file.write_text(model.to_text())
     files = {OIL: file, SIMULATED: library.oil_model_file(SIMULATED)}
     monkeypatch.setattr(library, "oil_model_file", files.get)
     return ep.load_case("talbot-2012").updated({"lubricant.oil": OIL, "planet.count": 4})
@@ -154,7 +154,7 @@ def test_where_a_value_is_from_does_not_matter(case):
 def test_a_file_of_the_user_comes_before_that_built_in(case, model, tmp_path):
     only = model.model_copy(update={"fits": {"friction": model.fits["friction"]}})
     file = tmp_path / "own.json"
-    file.write_text(only.model_dump_json())
+    file.write_text(only.to_text())
     changed = case.updated({"models.oil_model": str(file)})
     models = resolve_models(changed)
     assert models["friction"] == "fitted-or-schlenk"

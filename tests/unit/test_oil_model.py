@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -18,6 +19,7 @@ from epicyclic.losses.validity import ModelUse, check_ranges
 from epicyclic.oilmodel import regressions, structured
 from epicyclic.oilmodel.fitting import fit_quantity
 from epicyclic.oilmodel.model import FORMAT, FORMS, OilModel, read_oil_model
+from epicyclic.text_file import sealed
 
 STEEL = 227.47e9
 # Tables 5.2(a), 5.2(b) and 3.2 of Talbot (2012), in the order of the columns
@@ -211,7 +213,7 @@ def model(talbot):
 
 def test_a_file_gives_back_the_model(model, talbot, tmp_path):
     file = tmp_path / "model.json"
-    file.write_text(model.model_dump_json())
+    file.write_text(model.to_text())
     back = read_oil_model(file)
     assert back.model_dump_json() == model.model_dump_json()
     assert back.oil == talbot.lubricant.oil
@@ -265,22 +267,71 @@ def test_every_condition_that_is_held_is_flagged(talbot):
     assert [flag.quantity[-1] for flag in flags] == ["1", "2"]
 
 
+def resealed(text):
+    """An altered file with the fingerprint of what it holds now."""
+    content = json.loads(text)
+    del content["fingerprint"]
+    return sealed(content)
+
+
+def with_domain(low, high):
+    def damage(text):
+        content = json.loads(text)
+        content["fits"]["friction"]["domain"]["radius"] = [low, high]
+        return resealed(json.dumps(content))
+
+    return damage
+
+
+def with_coefficient(text):
+    content = json.loads(text)
+    content["fits"]["friction"]["forms"][0]["coefficients"][10] = -0.3
+    return resealed(json.dumps(content))
+
+
 @pytest.mark.parametrize(
     ("damage", "told"),
     [
-        (lambda text: text[: len(text) // 2], "no sound oil model"),
-        (lambda text: text.replace("oil model 3", "oil model 7"), "format"),
-        (lambda text: text.replace('"form":"structured"', '"form":"other"'), "other"),
-        (lambda text: text.replace('"lubricant"', '"fluid"'), "no oil"),
-        (lambda text: text.replace('"radius":', '"size":'), "domain"),
+        (lambda text: text[: len(text) // 2], "is not JSON"),
+        (lambda text: resealed(text.replace("oil model 3", "oil model 7")), "format"),
+        (lambda text: resealed(text.replace('"form": "structured"', '"form": "other"')), "other"),
+        (lambda text: resealed(text.replace('"lubricant"', '"fluid"')), "no oil"),
+        (lambda text: resealed(text.replace('"radius":', '"size":')), "domain"),
+        (lambda text: resealed(text.replace('"version": "0"', '"version": "99.1"')), "99.1"),
+        (lambda text: text.replace('"seed": 0', '"seed": 7'), "was altered"),
+        (lambda text: text.replace('"fingerprint"', '"print"'), "no fingerprint"),
+        (with_domain(0.02, 0.01), "must rise"),
+        (with_domain(-0.02, 0.01), "above zero"),
+        (with_coefficient, "out of bounds"),
+        (
+            lambda text: resealed(
+                re.sub('"equivalent_modulus": [0-9.]+', '"equivalent_modulus": 0', text)
+            ),
+            "greater than 0",
+        ),
         (lambda text: json.dumps({"coefficients": "x" * 6_000_000}), "too large"),
-        (lambda text: "", "no sound oil model"),
+        (lambda text: "", "is not JSON"),
     ],
-    ids=["cut", "version", "form", "oil", "domain", "large", "empty"],
+    ids=[
+        "cut",
+        "format",
+        "form",
+        "oil",
+        "domain",
+        "version",
+        "altered",
+        "no fingerprint",
+        "reversed domain",
+        "negative domain",
+        "coefficient",
+        "modulus",
+        "large",
+        "empty",
+    ],
 )
 def test_a_damaged_file_is_refused(model, tmp_path, damage, told):
     file = tmp_path / "model.json"
-    file.write_text(damage(model.model_dump_json()))
+    file.write_text(damage(model.to_text()))
     with pytest.raises(InputError, match=told) as caught:
         read_oil_model(file)
     assert str(file) in str(caught.value)

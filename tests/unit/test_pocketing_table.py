@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from importlib.resources import files
 
 import numpy as np
@@ -15,6 +16,7 @@ from epicyclic.pocketing.stored import read_stored, stored_table
 from epicyclic.sweeps.dataset import write_dataset
 from epicyclic.sweeps.plan import make_plan
 from epicyclic.sweeps.runner import fingerprint
+from epicyclic.text_file import sealed
 
 COARSE = {
     "numerics.pocket_slices": 4,
@@ -134,6 +136,21 @@ def test_other_files_are_refused_when_the_case_is_loaded(case, tmp_path, content
         case.updated({"models.pocketing_table": str(path)})
 
 
+def resealed(text):
+    """Altered tables with the fingerprint of what they hold now."""
+    content = json.loads(text)
+    del content["fingerprint"]
+    return sealed(content)
+
+
+def test_altered_tables_are_refused(table, tmp_path):
+    path = tmp_path / "changed.nc"
+    flows = table.attrs["flows"]
+    write_dataset(table.assign_attrs(flows=flows.replace('"scaled":[[', '"scaled":[[1')), path)
+    with pytest.raises(ep.InputError, match="was altered"):
+        read_stored(path)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
@@ -141,13 +158,15 @@ def test_other_files_are_refused_when_the_case_is_loaded(case, tmp_path, content
         ('"readable":[', '"readable":[true,', "differ in count"),
         ('"number":[', '"number":[1e9,', "differ in count"),
         ('"error":', '"error":NaN,"was":', "is damaged"),
+        ('"error":', '"error":-', "is damaged"),
+        ('"scaled":[[', '"scaled":[[-', "a power is below zero"),
     ],
 )
 def test_damaged_and_other_tables_are_refused(table, tmp_path, old, new, said):
     path = tmp_path / "changed.nc"
     flows = table.attrs["flows"]
     assert old in flows
-    write_dataset(table.assign_attrs(flows=flows.replace(old, new)), path)
+    write_dataset(table.assign_attrs(flows=resealed(flows.replace(old, new))), path)
     with pytest.raises(ep.InputError, match=said):
         read_stored(path)
 

@@ -23,6 +23,7 @@ from epicyclic.errors import ConvergenceError
 from epicyclic.losses.contact import MeshContact
 from epicyclic.pocketing.similarity import FlowFamily
 from epicyclic.pocketing.table import FlowTables
+from epicyclic.results.physical import judged
 from epicyclic.results.result import Result
 
 WARMER = (30.0, 60.0)
@@ -46,6 +47,8 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
     Returns
     -------
     Result
+        Its status is ``unphysical`` if a loss is below zero or energy does not balance; the first
+        of its warnings says why.
 
     Raises
     ------
@@ -63,7 +66,7 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
             f"{', '.join(bad)} came out as no finite number: the case is far outside the range of "
             "the models; choose others (models.friction, models.rolling, models.bearing)."
         )
-    return result
+    return judged(result)
 
 
 def without_torque(case: Case) -> Case:

@@ -103,7 +103,7 @@ def characterise_oil(
 def fit_and_write(folder: CampaignFolder) -> OilModel:
     """Fit, and write the models to the folder."""
     model = fit_campaign(folder)
-    write_file(folder.model, model.model_dump_json(indent=2) + "\n")
+    write_file(folder.model, model.to_text())
     return model
 
 

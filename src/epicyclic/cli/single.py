@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,8 +10,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from epicyclic.cli.exit_codes import EXIT_NO_SOLUTION
 from epicyclic.cli.options import case_argument, json_option, load_with, plot_option, set_option
 from epicyclic.cli.output import beside, check_ending, draw, show
+from epicyclic.status import Status
 
 if TYPE_CHECKING:
     from epicyclic.case.case import Case
@@ -54,6 +57,9 @@ def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path |
         lambda: result_json(result, known),
         json_file,
     )
+    if result.status is not Status.CONVERGED:
+        click.echo(result.notes[0], err=True)
+        sys.exit(EXIT_NO_SOLUTION)
 
 
 @contextmanager

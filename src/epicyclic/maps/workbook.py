@@ -92,7 +92,7 @@ def _overview(data: xr.Dataset) -> Iterator[Sequence[Any]]:
             ", ".join(table.get("fixed", ())),
             "; ".join(" + ".join(group) for group in table.get("joined", ())),
             own["total"].size,
-            int((own["status"] == Status.FAILED).sum()),
+            int((own["status"] != Status.CONVERGED).sum()),
             float(own["efficiency"].max()),
         ]
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
+import re
 from functools import cached_property, lru_cache
+from importlib import metadata
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from epicyclic.contact import CONDITIONS, LineContacts
 from epicyclic.errors import InputError, Problem
@@ -20,7 +23,7 @@ from epicyclic.oilmodel.regressions import (
     Regression,
 )
 from epicyclic.oilmodel.structured import STRUCTURED_FRICTION, STRUCTURED_ROLLING, Structured
-from epicyclic.text_file import read_text
+from epicyclic.text_file import read_text, sealed, unsealed
 
 __all__ = [
     "FORMAT",
@@ -55,6 +58,13 @@ LARGEST_FILE = 5_000_000
 """A file of coefficients is much smaller. [bytes]"""
 
 
+_MAY_BE_ZERO = ("slide_to_roll_ratio", "roughness1", "roughness2")
+
+
+def _parts(version: str) -> list[int]:
+    return [int(part) for part in version.split(".")]
+
+
 class _Data(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
@@ -72,9 +82,9 @@ class FitError(_Data):
     """
 
     regime: str
-    contacts: int
-    median: float
-    largest_of_90_percent: float
+    contacts: int = Field(ge=0)
+    median: float = Field(ge=0)
+    largest_of_90_percent: float = Field(ge=0)
 
 
 class FittedForm(_Data):
@@ -102,7 +112,7 @@ class QuantityFit(_Data):
     """
 
     unit: str
-    contacts: int
+    contacts: int = Field(ge=1)
     domain: dict[str, tuple[float, float]]
     forms: tuple[FittedForm, ...] = Field(min_length=1)
     left_out: dict[str, str] = {}
@@ -111,6 +121,9 @@ class QuantityFit(_Data):
     def _check_domain(self) -> QuantityFit:
         if set(self.domain) != set(CONDITIONS):
             raise ValueError(f"the domain must have {', '.join(CONDITIONS)}")
+        for name, (low, high) in self.domain.items():
+            if not 0 <= low <= high or (low == 0 and name not in _MAY_BE_ZERO):
+                raise ValueError(f"the domain of {name} must rise, above zero: {low:g} to {high:g}")
         return self
 
 
@@ -148,7 +161,7 @@ class OilModel(_Data):
     command: str = ""
     simulations: dict[str, int]
     notes: tuple[str, ...] = ()
-    equivalent_modulus: float
+    equivalent_modulus: float = Field(gt=0)
     fits: dict[str, QuantityFit]
 
     @model_validator(mode="after")
@@ -165,7 +178,21 @@ class OilModel(_Data):
                 form = known.get(fitted.form)
                 if form is None or form.size != len(fitted.coefficients):
                     raise ValueError(f"{quantity}: wrong coefficients of form {fitted.form}")
+                if isinstance(form, Structured) and not form.allows(fitted.coefficients):
+                    raise ValueError(f"{quantity}: {fitted.form} coefficients out of bounds")
         return self
+
+    @field_validator("version")
+    @classmethod
+    def _check_version(cls, version: str) -> str:
+        own = metadata.version("epicyclic")
+        if not re.fullmatch(r"\d+(\.\d+)*", version) or _parts(version) > _parts(own):
+            raise ValueError(f"made by version {version[:40]}; this is {own}")
+        return version
+
+    def to_text(self) -> str:
+        """What its file holds."""
+        return sealed(self.model_dump(mode="json"), indent=2)
 
     @cached_property
     def oil(self) -> Oil:
@@ -213,7 +240,8 @@ def read_oil_model(path: str | Path) -> OilModel:
 def _read(path: Path, _changed: int, _size: int) -> OilModel:
     """The file as it was when it was last changed."""
     try:
-        return OilModel.model_validate_json(read_text(path, "oil model", LARGEST_FILE))
+        content = unsealed(read_text(path, "oil model", LARGEST_FILE))
+        return OilModel.model_validate_json(json.dumps(content))
     except InputError as error:
         raise _file_error(path, error.problems[0].allowed) from None
     except ValidationError as error:

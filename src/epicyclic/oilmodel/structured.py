@@ -10,7 +10,7 @@ oil touches more than one that moves faster.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,6 +86,13 @@ class Structured:
     def size(self) -> int:
         """Number of coefficients."""
         return len(self.labels)
+
+    def allows(self, coefficients: Sequence[float]) -> bool:
+        """Whether coefficients are within the bounds of the fit."""
+        return all(
+            low <= value <= high
+            for low, value, high in zip(self.low, coefficients, self.high, strict=True)
+        )
 
     def value(self, states: LineContacts, coefficients: FloatArray) -> FloatArray:
         """The quantity at every contact, shape (n,)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
@@ -16,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from epicyclic.errors import InputError, Problem
 from epicyclic.pocketing.similarity import FlowFamily
 from epicyclic.pocketing.table import FlowTable
-from epicyclic.text_file import read_bytes
+from epicyclic.text_file import read_bytes, sealed, unsealed
 
 __all__ = ["ATTRIBUTE", "StoredTables", "read_stored", "store", "stored_table"]
 
@@ -28,6 +29,9 @@ _LARGEST = 50_000_000
 """A table of two meshes takes some ten kilobytes. [bytes]"""
 _SAME = 1e-9
 """Numbers that differ less, relatively, are the same: machines round differently. [1]"""
+
+NEGLIGIBLE = 1e-3
+"""Of the largest power of a table: a power below zero by less is an error of the numerics. [1]"""
 
 _Plain = bool | int | float | str | None
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -42,7 +46,7 @@ class _Stored(BaseModel):
     number: list[Annotated[_Finite, Field(gt=0)]] = Field(min_length=1)
     scaled: list[Annotated[list[float], Field(min_length=5, max_length=5)]]
     readable: list[bool]
-    error: _Finite
+    error: Annotated[_Finite, Field(ge=0)]
 
     @model_validator(mode="after")
     def _fits(self) -> _Stored:
@@ -51,6 +55,9 @@ class _Stored(BaseModel):
             raise ValueError("numbers and figures differ in count")
         if any(np.diff(self.number) <= 0):
             raise ValueError("the numbers do not rise")
+        powers = [figures[0] for figures in self.scaled]
+        if np.nanmin(powers, initial=0.0) < -NEGLIGIBLE * np.nanmax(np.abs(powers), initial=0.0):
+            raise ValueError("a power is below zero")
         return self
 
 
@@ -65,7 +72,7 @@ class StoredTables(BaseModel):
 
 def store(tables: Mapping[FlowFamily, FlowTable]) -> str:
     """Tables as the text that a file holds."""
-    return StoredTables(
+    stored = StoredTables(
         version=metadata.version("epicyclic"),
         tables=[
             _Stored(
@@ -77,7 +84,8 @@ def store(tables: Mapping[FlowFamily, FlowTable]) -> str:
             )
             for family, table in tables.items()
         ],
-    ).model_dump_json()
+    )
+    return sealed(json.loads(stored.model_dump_json()))
 
 
 def read_stored(path: Path) -> StoredTables:
@@ -112,7 +120,9 @@ def _read(path: Path, _changed: int, _size: int) -> StoredTables:
     try:
         with netCDF4.Dataset(path.name, memory=content) as file:
             text = file.getncattr(ATTRIBUTE)
-        stored = StoredTables.model_validate_json(text)
+        stored = StoredTables.model_validate(unsealed(str(text)))
+    except InputError as error:
+        raise _error(path, error.problems[0].allowed) from None
     except ValidationError as error:
         reason = error.errors(include_url=False)[0]["msg"]
         raise _error(path, f"is damaged: {reason}.") from None

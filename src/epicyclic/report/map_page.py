@@ -48,7 +48,7 @@ def map_line(data: xr.Dataset) -> str:
 
 def map_key_figures(data: xr.Dataset) -> list[KeyFigure]:
     """What a reader looks for first."""
-    failed = int((data["status"] == Status.FAILED).sum())
+    failed = int((data["status"] != Status.CONVERGED).sum())
     figures = [KeyFigure("points", number(data["total"].size, ""))]
     if failed:
         figures.append(KeyFigure("failed points", number(failed, "")))

@@ -2,14 +2,15 @@
 
 A study that is interrupted leaves its journal behind, and the same study goes on from there. Every
 line names the study it belongs to, one of them says what it is, and nothing is ever overwritten: a
-file that holds anything else is refused. Lines that cannot be read, such as one cut short, are
-computed again. The file of a shard is the journal of its points.
+file that holds anything else is refused. Lines that cannot be read, such as one cut short, or that
+have been altered are computed again. The file of a shard is the journal of its points.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -27,6 +28,7 @@ __all__ = ["NOT_COMPUTED", "Journal", "Row", "Rows", "read_heading"]
 NOT_COMPUTED = "not computed"
 """Status of the points of other shards."""
 
+_WITHOUT_NUMBERS = (Status.FAILED, Status.UNPHYSICAL)
 _LONGEST_LINE = 50_000_000
 """A point takes some kilobytes, what a study is at most all values of a million points. [bytes]"""
 _MOST_STRANGE_LINES, _LONG = 100, 500_000
@@ -79,7 +81,7 @@ class Rows:
     def failures(self) -> list[str]:
         """Why points failed, one text for each."""
         pairs = zip(self.status, self.message, strict=True)
-        return [message for status, message in pairs if status == Status.FAILED]
+        return [message for status, message in pairs if status in _WITHOUT_NUMBERS]
 
     def add(self, point: int, row: Row) -> None:
         self.status[point] = sys.intern(row.status)
@@ -178,7 +180,7 @@ class Journal:
         InputError
             If it cannot be written; what was written before stays.
         """
-        self._write(_RECORD.dump_json(_Record(self.fingerprint, point, row)))
+        self._write(_sealed(_RECORD.dump_json(_Record(self.fingerprint, point, row))))
 
     def remove(self) -> None:
         """Delete the journal of a finished study."""
@@ -229,9 +231,21 @@ def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
     raise _error(path, "does not say of which study it holds points.")
 
 
+_CHECK = b',"check":"%08x"}'
+
+
+def _sealed(line: bytes) -> bytes:
+    """A line with the checksum of what comes before it."""
+    return line[:-1] + _CHECK % zlib.crc32(line)
+
+
 def _parse(line: bytes) -> _Record | None:
+    """The record of a line; None if it is none, or has been altered."""
+    record = line[: -len(_CHECK % 0)] + b"}"
+    if line != _sealed(record):
+        return None
     try:
-        return _RECORD.validate_json(line)
+        return _RECORD.validate_json(record)
     except ValidationError:
         return None
 

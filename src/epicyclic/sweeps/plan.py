@@ -33,6 +33,7 @@ from epicyclic.case.values import parse_value
 from epicyclic.case.wording import sentence, written
 from epicyclic.errors import InputError, Problem
 from epicyclic.pocketing.table import FlowTables
+from epicyclic.status import Status
 from epicyclic.sweeps.journal import Row
 from epicyclic.sweeps.pockets import flow_tables
 from epicyclic.sweeps.runner import Plan, guarded
@@ -126,6 +127,8 @@ class CasePlan(Plan):
     def _solve(self, index: int) -> Row:
         case = self.case.updated(self.changes(index))
         result = solve(case, flow_tables=self.flow_tables)
+        if result.status is not Status.CONVERGED:
+            return Row(str(result.status), message=result.notes[0])
         return Row(
             status=str(result.status),
             warnings=" | ".join(result.warnings),

@@ -133,7 +133,7 @@ class Runner:
         for finished in self._finished(plan):
             for index, row in finished:
                 rows.add(index, row)
-                failed += row.status == Status.FAILED
+                failed += row.status != Status.CONVERGED
             done += len(finished)
             if self.progress is not None:
                 self.progress(done, total, *([failed] if self.tell_failures else []))

@@ -1,0 +1,93 @@
+"""A result that cannot be is an outcome of its own: not a number to trust, not an exception."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+
+import epicyclic as ep
+from epicyclic.elements import pocket_flow
+from epicyclic.pocketing.similarity import FlowFigures
+from epicyclic.results.physical import judged
+from epicyclic.status import Status
+
+
+@pytest.fixture(scope="module")
+def result(coarse_talbot):
+    return ep.solve(coarse_talbot)
+
+
+def with_loss(result, name, watts):
+    terms = [replace(one, watts=watts) if one.name == name else one for one in result.terms]
+    return replace(result, terms=tuple(terms))
+
+
+def test_a_sound_result_stays_as_it_is(result):
+    assert judged(result) is result
+    assert result.status == "converged"
+
+
+def test_a_loss_below_zero_is_told(result):
+    found = judged(with_loss(result, "ring_drag", -7.25))
+    assert found.status == Status.UNPHYSICAL
+    assert found.to_dict()["status"] == "unphysical"
+    assert found.warnings[0].startswith("No result: Losses are below zero: ring drag -7.25 W.")
+
+
+def test_energy_that_does_not_balance_is_told(result):
+    found = judged(with_loss(result, "ring_drag", result.losses["ring_drag"] + 0.5))
+    assert found.status == Status.UNPHYSICAL
+    assert "The shafts bring -0.5 W more than is lost." in found.warnings[0]
+
+
+def test_errors_of_the_numerics_are_no_reason(result):
+    least = -1e-4 * result.total
+    members = dict(result.flow.members)
+    one, other = with_loss(result, "ring_drag", least), members["sun"]
+    torque = other.torque + (one.total - result.total) / other.speed
+    members["sun"] = replace(other, torque=torque)
+    assert judged(replace(one, flow=replace(result.flow, members=members))).status == "converged"
+
+
+@pytest.fixture
+def impossible_pockets(monkeypatch):
+    """Pockets that give power, as a damaged table of flows would have it."""
+    figures = FlowFigures(-40.5, 0.0, 1e5, -1e5, 20.0)
+    monkeypatch.setattr(
+        pocket_flow,
+        "_solve_all",
+        lambda requests: tuple(pocket_flow.MeshFlow(figures) for _ in requests),
+    )
+
+
+def test_solve_refuses_pockets_that_give_power(coarse_talbot, impossible_pockets):
+    found = ep.solve(coarse_talbot)
+    assert found.status == "unphysical"
+    assert "sun mesh pocketing" in found.warnings[0]
+
+
+def test_the_command_ends_with_3(
+    coarse_talbot, impossible_pockets, coarse_options, monkeypatch, capsys
+):
+    from epicyclic.cli.main import main
+
+    monkeypatch.setattr("sys.argv", ["epicyclic", "run", "talbot-2012", *coarse_options, "--json"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 3
+    shown = capsys.readouterr()
+    assert json.loads(shown.out)["status"] == "unphysical"
+    assert shown.err.startswith("No result: Losses are below zero: ")
+
+
+def test_points_of_sweeps_have_the_outcome_and_no_numbers(coarse_talbot, impossible_pockets):
+    found = ep.sweep(
+        coarse_talbot.updated({"numerics.pocket_interpolation": 0}),
+        {"operation.speed": ["0 rpm", "3000 rpm"]},
+        jobs=1,
+    )
+    assert list(found["status"].values) == ["converged", "unphysical"]
+    assert found["total"].isnull().values.tolist() == [False, True]
+    assert found["message"].values[1].startswith("No result: ")
