@@ -126,10 +126,10 @@ def _map(
     from epicyclic.cli.progress import progress_bar
     from epicyclic.maps.duty import cycle_map
     from epicyclic.maps.formats import write_map
-    from epicyclic.maps.tables import read_netcdf
+    from epicyclic.records.files import open_map
 
     if Path(map_or_case).suffix == _MAP_SUFFIX:
-        return read_netcdf(Path(map_or_case))
+        return open_map(map_or_case)
     case = load_with(map_or_case, changes)
     with progress_bar("points of the map") as progress:
         data = cycle_map(case, cycle, celsius, replace(runner, progress=progress))

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from epicyclic.case.case import Case, read_case
-from epicyclic.case.operating import PLANE, STATE
-from epicyclic.case.wording import one_line, sentence
+from epicyclic.case.operating import OPERATING, PLANE, STATE
+from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.dataset import to_table
+from epicyclic.units import NEWTON_METRE, WATT
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,7 +26,6 @@ __all__ = [
     "driven_problem",
     "map_case",
     "map_inputs",
-    "read_netcdf",
     "stated",
     "statements",
     "write_csv",
@@ -49,6 +49,8 @@ _STATED = (
 _LONGEST_STATEMENT = 1000
 _NEEDED = ("title", "reference_shaft", "output_shaft", "held_shaft", "case")
 """Attributes without which a dataset is no map."""
+_OPERATING = {name: part.quantity for name, part in OPERATING.items()}
+_MAKE_AGAIN = "Give what epicyclic map or loss_map made."
 
 
 def statements(data: xr.Dataset) -> dict[str, str]:
@@ -109,6 +111,44 @@ def check_map(data: xr.Dataset, source: str = "the map") -> None:
         allowed = f"is no loss map; it lacks {', '.join(lacks)}."
         remedy = "Give what epicyclic map or loss_map made, all of its axes kept."
         raise InputError([Problem("", "", f"This dataset {allowed}", remedy)], source)
+    problems = [*_axis_problems(data), *_value_problems(data)]
+    if problems:
+        raise InputError(problems, source)
+
+
+def _axis_problems(data: xr.Dataset) -> Iterator[Problem]:
+    """Axes that cannot be looked up: of another unit, not finite, not rising."""
+    for name, quantity in _OPERATING.items():
+        if name not in data.coords:
+            continue
+        axis = data[name]
+        unit = axis.attrs.get("units")
+        if unit != quantity.display:
+            allowed = f"must be in {quantity.display}."
+            yield Problem(name, one_line(str(unit)), allowed, _MAKE_AGAIN)
+        if axis.dtype.kind not in "fiu" or axis.ndim != 1 or not axis.size:
+            yield Problem(name, "", "must be numbers along itself.", _MAKE_AGAIN)
+        elif not np.isfinite(axis.values).all():
+            yield Problem(name, "", "must have finite values.", _MAKE_AGAIN)
+        elif (np.diff(axis.values) <= 0).any():
+            yield Problem(name, "", "must rise.", "Sort the map, as with .sortby.")
+
+
+def _value_problems(data: xr.Dataset) -> Iterator[Problem]:
+    """Losses that are no numbers over all axes, or not finite where the point was solved."""
+    dims = set(data["torque_loss"].dims)
+    units = {"torque_loss": NEWTON_METRE.display, "total": WATT.display}
+    for name, array in data.data_vars.items():
+        unit = array.attrs.get("units")
+        wanted = units.get(str(name))
+        if wanted is not None and unit != wanted:
+            yield Problem(str(name), one_line(str(unit)), f"must be in {wanted}.", _MAKE_AGAIN)
+        if wanted is None and unit != WATT.display:
+            continue
+        if array.dtype.kind != "f" or set(array.dims) != dims:
+            yield Problem(str(name), "", "must be numbers over all axes.", _MAKE_AGAIN)
+        elif np.isinf(array.values).any():
+            yield Problem(str(name), "", "must be finite.", _MAKE_AGAIN)
 
 
 def bare_map(data: xr.Dataset) -> xr.Dataset:
@@ -127,21 +167,6 @@ def check_gaps(data: xr.Dataset) -> None:
     allowed = f"is missing at {int(gaps.sum())} points; all are needed.{reason}"
     problem = Problem("torque_loss", "", allowed, "Leave these points out.")
     raise InputError([problem], "the map")
-
-
-def read_netcdf(path: Path) -> xr.Dataset:
-    """A map that `write_netcdf` wrote; raises `InputError` for any other file."""
-    import xarray as xr
-
-    try:
-        with xr.open_dataset(path, engine="netcdf4") as stored:
-            data = stored.load()
-    except (OSError, ValueError, RuntimeError) as error:
-        reason = sentence(f"cannot be read as NetCDF: {one_line(str(error))}", capital=False)
-        problem = Problem("MAP", str(path), reason, "Give a map from epicyclic.")
-        raise InputError([problem], "the command") from None
-    check_map(data, str(path))
-    return data
 
 
 def write_netcdf(data: xr.Dataset, path: Path) -> None:

@@ -15,9 +15,10 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from epicyclic.errors import InputError, Problem
+from epicyclic.netcdf_file import read_attribute
 from epicyclic.pocketing.similarity import FlowFamily
 from epicyclic.pocketing.table import FlowTable
-from epicyclic.text_file import read_bytes, sealed, unsealed
+from epicyclic.text_file import sealed, unsealed
 
 __all__ = ["ATTRIBUTE", "StoredTables", "read_stored", "store", "stored_table"]
 
@@ -25,8 +26,6 @@ ATTRIBUTE = "flows"
 """Of the NetCDF file, which holds the tables as JSON."""
 _KEY = "models.pocketing_table"
 _REMEDY = "Make it with 'epicyclic pockets-table', or leave the key out."
-_LARGEST = 50_000_000
-"""A table of two meshes takes some ten kilobytes. [bytes]"""
 _SAME = 1e-9
 """Numbers that differ less, relatively, are the same: machines round differently. [1]"""
 
@@ -111,23 +110,13 @@ def _state(path: Path) -> tuple[Path, int, int]:
 @lru_cache(maxsize=16)
 def _read(path: Path, _changed: int, _size: int) -> StoredTables:
     """The file as it was when it was last changed."""
-    import netCDF4
-
     try:
-        content = read_bytes(path, "pocketing table", _LARGEST)
-    except InputError as error:
-        raise _error(path, error.problems[0].allowed) from None
-    try:
-        with netCDF4.Dataset(path.name, memory=content) as file:
-            text = file.getncattr(ATTRIBUTE)
-        stored = StoredTables.model_validate(unsealed(str(text)))
+        stored = StoredTables.model_validate(unsealed(read_attribute(path, ATTRIBUTE)))
     except InputError as error:
         raise _error(path, error.problems[0].allowed) from None
     except ValidationError as error:
         reason = error.errors(include_url=False)[0]["msg"]
         raise _error(path, f"is damaged: {reason}.") from None
-    except Exception:  # the library raises what it pleases on other files
-        raise _error(path, "is no file of pocketing tables (.nc).") from None
     version = metadata.version("epicyclic")
     if stored.version != version:
         raise _error(path, f"was made by version {stored.version}, this is {version}.")

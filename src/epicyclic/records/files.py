@@ -12,6 +12,8 @@ from pydantic import BaseModel, ValidationError
 from epicyclic.case.case import Case
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
+from epicyclic.maps.tables import check_map
+from epicyclic.netcdf_file import read_groups
 from epicyclic.records.checks import RUN_AGAIN, field_problems, map_problems
 from epicyclic.records.contents import MapContents, RecordContents
 from epicyclic.records.record import ResultRecord, record
@@ -20,18 +22,13 @@ from epicyclic.whole_file import check_place, whole_file
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["is_stored", "open_result", "save_result"]
+__all__ = ["is_stored", "open_map", "open_result", "save_result"]
 
 Stated = TypeVar("Stated", bound=BaseModel)
 
 SUFFIX = ".nc"
 FORMAT = "epicyclic result"
 FORMAT_VERSION = 1
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
-"""Of HDF5, in which NetCDF 4 files are kept."""
-_LARGEST = 400_000_000
-"""A result takes a few megabytes, a map of a million points less than this. [bytes]"""
-_MOST_VARIABLES = 2000
 
 
 def save_result(result: ResultRecord | Case, path: str | Path) -> None:
@@ -105,13 +102,14 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
     """
     source = Path(path)
     try:
-        _check_file(source)
-        root, fields = _read(source)
+        fields = read_groups(source)
+        root = fields.pop("")
         if root.attrs.get("format") == FORMAT:
             return _record_of(root, fields)
         if "torque_loss" in root and "reference_shaft" in root.attrs:
             _check(map_problems(root))
             _sound(MapContents, dict(root.attrs))
+            check_map(root)
             return root
         if {"contribution", "nominal"} <= set(root.data_vars):
             _check(field_problems("uncertainty/", root))
@@ -119,6 +117,15 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
         _refuse("is neither a stored result nor a loss map nor an uncertainty.")
     except InputError as error:
         raise InputError(error.problems, str(source)) from None
+
+
+def open_map(path: str | Path) -> xr.Dataset:
+    """Read a loss map. Parameters and errors as for `open_result`."""
+    found = open_result(path)
+    if isinstance(found, ResultRecord):
+        problem = Problem("MAP", str(path), "is a stored result.", "Give a loss map.")
+        raise InputError([problem], "the command")
+    return found
 
 
 def _refuse(what: str, remedy: str = RUN_AGAIN) -> NoReturn:
@@ -129,43 +136,6 @@ def _check(problems: Iterable[Problem]) -> None:
     found = list(problems)
     if found:
         raise InputError(found)
-
-
-def _check_file(path: Path) -> None:
-    try:
-        if not path.is_file():
-            _refuse("does not exist, or is no file.", "Check the path.")
-        if path.stat().st_size > _LARGEST:
-            _refuse(f"is larger than {_LARGEST // 10**6} MB.", "Name a stored result or a map.")
-        with path.open("rb") as file:
-            signature = file.read(len(_SIGNATURE))
-    except (OSError, ValueError) as error:
-        _refuse(f"cannot be read: {error}.", "Check the path.")
-    if signature != _SIGNATURE:
-        _refuse("is no NetCDF 4 file.")
-
-
-def _read(path: Path) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """The root of the file and its groups by path, in memory."""
-    import xarray as xr
-
-    try:
-        with xr.open_datatree(path, engine="netcdf4", decode_times=False) as tree:
-            # sizes are known before anything is read, and a small file can declare a large one
-            sizes = [data.nbytes for node in tree.subtree for data in node.variables.values()]
-            if len(sizes) > _MOST_VARIABLES or sum(sizes) > _LARGEST:
-                _refuse("holds more than a result or a map does.", "Name one of these.")
-            tree.load()
-            fields = {
-                node.path.strip("/"): node.to_dataset(inherit=False)
-                for node in tree.subtree
-                if node.path != "/" and node.has_data
-            }
-            return tree.to_dataset(), fields
-    except InputError:
-        raise
-    except Exception as error:  # the libraries raise what they please on damaged files
-        _refuse(f"is damaged: {one_line(str(error))}.")
 
 
 def _record_of(root: xr.Dataset, fields: dict[str, xr.Dataset]) -> ResultRecord:

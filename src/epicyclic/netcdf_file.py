@@ -1,0 +1,91 @@
+"""NetCDF files that users give: the only door through which the package reads them.
+
+A file is opened only if it is a regular file of HDF5 and not too large, and is read only if what it
+declares is not too much either: a few kilobytes can declare terabytes. Times are not decoded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from epicyclic.errors import InputError, printable
+from epicyclic.text_file import refuse
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["LARGEST", "read_attribute", "read_groups"]
+
+LARGEST = 400_000_000
+"""A result takes a few megabytes, a map of a million points less than this. [bytes]"""
+MOST_VARIABLES = 2000
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+"""Of HDF5, in which NetCDF 4 files are kept."""
+_LONGEST_REASON = 120
+_MAKE_AGAIN = "Make it again."
+
+
+def read_groups(path: Path) -> dict[str, xr.Dataset]:
+    """All that a file holds, in memory: the root by an empty name, groups by their path.
+
+    Raises
+    ------
+    InputError
+        If it is no NetCDF file, is damaged, or holds too much.
+    """
+    import xarray as xr
+
+    _check(path)
+    with _damage_told(), xr.open_datatree(path, engine="netcdf4", decode_times=False) as tree:
+        sizes = [data.nbytes for node in tree.subtree for data in node.variables.values()]
+        if len(sizes) > MOST_VARIABLES or sum(sizes) > LARGEST:
+            refuse("holds more than a result or a map does.", "Name one of these.")
+        tree.load()
+        return {
+            node.path.strip("/"): node.to_dataset(inherit=False)
+            for node in tree.subtree
+            if node.path == "/" or node.has_data
+        }
+
+
+def read_attribute(path: Path, name: str) -> str:
+    """A text attribute of the root; none of the arrays is read. Errors as for `read_groups`."""
+    import netCDF4
+
+    _check(path)
+    with _damage_told(), netCDF4.Dataset(path) as file:
+        if name not in file.ncattrs():
+            refuse(f"has no attribute {name}.", _MAKE_AGAIN)
+        return str(file.getncattr(name))
+
+
+def _check(path: Path) -> None:
+    """Raise `InputError` unless a file can be opened: a pipe would keep the program waiting."""
+    try:
+        if not path.is_file():
+            refuse("does not exist, or is no file.", "Check the path.")
+        if path.stat().st_size > LARGEST:
+            refuse(f"is larger than {LARGEST // 10**6} MB.", "Name a smaller one.")
+        with path.open("rb") as file:
+            signature = file.read(len(_SIGNATURE))
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        refuse(f"cannot be read: {getattr(error, 'strerror', None) or error}.", "Check the path.")
+    if signature != _SIGNATURE:
+        refuse("is no NetCDF 4 file.", _MAKE_AGAIN)
+
+
+@contextmanager
+def _damage_told() -> Iterator[None]:
+    """What the libraries raise on damaged files, which is anything, as `InputError`."""
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:
+        reason = printable(" ".join(str(error).split()))[:_LONGEST_REASON]
+        refuse(f"is damaged: {reason}.", _MAKE_AGAIN)

@@ -1,0 +1,98 @@
+"""All NetCDF files of users are read through one door, and maps are checked behind it."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import netCDF4
+import numpy as np
+import pytest
+
+import epicyclic as ep
+from epicyclic.cli.main import main
+from epicyclic.pocketing.stored import read_stored
+from epicyclic.records.files import open_map
+
+
+@pytest.fixture
+def file(pair_map, tmp_path):
+    path = tmp_path / "map.nc"
+    ep.write_map(pair_map, path)
+    return path
+
+
+def changed(variable, index, value):
+    def change(data):
+        data[variable][index] = value
+
+    return change
+
+
+def with_attribute(variable, name, value):
+    def change(data):
+        (data[variable] if variable else data).setncattr(name, value)
+
+    return change
+
+
+def swapped(data):
+    data["torque"][:] = data["torque"][::-1]
+
+
+def bomb(data):
+    data.createDimension("many", 4 * 10**9)
+    data.createVariable("huge", "f8", ("many",), zlib=True, chunksizes=(10**6,))
+
+
+HOSTILE = {
+    "nowhere": (changed("speed", 1, np.nan), "speed: must have finite values."),
+    "endless": (changed("temperature", 1, np.inf), "temperature: must "),
+    "unsorted": (swapped, "torque: must rise."),
+    "twice": (changed("torque", 1, -100.0), "torque: must rise."),
+    "other unit": (with_attribute("speed", "units", "rad/s"), "speed = rad/s: must be in rpm."),
+    "times": (with_attribute("temperature", "units", "days since 1970-01-01"), "must be in degC."),
+    "unit of losses": (with_attribute("total", "units", "kW"), "total = kW: must be in W."),
+    "endless loss": (changed("mesh_sliding", (1, 1, 1), -np.inf), "mesh_sliding: must be finite."),
+    "junk case": (with_attribute("", "case", "{}"), "must name the kind of the case"),
+    "no json": (with_attribute("", "case", "junk"), "case: "),
+    "bomb": (bomb, "holds more than"),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_duty_cycle_refuses_a_damaged_map(file, tmp_path, monkeypatch, capsys, name):
+    change, reason = HOSTILE[name]
+    with netCDF4.Dataset(file, "a") as data:
+        change(data)
+    cycle = tmp_path / "cycle.csv"
+    cycle.write_text("speed [rpm],torque [N*m],temperature [degC],duration [s]\n900,40,60,7\n")
+    monkeypatch.setattr("sys.argv", ["epicyclic", "duty", str(file), str(cycle)])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    shown = capsys.readouterr()
+    assert ended.value.code == 2, shown
+    assert shown.out == ""
+    assert reason in shown.err
+
+
+@pytest.mark.parametrize("read", [ep.open_result, open_map, read_stored])
+@pytest.mark.skipif(sys.platform == "win32", reason="needs named pipes")
+def test_a_pipe_is_refused_at_once(tmp_path, read):
+    os.mkfifo(tmp_path / "pipe.nc")
+    with pytest.raises(ep.InputError, match="is no file"):
+        read(tmp_path / "pipe.nc")
+
+
+def test_a_dataset_in_memory_is_checked_as_well(pair_map):
+    cycle = {"speed [rpm]": [900.0], "torque [N*m]": [40.0], "duration [s]": [7.0]}
+    for axis in ("speed", "torque"):
+        backwards = pair_map.isel({axis: slice(None, None, -1)})
+        with pytest.raises(ep.InputError, match=f"{axis}: must rise"):
+            ep.duty_cycle(backwards, cycle, ["60 degC"])
+
+
+def test_a_result_is_no_map(talbot_record, tmp_path):
+    ep.save_result(talbot_record, tmp_path / "result.nc")
+    with pytest.raises(ep.InputError, match="is a stored result"):
+        open_map(tmp_path / "result.nc")
