@@ -85,7 +85,7 @@ def check_archive(content: bytes, noun: str, largest: int, remedy: str) -> None:
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             unpacked = sum(item.file_size for item in archive.infolist())
-    except zipfile.BadZipFile:
+    except Exception:  # damaged archives end in many kinds of errors
         refuse(f"is not {noun}.", remedy)
     if unpacked > largest:
         refuse(f"unpacks to more than {largest / _MEGABYTE:g} MB.", remedy)

@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
+from epicyclic.cache_folder import private_folder
+
 if TYPE_CHECKING:
     from pint import Unit, UnitRegistry
 
@@ -108,8 +110,9 @@ def registry() -> UnitRegistry[float]:
 
     ureg: UnitRegistry[float]
     try:
-        ureg = pint.UnitRegistry(cache_folder=":auto:")
-    except Exception:  # no place to keep the cache, or another process is just writing it
+        # pint's own folder, which holds pickles, is trusted by pint whoever may write to it
+        ureg = pint.UnitRegistry(cache_folder=private_folder("units"))
+    except Exception:  # the cache is damaged, or another process is just writing it
         ureg = pint.UnitRegistry()
     # pint reads "Nm" as a count times a metre; every engineer means the torque.
     ureg.define("newton_metre = newton * meter = Nm")

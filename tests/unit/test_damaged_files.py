@@ -30,7 +30,7 @@ from epicyclic.pocketing.stored import read_stored
 from epicyclic.records.files import open_map
 from epicyclic.sweeps.dataset import write_dataset
 
-QUICK, ALL = 40, 400
+QUICK, ALL = 40, 1000
 COARSE = {"numerics.pocket_slices": 4, "numerics.pocket_steps": 12}
 OIL = {
     "kind": "mineral",

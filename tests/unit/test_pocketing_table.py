@@ -132,7 +132,7 @@ def test_table_comes_back_as_it_was_made(case, file):
 def test_other_files_are_refused_when_the_case_is_loaded(case, tmp_path, content):
     path = tmp_path / "other.nc"
     path.write_bytes(content)
-    with pytest.raises(ep.InputError, match="is no NetCDF 4 file|is damaged"):
+    with pytest.raises(ep.InputError, match=r"is no NetCDF 4 file|is damaged"):
         case.updated({"models.pocketing_table": str(path)})
 
 

@@ -93,15 +93,19 @@ def main() -> None:
     with ending_soon():
         try:
             cli.main(standalone_mode=False)
-        except (KeyboardInterrupt, click.Abort):
+        except KeyboardInterrupt:
             sys.exit(_ended_interrupted())
+        except click.Abort as abort:  # click takes the end of a file for an interruption
+            sys.exit(_told(abort.__cause__ if isinstance(abort.__cause__, EOFError) else abort))
         except Exception as error:
             sys.exit(_told(error))
+        finally:
+            _tell_of_cache()
 
 
 def _told(error: Exception) -> int:
     """Say what went wrong; the exit code."""
-    if was_interrupted() or is_interrupt(error):
+    if was_interrupted() or is_interrupt(error) or isinstance(error, click.Abort):
         return _ended_interrupted()
     match error:
         case click.ClickException():
@@ -124,6 +128,15 @@ def _told(error: Exception) -> int:
         err=True,
     )
     return EXIT_ERROR
+
+
+def _tell_of_cache() -> None:
+    """Say what is wrong with the compiled code that is kept, if any has been asked for."""
+    if "epicyclic.kernels._jit" in sys.modules:
+        from epicyclic.kernels._jit import cache_notes
+
+        for note in cache_notes():
+            click.echo(note, err=True)
 
 
 def _ended_interrupted() -> int:

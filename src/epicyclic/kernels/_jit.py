@@ -2,29 +2,35 @@
 
 numba's own cache looks at the file that defines a kernel, not at the kernels it calls, so an edited
 callee in another file would leave stale physics in its callers. The cache folder is therefore named
-after the content of every kernel file.
+after the content of every kernel file. Machine code that was damaged on the disk is compiled again,
+and what cannot be kept is compiled at every start; `cache_notes` tells.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import numba
-import platformdirs
+from numba.core import caching
 
-__all__ = ["kernel"]
+from epicyclic.cache_folder import is_private, private_folder
+
+__all__ = ["cache_notes", "kernel"]
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
+_notes: dict[str, None] = {}
 
-_USER = os.getuid() if hasattr(os, "getuid") else None
-"""Number of the user; None where temporary folders are those of one user anyway (Windows)."""
+
+def cache_notes() -> list[str]:
+    """What to know about the machine code that is kept, each once."""
+    return list(_notes)
 
 
 def cache_directory(kernel_folder: Path) -> Path | None:
@@ -32,29 +38,77 @@ def cache_directory(kernel_folder: Path) -> Path | None:
     digest = hashlib.sha256()
     for source in sorted(kernel_folder.glob("*.py")):
         digest.update(source.read_bytes())
-    name = f"kernels-{digest.hexdigest()[:16]}"
-    folder = Path(platformdirs.user_cache_dir("epicyclic")) / name
-    # without a home that can be written to: compile once for each start of the machine
-    temporary = Path(tempfile.gettempdir()) / f"epicyclic-{_USER}" / name
-    return folder if _is_own(folder) else temporary if _is_own(temporary) else None
+    return private_folder(f"kernels-{digest.hexdigest()[:16]}")
 
 
-def _is_own(folder: Path) -> bool:
-    """True if nobody else can have put machine code into `folder`, made if need be."""
-    try:
-        folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        folder.mkdir(mode=0o700, exist_ok=True)
-        owners = {path.stat().st_uid for path in (folder, folder.parent)}
-    except OSError:
-        return False
-    return os.access(folder, os.W_OK) and (_USER is None or owners == {_USER})
+def _chosen_directory() -> Path | None:
+    """The folder of NUMBA_CACHE_DIR, or one of our own."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    if given is None:
+        return cache_directory(Path(__file__).parent)
+    folder = Path(given)
+    if folder.exists() and not is_private(folder):
+        _notes[f"NUMBA_CACHE_DIR is not used: others may write to {folder}."] = None
+        return None
+    return folder
 
 
-_CACHE_DIR = (
-    Path(os.environ["NUMBA_CACHE_DIR"])
-    if "NUMBA_CACHE_DIR" in os.environ
-    else cache_directory(Path(__file__).parent)
-)
+_CACHE_DIR = _chosen_directory()
+
+
+class _CheckedFile(caching.IndexDataCacheFile):  # type: ignore[misc]
+    """Machine code of one kernel with a checksum: what is damaged counts as absent."""
+
+    def _load_index(self) -> Any:
+        try:
+            return super()._load_index()
+        except Exception as error:  # whatever unpickling raises
+            self._note_damage(error)
+            return {}
+
+    def _load_data(self, name: str) -> Any:
+        try:
+            digest, data = super()._load_data(name)
+            if digest == hashlib.sha256(data).digest():
+                return pickle.loads(data)
+            reason: Exception = ValueError("wrong checksum")
+        except Exception as error:
+            reason = error
+        self._note_damage(reason)
+        raise OSError("damaged")  # as for a file that is not there
+
+    def _save_data(self, name: str, data: Any) -> None:
+        dumped = self._dump(data)
+        super()._save_data(name, (hashlib.sha256(dumped).digest(), dumped))
+
+    def _note_damage(self, error: Exception) -> None:
+        if not isinstance(error, FileNotFoundError):
+            text = f"Compiled code in {self._cache_path} was damaged; it is compiled again."
+            _notes[text] = None
+
+
+class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
+    """The cache of one kernel, without which the kernel runs as well."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        self._cache_file = _CheckedFile(
+            cache_path=self._cache_path,
+            filename_base=self._impl.filename_base,
+            source_stamp=self._impl.locator.get_source_stamp(),
+        )
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            _note_lost(error)
+
+
+def _note_lost(error: Exception) -> None:
+    reason = getattr(error, "strerror", None) or error
+    text = f"Compiled code cannot be kept in {_CACHE_DIR}: {reason}. Every start compiles it anew."
+    _notes[text] = None
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
@@ -63,13 +117,16 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     ``fastmath`` stays off, because it makes NaN checks vanish; division by zero gives inf, and
     callers check that results are finite.
     """
+    compiled: Any = numba.njit(fastmath=False, error_model="numpy", nogil=True)(function)
+    if _CACHE_DIR is None:
+        return compiled  # type: ignore[no-any-return]
     config: Any = numba.config
     previous = config.CACHE_DIR
-    config.CACHE_DIR = str(_CACHE_DIR or "")
+    config.CACHE_DIR = str(_CACHE_DIR)
     try:
-        compiled: Callable[P, R] = numba.njit(
-            cache=_CACHE_DIR is not None, fastmath=False, error_model="numpy", nogil=True
-        )(function)
+        compiled._cache = _KernelCache(function)
+    except Exception as error:  # numba finds no place that it can write to
+        _note_lost(error)
     finally:
         config.CACHE_DIR = previous
-    return compiled
+    return compiled  # type: ignore[no-any-return]

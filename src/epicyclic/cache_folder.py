@@ -1,0 +1,50 @@
+"""Folders in which the package keeps what it would otherwise make at every start.
+
+What is kept there is run as code, so that nobody else may be able to write to it.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+import tempfile
+from pathlib import Path
+
+import platformdirs
+
+__all__ = ["is_private", "private_folder"]
+
+_USER = os.getuid() if hasattr(os, "getuid") else None
+"""Number of the user; None where temporary folders are those of one user anyway (Windows)."""
+
+
+def private_folder(name: str) -> Path | None:
+    """A folder of this user to keep things in; None if there is none."""
+    folder = Path(platformdirs.user_cache_dir("epicyclic")) / name
+    if _is_own(folder):
+        return folder
+    try:  # without a home that can be written to: keep things until the machine starts again
+        folder = Path(tempfile.gettempdir()) / f"epicyclic-{_USER}" / name
+    except OSError:  # there is no place at all
+        return None
+    return folder if _is_own(folder) else None
+
+
+def _is_own(folder: Path) -> bool:
+    """True if nobody else can have put anything into `folder`, made if need be."""
+    try:
+        folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, exist_ok=True)
+    except OSError:
+        return False
+    return is_private(folder) and is_private(folder.parent) and os.access(folder, os.W_OK)
+
+
+def is_private(folder: Path) -> bool:
+    """True if a folder is that of this user, and nobody else may write to it."""
+    try:
+        found = folder.stat()
+    except OSError:
+        return False
+    others = found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+    return _USER is None or (found.st_uid == _USER and not others)

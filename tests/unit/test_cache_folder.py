@@ -1,0 +1,147 @@
+"""Where compiled kernels and units are kept, and what happens when that place is not sound."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import platformdirs
+import pytest
+
+from epicyclic import cache_folder
+from epicyclic.cache_folder import private_folder
+from epicyclic.kernels import _jit
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX permissions")
+
+
+@pytest.fixture
+def source(tmp_path):
+    folder = tmp_path / "kernels"
+    folder.mkdir()
+    (folder / "one.py").write_text("x = 1\n")
+    return folder
+
+
+@pytest.fixture
+def places(tmp_path, monkeypatch):
+    """Stand-ins for the user's cache folder and for the folder of temporary files."""
+    home, temporary = tmp_path / "home", tmp_path / "tmp"
+    temporary.mkdir()
+    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda _: str(home))
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(temporary))
+    return home, temporary
+
+
+def test_the_folder_changes_with_any_kernel(source, places):
+    before = _jit.cache_directory(source)
+    (source / "two.py").write_text("y = 2\n")
+    after = _jit.cache_directory(source)
+    assert before != after
+    assert before.parent == after.parent == places[0]
+
+
+def test_without_a_home_the_folder_of_temporary_files_serves(places):
+    home, temporary = places
+    home.write_text("a file where the folder should be")
+    folder = private_folder("units")
+    assert temporary in folder.parents
+    assert folder.parent.stat().st_mode & 0o077 == 0
+
+
+def test_a_folder_of_another_user_is_not_taken(places, monkeypatch):
+    monkeypatch.setattr(cache_folder, "_USER", -1)  # all folders belong to somebody else
+    assert private_folder("units") is None
+
+
+@pytest.mark.parametrize("mode", [0o770, 0o707, 0o1777])
+@pytest.mark.parametrize("which", ["folder", "parent"])
+def test_a_folder_that_others_can_write_to_is_not_taken(places, mode, which):
+    home, temporary = places
+    (home / "units").mkdir(parents=True)
+    (home / "units" if which == "folder" else home).chmod(mode)
+    assert temporary in private_folder("units").parents
+
+
+def test_the_kernels_of_this_run_are_kept():
+    assert _jit._CACHE_DIR is not None
+    assert Path(_jit._CACHE_DIR).is_dir()
+
+
+KERNEL = """\
+from epicyclic.kernels._jit import cache_notes, kernel
+
+@kernel
+def half(x):
+    return x / 2
+
+print(half(7.0), *cache_notes(), sep="\\n")
+"""
+
+
+def outcome(folder, *, cache=None, before="", **environment):
+    """What a small program with one kernel prints, with a cache folder of its own."""
+    program = folder / "program.py"
+    program.write_text(before + KERNEL)
+    settings = os.environ | {"XDG_CACHE_HOME": str(cache or folder / "cache")} | environment
+    settings.pop("NUMBA_CACHE_DIR", None) if "NUMBA_CACHE_DIR" not in environment else None
+    done = subprocess.run(
+        [sys.executable, str(program)], env=settings, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    number, *notes = done.stdout.splitlines()
+    assert number == "3.5"
+    return notes
+
+
+def emptied(path):
+    path.write_bytes(b"")
+
+
+def with_a_wrong_byte(path):
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 0x40
+    path.write_bytes(content)
+
+
+def cut(path):
+    path.write_bytes(path.read_bytes()[:-30])
+
+
+@pytest.mark.parametrize("damage", [emptied, with_a_wrong_byte, cut])
+@pytest.mark.parametrize("kind", ["*.nbi", "*.nbc"])
+def test_damaged_code_is_compiled_again(tmp_path, kind, damage):
+    assert outcome(tmp_path) == []
+    files = list((tmp_path / "cache").rglob(kind))
+    assert len(files) == 1
+    damage(files[0])
+    notes = outcome(tmp_path)
+    if damage is not with_a_wrong_byte or kind == "*.nbc":  # the index may still be readable
+        assert len(notes) == 1
+        assert str(files[0].parent) in notes[0]
+    assert outcome(tmp_path) == []  # repaired
+
+
+FULL = """\
+import resource
+resource.setrlimit(resource.RLIMIT_FSIZE, (0, resource.RLIM_INFINITY))
+"""
+
+
+def test_a_full_disk_costs_time_only(tmp_path):
+    (note,) = outcome(tmp_path, before=FULL)
+    assert note.startswith("Compiled code cannot be kept in ")
+    assert str(tmp_path / "cache") in note
+
+
+def test_a_folder_of_the_user_must_be_private_too(tmp_path):
+    given = tmp_path / "given"
+    given.mkdir()
+    assert outcome(tmp_path, NUMBA_CACHE_DIR=str(given)) == []
+    assert list(given.rglob("*.nbc"))
+    given.chmod(0o777)
+    (note,) = outcome(tmp_path, NUMBA_CACHE_DIR=str(given))
+    assert note == f"NUMBA_CACHE_DIR is not used: others may write to {given}."
