@@ -19,7 +19,7 @@ __all__ = ["Source", "open_source"]
 
 SUFFIXES = (".csv", ".parquet")
 _BLOCK_BYTES = 1 << 22
-_BATCH_ROWS = 1 << 16
+_BATCH_ROWS, _PAGE_BYTES = 1 << 16, 1 << 20
 _LONGEST_HEAD = 1 << 18
 """Bytes within which the header of a CSV file must end."""
 
@@ -113,7 +113,11 @@ def _from_parquet(path: Path) -> Source:
         headers = tuple(file.schema_arrow.names)
 
     def batches(chosen: Sequence[str]) -> Iterator[Mapping[str, pa.Array]]:
-        with _readable(str(path)), pq.ParquetFile(path) as file:
+        # a row group may hold all rows: it is read as its pages are needed, not as a whole
+        with (
+            _readable(str(path)),
+            pq.ParquetFile(path, pre_buffer=False, buffer_size=_PAGE_BYTES) as file,
+        ):
             for batch in file.iter_batches(_BATCH_ROWS, columns=list(chosen)):
                 yield {header: batch.column(header) for header in chosen}
 
