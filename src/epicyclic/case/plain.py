@@ -5,11 +5,13 @@ from __future__ import annotations
 import numbers
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
+from unicodedata import category
 
 import numpy as np
 from pydantic import BaseModel
 
 from epicyclic.case.fields import to_inputs
+from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.units import from_pint
 
@@ -24,6 +26,11 @@ __all__ = [
 _DEEPEST = 20
 """Tables of a case are nested a few levels deep; deeper ones are something else."""
 
+_CONTROLS = ("Cc", "Cs")
+"""Unicode categories of control characters and of halves of characters."""
+_LAYOUT = dict.fromkeys(map(ord, "\t\r\n"))
+"""What texts of several lines may have."""
+
 _MOST_VALUES = 20_000
 """A case has a hundred values, a large friction table some thousand."""
 
@@ -34,10 +41,32 @@ def plain(value: Any) -> Any:
     Raises
     ------
     InputError
-        If it is too large or nested too deep to be part of a case.
+        If it is too large or nested too deep to be part of a case, or its texts have signs that
+        control a terminal.
     """
     budget = iter(range(_MOST_VALUES))
-    return _plain(value, _DEEPEST, budget)
+    copy = _plain(value, _DEEPEST, budget)
+    problems = [
+        Problem(".".join(path), one_line(text), "has control characters.", "Leave them out.")
+        for path, text in _texts(copy, ())
+        if not text.isprintable() and any(category(char) in _CONTROLS for char in text)
+    ]
+    if problems:
+        raise InputError(problems)
+    return copy
+
+
+def _texts(value: Any, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], str]]:
+    """All texts in plain values, names of keys too, with the keys that lead to them."""
+    if isinstance(value, str):
+        yield path, value.translate(_LAYOUT)
+    elif isinstance(value, Mapping):
+        for key, item in value.items():
+            yield path, key
+            yield from _texts(item, (*path, key))
+    elif isinstance(value, tuple):
+        for item in value:
+            yield from _texts(item, path)
 
 
 def _plain(value: Any, depth: int, budget: Iterator[int]) -> Any:

@@ -6,8 +6,11 @@ program an error arose.
 
 from __future__ import annotations
 
+import io
 import os
 import sys
+from collections.abc import Callable
+from contextlib import suppress
 
 import click
 
@@ -16,6 +19,7 @@ from epicyclic.cli.contact import contact
 from epicyclic.cli.duty import duty
 from epicyclic.cli.exit_codes import (
     EXIT_BROKEN_PIPE,
+    EXIT_DONE,
     EXIT_ERROR,
     EXIT_INPUT,
     EXIT_INTERRUPTED,
@@ -36,7 +40,7 @@ from epicyclic.cli.single import check, friction, mesh, run
 from epicyclic.cli.uncertainty import compare_cases, uncertainty
 from epicyclic.cli.validate import validate
 from epicyclic.cli.warm_up import warm_up
-from epicyclic.errors import ConvergenceError, InputError, is_interrupt
+from epicyclic.errors import ConvergenceError, InputError, is_interrupt, printable
 
 __all__ = ["main"]
 
@@ -55,6 +59,7 @@ def cli() -> None:
     """
 
 
+_LONGEST_NAME = 300
 COMMANDS = (
     run,
     check,
@@ -90,17 +95,40 @@ for command in COMMANDS:
 
 def main() -> None:
     """Entry point: errors become messages and exit codes, never tracebacks."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # signs that a terminal does not know become ?
+            stream.reconfigure(errors="replace")
     with ending_soon():
-        try:
-            cli.main(standalone_mode=False)
-        except KeyboardInterrupt:
-            sys.exit(_ended_interrupted())
-        except click.Abort as abort:  # click takes the end of a file for an interruption
-            sys.exit(_told(abort.__cause__ if isinstance(abort.__cause__, EOFError) else abort))
-        except Exception as error:
-            sys.exit(_told(error))
-        finally:
-            _tell_of_cache()
+        code = _code_of(lambda: cli.main(standalone_mode=False))
+        code = _code_of(_finish) or code
+    if code:
+        sys.exit(code)
+
+
+def _code_of(call: Callable[[], object]) -> int:
+    """The exit code of a call, its errors told."""
+    try:
+        call()
+    except SystemExit as end:
+        return int(end.code or EXIT_DONE)
+    except KeyboardInterrupt:
+        return _ended_interrupted()
+    except click.Abort as abort:  # click takes the end of a file for an interruption
+        return _told(abort.__cause__ if isinstance(abort.__cause__, EOFError) else abort)
+    except Exception as error:
+        return _told(error)
+    return EXIT_DONE
+
+
+def _finish() -> None:
+    """What can still go wrong at the end."""
+    if "epicyclic.kernels._jit" in sys.modules:
+        from epicyclic.kernels._jit import cache_notes
+
+        for note in cache_notes():
+            click.echo(note, err=True)
+    if sys.stdout is not None:
+        sys.stdout.flush()
 
 
 def _told(error: Exception) -> int:
@@ -118,8 +146,13 @@ def _told(error: Exception) -> int:
             click.echo(f"No solution: {error}", err=True)
             return EXIT_NO_SOLUTION
         case BrokenPipeError():  # the reader of a pipe has seen enough
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            _discard_output()
             return EXIT_BROKEN_PIPE
+        case OSError() if os.environ.get("EPICYCLIC_TRACEBACK") != "1":
+            _discard_output()
+            place = printable(str(error.filename or "the output"))[:_LONGEST_NAME]
+            click.echo(f"The system refuses {place}: {error.strerror or error}.", err=True)
+            return EXIT_INPUT
     if os.environ.get("EPICYCLIC_TRACEBACK") == "1":
         raise error
     click.echo(
@@ -130,13 +163,10 @@ def _told(error: Exception) -> int:
     return EXIT_ERROR
 
 
-def _tell_of_cache() -> None:
-    """Say what is wrong with the compiled code that is kept, if any has been asked for."""
-    if "epicyclic.kernels._jit" in sys.modules:
-        from epicyclic.kernels._jit import cache_notes
-
-        for note in cache_notes():
-            click.echo(note, err=True)
+def _discard_output() -> None:
+    """What is left to be written goes nowhere: the interpreter would try it again at its end."""
+    with suppress(OSError, ValueError, AttributeError):  # of streams that are closed or no files
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _ended_interrupted() -> int:
