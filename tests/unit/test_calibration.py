@@ -125,6 +125,24 @@ def test_what_a_case_states_of_other_keys_stays(case):
     assert table[KEYS[0]] == uncertainty_tables(fit)[KEYS[0]]
 
 
+def test_a_fitted_factor_takes_the_place_of_the_error_of_its_model(case, talbot):
+    """Both meshes of a set slide: the factor of one of them leaves the model its error."""
+    points = Linear(3)
+    for whole, keys, exact in (
+        (case, KEYS, {"model_form.sliding", "model_form.drag"}),
+        (talbot, ["losses.sun_mesh_sliding.factor", "losses.planet_bearing_mechanical.factor"],
+         {"model_form.planet-bearing"}),
+    ):  # fmt: skip
+        fit = fit_parameters(points, make_parameters(whole, keys, ()), every(points), 0.95)
+        table = calibrated_case(whole, fit).given()["uncertainty"]
+        assert {key for key, entry in table.items() if entry.get("exact")} == exact
+    stated = case.updated({"uncertainty": {"model_form.drag": {"lognormal_factor": 1.2}}})
+    table = calibrated_case(stated, fit_parameters(
+        points, make_parameters(case, KEYS, ()), every(points), 0.95
+    )).given()["uncertainty"]  # fmt: skip
+    assert table["model_form.drag"] == {"lognormal_factor": 1.2}
+
+
 def test_scatter_without_uncertainties_carries_students_quantile(case):
     from scipy import stats
 

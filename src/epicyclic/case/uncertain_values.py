@@ -178,16 +178,9 @@ def uncertain_values(
     kinds : tuple of str
         Of losses that it has, see `model_form_of`.
     """
-    own: Mapping[str, DistributionTable] = getattr(case, "uncertainty", {})
     known = set(known_keys(case))
-    found: dict[str, UncertainValue | None] = {}
-    problems: list[Problem] = []
-    for key, table in own.items():
-        result = _model_form(key, table) if key.startswith(MODEL_FORM) else _own(case, key, table)
-        if isinstance(result, Problem):
-            problems.append(result)
-        else:
-            found[key] = result
+    found, problems = _stated(case)
+    own = _own_tables(case)
     for key in sorted(known - own.keys()):
         found[key] = _assumed(case, key)
     for kind in kinds:
@@ -200,7 +193,25 @@ def uncertain_values(
         for key, value in found.items()
         if value is not None and (key.removeprefix(MODEL_FORM) in kinds or key in known)
     )
-    return values, problems + list(_correlation_problems(own))
+    return values, problems
+
+
+def _own_tables(case: CaseTable) -> Mapping[str, DistributionTable]:
+    return getattr(case, "uncertainty", {})
+
+
+def _stated(case: CaseTable) -> tuple[dict[str, UncertainValue | None], list[Problem]]:
+    """What a case states itself, None for what is exact, and what is wrong with that."""
+    found: dict[str, UncertainValue | None] = {}
+    problems: list[Problem] = []
+    own = _own_tables(case)
+    for key, table in own.items():
+        result = _model_form(key, table) if key.startswith(MODEL_FORM) else _own(case, key, table)
+        if isinstance(result, Problem):
+            problems.append(result)
+        else:
+            found[key] = result
+    return found, problems + list(_correlation_problems(own))
 
 
 def _own(case: CaseTable, key: str, table: DistributionTable) -> UncertainValue | Problem | None:
@@ -376,4 +387,4 @@ def _given(table: DistributionTable) -> str:
 
 def check_uncertainty(case: CaseTable) -> list[Problem]:
     """What is wrong with the table [uncertainty] of a case."""
-    return uncertain_values(case)[1]
+    return _stated(case)[1]

@@ -69,7 +69,8 @@ def fit_parameters(
             [Problem("fit", "", allowed, "Fit fewer, or give more points.")], "the fit"
         )
     residuals = Residuals(points.shared(), parameters, used)
-    tell(f"fit: how {size} inputs move {count} losses")
+    names = ", ".join(item.key for item in parameters)
+    tell(f"fit: {count} points, {names}")
     slopes = residuals.derivatives(np.ones(size))
     _check_influence(residuals, slopes)
     known = combinations(
