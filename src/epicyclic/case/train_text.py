@@ -24,10 +24,12 @@ _LISTS = {
 _DEFAULTS = (
     "lubrication",
     "surroundings",
+    "thermal",
     "friction_table",
     "models",
     "contact_solver",
     "numerics",
+    "uncertainty",
 )
 
 
