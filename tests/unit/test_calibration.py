@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import time
+import tomllib
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -14,6 +15,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.bands.sampling import make_samples
+from epicyclic.case.case import build_case
 from epicyclic.case.parameters import Parameter, make_parameters
 from epicyclic.case.uncertain_values import uncertain_values
 from epicyclic.measurement.calibrated import calibrated_case, uncertainty_tables
@@ -517,3 +519,22 @@ def test_a_fit_of_an_e_axle_ends_in_time(tmp_path, count, keys, seconds):
         wanted = {keys[0]: 0.08, keys[1]: 0.55, keys[2]: 1.6}[item.key]
         # flows are known to 1e-3 of the pockets' loss
         assert abs(item.value - wanted) < 0.05 * item.standard_error
+
+
+def test_case_files_of_trains_keep_what_is_known_of_values():
+    from epicyclic.case.train_text import train_text
+
+    case = ep.load_case("train-eaxle").updated(
+        {
+            "models.temperatures": "network",
+            "thermal.oil_flow": "3 l/min",
+            "uncertainty": {
+                "operation.oil_inlet_temperature": {"normal": "1.5 K"},
+                "thermal.oil_flow": {
+                    "normal": "4 %",
+                    "correlated": {"operation.oil_inlet_temperature": -0.3},
+                },
+            },
+        }
+    )
+    assert build_case(tomllib.loads(train_text(case.given(), [], {})), {}, "") == case

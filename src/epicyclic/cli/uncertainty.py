@@ -128,10 +128,10 @@ def _check_use(
 
 
 def _source(source: str, changes: tuple[str, ...]) -> Case | xr.Dataset:
-    from epicyclic.maps.tables import read_netcdf
+    from epicyclic.records.files import open_map
 
     if Path(source).suffix == MAP_SUFFIX:
-        return read_netcdf(Path(source))
+        return open_map(source)
     loaded: Case = load_with(source, changes)
     return loaded
 
