@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from epicyclic.analysis.solve import solve
 from epicyclic.bands.curves import fit_curves
-from epicyclic.bands.nearby import Nearby, known_values, nearby_of, steps, without_table
-from epicyclic.bands.outputs import INPUT_POWER, Outputs, outputs_of
-from epicyclic.bands.plan import SampledCase, SamplePlan, check_samples, sampled_case
+from epicyclic.bands.nearby import Nearby
+from epicyclic.bands.outputs import Outputs, outputs_of
+from epicyclic.bands.plan import SampledCase, SamplePlan, check_samples, nearby_at, sampled_case
 from epicyclic.bands.sampling import make_samples
 from epicyclic.bands.study import about_study, contributions, indices_of, sample_variables
 from epicyclic.case.case import Case
@@ -28,7 +28,6 @@ from epicyclic.maps.duty import Sums, add_up
 from epicyclic.maps.interpolation_error import changes_at, further_values
 from epicyclic.maps.lookup import loss_power
 from epicyclic.maps.tables import map_case
-from epicyclic.results.result import Result
 from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.runner import HERE, Runner
 from epicyclic.units import KILOJOULE
@@ -168,7 +167,7 @@ def cycle_study(
     result = solve(case)
     sums = add_up(data, cycle, celsius, samples=POINTS if points is None else points)
     energies = _energies(sums, outputs_of(case, result))
-    nearby = _nearby(case, result, energies, runner)
+    nearby = nearby_at(case, result, energies.points, runner)
     sampled = sampled_case(case, result, count, seed, energies.points)
     return CycleStudy(case, cycle, energies, nearby, sampled, seed)
 
@@ -211,29 +210,6 @@ def _energies(sums: Sums, outputs: Outputs) -> Energies:
         float(totals.energy_in.sum()),
         bool((chance == 1).all()),
     )
-
-
-def _nearby(case: Case, result: Result, energies: Energies, runner: Runner) -> tuple[Nearby, ...]:
-    """Losses at each point where one input is off by a standard deviation."""
-    outputs = energies.outputs
-    values = [known_values(case.updated(point), result) for point in energies.points]
-    changes = [
-        [{**point, **step} for step in ({}, *steps(own))]
-        for point, own in zip(energies.points, values, strict=True)
-    ]
-    points = tuple(it for own in changes for it in own)
-    plan = SamplePlan(
-        without_table(case), outputs, drawn=(np.empty((0, 1)),) * len(points), points=points
-    )
-    rows = runner.run(plan)
-    losses = np.array([rows.numbers(name) for name in outputs.numbers]).T
-    power = rows.numbers(INPUT_POWER)
-    found, first = [], 0
-    for own, those in zip(values, changes, strict=True):
-        part = slice(first + 1, first + len(those))
-        found.append(nearby_of(own, outputs, losses[first], float(power[first]), losses[part]))
-        first += len(those)
-    return tuple(found)
 
 
 @dataclass(frozen=True, slots=True)

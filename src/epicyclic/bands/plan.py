@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.analysis.solve import solve
-from epicyclic.bands.nearby import known_values, without_table
+from epicyclic.bands.nearby import Nearby, known_values, nearby_of, steps, without_table
 from epicyclic.bands.outputs import (
     INPUT_POWER,
     Outputs,
@@ -29,8 +29,9 @@ from epicyclic.results.result import Result
 from epicyclic.status import Status
 from epicyclic.sweeps.journal import Row, Rows
 from epicyclic.sweeps.plan import CasePlan
+from epicyclic.sweeps.runner import Runner
 
-__all__ = ["FEWEST", "SamplePlan", "SampledCase", "check_samples", "sampled_case"]
+__all__ = ["FEWEST", "SamplePlan", "SampledCase", "check_samples", "nearby_at", "sampled_case"]
 
 FloatArray = NDArray[np.float64]
 Point = Mapping[str, Any]
@@ -239,6 +240,41 @@ def sampled_case(
         points=tuple(points),
     )
     return SampledCase(outputs, samples, groups, plan)
+
+
+def nearby_at(
+    case: Case, result: Result, points: Sequence[Point], runner: Runner
+) -> tuple[Nearby, ...]:
+    """Losses at operating points, at each with every input off by a standard deviation.
+
+    Parameters
+    ----------
+    case : PlanetaryCase, GearPairCase or TrainCase
+    result : Result
+        Of the case.
+    points : sequence of mapping
+        What the operating points change.
+    runner : Runner
+    """
+    outputs = outputs_of(case, result)
+    values = _values_at(case, result, points)
+    changes = [
+        [{**point, **step} for step in ({}, *steps(own))]
+        for point, own in zip(points, values, strict=True)
+    ]
+    every = tuple(it for own in changes for it in own)
+    plan = SamplePlan(
+        without_table(case), outputs, drawn=(np.empty((0, 1)),) * len(every), points=every
+    )
+    rows = runner.run(plan)
+    losses = np.array([rows.numbers(name) for name in outputs.numbers]).T
+    power = rows.numbers(INPUT_POWER)
+    found, first = [], 0
+    for own, those in zip(values, changes, strict=True):
+        part = slice(first + 1, first + len(those))
+        found.append(nearby_of(own, outputs, losses[first], float(power[first]), losses[part]))
+        first += len(those)
+    return tuple(found)
 
 
 def _values_at(

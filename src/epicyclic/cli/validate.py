@@ -26,23 +26,35 @@ __all__ = ["validate"]
     help="The loaded tests only, with temperatures that follow from the losses: minutes.",
 )
 @click.option(
+    "--bands",
+    is_flag=True,
+    help="The measured figures only, with the 95 % bands of the computed ones: a minute.",
+)
+@click.option(
     "-o",
     "--output",
     metavar="FILE",
     type=click.Path(path_type=Path),
     help="A page with pictures and tables in place of the table: .html, or .pdf.",
 )
-def validate(temperatures: bool, output: Path | None) -> None:
+def validate(temperatures: bool, bands: bool, output: Path | None) -> None:
     """Compare with published figures: published, computed, difference, verdict."""
     from epicyclic.report.tables import terminal
 
+    chosen = [
+        name for name, is_on in (("--temperatures", temperatures), ("--bands", bands)) if is_on
+    ]
+    others = [*chosen[1:], *(["-o"] if output is not None else [])]
+    if chosen and others:
+        problems = [
+            Problem(name, "", f"does not go with {chosen[0]}.", "Leave one of them out.")
+            for name in others
+        ]
+        raise InputError(problems, "the command")
     if temperatures:
-        if output is not None:
-            problem = Problem(
-                "-o", str(output), "does not go with --temperatures.", "Leave one of them out."
-            )
-            raise InputError([problem], "the command")
         terminal().print(_settled())
+    elif bands:
+        terminal().print(_banded())
     elif output is None:
         from epicyclic.report.tables import as_on_page
         from epicyclic.report.validation_table import closure_table, validation_table
@@ -93,3 +105,13 @@ def _settled() -> RenderableType:
 
     with progress_bar("tests") as progress:
         return settled_table(settled_figures(Runner(progress=progress)), estimates())
+
+
+def _banded() -> RenderableType:
+    from epicyclic.bands.published import measured_figures
+    from epicyclic.cli.progress import progress_bar
+    from epicyclic.report.validation_table import bands_table
+    from epicyclic.sweeps.runner import Runner
+
+    with progress_bar("tests") as progress:
+        return bands_table(measured_figures(Runner(progress=progress)))

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from epicyclic.bands.published import MeasuredFigure
 from epicyclic.report.page import Cell, Table, aligned
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import plain_table
@@ -100,6 +101,43 @@ def settled_table(rows: Sequence[SettledFigure], estimates: Sequence[Estimate]) 
         for item in estimates
     )
     return Group(table, note, *ranges)
+
+
+def band_rows(rows: Sequence[MeasuredFigure]) -> list[tuple[str, ...]]:
+    """Figure, measured, computed, its 95 % band, and whether the measurement lies inside."""
+    return [
+        (
+            f"{row.what}, {row.unit}",
+            shown(row.measured),
+            shown(row.computed, 3),
+            f"{shown(row.low, 3)} to {shown(row.high, 3)}",
+            "inside" if row.is_inside else "outside",
+        )
+        for row in rows
+    ]
+
+
+def band_markdown(rows: Sequence[MeasuredFigure]) -> str:
+    """`band_rows` as the manual shows them."""
+    head = ("Measured figure", "Measured", "Computed", "95 % band", "")
+    cells = [head, ("---",) * len(head), *band_rows(rows)]
+    return "\n".join(f"| {' | '.join(row)} |".replace("|  |", "| |") for row in cells)
+
+
+def bands_table(rows: Sequence[MeasuredFigure]) -> RenderableType:
+    """One row for each measured figure."""
+    table = plain_table("Measured figures, and the 95 % band by the shipped distributions")
+    for number, column in enumerate(("figure", "measured", "computed", "95 % band", "")):
+        table.add_column(column, justify="right" if number else "left", no_wrap=bool(number))
+    for cells in band_rows(rows):
+        table.add_row(*cells)
+    inside = sum(row.is_inside for row in rows)
+    note = (
+        f"{inside} of {len(rows)} measurements lie inside. Inputs and errors of models as they are "
+        "assumed where [uncertainty] says nothing, off by the same in all tests; the error of the "
+        "measurement is not in the band, and nothing is fitted."
+    )
+    return Group(table, Text(note))
 
 
 def remarks(row: Comparison) -> list[str]:
