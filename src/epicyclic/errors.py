@@ -18,6 +18,9 @@ __all__ = [
     "printable",
 ]
 
+MOST_SHOWN, LONGEST_PROBLEM = 50, 1500
+"""Problems in one message, and characters of each; `InputError.problems` has all of them."""
+
 
 @dataclass(frozen=True, slots=True)
 class Problem:
@@ -43,7 +46,8 @@ class Problem:
     def __str__(self) -> str:
         given = " = ".join(part for part in (self.key, self.value) if part)
         head = f"{given}: {self.allowed}" if given else self.allowed
-        return printable(f"{head} {self.remedy}".rstrip())
+        text = printable(f"{head} {self.remedy}".rstrip()[: LONGEST_PROBLEM + 1])
+        return text if len(text) <= LONGEST_PROBLEM else f"{text[:LONGEST_PROBLEM]}..."
 
 
 def printable(text: str) -> str:
@@ -77,7 +81,10 @@ class InputError(EpicyclicError, ValueError):
         count = len(self.problems)
         where = f" in {self.source}" if self.source else ""
         head = f"{count} problem{'s' if count != 1 else ''}{where}:"
-        return "\n".join([head, *(f"  - {problem}" for problem in self.problems)])
+        lines = [f"  - {problem}" for problem in self.problems[:MOST_SHOWN]]
+        if count > MOST_SHOWN:
+            lines.append(f"  ... and {count - MOST_SHOWN} more.")
+        return "\n".join([head, *lines])
 
 
 class ConvergenceError(EpicyclicError):

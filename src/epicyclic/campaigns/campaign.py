@@ -128,6 +128,10 @@ class Campaign(Plan):
         raise IndexError(index)
 
 
+MOST_CONTACTS = 1_000_000
+"""Of one design: years of simulation."""
+
+
 def make_campaign(
     oil: str | Path | Mapping[str, Any],
     *,
@@ -161,6 +165,11 @@ def make_campaign(
     InputError
         With every problem of oil, ranges and changes.
     """
+    for name, count in (("size", size), ("bearing_size", bearing_size)):
+        if count is not None and count > MOST_CONTACTS:
+            allowed = f"must be {MOST_CONTACTS} or less."
+            problem = Problem(name, str(count), allowed, "Give a smaller one.")
+            raise InputError([problem], "the command")
     designs = []
     if size is None:
         designs.append(GEAR_TABLE)

@@ -8,17 +8,21 @@
 
 from __future__ import annotations
 
+import io
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from epicyclic.campaigns.campaign import SCHEMA, Campaign
 from epicyclic.campaigns.design import AXES, quantity_of_axis
+from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.journal import Journal, Rows
 from epicyclic.sweeps.runner import HERE, Runner, fingerprint
-from epicyclic.text_file import read_text
+from epicyclic.text_file import read_bytes, read_text
 from epicyclic.whole_file import make_folder, write_file
 
 if TYPE_CHECKING:
@@ -100,16 +104,40 @@ class CampaignFolder:
         import pandas as pd
 
         try:
-            frame = pd.read_csv(self.table)
+            content = read_bytes(self.table, "table of simulations", _LARGEST_TABLE)
+            frame = pd.read_csv(io.BytesIO(content))
+        except InputError as error:
+            raise _folder_error(self.table, error.problems[0].allowed) from None
         except (OSError, ValueError) as error:
-            allowed = f"cannot be read: {error}."
+            allowed = f"cannot be read: {one_line(str(error))}."
             raise _folder_error(self.table, allowed) from None
         if len(frame) != self.campaign.size or "status" not in frame:
             raise _folder_error(self.table, "does not have one line for each simulation.")
         if "friction" not in frame:
             remedy = "See why in its column of messages, and name another folder."
             raise _folder_error(self.table, "has no simulation with a solution.", remedy)
+        self._check_columns(frame)
         return frame
+
+    def _check_columns(self, frame: pd.DataFrame) -> None:
+        """Raise `InputError` unless all that is fitted is there, as finite numbers."""
+        known = list(map(column_of, AXES))
+        solved = [
+            "unsolved_share",
+            *(f"{name}{end}" for name in _RESULTS for end in ("", "_error")),
+        ]
+        lacks = [name for name in ("part", *known, *solved) if name not in frame]
+        if lacks:
+            raise _folder_error(self.table, f"lacks the columns {', '.join(lacks)}.")
+        numbers = frame[known + solved]
+        wrong = [name for name in numbers if numbers[name].dtype.kind not in "fiu"]
+        wrong += [
+            name
+            for name in set(numbers) - set(wrong)
+            if np.isinf(numbers[name]).any() or (name in known and numbers[name].isna().any())
+        ]
+        if wrong:
+            raise _folder_error(self.table, f"must hold finite numbers in {', '.join(wrong)}.")
 
     def _frame(self, rows: Rows) -> pd.DataFrame:
         """Conditions and results, one line for each simulation."""
@@ -147,8 +175,10 @@ def column_of(name: str) -> str:
     return f"{name} [{unit}]" if unit else name
 
 
-_LARGEST_PLAN = 1_000_000
-"""Of campaign.json. [bytes]"""
+_LARGEST_PLAN, _LARGEST_TABLE = 1_000_000, 200_000_000
+"""Of campaign.json, and of the table of results. [bytes]"""
+_RESULTS = ("friction", "rolling_loss")
+"""What the table holds with its error."""
 
 
 def _read_json(path: Path) -> Any:

@@ -27,6 +27,7 @@ from epicyclic.case.plain import plain, value_at, with_value
 from epicyclic.case.reading import read_file
 from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Table
 from epicyclic.case.validation import validate
+from epicyclic.case.wording import key_parts
 from epicyclic.ehl.assumptions import DEFAULT, PRESETS
 from epicyclic.ehl.conditions import LineContact, contact_oil
 from epicyclic.ehl.heating import Heating, heating_of
@@ -232,7 +233,7 @@ def load_contact_case(
         tables = _beside(tables, Path(source).parent)
     tables = {"contact": {}, "lubricant": {}} | tables  # so that what they lack is told
     for key, value in (changes or {}).items():
-        tables = with_value(tables, key.split("."), plain(value))
+        tables = with_value(tables, key_parts(key), plain(value))
     checked = validate(ContactCase, tables)
     found = [*problems, *checked.problems, *_cross_check(checked.sections)]
     if checked.case is None or found:

@@ -6,12 +6,15 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from epicyclic.errors import printable
+from epicyclic.errors import InputError, Problem, printable
 
 __all__ = ["dotted", "key_parts", "one_line", "path_of", "sentence", "written"]
 
 _LONGEST_SHOWN = 60
 """Text that users wrote is cut to this many characters in messages."""
+
+_DEEPEST = 20
+"""Dots of a key; tables of a case are nested a few levels deep."""
 
 
 def dotted(path: Sequence[str | int]) -> str:
@@ -33,7 +36,16 @@ def path_of(key: str) -> tuple[str | int, ...]:
 
 
 def key_parts(key: str) -> list[str]:
-    """The names of a dotted key; one in quotes may have dots: ``positions."S1.pinion"``."""
+    """The names of a dotted key; one in quotes may have dots: ``positions."S1.pinion"``.
+
+    Raises
+    ------
+    InputError
+        If it has more names than any key of a case.
+    """
+    if key.count(".") > _DEEPEST:
+        allowed = f"is no key: it has more than {_DEEPEST} dots."
+        raise InputError([Problem(one_line(key), "", allowed, "Correct it.")])
     if '"' not in key:
         return key.split(".")
     return [part.strip('"') for part in re.findall(r'"[^"]*"|[^.]+', key)]

@@ -141,10 +141,10 @@ def _map(
 
 def _write(result: xr.Dataset, output: Path | None, json_file: str | None) -> None:
     from epicyclic.report.duty_table import duty_json, duty_rows, duty_tables
-    from epicyclic.sweeps.dataset import write_dataset
+    from epicyclic.sweeps.dataset import csv_safe, write_dataset
 
     if output is not None and output.suffix == _MAP_SUFFIX:
         write_dataset(result, output)
     elif output is not None:
-        write_file(output, duty_rows(result).to_csv(index=False))
+        write_file(output, csv_safe(duty_rows(result)).to_csv(index=False))
     show(lambda: duty_tables(result), lambda: duty_json(result), json_file)

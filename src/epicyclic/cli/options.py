@@ -45,7 +45,9 @@ temperature_option = click.option(
 def runner_options(command: Callable[..., None]) -> Callable[..., None]:
     """Where points are computed: --jobs and --dask, of which the command gets a `runner`."""
 
-    @click.option("--jobs", type=click.IntRange(1), help="Worker processes; default: as it pays.")
+    @click.option(
+        "--jobs", type=click.IntRange(1, 10_000), help="Worker processes; default: as it pays."
+    )
     @click.option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster, tcp://host:8786.")
     @wraps(command)
     def call(

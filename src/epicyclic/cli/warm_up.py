@@ -79,7 +79,7 @@ def warm_up(
 
 def _write(data: xr.Dataset, output: Path) -> None:
     from epicyclic.report.warm_up_table import warm_up_rows
-    from epicyclic.sweeps.dataset import write_dataset
+    from epicyclic.sweeps.dataset import csv_safe, write_dataset
     from epicyclic.whole_file import whole_file
 
     if output.suffix == OUTPUTS[0]:
@@ -88,6 +88,6 @@ def _write(data: xr.Dataset, output: Path) -> None:
     rows = warm_up_rows(data)
     with whole_file(output) as file:
         if output.suffix == OUTPUTS[1]:
-            rows.to_csv(file, index=False)
+            csv_safe(rows).to_csv(file, index=False)
         else:
             rows.to_parquet(file, index=False)

@@ -13,7 +13,7 @@ from epicyclic.case.case import Case, read_case
 from epicyclic.case.operating import OPERATING, PLANE, STATE
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
-from epicyclic.sweeps.dataset import to_table
+from epicyclic.sweeps.dataset import csv_safe, to_table
 from epicyclic.units import NEWTON_METRE, WATT
 
 if TYPE_CHECKING:
@@ -178,7 +178,7 @@ def write_csv(data: xr.Dataset, path: Path) -> None:
     """One row a point, after lines that begin with ``#``."""
     with path.open("w", encoding="utf-8", newline="") as file:
         file.writelines(f"# {name}: {text}\n" for name, text in statements(data).items())
-        to_table(data).to_csv(file, index=False, lineterminator="\n")
+        csv_safe(to_table(data)).to_csv(file, index=False, lineterminator="\n")
 
 
 def write_parquet(data: xr.Dataset, path: Path) -> None:

@@ -204,7 +204,7 @@ class ResultContents(_Part):
     models: dict[str, str]
     standing: dict[str, str] = {}
     validity: tuple[Validity, ...]
-    members: dict[str, Member]
+    members: dict[str, Member] = Field(min_length=1)
     meshes: dict[str, dict[str, Measure]]
     fluid: dict[str, Measure] | None
     heat: Heat | None = None

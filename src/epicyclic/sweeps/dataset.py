@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,12 +22,15 @@ if TYPE_CHECKING:
 __all__ = [
     "FORMATS",
     "check_output",
+    "csv_safe",
     "to_dataset",
     "to_table",
     "write_dataset",
 ]
 
 FORMATS = (".nc", ".csv", ".parquet")
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""What formulas of spreadsheets begin with."""
 _INTERPOLATION_ERROR = "pocket_interpolation_error"
 
 
@@ -104,9 +107,20 @@ def write_dataset(dataset: xr.Dataset, path: Path) -> None:
         if path.suffix == ".nc":
             dataset.to_netcdf(temporary, engine="netcdf4")
         elif path.suffix == ".csv":
-            to_table(dataset).to_csv(temporary, index=False)
+            csv_safe(to_table(dataset)).to_csv(temporary, index=False)
         else:
             to_table(dataset).to_parquet(temporary, index=False)
+
+
+def csv_safe(table: pd.DataFrame) -> pd.DataFrame:
+    """A table whose texts no spreadsheet takes for formulas: those get an apostrophe in front."""
+    texts = table.select_dtypes(exclude="number").columns
+    safe = table.assign(**{name: table[name].map(_no_formula) for name in texts})
+    return safe.rename(columns=_no_formula)
+
+
+def _no_formula(value: Any) -> Any:
+    return f"'{value}" if isinstance(value, str) and value.startswith(_FORMULA) else value
 
 
 def to_table(dataset: xr.Dataset) -> pd.DataFrame:

@@ -8,6 +8,7 @@ import re
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from itertools import islice
 from numbers import Integral, Real
 from pathlib import Path
 from typing import Any, ClassVar, Self
@@ -245,14 +246,15 @@ def make_plan(case: Case, vary: Mapping[str, Iterable[Any]]) -> SweepPlan:
     axes = []
     if not vary:
         problems.append(Problem("vary", "", "is empty.", "Give at least one key and its values."))
-    for key, values in vary.items():
-        axis, found = _make_axis(case, str(key), _listed(values))
+    listed = {str(key): _listed(values) for key, values in vary.items()}
+    size = math.prod(len(values) for values in listed.values())
+    if size > _MOST_POINTS:  # not worth reading them
+        raise InputError([_too_many("vary", size)], "the sweep")
+    for key, values in listed.items():
+        axis, found = _make_axis(case, key, values)
         problems += found
         if axis is not None:
             axes.append(axis)
-    size = math.prod(len(axis.values) for axis in axes)
-    if size > _MOST_POINTS:
-        problems.append(_too_many("vary", size))
     if problems:
         raise InputError(problems, "the sweep")
     return SweepPlan(case, tuple(axes))
@@ -263,7 +265,7 @@ def _listed(values: Any) -> list[Any]:
     if isinstance(values, str | Mapping):
         return [values]
     try:
-        return list(values)
+        return list(islice(values, _MOST_POINTS + 1))
     except TypeError:
         return [values]
 
@@ -393,6 +395,10 @@ def parse_vary(
             problems.append(
                 Problem(key, f'"{text}"', f"{error}.", "Write start:stop:count in one unit.")
             )
+        size = math.prod(map(len, vary.values()))
+        if size > _MOST_POINTS:
+            problems.append(_too_many(name, size))
+            break
     if problems:
         raise InputError(problems, "the command")
     return vary
