@@ -94,10 +94,10 @@ _PLAIN_SIGNS = str.maketrans(
     {"·": "*", "⋅": "*", "×": "*", "−": "-", "μ": "µ", "⁻": "-", "¹": "1", "²": "2", "³": "3"}
 )
 
-# Products and quotients of names with one-digit exponents. Anything else is kept from pint, which
-# evaluates what it is given: 9**9**9 would never end.
+# Products and quotients of names with one-digit exponents, none of them zero. Anything else is kept
+# from pint, which evaluates what it is given: 9**9**9 would never end.
 _NAME = r"(?:[^\W\d]*°?[^\W\d]+|[°%'\"])"
-_EXPONENT = r"(?:\s*(?:\^|\*\*)?\s*[+-]?[0-9](?!\s*(?:[0-9.^]|\*\*)))"
+_EXPONENT = r"(?:\s*(?:\^|\*\*)?\s*[+-]?[1-9](?!\s*(?:[0-9.^]|\*\*)))"
 _FACTOR = rf"\(?\s*{_NAME}{_EXPONENT}?\s*\)?"
 _UNIT = re.compile(rf"(?:1?\s*/\s*)?{_FACTOR}(?:(?:\s*[*/]\s*|\s+){_FACTOR})*")
 _MISSING_CARET = re.compile(r"(?<=[^\W\d])(?=[+-]?[0-9])")
@@ -178,6 +178,8 @@ def _parse_unit(text: str) -> Unit:
     """The unit written as `text`; raises what pint raises, or `_UnitError`."""
     if _UNIT.fullmatch(text) is None:
         raise _UnitError("has a unit that cannot be read")
+    for name in re.findall(_NAME, text):  # also those that cancel each other
+        registry().parse_units(name)
     start = "1" if text.startswith("/") else ""
     return registry().parse_units(_MISSING_CARET.sub("^", f"{start}{text}"))
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from pydantic_core import PydanticCustomError
 
 from epicyclic import units
@@ -232,3 +235,33 @@ def test_numbers_of_numpy_are_written_as_any_other():
     flow = np.float64(7.816660531630488e-06)
     text = Quantity("a flow", "m^3/s", "l/min").exact_text(flow)
     assert Quantity("a flow", "m^3/s", "l/min").parse(text) == float(flow)
+
+
+NOT_UNDERSTOOD = (
+    "1_0 mm", "5 foo0 mm", "5 foo/foo mm", "5 foo foo-1 mm", "5 mm foo^0", "5 mm kg0", "5 mm nan0",
+    "5 degC0 mm", "5 _ mm", "5 mm_", "5 mm __2", "5 (mm", "5 mm)", "5 mm**0", "5 mm #", "5 mm; m",
+    "5 m\u200bm", "5 mm\0", "5 mm .", "0x5 mm", "5e mm", "5 mm^1_0", "5 rev/foo foo mm",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("text", NOT_UNDERSTOOD)
+def test_every_sign_of_a_unit_must_be_understood(text):
+    with pytest.raises(PydanticCustomError):
+        LENGTH.parse(text)
+
+
+SIGNS = st.sampled_from([*"m_ .,;/*^()-+0123eE°%'\"µ²\0\u200b", "mm", "foo", "kg", "km", "inch"])
+
+
+@given(st.lists(SIGNS, max_size=6).map("".join))
+def test_a_unit_of_random_signs_is_a_length_or_refused(text):
+    """What is taken is made of signs that mean something: names of units, powers, brackets."""
+    try:
+        value = LENGTH.parse(f"5 {text}")
+    except PydanticCustomError:
+        return
+    assert value > 0
+    names = re.findall(r"[^\W\d]+", text)
+    assert names
+    assert all(name in registry() for name in names)
+    assert not re.search(r"(?<![1-9])0", text)
