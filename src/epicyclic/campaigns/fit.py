@@ -94,9 +94,11 @@ def characterise_oil(
     campaign = make_campaign(
         oil, size=size, bearing_size=bearing_size, seed=seed, ranges=ranges, changes=changes
     )
+    runner = Runner(jobs, dask or cluster, progress=progress)
+    runner.check()
     place = CampaignFolder(Path(folder), campaign)
     place.prepare()
-    place.run(Runner(jobs, dask or cluster, progress=progress))
+    place.run(runner)
     return fit_and_write(place)
 
 

@@ -55,7 +55,9 @@ def runner_options(command: Callable[..., None]) -> Callable[..., None]:
     ) -> None:
         from epicyclic.sweeps.runner import Runner, parse_shard
 
-        command(*args, runner=Runner(jobs, dask, parse_shard(shard)), **options)
+        runner = Runner(jobs, dask, parse_shard(shard))
+        runner.check()
+        command(*args, runner=runner, **options)
 
     return call
 

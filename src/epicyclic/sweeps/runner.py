@@ -8,11 +8,16 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import re
+import sys
+import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import cache
 from importlib import metadata
 from itertools import groupby
 from pathlib import Path
@@ -42,6 +47,9 @@ BATCHES_PER_WORKER = 4
 """Fewer would leave workers idle at the end."""
 WORKER_START_SECONDS = 4.0
 """Work left, in seconds on one core, below which starting worker processes does not pay."""
+PARENT_SECONDS = 0.5
+"""Between two looks of a worker at whether its parent is alive."""
+_ABOUT_LOCKS = "ignore:resource_tracker:UserWarning"
 TRIAL_POINTS, TRIAL_SECONDS = 16, 2.0
 """Points computed, or time spent on them, before the work left is estimated."""
 
@@ -125,6 +133,11 @@ class Runner:
     def __post_init__(self) -> None:
         if self.shard is not None and not 1 <= self.shard[0] <= self.shard[1]:
             raise _no_shard("/".join(map(str, self.shard)))
+
+    def check(self) -> None:
+        """Raise `InputError` if there is no such cluster: before anything is written."""
+        if self.dask is not None:
+            _client(self.dask).close()
 
     def run(self, plan: Plan) -> Rows:
         """All points of `plan`; those of other shards are not computed."""
@@ -244,7 +257,43 @@ def _run_in_workers(
 
     batches = _batches(plan, indices, effective_n_jobs(jobs))
     workers = Parallel(n_jobs=jobs, return_as="generator_unordered", inner_max_num_threads=1)
-    yield from workers(delayed(_solve_batch)(plan, batch, journal) for batch in batches)
+    calls = (delayed(_solve_in_worker)(os.getpid(), plan, batch, journal) for batch in batches)
+    with _leftovers_removed_quietly():
+        yield from workers(calls)
+
+
+@contextmanager
+def _leftovers_removed_quietly() -> Iterator[None]:
+    """Workers whose parent was killed leave locks; joblib removes them, and need not tell users.
+
+    The process that does so takes over the options for warnings.
+    """
+    sys.warnoptions.append(_ABOUT_LOCKS)
+    try:
+        yield
+    finally:
+        sys.warnoptions.remove(_ABOUT_LOCKS)
+
+
+def _solve_in_worker(
+    parent: int, plan: Plan, indices: Sequence[int], journal: Journal | None
+) -> Batch:
+    _end_with(parent)
+    return _solve_batch(plan, indices, journal)
+
+
+@cache
+def _end_with(parent: int) -> None:
+    """Let this process, if it is a child of `parent`, end soon after it, even in compiled code."""
+    if os.getppid() != parent:
+        return  # a thread, or a worker of another backend of joblib
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(PARENT_SECONDS)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def _batches(plan: Plan, indices: list[int], workers: int) -> list[list[int]]:
