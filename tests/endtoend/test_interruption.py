@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -89,3 +90,26 @@ def test_compiled_code_is_left_at_once(tmp_path, arguments):
     # what is finished is kept: journals of points, the plan of the campaign
     assert all(path.suffix == ".partial" or path.name == "campaign.json" for path in left), left
     assert not list(tmp_path.rglob(f"{PREFIX}*"))
+
+
+def test_a_terminal_shows_that_pockets_are_being_solved(tmp_path):
+    ours, theirs = os.openpty()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "epicyclic", "run", "talbot-2012", *FINE],
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=theirs,
+    )
+    os.close(theirs)
+    shown, deadline = b"", time.monotonic() + 120
+    try:
+        while b"solving" not in shown or b"0:00:0" not in shown:
+            assert time.monotonic() < deadline
+            shown += os.read(ours, 4096)
+    finally:
+        process.send_signal(signal.SIGINT)
+        while process.poll() is None:  # what is not read would keep it waiting
+            with suppress(OSError):
+                os.read(ours, 4096)
+        os.close(ours)
+    assert process.returncode == 130

@@ -44,6 +44,7 @@ STUDY = "study"
 def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Path | None) -> None:
     """Show the pockets between the teeth: shape, pressure, speed of the flow, power."""
     from epicyclic.analysis.pocket_details import pocket_details
+    from epicyclic.cli.progress import working
     from epicyclic.report.pocket_table import pocket_tables
     from epicyclic.report.tables import terminal
 
@@ -51,7 +52,9 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
         check_ending("--plot", plot)
     if animate is not None:
         check_ending("--animate", animate, (ANIMATION,))
-    meshes = pocket_details(load_with(case, changes))
+    loaded = load_with(case, changes)
+    with working("solving"):
+        meshes = pocket_details(loaded)
     terminal().print(pocket_tables(meshes))
     for key, mesh in meshes.items():
         if plot is not None:

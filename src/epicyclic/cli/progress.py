@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -17,7 +18,10 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-__all__ = ["progress_bar", "tell"]
+__all__ = ["progress_bar", "tell", "working"]
+
+LONG_SECONDS = 2.0
+"""After which a command that tells nothing of itself says that it works."""
 
 
 def tell(text: str) -> None:
@@ -57,3 +61,24 @@ def progress_bar(noun: str) -> Iterator[Callable[..., None]]:
             bar.update(task, completed=done, total=total, failures=failures)
 
         yield update
+
+
+@contextmanager
+def working(noun: str) -> Iterator[None]:
+    """A bar without an end, and the time, for what takes long and tells nothing of itself."""
+    console = Console(stderr=True)
+    if not console.is_terminal or _is_off():
+        yield
+        return
+    columns = (TextColumn(noun), BarColumn(), TimeElapsedColumn())
+    bar = Progress(*columns, console=console, transient=True)
+    bar.add_task(noun, total=None)
+    begin = threading.Timer(LONG_SECONDS, bar.start)
+    begin.daemon = True
+    begin.start()
+    try:
+        yield
+    finally:
+        begin.cancel()
+        begin.join()
+        bar.stop()
