@@ -186,5 +186,5 @@ def test_a_folder_keeps_one_campaign(tmp_path):
     with pytest.raises(InputError, match="no plan"):
         open_folder(tmp_path / "atf")
     (tmp_path / "file").touch()
-    with pytest.raises(InputError, match="cannot be made"):
+    with pytest.raises(InputError, match="is no place for a folder"):
         CampaignFolder(tmp_path / "file", campaign).prepare()
