@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy import stats
 
 import epicyclic as ep
 from asymmetric import gear_pair
@@ -226,6 +227,22 @@ def test_a_paired_difference_is_known_better_than_an_unpaired_one(case):
     assert "gear.roughness" not in data.attrs["shared"].split(", ")
     same = ep.compare_cases(case, case, samples=16, jobs=1)
     assert not same["difference"].sel(result="total").any()
+
+
+@pytest.mark.parametrize(
+    ("value", "whole"),
+    [
+        (normal("x", 3.0, 1.5, low=0.4, high=7.0), stats.norm(3.0, 1.5)),
+        (
+            UncertainValue("x", "", 3.0, "lognormal", (1.7,), 1.1, 9.0),
+            stats.lognorm(math.log(1.7), scale=3.0),
+        ),
+        (UncertainValue("x", "", 3.0, "uniform", (-1.0, 5.0), 0.0, 4.5), stats.uniform(-1.0, 6.0)),
+    ],
+)
+def test_spreads_are_those_of_scipy(value, whole):
+    assert standard_uncertainty(value) == pytest.approx(whole.std(), rel=1e-12)
+    assert cut_off(value) == pytest.approx(whole.cdf(value.low) + whole.sf(value.high), rel=1e-12)
 
 
 def test_values_that_cannot_be_are_cut_off_and_told(case):

@@ -82,13 +82,14 @@ class FrictionComparison:
     standing: str
 
 
-def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
+def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionComparison, ...]:
     """Every friction model on `case`, by the local and by the quick method.
 
     In a train all sets get the same model; none is chosen if the case chooses several.
 
     The model ``table`` takes part if the case has a friction table, ``fitted-or-schlenk`` if there
-    are fitted models of the oil, ``fitted`` and ``ehl-direct`` if the case chooses them.
+    are fitted models of the oil, ``fitted`` and ``ehl-direct`` if the case chooses them. With
+    `brief` only those that `recommended` looks at, without the quick method, whose loss is NaN.
 
     Raises
     ------
@@ -100,9 +101,11 @@ def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
     chosen = {resolve_models(own)["friction"] for own in owners}
     rows = []
     for name in dict.fromkeys([*_models_for(owners), *sorted(chosen)]):
+        if brief and name not in (*_FOR_ONE_OIL, PAIRED, *_OF_ALL_OILS, *chosen):
+            continue
         local = solve(_with(case, {"friction": name, "mesh": "local"}))
         quick_case = _with(case, {"friction": name, "mesh": "loss-factor"})
-        quick = solve(quick_case)
+        quick = math.nan if brief else _sliding(solve(quick_case))
         own = next(own for _, own in set_cases(quick_case, built.sets))
         model = friction_of(own)
         flags = [flag for flag in local.flags if flag.use.role == "friction"]
@@ -116,7 +119,7 @@ def compare_friction(case: Case) -> tuple[FrictionComparison, ...]:
                 chosen=chosen == {name},
                 mean_friction={key: mesh.friction_mean for key, mesh in local.meshes.items()},
                 sliding=_sliding(local),
-                quick=_sliding(quick),
+                quick=quick,
                 flagged=bool(flags),
                 reasons=tuple(_reason(flag) for flag in flags),
                 outside=_outside(local, flags),

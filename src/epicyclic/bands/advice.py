@@ -156,7 +156,7 @@ def _friction(case: Case, brief: bool) -> Iterator[str]:
     if not layout_of(case).meshes or not case.operation.torque or (brief and not quick):
         return
     try:
-        best, why = recommended(compare_friction(case))
+        best, why = recommended(compare_friction(case, brief=True))
     except ConvergenceError:  # of a model that is not that of the case
         return
     does = "suits" if best.chosen else "would suit better than that of the case"

@@ -125,10 +125,10 @@ def _drawn(value: UncertainValue, rng: np.random.Generator) -> FloatArray:
 
 def _correlated(values: Sequence[UncertainValue], drawn: FloatArray) -> FloatArray:
     """Independent deviations turned into correlated ones, through normal ones."""
-    from scipy import stats
-
     if not any(value.correlated for value in values):
         return drawn
+    from scipy import stats
+
     level = np.array([value.kind == "uniform" for value in values])
     scores = drawn.copy()
     scores[level] = stats.norm.ppf((drawn[level] / HALF_WIDTH + 1) / 2)
