@@ -71,7 +71,7 @@ def _of_planetary(case: PlanetaryCase) -> SetPlaces:
     tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
     angles = build.planet_angles(case.sun, case.planet, case.ring)
     middle = ((0.0, 0.0),)
-    around = tuple(_polar(case.gears.center_distance, UP + angle) for angle in angles)
+    around = tuple(_polar(case.gears.distance, UP + angle) for angle in angles)
     centers = {"sun": middle, "planet": around, "ring": middle}
     return SetPlaces(tables, centers, {name: name for name in tables})
 
@@ -79,7 +79,7 @@ def _of_planetary(case: PlanetaryCase) -> SetPlaces:
 def _of_pair(case: GearPairCase, mesh: Mesh) -> SetPlaces:
     """The pinion at the origin, or inside an internal gear there."""
     tables = {"pinion": case.pinion, "gear": case.gear}
-    ends = ((0.0, 0.0),), ((case.gears.center_distance, 0.0),)
+    ends = ((0.0, 0.0),), ((case.gears.distance, 0.0),)
     pinion, gear = reversed(ends) if mesh.gear2.internal else ends
     return SetPlaces(tables, {"pinion": pinion, "gear": gear}, {name: name for name in tables})
 

@@ -16,15 +16,17 @@ from epicyclic.builders.models import (
     rolling_of,
 )
 from epicyclic.case import build, flanks
+from epicyclic.case.backlash import backlash_notes
 from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.listed_set import ListedCase, arrangement_of, gear_of
+from epicyclic.case.listed_set import ListedCase, arrangement_of, gear_of, meshes_of
 from epicyclic.case.lubrication import SHARE_KEY
 from epicyclic.case.model_tables import LoadSharing
 from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.geometry.assembly import are_evenly_spaced
 from epicyclic.geometry.gear import Gear
+from epicyclic.geometry.mesh import Mesh
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.losses.standing import STANDING
@@ -62,10 +64,13 @@ def case_notes(case: SetCase, found: GearSetResult, turning: Collection[str]) ->
         *fluid_notes(case),
         *lubrication_notes(case),
         *load_notes(case),
+        *thin_teeth_notes(case),
         *contact_notes(meshes),
         *pressure_notes(found.figures),
         *found.notes,
     )
+    if not isinstance(case, ListedCase):
+        notes = (*notes, *map(str, case.found))
     if isinstance(case, PlanetaryCase):
         return (
             *notes,
@@ -135,6 +140,26 @@ def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:
             f"The models built in for {oil.name} are not used, because this oil differs from it in "
             f"{', '.join(changed)}; 'epicyclic oil characterise' fits models for it."
         )
+
+
+def thin_teeth_notes(case: SetCase) -> Iterator[str]:
+    """A note on every mesh with gross backlash."""
+    for mesh, tables in _meshes(case):
+        yield from backlash_notes(mesh, tables)
+
+
+def _meshes(case: SetCase) -> Iterator[tuple[Mesh, Mapping[str, GearTable]]]:
+    """Every mesh of a set, with the tables of its gears by their names."""
+    if isinstance(case, ListedCase):
+        for _, mesh, _ in meshes_of(case.table, case.shape):
+            yield mesh, case.table.members
+    elif isinstance(case, PlanetaryCase):
+        tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
+        for mesh in build.planetary_meshes(case.gears, case.sun, case.planet, case.ring):
+            yield mesh, tables
+    else:
+        tables = {"pinion": case.pinion, "gear": case.gear}
+        yield build.pair_mesh(case.gears, case.pinion, case.gear), tables
 
 
 def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:

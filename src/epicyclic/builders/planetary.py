@@ -192,7 +192,7 @@ def _planet(key: str, case: PlanetaryCase, body: str) -> Planet:
     return Planet(
         key="planet_bearing",
         body=body,
-        pin_radius=case.gears.center_distance,
+        pin_radius=case.gears.distance,
         meshes=(
             PlanetMesh("sun_mesh", 2, (0.0, 1.0)),
             PlanetMesh("ring_mesh", 1, (0.0, -1.0)),

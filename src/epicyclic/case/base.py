@@ -11,10 +11,11 @@ from pydantic import PrivateAttr
 
 from epicyclic.case.checks import cross_check
 from epicyclic.case.fields import find_field, locate, to_inputs
+from epicyclic.case.gear_sizes import Found, Sizes, find_sizes
 from epicyclic.case.plain import plain, value_at, with_value, without
 from epicyclic.case.schema import Table
 from epicyclic.case.translation import unknown_key
-from epicyclic.case.validation import tables_of, validate
+from epicyclic.case.validation import AnyCase, Validation, tables_of, validate
 from epicyclic.case.wording import key_parts, path_of, written
 from epicyclic.errors import InputError, Problem
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from epicyclic.case.lubrication_tables import LubricationTable
     from epicyclic.case.operation_tables import Surroundings
 
-__all__ = ["CaseTable", "as_given", "with_changes"]
+__all__ = ["CaseTable", "as_given", "with_changes", "with_sizes"]
 
 
 _DECIDED = (
@@ -39,6 +40,12 @@ class CaseTable(Table):
         surroundings: Surroundings
     _tables: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: str = PrivateAttr(default="")
+    _found: tuple[Found, ...] = PrivateAttr(default=())
+
+    @property
+    def found(self) -> tuple[Found, ...]:
+        """What the tables leave out and the other ones tell, such as a profile shift."""
+        return self._found
 
     @property
     def source(self) -> str:
@@ -91,7 +98,7 @@ class CaseTable(Table):
         InputError
             With `problems` and every other one.
         """
-        validation = validate(cls, tables)
+        validation, sizes = with_sizes(validate(cls, tables), tables)
         known = {problem.key for problem in problems}
         found = [
             *problems,
@@ -101,7 +108,9 @@ class CaseTable(Table):
                 for problem in cross_check(validation.sections, tables, Path(source).parent)
             ),
         ]
-        return cls._made(validation.case, tables, source, found)
+        made = cls._made(validation.case, tables, source, found)
+        made._found = sizes.found
+        return made
 
     @classmethod
     def _made(
@@ -141,6 +150,23 @@ class CaseTable(Table):
 
     def __hash__(self) -> int:
         return hash(tuple(it for it in self.__dict__.values() if not isinstance(it, dict)))
+
+
+def with_sizes(
+    validation: Validation[AnyCase], raw: Mapping[str, Any]
+) -> tuple[Validation[AnyCase], Sizes]:
+    """A validation with what its gears leave out; without [gears] if that cannot be found."""
+    sizes = find_sizes(validation.sections, raw)
+    sections = dict(validation.sections)
+    if sizes is None or sizes.problems:
+        sizes = sizes or Sizes()
+        del sections["gears"]
+        problems = [*validation.problems, *sizes.problems]
+        return Validation(None, sections, problems), sizes
+    case = validation.case
+    if case is not None and sizes.changed:
+        case = case.model_copy(update=sizes.changed)
+    return Validation(case, sections | sizes.changed, validation.problems), sizes
 
 
 def as_given(problem: Problem, tables: dict[str, Any]) -> Problem:

@@ -93,7 +93,7 @@ def gear(name: str, table: GearTable, gears: Gears) -> Gear:
 @lru_cache(maxsize=256)
 def planetary_meshes(gears: Gears, sun: GearTable, planet: Planet, ring: Ring) -> tuple[Mesh, Mesh]:
     """Sun-planet mesh (member 1 the sun) and planet-ring mesh (member 1 the planet)."""
-    a = gears.center_distance
+    a = gears.distance
     planet_gear = gear("planet", planet, gears)
     return (
         Mesh("sun mesh", gear("sun", sun, gears), planet_gear, a),
@@ -104,9 +104,7 @@ def planetary_meshes(gears: Gears, sun: GearTable, planet: Planet, ring: Ring) -
 @lru_cache(maxsize=256)
 def pair_mesh(gears: Gears, pinion: GearTable, wheel: PairGear) -> Mesh:
     """The mesh of a gear pair, member 1 the pinion."""
-    return Mesh(
-        "mesh", gear("pinion", pinion, gears), gear("gear", wheel, gears), gears.center_distance
-    )
+    return Mesh("mesh", gear("pinion", pinion, gears), gear("gear", wheel, gears), gears.distance)
 
 
 def planet_angles(sun: GearTable, planet: Planet, ring: Ring) -> tuple[float, ...]:

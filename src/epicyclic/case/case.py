@@ -12,7 +12,7 @@ from pydantic.json_schema import GenerateJsonSchema
 from epicyclic import library
 from epicyclic.case.base import CaseTable, with_changes
 from epicyclic.case.fields import to_inputs
-from epicyclic.case.gear_tables import Gears, GearTable, MeshTable, PairGear, Planet, Ring
+from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring, SetMesh
 from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
 from epicyclic.case.model_tables import (
     ContactSolver,
@@ -78,8 +78,8 @@ class PlanetaryCase(_SetTables):
     sun: GearTable
     planet: Planet
     ring: Ring
-    sun_mesh: MeshTable = MeshTable()
-    ring_mesh: MeshTable = MeshTable()
+    sun_mesh: SetMesh = SetMesh()
+    ring_mesh: SetMesh = SetMesh()
     planet_bearing: PlanetBearing | None = None
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
@@ -105,7 +105,7 @@ class GearPairCase(_SetTables):
     gears: Gears
     pinion: GearTable
     gear: PairGear
-    mesh: MeshTable = MeshTable()
+    mesh: SetMesh = SetMesh()
     lubricant: Lubricant
     lubrication: LubricationTable | None = LUBRICATION
     surroundings: Surroundings = Surroundings()

@@ -7,9 +7,9 @@ both of its gears are sound, so that one mistake is told once.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 from epicyclic.case import build
+from epicyclic.case.backlash import ROUNDING, Tables, check_backlash, thickness_key
 from epicyclic.case.flank_checks import check_flanks
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring
 from epicyclic.case.wording import millimetres
@@ -24,16 +24,11 @@ __all__ = ["check_gears", "check_mesh", "check_pair", "check_planetary"]
 ANGLE_TOLERANCE = math.radians(0.01)
 """Given planet positions may differ by this from an admissible one: drawing precision. [rad]"""
 
-ROUNDING = 1e-9
-"""Clearances count as negative beyond this: drawings may state exactly zero. [m]"""
-
 THINNEST_RIM = 0.25
 """A thinner rim is foil, and its teeth find no balance. [normal modules]"""
 
 LARGEST_RIM_RATIO = 1000.0
 """Root radius over thickness of a rim, for the same reason. [1]"""
-
-Tables = Mapping[str, GearTable]
 
 
 def check_planetary(gears: Gears, sun: GearTable, planet: Planet, ring: Ring) -> list[Problem]:
@@ -42,9 +37,7 @@ def check_planetary(gears: Gears, sun: GearTable, planet: Planet, ring: Ring) ->
     sound, problems = check_gears(gears, tables)
     for name, one, two in (("sun mesh", "sun", "planet"), ("ring mesh", "planet", "ring")):
         if one in sound and two in sound:
-            problems += check_mesh(
-                Mesh(name, sound[one], sound[two], gears.center_distance), tables
-            )
+            problems += check_mesh(Mesh(name, sound[one], sound[two], gears.distance), tables)
     if "planet" in sound:
         problems += _check_positions(gears, sun, planet, ring)
     return list(dict.fromkeys(problems))  # a planet that cannot be cut is found in both meshes
@@ -138,7 +131,7 @@ def _check_tooth(gear: Gear, table: GearTable) -> Problem | None:
             f"{'a ring' if gear.internal else 'an external gear'}.",
             "Correct one of the two.",
         )
-    thickness = _thickness_key(gear.name, table)
+    thickness = thickness_key(gear.name, table)
     if gear.tip_radius <= gear.base_radius:
         return Problem(
             tip,
@@ -181,12 +174,6 @@ def _diameter(radius: float, given: float | None) -> str:
     return f"{millimetres(2 * radius)}{' (the default)' if given is None else ''}"
 
 
-def _thickness_key(name: str, table: GearTable) -> str:
-    """The key that states how thick the teeth are."""
-    is_shift = table.profile_shift_coefficient is not None
-    return f"{name}.{'profile_shift_coefficient' if is_shift else 'tooth_thickness'}"
-
-
 def check_mesh(
     mesh: Mesh, tables: Tables, distance_key: str = "gears.center_distance"
 ) -> list[Problem]:
@@ -221,7 +208,7 @@ def check_mesh(
                 f"{_reference_distance(mesh)} Check tooth numbers and module too.",
             )
         ]
-    problems = _check_backlash(mesh, tables, distance_key)
+    problems = check_backlash(mesh, tables, distance_key)
     ends: list[Problem] = []
     for tip, root, clearance in (
         (two, one, mesh.tip_clearance2),
@@ -248,22 +235,6 @@ def check_mesh(
 def _reference_distance(mesh: Mesh) -> str:
     distance = mesh.gear2.reference_radius + mesh.side * mesh.gear1.reference_radius
     return f"Without profile shift it is {millimetres(distance)}."
-
-
-def _check_backlash(mesh: Mesh, tables: Tables, distance_key: str) -> list[Problem]:
-    if mesh.backlash >= -ROUNDING:
-        return []
-    keys = [_thickness_key(name, tables[name]) for name in (mesh.gear1.name, mesh.gear2.name)]
-    sense = "reduce" if mesh.internal else "increase"
-    return [
-        Problem(
-            ", ".join(keys),
-            "",
-            f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
-            f"centre distance of {millimetres(mesh.center_distance)} (negative backlash).",
-            f"Make them thinner, or {sense} {distance_key}.",
-        )
-    ]
 
 
 def _negative_clearance(mesh: Mesh, tip: Gear, root: Gear, tables: Tables) -> Problem:
@@ -382,7 +353,7 @@ def _no_tool(gear: Gear, table: GearTable, reason: str) -> Problem:
         f"{_diameter(gear.tip_radius, table.tip_diameter)}, "
         f"{_diameter(gear.root_radius, table.root_diameter)}",
         f"no tool cuts such a tooth: {reason}.",
-        f"Change the tip or root diameter, or {_thickness_key(gear.name, table)}.",
+        f"Change the tip or root diameter, or {thickness_key(gear.name, table)}.",
     )
 
 
@@ -429,9 +400,9 @@ def _check_positions(gears: Gears, sun: GearTable, planet: Planet, ring: Ring) -
                 )
             )
     tip = build.gear("planet", planet, gears).tip_radius
-    gap = smallest_planet_gap(angles, gears.center_distance, tip)
+    gap = smallest_planet_gap(angles, gears.distance, tip)
     if gap <= 0:
-        most = math.floor(math.pi / math.asin(min(1.0, tip / gears.center_distance)))
+        most = math.floor(math.pi / math.asin(min(1.0, tip / gears.distance)))
         key = "count" if planet.angles is None else "angles"
         problems.append(
             Problem(

@@ -37,7 +37,9 @@ class Gears(Table):
         Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=40.0)] | None
     ) = Field(default=None, description="alpha_t at the reference circle.")
     helix_angle: HelixAngle = Field(description="beta at the reference circle, magnitude.")
-    center_distance: Length = Field(description="Of every mesh.")
+    center_distance: Length | None = Field(
+        default=None, description="Of every mesh. Default: from the profile shifts, x."
+    )
     addendum_coefficient: Number = Field(
         default=1.0,
         gt=0,
@@ -50,6 +52,12 @@ class Gears(Table):
         le=4,
         description="h_fP/m_n, for gears without root_diameter. ISO 53, profile A.",
     )
+
+    @property
+    def distance(self) -> float:
+        """The centre distance, as given or found; see `epicyclic.case.gear_sizes`. [m]"""
+        assert self.center_distance is not None
+        return self.center_distance
 
 
 ReliefShape = Literal["linear", "parabolic"]
@@ -118,7 +126,9 @@ class GearTable(Table):
         "tool_tip_radius": None,
         "micro_geometry": None,
     }
-    EXACTLY_ONE = (("tooth_thickness+thickness_diameter", "profile_shift_coefficient"),)
+    AT_MOST_ONE: ClassVar[tuple[tuple[str, ...], ...]] = (
+        ("tooth_thickness+thickness_diameter", "profile_shift_coefficient"),
+    )
 
     teeth: int = Field(ge=5, le=2000, description="Number of teeth.")
     face_width: Length
@@ -137,7 +147,11 @@ class GearTable(Table):
     )
     thickness_diameter: Length | None = None
     profile_shift_coefficient: Number | None = Field(
-        default=None, ge=-3, le=5, description="x; positive thickens the teeth, on a ring too."
+        default=None,
+        ge=-3,
+        le=5,
+        description="x; positive thickens the teeth, on a ring too. Default: what the mate and "
+        "the centre distance leave.",
     )
     roughness: Roughness = Field(description="rms roughness Rq of the flanks, or a finish.")
     material: NamedMaterial = Field(default=as_stated("steel"), description="A name or a table.")
@@ -213,4 +227,14 @@ class MeshTable(Table):
         default=as_stated("0 um"),
         description="F_beta_x over the common face width, in the plane of action; positive: the "
         "flanks open towards the end where contact ends.",
+    )
+
+
+class SetMesh(MeshTable):
+    """A mesh whose gears or centre distance may be found from it."""
+
+    normal_backlash: ShortLength | None = Field(
+        default=None,
+        description="j_bn, for what is left out: a profile shift or the centre distance. Default: "
+        "none, as the profile shifts of ISO 21771.",
     )

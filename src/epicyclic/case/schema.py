@@ -26,7 +26,8 @@ class Table(BaseModel):
     """Base of all tables: immutable, no unknown keys.
 
     ``EXACTLY_ONE`` lists groups of alternatives of which a file gives exactly one; an alternative
-    of several keys, joined by ``+``, needs all of them.
+    of several keys, joined by ``+``, needs all of them. Of the groups in ``AT_MOST_ONE`` a file may
+    give none.
 
     ``STAND_INS`` are keys on which no check across tables depends. If such a key cannot be used,
     the checks go on with the value given here (None: with the default).
@@ -36,6 +37,7 @@ class Table(BaseModel):
         frozen=True, extra="forbid", validate_default=True, allow_inf_nan=False
     )
     EXACTLY_ONE: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    AT_MOST_ONE: ClassVar[tuple[tuple[str, ...], ...]] = ()
     STAND_INS: ClassVar[dict[str, object]] = {}
 
 

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any, Literal, Self, cast
 
 from pydantic import Field, PrivateAttr, create_model
 
-from epicyclic.case.base import CaseTable, as_given
+from epicyclic.case.base import CaseTable, as_given, with_sizes
 from epicyclic.case.checks import cross_check
 from epicyclic.case.element_kinds import ELEMENT_KINDS
+from epicyclic.case.gear_sizes import Found
 from epicyclic.case.listed_checks import listed_set_problems
 from epicyclic.case.listed_set import directions_of, hands_of
 from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
@@ -180,6 +181,7 @@ class _TrainTables(CaseTable):
         shared = {key: tables[key] for key in _SHARED if key in tables and key in whole.sections}
         sets: dict[str, SetTable] = {}
         shapes: dict[str, SetShape] = {}
+        sizes: list[Found] = []
         joined = _joined_members(tables)
         for name in named:
             read = _read_set(raw_sets[name], shared, folder)
@@ -187,6 +189,7 @@ class _TrainTables(CaseTable):
             if "." in name or not name.strip():
                 allowed = "is no name for a set: letters, and no dot, which parts set and member."
                 found.append(Problem(f"sets.{name}", "", allowed, "Choose another name."))
+            sizes += [replace(one, key=f"sets.{name}.{one.key}") for one in read.found]
             if read.table is not None:
                 sets[name] = read.table
                 shape, wrong = shape_of_set(read.table, joined.get(name, ()))
@@ -202,7 +205,7 @@ class _TrainTables(CaseTable):
             return cls._made(None, tables, source, found)
         values = {key: getattr(case, key) for key in type(case).model_fields}
         train = cls.model_construct(**values, sets=sets)
-        train._source = source
+        train._source, train._found = source, tuple(sizes)
         known_shapes = not found
         train._shape, wrong = shape_of_train(shapes, train.shafts)
         found += wrong
@@ -278,9 +281,12 @@ def _texts(value: Any) -> Iterator[str]:
 class _ReadSet:
     """A set, or its problems."""
 
-    def __init__(self, table: SetTable | None, problems: list[Problem]) -> None:
+    def __init__(
+        self, table: SetTable | None, problems: list[Problem], found: tuple[Found, ...] = ()
+    ) -> None:
         self.table = table
         self.problems = problems
+        self.found = found
 
 
 def _read_set(raw: Any, shared: Mapping[str, Any], folder: Path) -> _ReadSet:
@@ -314,7 +320,8 @@ def _read_set_cached(given: _Given) -> _ReadSet:
     if "models" in raw and form is PairSet:
         own = GearPairModels.model_fields
         raw = raw | {"models": {k: v for k, v in raw["models"].items() if k in own}}
-    read: Validation[Any] = validate(form, raw)
+    read: Validation[Any]
+    read, sizes = with_sizes(validate(form, raw), raw)
     problems = [_with_gears(problem) for problem in read.problems]
     if issubclass(form, PlanetarySet | PairSet | ListedSet):
         tables = {*raw, *given.shared}
@@ -333,7 +340,7 @@ def _read_set_cached(given: _Given) -> _ReadSet:
                 "Give one of them: of the set from sun to ring, or of each of its meshes.",
             )
         )
-    return _ReadSet(None if problems else read.case, problems)
+    return _ReadSet(None if problems else read.case, problems, sizes.found)
 
 
 def _form_of(raw: dict[str, Any]) -> tuple[type[Table] | None, dict[str, Any]]:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
-from epicyclic.case.gear_tables import Gears, GearTable, MeshTable, PairGear, Planet, Ring
+from epicyclic.case.gear_tables import Gears, GearTable, MeshTable, PairGear, Planet, Ring, SetMesh
 from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
 from epicyclic.case.model_tables import (
     GearPairLosses,
@@ -94,8 +94,8 @@ class PlanetarySet(Table):
     sun: GearTable
     planet: Planet
     ring: Ring
-    sun_mesh: MeshTable = MeshTable()
-    ring_mesh: MeshTable = MeshTable()
+    sun_mesh: SetMesh = SetMesh()
+    ring_mesh: SetMesh = SetMesh()
     planet_bearing: PlanetBearing | None = None
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
@@ -131,7 +131,7 @@ class PairSet(Table):
     gears: Gears
     pinion: GearTable
     gear: PairGear
-    mesh: MeshTable = MeshTable()
+    mesh: SetMesh = SetMesh()
     direction: Angle = Field(
         default=as_stated("0 deg"),
         description="From the axis of the pinion to that of the gear, for the forces on shaft "
@@ -156,6 +156,9 @@ class GivenPair(Table):
 
 class ListedGear(PairGear):
     """A gear of a listed set whose losses are computed."""
+
+    EXACTLY_ONE = GearTable.AT_MOST_ONE
+    AT_MOST_ONE = ()
 
     body: str | None = Field(
         default=None, description="Gears with the same body turn together. Default: its own."

@@ -128,7 +128,7 @@ def _rename(new: Mapping[str, str], table: dict[str, Any]) -> dict[str, Any]:
 
 
 def _check_alternatives(kind: type[Table], raw: dict[str, Any]) -> list[Problem]:
-    """Exactly one of each group of alternatives must be given, and that one whole."""
+    """One of each group of alternatives must be given, and that one whole."""
     problems = []
     for name, table in tables_of(kind).items():
         given = {name: raw.get(name)}
@@ -136,8 +136,10 @@ def _check_alternatives(kind: type[Table], raw: dict[str, Any]) -> list[Problem]
             given = {f"{name}.{dotted([key])}": item for key, item in raw[name].items()}
         for key, item in given.items():
             if isinstance(item, dict):
-                for group in table.EXACTLY_ONE:
-                    problems += _check_group(key, [keys.split("+") for keys in group], item)
+                for group in (*table.EXACTLY_ONE, *table.AT_MOST_ONE):
+                    choices = [keys.split("+") for keys in group]
+                    is_needed = group in table.EXACTLY_ONE
+                    problems += _check_group(key, choices, item, is_needed=is_needed)
     return problems
 
 
@@ -147,10 +149,12 @@ def _holds_names(kind: type[Table], name: str) -> bool:
 
 
 def _check_group(
-    name: str, alternatives: list[list[str]], given: Mapping[str, Any]
+    name: str, alternatives: list[list[str]], given: Mapping[str, Any], *, is_needed: bool
 ) -> list[Problem]:
     started = [keys for keys in alternatives if any(key in given for key in keys)]
     choice = " or ".join(" with ".join(keys) for keys in alternatives)
+    if not started and not is_needed:
+        return []
     if not started:
         missing = alternatives[0][0]
         return [

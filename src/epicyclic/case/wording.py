@@ -8,7 +8,16 @@ from typing import Any
 
 from epicyclic.errors import InputError, Problem, printable
 
-__all__ = ["dotted", "key_parts", "one_line", "path_of", "sentence", "written"]
+__all__ = [
+    "dotted",
+    "key_parts",
+    "micrometres",
+    "millimetres",
+    "one_line",
+    "path_of",
+    "sentence",
+    "written",
+]
 
 _LONGEST_SHOWN = 60
 """Text that users wrote is cut to this many characters in messages."""
@@ -100,3 +109,8 @@ def sentence(text: str, *, capital: bool = True) -> str:
 def millimetres(value: float) -> str:
     """A length in metres as text for a message."""
     return f"{value * 1e3:.5g} mm"
+
+
+def micrometres(value: float) -> str:
+    """A small length in metres as text for a message."""
+    return f"{value * 1e6:.3g} um"

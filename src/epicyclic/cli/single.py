@@ -92,6 +92,8 @@ def check(case: str, changes: tuple[str, ...]) -> None:
 
         for name, supply in stated_supplies(loaded):
             click.echo(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
+    for found in loaded.found:
+        click.echo(found)
     if loaded.kind == "train":
         from epicyclic.report.state_tables import state_tables
         from epicyclic.report.tables import terminal

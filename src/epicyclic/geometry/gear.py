@@ -13,12 +13,25 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["BasicRack", "Gear", "involute"]
+__all__ = ["BasicRack", "Gear", "inverse_involute", "involute"]
 
 
 def involute(angle: float) -> float:
     """Involute function inv(angle) = tan(angle) - angle. ISO 21771. Theory (G7)."""
     return math.tan(angle) - angle
+
+
+def inverse_involute(value: float) -> float:
+    """Angle whose involute function is `value`, positive, by Newton's method from above."""
+    # tan(x) - x exceeds both x^3/3 and tan(x) - pi/2, so either start is too large; from there
+    # Newton's method falls monotonically, the function being convex.
+    angle = min(math.cbrt(3 * value), math.atan(value + math.pi / 2))
+    for _ in range(50):
+        change = (involute(angle) - value) / math.tan(angle) ** 2
+        angle -= change
+        if abs(change) <= 1e-15 * angle:
+            break
+    return angle
 
 
 @dataclass(frozen=True)

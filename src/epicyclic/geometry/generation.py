@@ -19,7 +19,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.geometry.gear import Gear, half_angle_from_profile_shift, involute
+from epicyclic.geometry.gear import (
+    Gear,
+    half_angle_from_profile_shift,
+    inverse_involute,
+    involute,
+)
 from epicyclic.geometry.tools import RackTool, ShaperTool, Tool
 from epicyclic.geometry.zero import zero_between
 
@@ -339,20 +344,7 @@ def _generating_pressure_angle(gear: Gear, cutter_teeth: int, cutter_half_angle:
             f"the spaces of the {gear.name} are too narrow for a shaper cutter of {cutter_teeth} "
             f"teeth"
         )
-    return _inverse_involute(value)
-
-
-def _inverse_involute(value: float) -> float:
-    """Angle whose involute function is `value`, positive, by Newton's method from above."""
-    # tan(x) - x exceeds both x^3/3 and tan(x) - pi/2, so either start is too large; from there
-    # Newton's method falls monotonically, the function being convex.
-    angle = min(math.cbrt(3 * value), math.atan(value + math.pi / 2))
-    for _ in range(50):
-        change = (involute(angle) - value) / math.tan(angle) ** 2
-        angle -= change
-        if abs(change) <= 1e-15 * angle:
-            break
-    return angle
+    return inverse_involute(value)
 
 
 def _check_trimming(gear: Gear, cut: ShaperCut) -> None:

@@ -180,6 +180,12 @@ class Mesh:
         )
 
     @property
+    def normal_backlash(self) -> float:
+        """j_bn = j_wt cos(alpha_wt) cos(beta_b), between flanks. ISO 21771. Theory (G47). [m]"""
+        normal = math.cos(self.operating_pressure_angle)
+        return self.backlash * normal * math.cos(self.gear1.rack.base_helix_angle)
+
+    @property
     def tip_clearance1(self) -> float:
         """Gap between the tip of member 1 and the root of member 2. Theory (G22). [m]"""
         if self.internal:

@@ -233,7 +233,7 @@ def add_pair(
         member: _gear(builder, shafts[member], tables[member], one, hands[member], member)
         for member, one in made.items()
     }
-    center = case.gears.center_distance
+    center = case.gears.distance
     _stage(builder, unit, oil, list(numbers.values()), center, name)
     return numbers
 
@@ -306,7 +306,7 @@ def _planets(
     hand = -1 if isinstance(case, PlanetarySet) and case.hand == "left" else 1
     sun = _gear(builder, shafts["sun"], case.sun, made["sun"], hand, "sun")
     ring = _gear(builder, shafts["ring"], case.ring, made["ring"], -hand, "ring")
-    center = case.gears.center_distance
+    center = case.gears.distance
     for number in range(1, case.planet.count + 1):
         name = f"planet {number}"
         shaft, pin = (add_shaft(builder, unit, f"{name}, {part}") for part in ("shaft", "pin"))

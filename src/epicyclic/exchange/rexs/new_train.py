@@ -78,7 +78,7 @@ def _places(case: TrainCase) -> dict[str, Place]:
     for name, table in case.sets.items():
         bodies = case.shape.bodies_of(name)
         if isinstance(table, PairSet):
-            length, toward = table.gears.center_distance, table.direction
+            length, toward = table.gears.distance, table.direction
             step = (length * math.cos(toward), length * math.sin(toward))
             steps.append((bodies["pinion"], bodies["gear"], step))
         else:

@@ -1,0 +1,331 @@
+"""Finds what a case leaves out of its gears: the centre distance, or profile shifts.
+
+A mesh joins its centre distance, two profile shifts and its backlash: any one of them follows from
+the others. What was found, and what was adjusted because the printed digits contradict each other,
+is told in `Found`.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from epicyclic.case import build
+from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Ring, SetMesh
+from epicyclic.case.plain import value_at
+from epicyclic.case.schema import Table
+from epicyclic.case.wording import micrometres, millimetres
+from epicyclic.errors import InputError, Problem
+from epicyclic.geometry.profile_shifts import (
+    closed_center_distance,
+    profile_shift_sum,
+    recommended_backlash,
+    thinning,
+)
+from epicyclic.units import MILLIMETRE
+
+__all__ = ["Found", "Sizes", "find_sizes"]
+
+MESHES = {"planetary": ("sun-planet", "planet-ring"), "gear_pair": ("pinion-gear",)}
+"""Gears of each mesh; of both the first, or of a ring mesh the ring, is fitted to the other."""
+_TABLES = {"sun-planet": "sun_mesh", "planet-ring": "ring_mesh", "pinion-gear": "mesh"}
+
+FINEST_SHIFT = 0.5e-3
+"""Half a unit of the last digit of a profile shift counts at most as this: 0.3 means 0.300. [1]"""
+FINEST_LENGTH = 0.5e-6
+"""The same of lengths: 39 mm means 39.000 mm. [m]"""
+AGREES = 0.5e-6
+"""A stated backlash that differs less from that of the teeth is that of the teeth. [m]"""
+ROUNDING = 0.5e-9
+"""Teeth that are too thick by less than this pass as they are; see `backlash.ROUNDING`. [m]"""
+LEAST_SHIFT, LARGEST_SHIFT = -3.0, 5.0
+"""What a case may state."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A value that the case does not state.
+
+    Attributes
+    ----------
+    key : str
+    value : str
+        With unit, as a message shows it.
+    how : str
+        Where it comes from.
+    """
+
+    key: str
+    value: str
+    how: str
+
+    def __str__(self) -> str:
+        return f"{self.key} = {self.value}: {self.how}"
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """The tables of a case with what they left out.
+
+    Attributes
+    ----------
+    changed : dict of str to Table
+        Tables in place of those of the case.
+    found : tuple of Found
+    problems : list of Problem
+        Why something cannot be found.
+    """
+
+    changed: dict[str, Table] = field(default_factory=dict)
+    found: tuple[Found, ...] = ()
+    problems: list[Problem] = field(default_factory=list)
+
+
+def find_sizes(sections: Mapping[str, Table], raw: Mapping[str, Any]) -> Sizes | None:
+    """What the gears of a set or pair leave out.
+
+    Parameters
+    ----------
+    sections : mapping of str to Table
+        The tables that are valid by themselves.
+    raw : mapping
+        The case as the user wrote it, for the digits that are printed.
+
+    Returns
+    -------
+    Sizes or None
+        None if something is left out that only tables tell which are not valid.
+    """
+    gears = sections.get("gears")
+    if not isinstance(gears, Gears):
+        return Sizes()
+    kind = "gear_pair" if {"pinion", "gear"} & {*sections, *raw} else "planetary"
+    names = dict.fromkeys(name for mesh in MESHES[kind] for name in mesh.split("-"))
+    tables = {name: table for name in names if isinstance(table := sections.get(name), GearTable)}
+    incomplete = gears.center_distance is None or not all(map(_is_stated, tables.values()))
+    if len(tables) < len(names):
+        return None if incomplete else Sizes()
+    try:
+        return _Solver(gears, tables, sections, raw, MESHES[kind]).solve()
+    except InputError as error:
+        return Sizes(problems=list(error.problems))
+    except ValueError:  # a thickness inside the base circle: told with the gears
+        return None if incomplete else Sizes()
+
+
+def _is_stated(table: GearTable) -> bool:
+    """True if a gear states how thick its teeth are."""
+    return table.profile_shift_coefficient is not None or table.tooth_thickness is not None
+
+
+def _refused(key: str, value: str, allowed: str, remedy: str) -> InputError:
+    return InputError([Problem(key, value, allowed, remedy)])
+
+
+@dataclass(frozen=True, slots=True)
+class _Mesh:
+    """A mesh by the names of its gears, the first of which gives way, and its table."""
+
+    name: str
+    key: str
+    gears: tuple[str, str]
+    teeth: int
+    backlash: float | None
+
+
+class _Solver:
+    """The gears of one set or pair."""
+
+    def __init__(
+        self,
+        gears: Gears,
+        tables: Mapping[str, GearTable],
+        sections: Mapping[str, Table],
+        raw: Mapping[str, Any],
+        meshes: tuple[str, ...],
+    ) -> None:
+        self.gears, self.tables, self.raw = gears, tables, raw
+        self.rack = build.basic_rack(gears)
+        self.distance = gears.center_distance
+        self.shifts = {
+            name: build.gear(name, table, gears).profile_shift_coefficient
+            for name, table in tables.items()
+            if _is_stated(table)
+        }
+        self.meshes = [self._mesh(pair, sections) for pair in meshes]
+        self.found: list[Found] = []
+        self.changed: dict[str, Table] = {}
+
+    def _mesh(self, pair: str, sections: Mapping[str, Table]) -> _Mesh:
+        one, two = pair.split("-")
+        table, key = sections.get(_TABLES[pair]), _TABLES[pair]
+        wheel = self.tables[two]
+        internal = isinstance(wheel, Ring) or (isinstance(wheel, PairGear) and wheel.internal)
+        teeth = self.tables[one].teeth + (-wheel.teeth if internal else wheel.teeth)
+        backlash = table.normal_backlash if isinstance(table, SetMesh) else None
+        return _Mesh(key.replace("_", " "), key, (one, two), teeth, backlash)
+
+    def solve(self) -> Sizes:
+        doubly = [mesh for mesh in self.meshes if self.shifts.keys() >= set(mesh.gears)]
+        if self.distance is None:
+            self.distance = self._find_distance(doubly)
+            doubly = doubly[1:]
+        self._find_shifts()
+        for mesh in doubly:
+            self._adjust(mesh)
+        return Sizes(self.changed, tuple(self.found))
+
+    # --- centre distance ---
+
+    def _find_distance(self, known: list[_Mesh]) -> float:
+        """From the first of the meshes both of whose gears state their thickness."""
+        if not known:
+            raise _refused(
+                "gears.center_distance",
+                "",
+                "is missing, and no mesh tells it: that takes the tooth thickness of both gears, "
+                f"{' or '.join(' and '.join(mesh.gears) for mesh in self.meshes)}.",
+                'Add center_distance = "... mm" to [gears], or profile_shift_coefficient to them.',
+            )
+        mesh = known[0]
+        total = sum(self.shifts[name] for name in mesh.gears)
+        try:
+            found = closed_center_distance(self.rack, mesh.teeth, total, mesh.backlash or 0.0)
+        except ValueError as error:
+            raise _refused(
+                ", ".join(f"{name}.profile_shift_coefficient" for name in mesh.gears),
+                "",
+                f"leave no centre distance: {error}.",
+                "Correct the profile shifts, or give gears.center_distance.",
+            ) from None
+        self.changed["gears"] = self.gears.model_copy(update={"center_distance": found})
+        self._tell("gears.center_distance", f"{1e3 * found:.4f} mm", mesh, found)
+        return found
+
+    # --- profile shifts ---
+
+    def _find_shifts(self) -> None:
+        """Of each gear without one, the thinner of what its mates leave."""
+        assert self.distance is not None
+        distance = self.distance
+        free = [name for name in self.tables if name not in self.shifts]
+        while free:
+            tied = {name: [mesh for mesh, _ in self._known_mates(name)] for name in free}
+            name = next((name for name in free if tied[name]), None)
+            if name is None:
+                keys = ", ".join(f"{name}.profile_shift_coefficient" for name in free)
+                raise _refused(
+                    keys,
+                    "",
+                    "is missing, and so is that of every mate.",
+                    "Add one of them, or tooth_thickness with thickness_diameter: the others "
+                    "follow from the centre distance.",
+                )
+            shift, mesh = min(
+                ((self._left(mesh, mate), mesh) for mesh, mate in self._known_mates(name)),
+                key=lambda item: item[0],
+            )
+            self._set(name, shift)
+            self._tell(f"{name}.profile_shift_coefficient", f"{shift:.4f}", mesh, distance)
+            free.remove(name)
+
+    def _known_mates(self, name: str) -> Iterator[tuple[_Mesh, str]]:
+        for mesh in self.meshes:
+            if name in mesh.gears:
+                mate = mesh.gears[1 - mesh.gears.index(name)]
+                if mate in self.shifts:
+                    yield mesh, mate
+
+    def _left(self, mesh: _Mesh, mate: str) -> float:
+        """The profile shift that `mate` leaves to the other gear."""
+        return self._sum(mesh) - self.shifts[mate]
+
+    def _sum(self, mesh: _Mesh) -> float:
+        """x1 + x2 of a mesh; 0 if the gears cannot mesh at all, which is told where meshes are."""
+        assert self.distance is not None
+        try:
+            return profile_shift_sum(self.rack, mesh.teeth, self.distance, mesh.backlash or 0.0)
+        except ValueError:
+            return 0.0
+
+    def _set(self, name: str, shift: float) -> None:
+        if not LEAST_SHIFT <= shift <= LARGEST_SHIFT:
+            assert self.distance is not None
+            raise _refused(
+                f"{name}.profile_shift_coefficient",
+                "",
+                f"would have to be {shift:.3g} at the centre distance of "
+                f"{millimetres(self.distance)}, and must be >= {LEAST_SHIFT:g} and <= "
+                f"{LARGEST_SHIFT:g}.",
+                "Correct gears.center_distance, the tooth numbers or the module.",
+            )
+        self.shifts[name] = shift
+        self.changed[name] = self.tables[name].model_copy(
+            update={
+                "profile_shift_coefficient": shift,
+                "tooth_thickness": None,
+                "thickness_diameter": None,
+            }
+        )
+
+    def _tell(self, key: str, value: str, mesh: _Mesh, distance: float) -> None:
+        """Note what was found from a mesh."""
+        if mesh.backlash is None:
+            least = micrometres(recommended_backlash(self.rack, distance))
+            with_what = f"without backlash; ISO/TR 10064-2 recommends {least} or more"
+        else:
+            with_what = f"with a normal backlash of {micrometres(mesh.backlash)}"
+        self.found.append(Found(key, value, f"found from the {mesh.name}, {with_what}."))
+
+    # --- what is stated twice ---
+
+    def _adjust(self, mesh: _Mesh) -> None:
+        """Thin a gear whose teeth are too thick by less than the printed digits."""
+        over = sum(self.shifts[name] for name in mesh.gears) - self._sum(mesh)
+        backlash = over * -2 * self.rack.normal_module * math.sin(self.rack.normal_pressure_angle)
+        if mesh.backlash is not None and abs(backlash) > AGREES:
+            raise _refused(
+                f"{mesh.key}.normal_backlash",
+                millimetres(mesh.backlash),
+                f"contradicts the teeth and the centre distance, which leave "
+                f"{micrometres(backlash + mesh.backlash)}.",
+                "Leave out normal_backlash, a profile shift or the centre distance.",
+            )
+        if mesh.backlash is not None or backlash > -ROUNDING or over > self._printed(mesh):
+            return
+        name = mesh.gears[1] if mesh.key == "ring_mesh" else mesh.gears[0]
+        shift = self.shifts[name] - over
+        self._set(name, shift)
+        self.found.append(
+            Found(
+                f"{name}.profile_shift_coefficient",
+                f"{shift:.6f}",
+                f"adjusted, because the teeth of the {mesh.name} are {-1e9 * backlash:.3g} nm too "
+                "thick for the centre distance, less than the printed digits tell.",
+            )
+        )
+
+    def _printed(self, mesh: _Mesh) -> float:
+        """How far x1 + x2 may be from the centre distance by the digits of both. [1]"""
+        assert self.distance is not None
+        step = self._half_digit(("gears", "center_distance"), FINEST_LENGTH)
+        away = profile_shift_sum(self.rack, mesh.teeth, self.distance + step)
+        near = profile_shift_sum(self.rack, mesh.teeth, self.distance)
+        return abs(away - near) + sum(map(self._printed_shift, mesh.gears))
+
+    def _printed_shift(self, name: str) -> float:
+        if self.tables[name].profile_shift_coefficient is not None:
+            return self._half_digit((name, "profile_shift_coefficient"), FINEST_SHIFT)
+        thickness = self._half_digit((name, "tooth_thickness"), FINEST_LENGTH)
+        return thinning(self.rack, thickness)
+
+    def _half_digit(self, path: tuple[str, str], most: float) -> float:
+        """Half a unit of the last digit that the user wrote, in SI."""
+        given = value_at(dict(self.raw), path)
+        match = re.match(r"\s*[-+]?\d*\.?(\d*)(?:[eE]([-+]?\d+))?\s*(.*)", str(given))
+        assert match is not None
+        half = 0.5 * 10.0 ** (int(match[2] or 0) - len(match[1]))
+        return min(most, MILLIMETRE.parse(f"{half!r} {match[3]}") if match[3] else half)
