@@ -242,3 +242,84 @@ def test_sets_of_trains_find_theirs_too():
     case = load_case(train)
     assert [one.key for one in case.found] == [f"sets.front.sun.{X}"]
     assert case.sets["front"].sun == load_case(changed(sun={X: None})).sun
+
+
+def test_a_ring_of_negative_teeth_is_the_same_ring():
+    usual = load_case(changed(ring={"tip_diameter": "112.9 mm"}))
+    signed = load_case(changed(ring={"teeth": -85, "tip_diameter": "-112.9 mm"}))
+    assert signed == usual
+    (told,) = signed.found
+    assert (told.key, told.value) == ("ring.teeth", "85")
+    assert "ISO 21771" in told.how
+    assert signed.given()["ring"]["teeth"] == -85
+    assert usual.found == ()
+
+
+def test_a_published_ring_as_din_3960_has_it():
+    # University of Ljubljana, LECAD, program pg: d -189.0000 mm, d_a -185.4992 mm, and with the
+    # planet's x of 0.0426 no backlash at a 56.8 mm, where x of the ring is 0.0000
+    gears = SET["gears"] | {"normal_module": "1.75 mm", "helix_angle": "0 deg"}
+    ring = {"teeth": -108, X: None, "tip_diameter": "-185.4992 mm", "face_width": "41.5 mm"}
+    tables = {
+        "kind": "gear_pair",
+        "operation": {"torque": "9 N*m", "speed": "700 rpm", "oil_inlet_temperature": "60 degC"},
+        "gears": gears | {"center_distance": "56.8 mm"},
+        "pinion": SET["planet"] | {"teeth": 43, X: 0.0426, "tip_diameter": "78.8170 mm"},
+        "gear": SET["ring"] | ring,
+        "lubricant": SET["lubricant"],
+    }
+    del tables["pinion"]["count"], tables["gear"][X]
+    case = load_case(tables)
+    assert case.gear.internal
+    assert case.gear.tip_diameter == pytest.approx(185.4992e-3)
+    assert case.gear.profile_shift_coefficient == pytest.approx(0.0, abs=5e-4)
+    assert {one.key for one in case.found} == {"gear.teeth", f"gear.{X}"}
+
+
+@pytest.mark.parametrize(
+    ("table", "teeth"), [("sun", -31), ("planet", -27), ("ring", -4), ("ring", True)]
+)
+def test_only_rings_may_have_negative_teeth(table, teeth):
+    problem = only(problems_of(load_case, changed(**{table: {"teeth": teeth}})))
+    assert problem.key == f"{table}.teeth"
+
+
+def test_rings_of_trains_may_have_negative_teeth():
+    sets = {
+        "given": {"sun": {"teeth": 30}, "ring": {"teeth": -72}, "efficiency": 0.98},
+        "pair": {"pinion": {"teeth": 19}, "gear": {"teeth": -61}, "efficiency": 0.97},
+        "listed": {
+            "gears": {"small": {"teeth": 21}, "large": {"teeth": -67}},
+            "meshes": [["small", "large"]],
+            "mesh_efficiency": 0.99,
+        },
+    }
+    for name, table in sets.items():
+        member, other = {"given": ("sun", "carrier"), "pair": ("pinion", "gear")}.get(
+            name, ("small", "large")
+        )
+        case = load_case(
+            {
+                "kind": "train",
+                "operation": {
+                    "input": f"{name}.{member}",
+                    "output": f"{name}.{other}",
+                    "torque": "10 N*m",
+                    "speed": "100 rpm",
+                },
+                "sets": {name: table},
+                "shafts": {"housing": ["given.ring"]} if name == "given" else {},
+            }
+        )
+        positive = case.inputs()["sets"][name]
+        assert "-" not in str([one["teeth"] for one in _gears(positive)])
+        assert case.found[0].key.startswith(f"sets.{name}.")
+        assert solve(case).train.ratio > 0  # internal meshes do not reverse
+
+
+def _gears(table):
+    return [
+        one
+        for one in (table.get("gears", table)).values()
+        if isinstance(one, dict) and "teeth" in one
+    ]

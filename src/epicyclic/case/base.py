@@ -11,7 +11,7 @@ from pydantic import PrivateAttr
 
 from epicyclic.case.checks import cross_check
 from epicyclic.case.fields import find_field, locate, to_inputs
-from epicyclic.case.gear_sizes import Found, Sizes, find_sizes
+from epicyclic.case.gear_sizes import Found, find_sizes, negative_teeth
 from epicyclic.case.plain import plain, value_at, with_value, without
 from epicyclic.case.schema import Table
 from epicyclic.case.translation import unknown_key
@@ -98,7 +98,7 @@ class CaseTable(Table):
         InputError
             With `problems` and every other one.
         """
-        validation, sizes = with_sizes(validate(cls, tables), tables)
+        validation, told = with_sizes(validate(cls, tables), tables)
         known = {problem.key for problem in problems}
         found = [
             *problems,
@@ -109,7 +109,7 @@ class CaseTable(Table):
             ),
         ]
         made = cls._made(validation.case, tables, source, found)
-        made._found = sizes.found
+        made._found = told
         return made
 
     @classmethod
@@ -154,19 +154,22 @@ class CaseTable(Table):
 
 def with_sizes(
     validation: Validation[AnyCase], raw: Mapping[str, Any]
-) -> tuple[Validation[AnyCase], Sizes]:
-    """A validation with what its gears leave out; without [gears] if that cannot be found."""
+) -> tuple[Validation[AnyCase], tuple[Found, ...]]:
+    """A validation with what its gears leave out; without [gears] if that cannot be found.
+
+    Also what was found, and how signs were understood.
+    """
     sizes = find_sizes(validation.sections, raw)
+    told = tuple(negative_teeth(raw))
     sections = dict(validation.sections)
     if sizes is None or sizes.problems:
-        sizes = sizes or Sizes()
         del sections["gears"]
-        problems = [*validation.problems, *sizes.problems]
-        return Validation(None, sections, problems), sizes
+        problems = [*validation.problems, *(sizes.problems if sizes else ())]
+        return Validation(None, sections, problems), told
     case = validation.case
     if case is not None and sizes.changed:
         case = case.model_copy(update=sizes.changed)
-    return Validation(case, sections | sizes.changed, validation.problems), sizes
+    return Validation(case, sections | sizes.changed, validation.problems), told + sizes.found
 
 
 def as_given(problem: Problem, tables: dict[str, Any]) -> Problem:

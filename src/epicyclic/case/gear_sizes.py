@@ -27,7 +27,7 @@ from epicyclic.geometry.profile_shifts import (
 )
 from epicyclic.units import MILLIMETRE
 
-__all__ = ["Found", "Sizes", "find_sizes"]
+__all__ = ["Found", "Sizes", "find_sizes", "negative_teeth"]
 
 MESHES = {"planetary": ("sun-planet", "planet-ring"), "gear_pair": ("pinion-gear",)}
 """Gears of each mesh; of both the first, or of a ring mesh the ring, is fitted to the other."""
@@ -64,6 +64,22 @@ class Found:
 
     def __str__(self) -> str:
         return f"{self.key} = {self.value}: {self.how}"
+
+
+def negative_teeth(raw: Mapping[str, Any]) -> Iterator[Found]:
+    """How negative numbers of teeth are understood."""
+    tables = dict(raw)
+    members = tables.pop("members", {})
+    tables |= {f"gears.{name}": table for name, table in members.items()}
+    for name, table in tables.items():
+        teeth = table.get("teeth") if isinstance(table, dict) else None
+        if isinstance(teeth, int) and teeth < 0:
+            yield Found(
+                f"{name}.teeth",
+                str(-teeth),
+                "a ring, because the number is negative; its profile shift is that of ISO 21771 "
+                "and DIN 3960, positive where it thickens the teeth.",
+            )
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from epicyclic.case.schema import NamedMaterial, Roughness, ShortLength, Table
 from epicyclic.units import (
@@ -117,6 +117,18 @@ class MicroGeometryTable(Table):
     )
 
 
+LEAST_TEETH, MOST_TEETH = 5, 2000
+RING_TEETH: Any = Field(
+    ge=LEAST_TEETH,
+    le=MOST_TEETH,
+    description="Number of teeth; a ring may have it negative, as in ISO 21771 and DIN 3960.",
+    json_schema_extra={
+        "minimum": -MOST_TEETH,
+        "not": {"exclusiveMinimum": -LEAST_TEETH, "exclusiveMaximum": LEAST_TEETH},
+    },
+)
+
+
 class GearTable(Table):
     """One gear."""
 
@@ -130,7 +142,7 @@ class GearTable(Table):
         ("tooth_thickness+thickness_diameter", "profile_shift_coefficient"),
     )
 
-    teeth: int = Field(ge=5, le=2000, description="Number of teeth.")
+    teeth: int = Field(ge=LEAST_TEETH, le=MOST_TEETH, description="Number of teeth.")
     face_width: Length
     tip_diameter: Length | None = Field(
         default=None, description="Inner diameter of a ring. Default: from addendum_coefficient."
@@ -165,6 +177,32 @@ class GearTable(Table):
     )
 
 
+def with_positive_teeth(table: Any) -> Any:
+    """The keys of a gear that may be a ring, with the magnitudes of numbers that mark it as one.
+
+    ISO 21771 gives rings negative numbers of teeth, DIN 3960 negative diameters too. The sign of
+    their profile shift is that of this program; see Theory (G47).
+    """
+    if not _is_negative(table) or table.get("internal") is False:
+        return table
+    positive = dict(table) | {"teeth": -table["teeth"]}
+    for key in ("tip_diameter", "root_diameter", "thickness_diameter"):
+        if isinstance(table.get(key), str):
+            positive[key] = table[key].strip().removeprefix("-")
+    return positive
+
+
+def internal_if_negative(table: Any) -> Any:
+    """The same of a gear that need not be a ring, which negative teeth make it."""
+    positive = with_positive_teeth(table)
+    return positive if positive is table else positive | {"internal": True}
+
+
+def _is_negative(table: Any) -> bool:
+    teeth = table.get("teeth") if isinstance(table, dict) else None
+    return isinstance(teeth, int) and teeth <= -LEAST_TEETH
+
+
 _RimThickness = Annotated[
     Length | None,
     Field(
@@ -178,7 +216,9 @@ class PairGear(GearTable):
     """The gear that meets the pinion."""
 
     STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
+    _sign = model_validator(mode="before")(internal_if_negative)
 
+    teeth: int = RING_TEETH
     internal: bool = Field(default=False, description="true: a ring gear around the pinion.")
     rim_thickness: _RimThickness = None
 
@@ -214,7 +254,9 @@ class Ring(GearTable):
     """The ring gear."""
 
     STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
+    _sign = model_validator(mode="before")(with_positive_teeth)
 
+    teeth: int = RING_TEETH
     rim_thickness: _RimThickness = None
 
 

@@ -321,7 +321,7 @@ def _read_set_cached(given: _Given) -> _ReadSet:
         own = GearPairModels.model_fields
         raw = raw | {"models": {k: v for k, v in raw["models"].items() if k in own}}
     read: Validation[Any]
-    read, sizes = with_sizes(validate(form, raw), raw)
+    read, told = with_sizes(validate(form, raw), raw)
     problems = [_with_gears(problem) for problem in read.problems]
     if issubclass(form, PlanetarySet | PairSet | ListedSet):
         tables = {*raw, *given.shared}
@@ -340,7 +340,7 @@ def _read_set_cached(given: _Given) -> _ReadSet:
                 "Give one of them: of the set from sun to ring, or of each of its meshes.",
             )
         )
-    return _ReadSet(None if problems else read.case, problems, sizes.found)
+    return _ReadSet(None if problems else read.case, problems, told)
 
 
 def _form_of(raw: dict[str, Any]) -> tuple[type[Table] | None, dict[str, Any]]:

@@ -4,10 +4,21 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, GetJsonSchemaHandler
+from pydantic import BeforeValidator, Field, GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema
 
-from epicyclic.case.gear_tables import Gears, GearTable, MeshTable, PairGear, Planet, Ring, SetMesh
+from epicyclic.case.gear_tables import (
+    RING_TEETH,
+    Gears,
+    GearTable,
+    MeshTable,
+    PairGear,
+    Planet,
+    Ring,
+    SetMesh,
+    internal_if_negative,
+    with_positive_teeth,
+)
 from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
 from epicyclic.case.model_tables import (
     GearPairLosses,
@@ -60,6 +71,14 @@ class Teeth(Table):
     teeth: int = Field(ge=5, le=2000, description="Number of teeth.")
 
 
+class GivenRing(Teeth):
+    """The ring of a set of given efficiency."""
+
+    _sign = model_validator(mode="before")(with_positive_teeth)
+
+    teeth: int = RING_TEETH
+
+
 class GivenPlanet(Table):
     """The planets of a set of given efficiency."""
 
@@ -71,6 +90,10 @@ class GivenPlanet(Table):
 
 class GivenGear(Teeth):
     """A gear of a pair of given efficiency."""
+
+    _sign = model_validator(mode="before")(internal_if_negative)
+
+    teeth: int = RING_TEETH
 
     internal: bool = Field(default=False, description="true: a ring gear around the pinion.")
 
@@ -115,7 +138,7 @@ class GivenPlanetarySet(Table):
     EXACTLY_ONE = (("efficiency", "mesh_efficiency"),)
 
     sun: Teeth
-    ring: Teeth
+    ring: GivenRing
     planet: GivenPlanet = GivenPlanet()
     efficiency: Efficiency | None = Field(
         default=None, description="With the carrier at rest, sun to ring."
