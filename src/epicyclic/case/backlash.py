@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.thickness import DIGITS, fitting, thickness_key
 from epicyclic.case.wording import micrometres, millimetres
 from epicyclic.errors import Problem
 from epicyclic.geometry.gear import Gear
@@ -17,7 +18,7 @@ from epicyclic.geometry.profile_shifts import (
     thinning,
 )
 
-__all__ = ["ROUNDING", "backlash_notes", "check_backlash", "thickness_key"]
+__all__ = ["ROUNDING", "backlash_notes", "check_backlash"]
 
 ROUNDING = 1e-9
 """Clearances count as negative beyond this: drawings may state exactly zero. [m]"""
@@ -25,16 +26,7 @@ ROUNDING = 1e-9
 GROSS = 5.0
 """Backlash over the recommended one from which a result says so; an estimate. [1]"""
 
-DIGITS = 4
-"""Of the profile shifts that messages propose: 0.1 um at a module of 1.5 mm."""
-
 Tables = Mapping[str, GearTable]
-
-
-def thickness_key(name: str, table: GearTable) -> str:
-    """The key that states how thick the teeth are."""
-    is_shift = table.profile_shift_coefficient is not None
-    return f"{name}.{'profile_shift_coefficient' if is_shift else 'tooth_thickness'}"
 
 
 def check_backlash(mesh: Mesh, tables: Tables, distance_key: str) -> list[Problem]:
@@ -93,15 +85,8 @@ def _over(mesh: Mesh, backlash: float = 0.0) -> float:
 
 
 def _fitting(mesh: Mesh, gear: Gear, table: GearTable, backlash: float = 0.0) -> str:
-    """The thickness of a gear that leaves this backlash, as the case states it, rounded down."""
-    rack, over, key = gear.rack, _over(mesh, backlash), thickness_key(gear.name, table)
-    if table.tooth_thickness is None or table.thickness_diameter is None:
-        step = 10.0**-DIGITS
-        shift = math.floor((gear.profile_shift_coefficient - over) / step) * step
-        return f"{key} = {shift:.{DIGITS}f}"
-    arc = 2 * over * rack.normal_module * math.tan(rack.transverse_pressure_angle)
-    thinner = arc * table.thickness_diameter / (2 * gear.reference_radius)
-    return f'{key} = "{math.floor((table.tooth_thickness - thinner) * 1e6) / 1e3:.3f} mm"'
+    """The thickness of a gear that leaves this backlash, as the case states it."""
+    return fitting(gear, table, _over(mesh, backlash))
 
 
 def _distance(mesh: Mesh, key: str) -> str:

@@ -6,13 +6,9 @@ import math
 from functools import lru_cache
 
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring
+from epicyclic.case.thickness import allowance_shift, half_angle
 from epicyclic.geometry.assembly import admissible_angles
-from epicyclic.geometry.gear import (
-    BasicRack,
-    Gear,
-    half_angle_from_profile_shift,
-    half_angle_from_thickness,
-)
+from epicyclic.geometry.gear import BasicRack, Gear
 from epicyclic.geometry.mesh import Mesh
 
 __all__ = [
@@ -53,26 +49,19 @@ def gear(name: str, table: GearTable, gears: Gears) -> Gear:
     Raises
     ------
     ValueError
-        If the tooth thickness is given inside the base circle.
+        If the tooth thickness is given, or the middle of measuring balls lies, inside the base
+        circle.
     """
     rack = basic_rack(gears)
     internal = isinstance(table, Ring) or (isinstance(table, PairGear) and table.internal)
-    if table.profile_shift_coefficient is not None:
-        half_angle = half_angle_from_profile_shift(
-            rack, table.teeth, table.profile_shift_coefficient
-        )
-    else:
-        assert table.tooth_thickness is not None
-        assert table.thickness_diameter is not None
-        half_angle = half_angle_from_thickness(
-            rack, table.teeth, internal, table.tooth_thickness, table.thickness_diameter / 2
-        )
+    half = half_angle(table, rack, internal=internal)
     # tip and root that the basic rack of ISO 53 would give (ISO 21771, Eq. 38 and 41)
-    probe = Gear(name, rack, table.teeth, internal, half_angle, 0.0, 0.0, table.face_width)
+    probe = Gear(name, rack, table.teeth, internal, half, 0.0, 0.0, table.face_width)
     outward = -1 if internal else 1
     shift = probe.profile_shift_coefficient
+    nominal = shift - allowance_shift(table, rack)
     tip = probe.reference_radius + outward * rack.normal_module * (
-        shift + gears.addendum_coefficient
+        nominal + gears.addendum_coefficient
     )
     root = probe.reference_radius + outward * rack.normal_module * (
         shift - gears.dedendum_coefficient
@@ -82,7 +71,7 @@ def gear(name: str, table: GearTable, gears: Gears) -> Gear:
         rack=rack,
         teeth=table.teeth,
         internal=internal,
-        thickness_half_angle=half_angle,
+        thickness_half_angle=half,
         tip_radius=tip if table.tip_diameter is None else table.tip_diameter / 2,
         root_radius=root if table.root_diameter is None else table.root_diameter / 2,
         face_width=table.face_width,

@@ -9,9 +9,10 @@ from __future__ import annotations
 import math
 
 from epicyclic.case import build
-from epicyclic.case.backlash import ROUNDING, Tables, check_backlash, thickness_key
+from epicyclic.case.backlash import ROUNDING, Tables, check_backlash
 from epicyclic.case.flank_checks import check_flanks
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring
+from epicyclic.case.thickness import check_measure, thickness_key
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 from epicyclic.geometry.assembly import nearest_admissible_angle, smallest_planet_gap
@@ -62,7 +63,7 @@ def check_gears(gears: Gears, tables: Tables) -> tuple[dict[str, Gear], list[Pro
         except ValueError:
             problems.append(_no_involute_for_thickness(name, table, gears))
             continue
-        found = _check_tooth(gear, table)
+        found = _check_tooth(gear, table) or check_measure(gear, table)
         if found is None:
             sound[name] = gear
         else:
@@ -101,6 +102,13 @@ def _check_rim(gear: Gear, table: GearTable) -> list[Problem]:
 def _no_involute_for_thickness(name: str, table: GearTable, gears: Gears) -> Problem:
     rack = build.basic_rack(gears)
     base = table.teeth * rack.transverse_module * math.cos(rack.transverse_pressure_angle)
+    if table.dimension_over_pins is not None:
+        return Problem(
+            f"{name}.dimension_over_pins",
+            millimetres(table.dimension_over_pins),
+            f"puts the middle of the balls inside the base circle of {millimetres(base)}.",
+            "Check it, measuring_pin_diameter, tooth number and module.",
+        )
     return Problem(
         f"{name}.thickness_diameter",
         millimetres(table.thickness_diameter or 0.0),

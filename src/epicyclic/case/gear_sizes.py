@@ -17,6 +17,7 @@ from epicyclic.case import build
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Ring, SetMesh
 from epicyclic.case.plain import value_at
 from epicyclic.case.schema import Table
+from epicyclic.case.thickness import allowance_shift, thickness_key
 from epicyclic.case.wording import micrometres, millimetres
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.profile_shifts import (
@@ -121,7 +122,9 @@ def find_sizes(sections: Mapping[str, Table], raw: Mapping[str, Any]) -> Sizes |
     kind = "gear_pair" if {"pinion", "gear"} & {*sections, *raw} else "planetary"
     names = dict.fromkeys(name for mesh in MESHES[kind] for name in mesh.split("-"))
     tables = {name: table for name in names if isinstance(table := sections.get(name), GearTable)}
-    incomplete = gears.center_distance is None or not all(map(_is_stated, tables.values()))
+    incomplete = gears.center_distance is None or not all(
+        table.states_thickness for table in tables.values()
+    )
     if len(tables) < len(names):
         return None if incomplete else Sizes()
     try:
@@ -130,11 +133,6 @@ def find_sizes(sections: Mapping[str, Table], raw: Mapping[str, Any]) -> Sizes |
         return Sizes(problems=list(error.problems))
     except ValueError:  # a thickness inside the base circle: told with the gears
         return None if incomplete else Sizes()
-
-
-def _is_stated(table: GearTable) -> bool:
-    """True if a gear states how thick its teeth are."""
-    return table.profile_shift_coefficient is not None or table.tooth_thickness is not None
 
 
 def _refused(key: str, value: str, allowed: str, remedy: str) -> InputError:
@@ -166,10 +164,11 @@ class _Solver:
         self.gears, self.tables, self.raw = gears, tables, raw
         self.rack = build.basic_rack(gears)
         self.distance = gears.center_distance
-        self.shifts = {
-            name: build.gear(name, table, gears).profile_shift_coefficient
+        self.thinned = {name: allowance_shift(table, self.rack) for name, table in tables.items()}
+        self.shifts = {  # nominal, without allowances
+            name: build.gear(name, table, gears).profile_shift_coefficient - self.thinned[name]
             for name, table in tables.items()
-            if _is_stated(table)
+            if table.states_thickness
         }
         self.meshes = [self._mesh(pair, sections) for pair in meshes]
         self.found: list[Found] = []
@@ -207,7 +206,7 @@ class _Solver:
                 'Add center_distance = "... mm" to [gears], or profile_shift_coefficient to them.',
             )
         mesh = known[0]
-        total = sum(self.shifts[name] for name in mesh.gears)
+        total = sum(self.shifts[name] for name in mesh.gears) + self._allowances(mesh)
         try:
             found = closed_center_distance(self.rack, mesh.teeth, total, mesh.backlash or 0.0)
         except ValueError as error:
@@ -260,12 +259,20 @@ class _Solver:
         return self._sum(mesh) - self.shifts[mate]
 
     def _sum(self, mesh: _Mesh) -> float:
-        """x1 + x2 of a mesh; 0 if the gears cannot mesh at all, which is told where meshes are."""
+        """Nominal x1 + x2 of a mesh; 0 if its gears cannot mesh, which is told with the meshes."""
         assert self.distance is not None
         try:
-            return profile_shift_sum(self.rack, mesh.teeth, self.distance, mesh.backlash or 0.0)
+            total = profile_shift_sum(self.rack, mesh.teeth, self.distance, mesh.backlash or 0.0)
         except ValueError:
             return 0.0
+        return total - self._allowances(mesh)
+
+    def _allowances(self, mesh: _Mesh) -> float:
+        """What allowances take from x1 + x2 before the stated backlash is left.
+
+        Where none is stated, the nominal teeth have none.
+        """
+        return 0.0 if mesh.backlash is None else sum(self.thinned[name] for name in mesh.gears)
 
     def _set(self, name: str, shift: float) -> None:
         if not LEAST_SHIFT <= shift <= LARGEST_SHIFT:
@@ -281,17 +288,21 @@ class _Solver:
         self.shifts[name] = shift
         self.changed[name] = self.tables[name].model_copy(
             update={
-                "profile_shift_coefficient": shift,
-                "tooth_thickness": None,
-                "thickness_diameter": None,
+                key: None
+                for group in GearTable.AT_MOST_ONE
+                for choice in group
+                for key in choice.split("+")
             }
+            | {"profile_shift_coefficient": shift}
         )
 
     def _tell(self, key: str, value: str, mesh: _Mesh, distance: float) -> None:
         """Note what was found from a mesh."""
         if mesh.backlash is None:
             least = micrometres(recommended_backlash(self.rack, distance))
-            with_what = f"without backlash; ISO/TR 10064-2 recommends {least} or more"
+            with_what = (
+                f"without backlash of the nominal teeth; ISO/TR 10064-2 recommends {least} or more"
+            )
         else:
             with_what = f"with a normal backlash of {micrometres(mesh.backlash)}"
         self.found.append(Found(key, value, f"found from the {mesh.name}, {with_what}."))
@@ -301,6 +312,8 @@ class _Solver:
     def _adjust(self, mesh: _Mesh) -> None:
         """Thin a gear whose teeth are too thick by less than the printed digits."""
         over = sum(self.shifts[name] for name in mesh.gears) - self._sum(mesh)
+        if mesh.backlash is None:
+            over += sum(self.thinned[name] for name in mesh.gears)
         backlash = over * -2 * self.rack.normal_module * math.sin(self.rack.normal_pressure_angle)
         if mesh.backlash is not None and abs(backlash) > AGREES:
             raise _refused(
@@ -335,8 +348,8 @@ class _Solver:
     def _printed_shift(self, name: str) -> float:
         if self.tables[name].profile_shift_coefficient is not None:
             return self._half_digit((name, "profile_shift_coefficient"), FINEST_SHIFT)
-        thickness = self._half_digit((name, "tooth_thickness"), FINEST_LENGTH)
-        return thinning(self.rack, thickness)
+        key = thickness_key(name, self.tables[name]).rpartition(".")[2]
+        return thinning(self.rack, self._half_digit((name, key), FINEST_LENGTH))
 
     def _half_digit(self, path: tuple[str, str], most: float) -> float:
         """Half a unit of the last digit that the user wrote, in SI."""

@@ -139,7 +139,12 @@ class GearTable(Table):
         "micro_geometry": None,
     }
     AT_MOST_ONE: ClassVar[tuple[tuple[str, ...], ...]] = (
-        ("tooth_thickness+thickness_diameter", "profile_shift_coefficient"),
+        (
+            "tooth_thickness+thickness_diameter",
+            "span_measurement+span_teeth",
+            "dimension_over_pins+measuring_pin_diameter",
+            "profile_shift_coefficient",
+        ),
     )
 
     teeth: int = Field(ge=LEAST_TEETH, le=MOST_TEETH, description="Number of teeth.")
@@ -158,6 +163,23 @@ class GearTable(Table):
         default=None, description="Transverse arc thickness at thickness_diameter."
     )
     thickness_diameter: Length | None = None
+    span_measurement: Length | None = Field(
+        default=None, description="W_k, base tangent length over span_teeth teeth."
+    )
+    span_teeth: int | None = Field(default=None, ge=1, le=2000, description="k.")
+    dimension_over_pins: Length | None = Field(
+        default=None, description="M_d over two balls, or between them in a ring."
+    )
+    measuring_pin_diameter: Length | None = Field(
+        default=None, description="D_M of the balls; of a spur gear pins are the same."
+    )
+    tooth_thickness_allowance: (
+        Annotated[tuple[Deviation, ...], Field(min_length=2, max_length=2)] | None
+    ) = Field(
+        default=None,
+        description="Upper and lower allowance, A_sne and A_sni of DIN 3967, negative; the teeth "
+        "are thinner by their mean.",
+    )
     profile_shift_coefficient: Number | None = Field(
         default=None,
         ge=-3,
@@ -176,17 +198,23 @@ class GearTable(Table):
         default=None, description="Modifications and deviations of the flanks."
     )
 
+    @property
+    def states_thickness(self) -> bool:
+        """True if it says how thick its teeth are."""
+        first = (choice.split("+")[0] for group in GearTable.AT_MOST_ONE for choice in group)
+        return any(getattr(self, key) is not None for key in first)
+
 
 def with_positive_teeth(table: Any) -> Any:
     """The keys of a gear that may be a ring, with the magnitudes of numbers that mark it as one.
 
     ISO 21771 gives rings negative numbers of teeth, DIN 3960 negative diameters too. The sign of
-    their profile shift is that of this program; see Theory (G47).
+    their profile shift is that of this program; see the page on geometry.
     """
     if not _is_negative(table) or table.get("internal") is False:
         return table
     positive = dict(table) | {"teeth": -table["teeth"]}
-    for key in ("tip_diameter", "root_diameter", "thickness_diameter"):
+    for key in ("tip_diameter", "root_diameter", "thickness_diameter", "dimension_over_pins"):
         if isinstance(table.get(key), str):
             positive[key] = table[key].strip().removeprefix("-")
     return positive
