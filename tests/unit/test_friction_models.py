@@ -12,9 +12,9 @@ import pytest
 import epicyclic as ep
 from contacts import STEEL, contact_points, loaded_contact, oil
 from epicyclic.contact import Flanks
+from epicyclic.geometry.roughness import RA_OVER_RQ
 from epicyclic.losses.friction import FRICTION_MODELS, FrictionSettings, friction_model
 from epicyclic.losses.friction.base import (
-    RA_OVER_RQ,
     mean_roughness_ra,
     pitch_point_radius,
     pitch_point_sum_speed,

@@ -13,7 +13,7 @@ import pytest
 import epicyclic as ep
 from epicyclic.case.build import planetary_meshes
 from epicyclic.exchange.rexs.vocabulary import id_in, term, versions
-from epicyclic.losses.friction.base import RA_OVER_RQ
+from epicyclic.geometry.roughness import RA_OVER_RQ
 from rexs_files import (
     CASING,
     OIL,

@@ -11,7 +11,7 @@ from pydantic import PrivateAttr
 
 from epicyclic.case.checks import cross_check
 from epicyclic.case.fields import find_field, locate, to_inputs
-from epicyclic.case.gear_sizes import Found, find_sizes, negative_teeth
+from epicyclic.case.gear_sizes import Found, converted_roughness, find_sizes, negative_teeth
 from epicyclic.case.plain import plain, value_at, with_value, without
 from epicyclic.case.schema import Table
 from epicyclic.case.translation import unknown_key
@@ -157,10 +157,12 @@ def with_sizes(
 ) -> tuple[Validation[AnyCase], tuple[Found, ...]]:
     """A validation with what its gears leave out; without [gears] if that cannot be found.
 
-    Also what was found, and how signs were understood.
+    Also what was found, and how signs and roughness were understood.
     """
     sizes = find_sizes(validation.sections, raw)
-    told = tuple(negative_teeth(raw))
+    told: tuple[Found, ...] = ()
+    if validation.case is not None:
+        told = (*negative_teeth(raw), *converted_roughness(raw))
     sections = dict(validation.sections)
     if sizes is None or sizes.problems:
         del sections["gears"]

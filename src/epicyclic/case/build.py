@@ -14,6 +14,7 @@ from epicyclic.geometry.mesh import Mesh
 __all__ = [
     "basic_rack",
     "gear",
+    "is_internal",
     "outside_radius",
     "pair_mesh",
     "planet_angles",
@@ -42,6 +43,11 @@ def basic_rack(gears: Gears) -> BasicRack:
     return BasicRack(module, angle, gears.helix_angle)
 
 
+def is_internal(table: GearTable) -> bool:
+    """True for a ring gear."""
+    return isinstance(table, Ring) or (isinstance(table, PairGear) and table.internal)
+
+
 @lru_cache(maxsize=256)
 def gear(name: str, table: GearTable, gears: Gears) -> Gear:
     """The gear that `table` describes.
@@ -53,7 +59,7 @@ def gear(name: str, table: GearTable, gears: Gears) -> Gear:
         circle.
     """
     rack = basic_rack(gears)
-    internal = isinstance(table, Ring) or (isinstance(table, PairGear) and table.internal)
+    internal = is_internal(table)
     half = half_angle(table, rack, internal=internal)
     # tip and root that the basic rack of ISO 53 would give (ISO 21771, Eq. 38 and 41)
     probe = Gear(name, rack, table.teeth, internal, half, 0.0, 0.0, table.face_width)

@@ -14,9 +14,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from epicyclic.case import build
-from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Ring, SetMesh
+from epicyclic.case.gear_tables import Gears, GearTable, SetMesh
 from epicyclic.case.plain import value_at
-from epicyclic.case.schema import Table
+from epicyclic.case.schema import Table, roughness_told
 from epicyclic.case.thickness import allowance_shift, thickness_key
 from epicyclic.case.wording import micrometres, millimetres
 from epicyclic.errors import InputError, Problem
@@ -28,10 +28,17 @@ from epicyclic.geometry.profile_shifts import (
 )
 from epicyclic.units import MILLIMETRE
 
-__all__ = ["Found", "Sizes", "find_sizes", "negative_teeth"]
+__all__ = ["Found", "Sizes", "converted_roughness", "find_sizes", "negative_teeth"]
 
 MESHES = {"planetary": ("sun-planet", "planet-ring"), "gear_pair": ("pinion-gear",)}
 """Gears of each mesh; of both the first, or of a ring mesh the ring, is fitted to the other."""
+BASIC_RACKS = {
+    "iso-53-a": (1.25, 0.38),
+    "iso-53-b": (1.25, 0.30),
+    "iso-53-c": (1.25, 0.25),
+    "iso-53-d": (1.40, 0.39),
+}
+"""h_fP and the rounding rho_fP of the tool's tip, in normal modules; ISO 53:1998 (second hand)."""
 _TABLES = {"sun-planet": "sun_mesh", "planet-ring": "ring_mesh", "pinion-gear": "mesh"}
 
 FINEST_SHIFT = 0.5e-3
@@ -83,6 +90,16 @@ def negative_teeth(raw: Mapping[str, Any]) -> Iterator[Found]:
             )
 
 
+def converted_roughness(raw: Mapping[str, Any], place: str = "") -> Iterator[Found]:
+    """How roughness that is stated as Ra or Rz is converted."""
+    for key, value in raw.items():
+        name = f"{place}{key}"
+        if isinstance(value, dict):
+            yield from converted_roughness(value, f"{name}.")
+        elif key.endswith("roughness") and (told := roughness_told(value)) is not None:
+            yield Found(name, f"{1e6 * told[0]:.4g} um", told[1])
+
+
 @dataclass(frozen=True, slots=True)
 class Sizes:
     """The tables of a case with what they left out.
@@ -128,7 +145,7 @@ def find_sizes(sections: Mapping[str, Table], raw: Mapping[str, Any]) -> Sizes |
     if len(tables) < len(names):
         return None if incomplete else Sizes()
     try:
-        return _Solver(gears, tables, sections, raw, MESHES[kind]).solve()
+        return _Solver(gears, tables, sections, raw).solve(MESHES[kind])
     except InputError as error:
         return Sizes(problems=list(error.problems))
     except ValueError:  # a thickness inside the base circle: told with the gears
@@ -150,6 +167,26 @@ class _Mesh:
     backlash: float | None
 
 
+def _with_named_rack(
+    gears: Gears, tables: Mapping[str, GearTable]
+) -> tuple[Gears, dict[str, GearTable], list[Found]]:
+    """The tables with what a profile says that is given by its name. ISO 53:1998, Table 2."""
+    if gears.basic_rack is None:
+        return gears, dict(tables), []
+    dedendum, rounding = BASIC_RACKS[gears.basic_rack]
+    radius = {"tool_tip_radius": rounding * build.basic_rack(gears).normal_module}
+    rounded = {
+        name: table
+        if table.tool_tip_radius is not None or build.is_internal(table)
+        else table.model_copy(update=radius)
+        for name, table in tables.items()
+    }
+    coefficients = {"addendum_coefficient": 1.0, "dedendum_coefficient": dedendum}
+    value = f"h_aP = 1, h_fP = {dedendum:g}, rounding {rounding:g}"
+    told = Found("gears.basic_rack", value, f"{gears.basic_rack}, in normal modules.")
+    return gears.model_copy(update=coefficients | {"basic_rack": None}), rounded, [told]
+
+
 class _Solver:
     """The gears of one set or pair."""
 
@@ -159,31 +196,33 @@ class _Solver:
         tables: Mapping[str, GearTable],
         sections: Mapping[str, Table],
         raw: Mapping[str, Any],
-        meshes: tuple[str, ...],
     ) -> None:
-        self.gears, self.tables, self.raw = gears, tables, raw
+        self.gears, self.tables, self.found = _with_named_rack(gears, tables)
+        stated: dict[str, Table] = {"gears": gears, **tables}
+        made: dict[str, Table] = {"gears": self.gears, **self.tables}
+        self.changed = {name: table for name, table in made.items() if table is not stated[name]}
+        self.sections, self.raw = sections, raw
         self.rack = build.basic_rack(gears)
         self.distance = gears.center_distance
-        self.thinned = {name: allowance_shift(table, self.rack) for name, table in tables.items()}
+        self.thinned = {
+            name: allowance_shift(table, self.rack) for name, table in self.tables.items()
+        }
         self.shifts = {  # nominal, without allowances
-            name: build.gear(name, table, gears).profile_shift_coefficient - self.thinned[name]
-            for name, table in tables.items()
+            name: build.gear(name, table, self.gears).profile_shift_coefficient - self.thinned[name]
+            for name, table in self.tables.items()
             if table.states_thickness
         }
-        self.meshes = [self._mesh(pair, sections) for pair in meshes]
-        self.found: list[Found] = []
-        self.changed: dict[str, Table] = {}
 
-    def _mesh(self, pair: str, sections: Mapping[str, Table]) -> _Mesh:
+    def _mesh(self, pair: str) -> _Mesh:
         one, two = pair.split("-")
-        table, key = sections.get(_TABLES[pair]), _TABLES[pair]
+        table, key = self.sections.get(_TABLES[pair]), _TABLES[pair]
         wheel = self.tables[two]
-        internal = isinstance(wheel, Ring) or (isinstance(wheel, PairGear) and wheel.internal)
-        teeth = self.tables[one].teeth + (-wheel.teeth if internal else wheel.teeth)
+        teeth = self.tables[one].teeth + (-1 if build.is_internal(wheel) else 1) * wheel.teeth
         backlash = table.normal_backlash if isinstance(table, SetMesh) else None
         return _Mesh(key.replace("_", " "), key, (one, two), teeth, backlash)
 
-    def solve(self) -> Sizes:
+    def solve(self, pairs: tuple[str, ...]) -> Sizes:
+        self.meshes = [self._mesh(pair) for pair in pairs]
         doubly = [mesh for mesh in self.meshes if self.shifts.keys() >= set(mesh.gears)]
         if self.distance is None:
             self.distance = self._find_distance(doubly)

@@ -27,6 +27,10 @@ class Gears(Table):
         ("normal_module", "transverse_module"),
         ("normal_pressure_angle", "transverse_pressure_angle"),
     )
+    AT_MOST_ONE = (
+        ("basic_rack", "addendum_coefficient"),
+        ("basic_rack", "dedendum_coefficient"),
+    )
 
     normal_module: Length | None = Field(default=None, description="m_n.")
     transverse_module: Length | None = Field(default=None, description="m_t = m_n/cos(beta).")
@@ -51,6 +55,11 @@ class Gears(Table):
         gt=0,
         le=4,
         description="h_fP/m_n, for gears without root_diameter. ISO 53, profile A.",
+    )
+
+    basic_rack: Literal["iso-53-a", "iso-53-b", "iso-53-c", "iso-53-d"] | None = Field(
+        default=None,
+        description="A profile of ISO 53 instead of both coefficients, also for the tool's tip.",
     )
 
     @property
@@ -187,7 +196,9 @@ class GearTable(Table):
         description="x; positive thickens the teeth, on a ring too. Default: what the mate and "
         "the centre distance leave.",
     )
-    roughness: Roughness = Field(description="rms roughness Rq of the flanks, or a finish.")
+    roughness: Roughness = Field(
+        description='rms roughness Rq of the flanks, also as "Ra 0.4 um" or "Rz 3 um", or a finish.'
+    )
     material: NamedMaterial = Field(default=as_stated("steel"), description="A name or a table.")
     tool_tip_radius: ShortLength | None = Field(
         default=None,

@@ -7,6 +7,7 @@ tables live in `epicyclic.case.checks`.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from functools import cache
 from typing import Annotated, Any, ClassVar
@@ -17,9 +18,10 @@ from pydantic_core import CoreSchema, PydanticCustomError
 from epicyclic import library
 from epicyclic.case.fields import Named
 from epicyclic.case.nearest import did_you_mean
+from epicyclic.geometry.roughness import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity, Oil
 from epicyclic.thermal.solids import Solid
-from epicyclic.units import Density, Modulus, Number, Quantity, as_stated
+from epicyclic.units import MILLIMETRE, Density, Modulus, Number, Quantity, as_stated
 
 
 class Table(BaseModel):
@@ -50,11 +52,19 @@ def _no_preset(noun: str, name: str, known: Iterable[str], allowed: str) -> Pyda
     )
 
 
+_PARAMETER = re.compile(r"\s*(R[aqz])\b\s*(.*)")
+
+
 class _Roughness(Quantity):
-    """A length, or the name of a built-in finish."""
+    """A length, also with its parameter, ``"Ra 0.4 um"``, or the name of a built-in finish."""
 
     def parse(self, value: object) -> float:
         finishes = library.finishes()
+        named = _PARAMETER.fullmatch(value) if isinstance(value, str) else None
+        if named is not None:
+            found = rq_of(named[1], super().parse(named[2]))
+            self._check_range(self.to_display(found))
+            return found
         if isinstance(value, str) and value in finishes:
             value = finishes[value]["roughness"]
         elif isinstance(value, str) and value[:1].isalpha():
@@ -63,18 +73,37 @@ class _Roughness(Quantity):
 
     def describe(self) -> str:
         finishes = ", ".join(library.finishes())
-        return f"{super().describe()}, or one of the finishes {finishes}"
+        return f"{super().describe()}, also as Ra or Rz, or one of the finishes {finishes}"
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         length = super().__get_pydantic_json_schema__(schema, handler)
-        return {"anyOf": [length, {"enum": list(library.finishes())}]}
+        stated = {"type": "string", "pattern": r"^\s*R[aqz]\b"}
+        return {"anyOf": [length, stated, {"enum": list(library.finishes())}]}
 
 
 Roughness = Annotated[
     float, _Roughness("an rms roughness", "m", "um", low=0.0, high=100.0, open_low=True)
 ]
+
+
+def roughness_told(text: object) -> tuple[float, str] | None:
+    """Rq of a roughness that is stated as Ra or Rz, and how it was converted; None of others."""
+    if not isinstance(text, str):
+        return None
+    named = _PARAMETER.fullmatch(text)
+    if named is None or named[1] == "Rq":
+        return None
+    value = MILLIMETRE.parse(named[2])
+    how = f"Rq from {' '.join(text.split())}: Ra = {RA_OVER_RQ:.3f} Rq of a Gaussian profile"
+    if named[1] == "Rz":
+        low, high = (value / (ratio * RA_OVER_RQ) for ratio in reversed(RZ_BAND))
+        how += (
+            f", Rz = {RZ_OVER_RA:g} Ra (DIN 3991); Rz/Ra from {RZ_BAND[0]:g} to {RZ_BAND[1]:g} "
+            f"makes it {1e6 * low:.3g} to {1e6 * high:.3g} um"
+        )
+    return rq_of(named[1], value), f"{how}."
 
 
 Stress = Annotated[float, Quantity("a stress", "Pa", "MPa", low=0.0, high=1e6, open_low=True)]

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from epicyclic.exchange.rexs.draft import Amount, Draft, amount_text
 from epicyclic.exchange.rexs.model import Component, Model
 from epicyclic.exchange.rexs.sets import is_internal
-from epicyclic.losses.friction.base import RA_OVER_RQ
+from epicyclic.geometry.roughness import RA_OVER_RQ
 
 __all__ = ["flanks_of", "gear_table", "shared_table"]
 

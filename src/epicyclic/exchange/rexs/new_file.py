@@ -19,7 +19,7 @@ from epicyclic.case.train_tables import PairSet, PlanetarySet
 from epicyclic.exchange.rexs.model import Attribute, Component, Relation
 from epicyclic.exchange.rexs.vocabulary import term, written
 from epicyclic.geometry.gear import Gear
-from epicyclic.losses.friction.base import RA_OVER_RQ
+from epicyclic.geometry.roughness import RA_OVER_RQ
 from epicyclic.lubricant.oil import Oil
 from epicyclic.lubricant.properties import oil_state
 

@@ -8,12 +8,12 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.geometry.roughness import RA_OVER_RQ
 from epicyclic.kernels.line_contact import hertz_pressure
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.validity import Range, RegressionFluid
 
 __all__ = [
-    "RA_OVER_RQ",
     "FrictionModel",
     "mean_roughness_ra",
     "pitch_point_pressure",
@@ -23,9 +23,6 @@ __all__ = [
 ]
 
 FloatArray = NDArray[np.float64]
-
-RA_OVER_RQ = math.sqrt(2 / math.pi)
-"""Ra/Rq of a Gaussian profile. [1]"""
 
 
 class FrictionModel(Protocol):

@@ -14,18 +14,16 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.geometry.roughness import RA_OVER_RQ, RZ_OVER_RA
 from epicyclic.kernels.line_contact import pan_hamrock_central_film
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.friction.base import RA_OVER_RQ, mean_roughness_ra
+from epicyclic.losses.friction.base import mean_roughness_ra
 from epicyclic.losses.validity import Range, RegressionFluid
 from epicyclic.units import NUMBER
 
 __all__ = ["Doleschel", "Matsumoto"]
 
 FloatArray = NDArray[np.float64]
-
-RZ_OVER_RA = 6.0
-"""Rz/Ra, DIN 3991 approximation. [1]"""
 
 _FILM_SOURCE = "films of Pan and Hamrock, J. Tribol. 111 (1989) 246"
 FILM_RANGES = (
