@@ -11,7 +11,13 @@ from pydantic import PrivateAttr
 
 from epicyclic.case.checks import cross_check
 from epicyclic.case.fields import find_field, locate, to_inputs
-from epicyclic.case.gear_sizes import Found, converted_roughness, find_sizes, negative_teeth
+from epicyclic.case.gear_sizes import (
+    Found,
+    converted_roughness,
+    find_sizes,
+    negative_teeth,
+    told_oil,
+)
 from epicyclic.case.plain import plain, value_at, with_value, without
 from epicyclic.case.schema import Table
 from epicyclic.case.translation import unknown_key
@@ -162,7 +168,7 @@ def with_sizes(
     sizes = find_sizes(validation.sections, raw)
     told: tuple[Found, ...] = ()
     if validation.case is not None:
-        told = (*negative_teeth(raw), *converted_roughness(raw))
+        told = (*negative_teeth(raw), *converted_roughness(raw), *told_oil(raw))
     sections = dict(validation.sections)
     if sizes is None or sizes.problems:
         del sections["gears"]

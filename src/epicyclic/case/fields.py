@@ -49,15 +49,21 @@ class Named:
         The names.
     allowed : callable
         What is allowed, in words.
+    short : type or None
+        Another form of the table, of a few keys.
     """
 
     names: Callable[[], tuple[str, ...]]
     allowed: Callable[[], str]
+    short: type[BaseModel] | None = None
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        return {"anyOf": [{"enum": list(self.names())}, handler(schema)]}
+        forms = [{"enum": list(self.names())}, handler(schema)]
+        if self.short is not None:
+            forms.append(self.short.model_json_schema())
+        return {"anyOf": forms}
 
 
 def quantity_of(annotation: Any, metadata: Sequence[Any] = ()) -> Quantity | None:

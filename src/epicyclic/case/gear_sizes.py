@@ -17,6 +17,7 @@ from epicyclic.case import build
 from epicyclic.case.gear_tables import Gears, GearTable, SetMesh
 from epicyclic.case.plain import value_at
 from epicyclic.case.schema import Table, roughness_told
+from epicyclic.case.short_oil import short_oil_told
 from epicyclic.case.thickness import allowance_shift, thickness_key
 from epicyclic.case.wording import micrometres, millimetres
 from epicyclic.errors import InputError, Problem
@@ -28,7 +29,7 @@ from epicyclic.geometry.profile_shifts import (
 )
 from epicyclic.units import MILLIMETRE
 
-__all__ = ["Found", "Sizes", "converted_roughness", "find_sizes", "negative_teeth"]
+__all__ = ["Found", "Sizes", "converted_roughness", "find_sizes", "negative_teeth", "told_oil"]
 
 MESHES = {"planetary": ("sun-planet", "planet-ring"), "gear_pair": ("pinion-gear",)}
 """Gears of each mesh; of both the first, or of a ring mesh the ring, is fitted to the other."""
@@ -98,6 +99,13 @@ def converted_roughness(raw: Mapping[str, Any], place: str = "") -> Iterator[Fou
             yield from converted_roughness(value, f"{name}.")
         elif key.endswith("roughness") and (told := roughness_told(value)) is not None:
             yield Found(name, f"{1e6 * told[0]:.4g} um", told[1])
+
+
+def told_oil(raw: Mapping[str, Any]) -> Iterator[Found]:
+    """What an oil stands for that is stated by its grade or two viscosities."""
+    told = short_oil_told(value_at(dict(raw), ("lubricant", "oil")))
+    if told is not None:
+        yield Found("lubricant.oil", *told)
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,7 +291,7 @@ class _Solver:
                 key=lambda item: item[0],
             )
             self._set(name, shift)
-            self._tell(f"{name}.profile_shift_coefficient", f"{shift:.4f}", mesh, distance)
+            self._tell(f"{name}.profile_shift_coefficient", f"{shift:z.4f}", mesh, distance)
             free.remove(name)
 
     def _known_mates(self, name: str) -> Iterator[tuple[_Mesh, str]]:

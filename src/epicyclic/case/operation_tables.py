@@ -58,7 +58,8 @@ class Lubricant(Table):
     STAND_INS: ClassVar[dict[str, object]] = {"pressure_viscosity_factor": None}
 
     oil: NamedOil = Field(
-        description="A name of the oil library (epicyclic oils) or a table of properties."
+        description="A name of the oil library (epicyclic oils), a table of properties, or in "
+        'short { iso_vg = 220, kind = "mineral" }.'
     )
     pressure_viscosity_factor: Number = Field(
         default=1.0,

@@ -18,6 +18,7 @@ from pydantic_core import CoreSchema, PydanticCustomError
 from epicyclic import library
 from epicyclic.case.fields import Named
 from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.short_oil import ShortOil, whole_oil
 from epicyclic.geometry.roughness import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity, Oil
 from epicyclic.thermal.solids import Solid
@@ -154,6 +155,7 @@ _MATERIALS = Named(
 _OILS = Named(
     library.oil_names,
     lambda: "a table of properties or a name of the oil library (epicyclic oils)",
+    ShortOil,
 )
 
 
@@ -167,7 +169,9 @@ def _named_material(value: object) -> object:
 
 
 def _named_oil(value: object) -> object:
-    """The built-in oil if `value` is a name; anything else goes on to be checked."""
+    """The built-in oil if `value` is a name; the whole oil of a short table; else as it is."""
+    if isinstance(value, dict):
+        return whole_oil(value)
     if not isinstance(value, str):
         return value
     if value not in _OILS.names():

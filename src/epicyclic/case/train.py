@@ -15,7 +15,7 @@ from pydantic import Field, PrivateAttr, create_model
 from epicyclic.case.base import CaseTable, as_given, with_sizes
 from epicyclic.case.checks import cross_check
 from epicyclic.case.element_kinds import ELEMENT_KINDS
-from epicyclic.case.gear_sizes import Found
+from epicyclic.case.gear_sizes import Found, told_oil
 from epicyclic.case.listed_checks import listed_set_problems
 from epicyclic.case.listed_set import directions_of, hands_of
 from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
@@ -205,7 +205,7 @@ class _TrainTables(CaseTable):
             return cls._made(None, tables, source, found)
         values = {key: getattr(case, key) for key in type(case).model_fields}
         train = cls.model_construct(**values, sets=sets)
-        train._source, train._found = source, tuple(sizes)
+        train._source, train._found = source, (*sizes, *told_oil(tables))
         known_shapes = not found
         train._shape, wrong = shape_of_train(shapes, train.shafts)
         found += wrong

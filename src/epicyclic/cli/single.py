@@ -84,7 +84,14 @@ def telling_contacts(case: Case) -> Iterator[None]:
 @case_argument
 @set_option
 def check(case: str, changes: tuple[str, ...]) -> None:
-    """Check a case without computing losses; of a train also show the ratio of every state."""
+    """Check a case and show what follows from it, as a data sheet, without computing losses.
+
+    Of a train also the ratio of every state.
+    """
+    from epicyclic.report.data_sheet import data_sheet
+    from epicyclic.report.state_tables import state_tables
+    from epicyclic.report.tables import terminal
+
     loaded = load_with(case, changes)
     click.echo(f"{case}: a sound {loaded.kind} case.")
     if loaded.lubrication is not None:
@@ -92,12 +99,8 @@ def check(case: str, changes: tuple[str, ...]) -> None:
 
         for name, supply in stated_supplies(loaded):
             click.echo(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
-    for found in loaded.found:
-        click.echo(found)
+    terminal().print(data_sheet(loaded))
     if loaded.kind == "train":
-        from epicyclic.report.state_tables import state_tables
-        from epicyclic.report.tables import terminal
-
         terminal().print(state_tables(loaded))
 
 

@@ -1,0 +1,86 @@
+"""What `check` shows of a sound case."""
+
+import io
+
+import pytest
+from rich.console import Console
+from test_gear_sizes import X, changed
+from test_tooth_measures import RING, TABLES
+
+from epicyclic import load_case
+from epicyclic.analysis.data_sheet import data_sheets
+from epicyclic.report.data_sheet import data_sheet
+
+
+def shown(case, width=80):
+    console = Console(width=width, file=io.StringIO())
+    console.print(data_sheet(case))
+    return console.file.getvalue()
+
+
+def row(text, label):
+    (line,) = [line.strip() for line in text.splitlines() if line.strip().startswith(label)]
+    return line.removeprefix(label).split()
+
+
+def test_a_printed_pair_is_shown_as_printed():
+    # MESYS AG, online calculation of helical gears: module 1 mm, 20 teeth: d 20, d_b 18.7939,
+    # d_a 22, d_f 17.5, s_n 1.5708, s_an 0.6949, balls of 1.7 mm 22.2941, span over 2 teeth 4.7083
+    gears = TABLES["gears"] | {
+        "normal_module": "1 mm",
+        "helix_angle": "0 deg",
+        "center_distance": "26.5 mm",
+    }
+    own = TABLES["pinion"] | {"teeth": 20, X: 0.0}
+    case = load_case(
+        TABLES | {"gears": gears, "pinion": own, "gear": TABLES["gear"] | {"teeth": 33, X: None}}
+    )
+    text = shown(case)
+    printed = {
+        "reference diameter d": "20.000",
+        "base diameter d_b": "18.794",
+        "tip diameter d_a": "22.000",
+        "root diameter d_f": "17.500",
+        "normal thickness s_n": "1.571",
+        "thickness of the tips s_a": "0.695",
+        "measuring ball D_M": "1.700",
+        "dimension over balls M_d": "22.294",
+    }
+    for label, value in printed.items():
+        assert row(text, label)[0] == value, label
+    assert "gear.profile_shift_coefficient = 0.0000: found from the mesh" in " ".join(text.split())
+
+
+def test_specific_sliding_is_that_of_the_speeds():
+    for tables in (TABLES, TABLES | RING):
+        (sheet,) = data_sheets(load_case(tables)).values()
+        (found,) = sheet.meshes
+        mesh, speed1 = found.mesh, 100.0
+        speed2 = speed1 / mesh.ratio
+        for member, place in ((1, mesh.path_start), (2, mesh.path_end)):
+            rolling = (speed1 * place, speed2 * mesh.curvature2(place))
+            own, other = rolling if member == 1 else rolling[::-1]
+            expected = (own - other) / own
+            assert found.specific_sliding[member - 1] == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_helical_ring_has_no_span_and_columns_line_up():
+    text = shown(load_case(changed(ring={"roughness": "Rz 3 um"})))
+    assert row(text, "span W_k")[2] == "-"
+    assert row(text, "roughness Rq") == ["0.300", "0.400", "0.627", "um"]
+    lines = text.splitlines()
+    start = next(k for k, line in enumerate(lines) if "teeth z" in line)
+    table = lines[start : start + 15]
+    ends = {line.index(" mm") for line in table if line.rstrip().endswith("mm")}
+    assert len(ends) == 1
+    assert "Rz = 6 Ra" in text
+
+
+def test_every_computed_set_of_a_train_has_a_sheet():
+    case = load_case("train-eaxle")
+    sheets = data_sheets(case)
+    assert sheets.keys() == case.sets.keys()
+    assert [one.mesh.name for one in sheets["planets"].meshes] == ["sun mesh", "ring mesh"]
+    assert "Gears, pair" in shown(case)
+    listed = load_case("train-8hp70")
+    assert data_sheets(listed) == {}  # all efficiencies are given
