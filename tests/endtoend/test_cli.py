@@ -232,6 +232,45 @@ def test_init_writes_a_case_that_runs(epicyclic, tmp_path, kind):
     assert "exists already" in again.stderr
 
 
+@pytest.mark.parametrize("kind", ["planetary", "gear_pair", "train"])
+def test_init_writes_a_minimal_case_that_runs(epicyclic, tmp_path, kind):
+    file = tmp_path / "mine.toml"
+    assert epicyclic("init", str(file), "--minimal", "--kind", kind).returncode == 0
+    assert len(file.read_text().splitlines()) < 60
+    checked = epicyclic("check", str(file))
+    assert checked.returncode == 0
+    assert f"a sound {kind} case" in checked.stdout
+    result = ep.solve(ep.load_case(file))
+    assert 0.9 < result.efficiency < 1
+
+
+@pytest.mark.parametrize("name", ["talbot-2012-n5-polished", "talbot-2012-pair", "train-eaxle"])
+def test_init_like_a_case_is_that_case(epicyclic, tmp_path, name):
+    file = tmp_path / "mine.toml"
+    assert epicyclic("init", str(file), "--like", name).returncode == 0
+    assert ep.load_case(file) == ep.load_case(name)
+    again = tmp_path / "again.toml"
+    assert epicyclic("init", str(again), "--like", str(file)).returncode == 0
+    assert ep.load_case(again) == ep.load_case(name)
+
+
+def test_init_like_takes_no_kind_and_no_unknown_case(epicyclic, tmp_path):
+    file = tmp_path / "mine.toml"
+    for options in (["--kind", "train"], ["--minimal"]):
+        done = epicyclic("init", str(file), "--like", "talbot-2012", *options)
+        assert done.returncode == 2
+        assert f"conflicts with {options[0]}" in done.stderr
+    assert epicyclic("init", str(file), "--like", "talbot-2013").returncode == 2
+    assert not file.exists()
+
+
+def test_check_shows_a_data_sheet(epicyclic):
+    done = epicyclic("check", "talbot-2012", "--set", "gears.center_distance=")
+    assert done.returncode == 0
+    for words in ("tip diameter d_a", "normal backlash j_bn", "gears.center_distance = "):
+        assert words in done.stdout
+
+
 def test_init_names_every_key(epicyclic, tmp_path):
     from epicyclic.case.fields import all_keys
 

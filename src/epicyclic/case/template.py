@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
@@ -11,10 +12,18 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from epicyclic import library
-from epicyclic.case.case import GearPairCase, PlanetaryCase
+from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase, read_case
 from epicyclic.case.fields import choices_of, dict_value, entry_of, quantity_of, table_of
 
-__all__ = ["COMMENT_COLUMN", "TableWriter", "case_template", "case_text", "toml_key", "toml_value"]
+__all__ = [
+    "COMMENT_COLUMN",
+    "TableWriter",
+    "case_template",
+    "case_text",
+    "text_like",
+    "toml_key",
+    "toml_value",
+]
 
 _EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {
     "planetary": ("talbot-2012", PlanetaryCase),
@@ -67,6 +76,25 @@ def case_template(kind: str) -> str:
     # a case of one's own starts from the default models
     example = {key: table for key, table in library.builtin_case(name).items() if key != "models"}
     return case_text(example, head)
+
+
+def text_like(name: str) -> str:
+    """A commented case file with the values of a case, a built-in one or a file.
+
+    That of a train is its own file.
+
+    Raises
+    ------
+    InputError
+        If there is no such case, or it is not sound.
+    """
+    case = read_case(name)
+    if isinstance(case, TrainCase):
+        if name in library.case_files():
+            return library.case_source(name)
+        return Path(name).read_text(encoding="utf-8")
+    head = [f"A case file of epicyclic, kind {case.kind}, with the values of {name}."]
+    return case_text(case.given(), [*head, "Keys behind a # have defaults."])
 
 
 def case_text(

@@ -41,16 +41,28 @@ def oils(name: str | None) -> None:
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path), default=Path("case.toml"))
-@click.option("--kind", type=click.Choice(["planetary", "gear_pair", "train"]), default="planetary")
-def init(file: Path, kind: str) -> None:
+@click.option("--kind", type=click.Choice(["planetary", "gear_pair", "train"]))
+@click.option("--minimal", is_flag=True, help="Only what must be stated.")
+@click.option("--like", metavar="CASE", help="With the values of a built-in case or a file.")
+def init(file: Path, kind: str | None, minimal: bool, like: str | None) -> None:
     """Write a commented case FILE (default case.toml) to start from."""
-    from epicyclic.case.template import case_template
+    from epicyclic import library
+    from epicyclic.case.template import case_template, text_like
 
+    if like is not None and (minimal or kind is not None):
+        given = "--minimal" if minimal else "--kind"
+        problem = Problem("--like", like, f"conflicts with {given}.", "Give one of them.")
+        raise InputError([problem], "the command")
     if file.exists():
         problem = Problem("FILE", str(file), "exists already.", "Name another file.")
         raise InputError([problem], "the command")
-    write_file(file, case_template(kind))
-    click.echo(f"Wrote {file}. Next: epicyclic run {file}")
+    if like is not None:
+        text = text_like(like)
+    else:
+        text = (library.minimal_case if minimal else case_template)(kind or "planetary")
+    write_file(file, text)
+    following = "check" if minimal else "run"
+    click.echo(f"Wrote {file}. Next: epicyclic {following} {file}")
 
 
 @click.command()

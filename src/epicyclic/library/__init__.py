@@ -100,6 +100,11 @@ def case_source(name: str) -> str:
     return _root().joinpath("cases", f"{name}.toml").read_text(encoding="utf-8")
 
 
+def minimal_case(kind: str) -> str:
+    """A commented file of `kind` with only what a case must state."""
+    return _root().joinpath("minimal", f"{kind}.toml").read_text(encoding="utf-8")
+
+
 def builtin_case(name: str) -> dict[str, Any]:
     """The tables of a built-in case or of one of its variants.
 
