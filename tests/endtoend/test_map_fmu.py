@@ -22,7 +22,7 @@ HOW_TO = Path(__file__).parents[2] / "docs" / "how-to" / "fmu.md"
 @pytest.fixture(scope="module")
 def data():
     """Without pockets, whose flow takes most of the time of a test; title that XML cannot hold."""
-    changes = {"title": 'gears <of>\n"A & B"\x07'}
+    changes = {"title": 'gears <of>\n"A & B"'}
     changes |= {f"losses.{mesh}_mesh_pocketing.include": False for mesh in ("sun", "ring")}
     return ep.loss_map(
         ep.load_case("talbot-2012").updated(changes),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
@@ -105,9 +104,9 @@ def test_control_characters_come_no_further_than_the_case(sign):
     with pytest.raises(ep.InputError, match=r"title.*has control characters") as error:
         ep.load_case("talbot-2012", {"title": f"gears{sign}!"})
     assert sign not in str(error.value)
-    tables = json.loads(ep.solve(ep.load_case("talbot-2012-pair")).to_json())["inputs"]
-    with pytest.raises(ep.InputError, match="has control characters"):
-        ep.load_case(tables | {f"extra{sign}": {"key": 1}})
+    with pytest.raises(ep.InputError, match="extra") as error:
+        ep.load_case("talbot-2012", {f"extra{sign}": 1})
+    assert sign not in str(error.value)
 
 
 def test_titles_of_several_lines_are_allowed():

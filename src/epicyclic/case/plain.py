@@ -11,12 +11,13 @@ import numpy as np
 from pydantic import BaseModel
 
 from epicyclic.case.fields import to_inputs
-from epicyclic.case.wording import one_line
+from epicyclic.case.wording import dotted, written
 from epicyclic.errors import InputError, Problem
 from epicyclic.units import from_pint
 
 __all__ = [
     "changed_at",
+    "control_problems",
     "plain",
     "value_at",
     "with_value",
@@ -28,7 +29,7 @@ _DEEPEST = 20
 
 _CONTROLS = ("Cc", "Cs")
 """Unicode categories of control characters and of halves of characters."""
-_LAYOUT = dict.fromkeys(map(ord, "\t\r\n"))
+_LAYOUT = "\t\r\n"
 """What texts of several lines may have."""
 
 _MOST_VALUES = 20_000
@@ -41,32 +42,24 @@ def plain(value: Any) -> Any:
     Raises
     ------
     InputError
-        If it is too large or nested too deep to be part of a case, or its texts have signs that
-        control a terminal.
+        If it is too large or nested too deep to be part of a case.
     """
     budget = iter(range(_MOST_VALUES))
-    copy = _plain(value, _DEEPEST, budget)
-    problems = [
-        Problem(".".join(path), one_line(text), "has control characters.", "Leave them out.")
-        for path, text in _texts(copy, ())
-        if not text.isprintable() and any(category(char) in _CONTROLS for char in text)
-    ]
-    if problems:
-        raise InputError(problems)
-    return copy
+    return _plain(value, _DEEPEST, budget)
 
 
-def _texts(value: Any, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], str]]:
-    """All texts in plain values, names of keys too, with the keys that lead to them."""
-    if isinstance(value, str):
-        yield path, value.translate(_LAYOUT)
-    elif isinstance(value, Mapping):
-        for key, item in value.items():
-            yield path, key
-            yield from _texts(item, (*path, key))
-    elif isinstance(value, tuple):
-        for item in value:
-            yield from _texts(item, path)
+def control_problems(tables: Any, path: tuple[str | int, ...] = ()) -> Iterator[Problem]:
+    """Texts in plain values with signs that control a terminal, or are no characters."""
+    if isinstance(tables, str) and not tables.isprintable():
+        if any(category(char) in _CONTROLS and char not in _LAYOUT for char in tables):
+            allowed = "has control characters."
+            yield Problem(dotted(path), written(tables), allowed, "Leave them out.")
+    elif isinstance(tables, Mapping):
+        for key, item in tables.items():
+            yield from control_problems(item, (*path, key))
+    elif isinstance(tables, tuple):
+        for number, item in enumerate(tables):
+            yield from control_problems(item, (*path, number))
 
 
 def _plain(value: Any, depth: int, budget: Iterator[int]) -> Any:

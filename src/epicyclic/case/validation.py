@@ -13,7 +13,7 @@ from pydantic_core import ErrorDetails
 
 from epicyclic.case.fields import Place, dict_value, locate, table_of
 from epicyclic.case.nearest import misspelt
-from epicyclic.case.plain import changed_at, value_at
+from epicyclic.case.plain import changed_at, control_problems, value_at
 from epicyclic.case.schema import Table
 from epicyclic.case.translation import translate, unknown_key
 from epicyclic.case.wording import dotted, written
@@ -49,7 +49,7 @@ def validate(kind: type[AnyCase], raw: dict[str, Any]) -> Validation[AnyCase]:
     no other check depends on it, so that one mistake hides no other.
     """
     case, details = _try(kind, raw)
-    problems: list[Problem] = []
+    problems = list(control_problems(raw))
     while unknown := _unknown_keys(kind, details):
         # repeated, as a table that was misspelt itself may have unknown keys of its own
         tables = tables_of(kind).items()

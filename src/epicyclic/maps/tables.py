@@ -123,7 +123,7 @@ def _axis_problems(data: xr.Dataset) -> Iterator[Problem]:
             continue
         axis = data[name]
         unit = axis.attrs.get("units")
-        if unit != quantity.display:
+        if unit not in (None, quantity.display):  # arithmetic drops it; files must have it
             allowed = f"must be in {quantity.display}."
             yield Problem(name, one_line(str(unit)), allowed, _MAKE_AGAIN)
         if axis.dtype.kind not in "fiu" or axis.ndim != 1 or not axis.size:
@@ -141,7 +141,7 @@ def _value_problems(data: xr.Dataset) -> Iterator[Problem]:
     for name, array in data.data_vars.items():
         unit = array.attrs.get("units")
         wanted = units.get(str(name))
-        if wanted is not None and unit != wanted:
+        if wanted is not None and unit not in (None, wanted):
             yield Problem(str(name), one_line(str(unit)), f"must be in {wanted}.", _MAKE_AGAIN)
         if wanted is None and unit != WATT.display:
             continue
