@@ -126,7 +126,7 @@ def test_a_measured_gear_is_that_of_its_profile_shift(tables, name, way):
         count = measures.usual_span_teeth(made)
         stated = {
             "span_measurement": f"{1e3 * measures.span(made, count)!r} mm",
-            "span_teeth": count,
+            "teeth_in_span": count,
         }
     else:
         stated = {
@@ -154,13 +154,13 @@ def test_a_stated_backlash_contains_the_allowances():
 @pytest.mark.parametrize(
     ("stated", "key", "words"),
     [
-        ({"span_measurement": "20 mm"}, "pinion.span_teeth", "belongs to span_measurement"),
+        ({"span_measurement": "20 mm"}, "pinion.teeth_in_span", "belongs to span_measurement"),
         (
             {"dimension_over_pins": "9 mm", "measuring_pin_diameter": "4 mm"},
             "pinion.dimension_over_pins",
             "inside the base circle",
         ),
-        ({"span_measurement": "20 mm", "span_teeth": 3, X: 0.1}, f"pinion.{X}", "conflicts"),
+        ({"span_measurement": "20 mm", "teeth_in_span": 3, X: 0.1}, f"pinion.{X}", "conflicts"),
         (
             {X: 0.1, "tooth_thickness_allowance": ["-3 um"]},
             "pinion.tooth_thickness_allowance",
@@ -177,7 +177,7 @@ def test_a_span_over_too_many_teeth_is_refused():
     case = load_case(TABLES)
     measured = measures.span(build.gear("pinion", case.pinion, case.gears), 6)
     own = {k: value for k, value in TABLES["pinion"].items() if k != X}
-    own |= {"span_measurement": f"{1e3 * measured:.4f} mm", "span_teeth": 6}
+    own |= {"span_measurement": f"{1e3 * measured:.4f} mm", "teeth_in_span": 6}
     problem = only(problems_of(load_case, TABLES | {"pinion": own}))
     assert "beyond the flanks" in problem.allowed
     assert "Over 4 teeth" in problem.remedy
@@ -185,7 +185,7 @@ def test_a_span_over_too_many_teeth_is_refused():
 
 def test_the_span_of_a_helical_ring_is_refused():
     own = {k: value for k, value in RING["gear"].items() if k != X}
-    own |= {"span_measurement": "57 mm", "span_teeth": 8}
+    own |= {"span_measurement": "57 mm", "teeth_in_span": 8}
     problem = only(problems_of(load_case, TABLES | RING | {"gear": own}))
     assert "helical ring" in problem.allowed
 
@@ -198,7 +198,7 @@ def test_too_thick_teeth_are_told_in_the_way_they_are_stated(way):
     stated = {
         "span": {
             "span_measurement": f"{1e3 * measures.span(made, 4) + 0.15:.4f} mm",
-            "span_teeth": 4,
+            "teeth_in_span": 4,
         },
         "pins": {
             "dimension_over_pins": f"{1e3 * over_pins + 0.3:.4f} mm",

@@ -171,7 +171,7 @@ def _span(gear: Gear, table: GearTable) -> tuple[int, float] | None:
     """As stated, or over the number of teeth whose span touches in the middle."""
     if gear.internal and gear.rack.helix_angle > 0:
         return None
-    count = table.span_teeth or measures.usual_span_teeth(gear)
+    count = table.teeth_in_span or measures.usual_span_teeth(gear)
     value = measures.span(gear, count)
     return (count, value) if _on_flank(gear, measures.span_contact_radius(gear, value)) else None
 

@@ -150,7 +150,7 @@ class GearTable(Table):
     AT_MOST_ONE: ClassVar[tuple[tuple[str, ...], ...]] = (
         (
             "tooth_thickness+thickness_diameter",
-            "span_measurement+span_teeth",
+            "span_measurement+teeth_in_span",
             "dimension_over_pins+measuring_pin_diameter",
             "profile_shift_coefficient",
         ),
@@ -173,9 +173,9 @@ class GearTable(Table):
     )
     thickness_diameter: Length | None = None
     span_measurement: Length | None = Field(
-        default=None, description="W_k, base tangent length over span_teeth teeth."
+        default=None, description="W_k, base tangent length over teeth_in_span teeth."
     )
-    span_teeth: int | None = Field(default=None, ge=1, le=2000, description="k.")
+    teeth_in_span: int | None = Field(default=None, ge=1, le=2000, description="k.")
     dimension_over_pins: Length | None = Field(
         default=None, description="M_d over two balls, or between them in a ring."
     )

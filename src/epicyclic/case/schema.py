@@ -81,7 +81,7 @@ class _Roughness(Quantity):
     ) -> dict[str, Any]:
         length = super().__get_pydantic_json_schema__(schema, handler)
         stated = {"type": "string", "pattern": r"^\s*R[aqz]\b"}
-        return {"anyOf": [length, stated, {"enum": list(library.finishes())}]}
+        return {"anyOf": [length, {"enum": list(library.finishes())}, stated]}
 
 
 Roughness = Annotated[

@@ -43,9 +43,9 @@ def _stated(table: GearTable, rack: BasicRack, *, internal: bool) -> float:
     if table.profile_shift_coefficient is not None:
         return half_angle_from_profile_shift(rack, teeth, table.profile_shift_coefficient)
     if table.span_measurement is not None:
-        assert table.span_teeth is not None
+        assert table.teeth_in_span is not None
         return measures.half_angle_from_span(
-            rack, teeth, internal, table.span_measurement, table.span_teeth
+            rack, teeth, internal, table.span_measurement, table.teeth_in_span
         )
     if table.dimension_over_pins is not None:
         assert table.measuring_pin_diameter is not None
