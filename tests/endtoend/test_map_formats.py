@@ -321,6 +321,34 @@ def test_the_command_writes_by_suffix_or_name(
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
+@pytest.mark.parametrize("name", ["map.csv", "map.m", "map.vtlm"])
+def test_a_stored_map_is_written_in_another_format(data, tmp_path, epicyclic, name):
+    stored, output = tmp_path / "stored.nc", tmp_path / name
+    ep.write_map(data, stored)
+    done = epicyclic("map", str(stored), "-o", str(output))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == f"Wrote the map of {stored} to {output}.\n"
+    ep.write_map(data, tmp_path / f"direct-{name}")
+    assert output.read_bytes() == (tmp_path / f"direct-{name}").read_bytes()
+
+
+def test_a_stored_map_takes_no_options_of_what_is_computed(data, tmp_path, epicyclic):
+    stored, output = tmp_path / "stored.nc", tmp_path / "map.csv"
+    ep.write_map(data, stored)
+    done = epicyclic("map", str(stored), "-o", str(output), "--speed", "1 rpm", "--jobs", "2")
+    assert done.returncode == 2
+    for option in ("--speed", "--jobs"):
+        assert f"{option}: says what is computed, and a stored map is computed" in done.stderr
+    assert not output.exists()
+
+
+def test_a_case_needs_speeds_and_torques(tmp_path, epicyclic):
+    done = epicyclic("map", "talbot-2012", "--speed", "1 rpm", "-o", str(tmp_path / "map.csv"))
+    assert done.returncode == 2
+    assert '--torque: is missing. For example --torque "' in done.stderr
+    assert "--speed" not in done.stderr
+
+
 def test_the_command_says_why_points_are_missing(tmp_path, epicyclic):
     done = epicyclic(
         "map", "talbot-2012", "--speed", "0,1000 rpm", "--torque", "-100,100 N*m",

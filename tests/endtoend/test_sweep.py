@@ -15,6 +15,7 @@ import pytest
 import xarray as xr
 
 import epicyclic as ep
+from epicyclic.sweeps.dataset import by_keys
 
 
 def names_in(folder):
@@ -59,6 +60,23 @@ def test_sweep_equals_single_solutions(case, dataset):
     assert float(point["sun_mesh_film_ratio_min"]) == pytest.approx(
         result.meshes["sun_mesh"].film_ratio_min, rel=1e-12
     )
+
+
+def test_dimensions_have_names_without_dots_and_keys_still_name_them(dataset):
+    assert dataset["total"].dims == ("speed", "planet_count", "torque")
+    assert dataset.planet_count.attrs["case_key"] == "planet.count"
+    chosen = dataset.sel(speed=4000.0, planet_count=3, torque=-500.0)
+    by_key = dataset.sel({"operation.speed": 4000.0, "planet.count": 3, "operation.torque": -500.0})
+    assert chosen["total"].item() == by_key["total"].item() > 0
+    assert chosen["total"].item() != dataset.sel(speed=4000.0, planet_count=4)["total"][1].item()
+
+
+def test_a_key_that_is_also_computed_has_a_dimension_of_its_own(case):
+    given = {"sun_mesh.misalignment": ["3 um", "11 um"], "title": ["one", "another"]}
+    dataset = ep.sweep(case, given, jobs=1)
+    assert dataset["total"].dims == ("sun_mesh_misalignment_given", "title")
+    assert list(dataset.sun_mesh_misalignment_given.values) == [3.0, 11.0]
+    assert dataset["sun_mesh_misalignment"].dims == dataset["total"].dims
 
 
 def test_every_number_has_its_unit(dataset):
@@ -213,10 +231,10 @@ def test_files_hold_what_was_computed(partly_failed, tmp_path, epicyclic, coarse
         return
     table = pd.read_csv(output) if suffix == "csv" else pd.read_parquet(output)
     assert len(table) == 12
-    for name, array in partly_failed.variables.items():
+    for name, array in by_keys(partly_failed).variables.items():
         unit = array.attrs.get("units", "1")
         column = table[name if unit == "1" else f"{name} [{unit}]"]
-        if name in partly_failed.coords:
+        if name in partly_failed.coords:  # a key, of which the file has one column
             wanted = partly_failed[name].broadcast_like(partly_failed["total"]).values
         else:
             wanted = array.values

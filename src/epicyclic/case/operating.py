@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from epicyclic.units import CELSIUS, NEWTON_METRE, RPM, Quantity
 
-__all__ = ["AXES", "OPERATING", "PLANE", "STATE", "STATE_KEY", "OperatingValue"]
+__all__ = ["AXES", "OPERATING", "PLANE", "STATE", "STATE_KEY", "OperatingValue", "axis_name"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,3 +39,9 @@ PLANE = ("speed", "torque")
 """Axes of the tables and pictures of a map."""
 STATE, STATE_KEY = "state", "operation.state"
 """Axis, column and key of the states of a train that has any."""
+_NAMES = {key: name for name, key in AXES.items()} | {STATE_KEY: STATE}
+
+
+def axis_name(key: str) -> str:
+    """Name of the dimension of a key: ``"speed"``, ``"planet_count"`` for ``"planet.count"``."""
+    return _NAMES.get(key, key.replace(".", "_"))

@@ -92,15 +92,12 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
 
 
 @click.command("map")
-@case_argument
+@click.argument("case", metavar="CASE|FILE.nc")
 @set_option
-@click.option(
-    "--speed", metavar="VALUES", required=True, help='Of the input member, as in "0:4000:41 rpm".'
-)
+@click.option("--speed", metavar="VALUES", help='Of the input member, as in "0:4000:41 rpm".')
 @click.option(
     "--torque",
     metavar="VALUES",
-    required=True,
     help='On the input member, as in "-1000:1000:41 N*m"; against the speed is coasting.',
 )
 @temperature_option
@@ -145,7 +142,21 @@ def loss_map(
     start:stop:count from or through zero torques are added that crowd there. The torque loss is
     that at the input member; the file states the signs. A train has a map of each of its states.
     An interrupted map goes on where it stopped, as a sweep does.
+
+    FILE.nc is a map that is stored already: it is written in another format, and nothing computed.
     """
+    from epicyclic.records.files import is_stored
+
+    if is_stored(case):
+        from epicyclic.cli.map_file import convert, refuse_options
+
+        refuse_options(
+            {"set": changes, "states": states, "vary": vary, "even-torques": even_torques}
+            | values
+            | {"jobs": runner.jobs, "dask": runner.dask, "shard": runner.shard}
+        )
+        convert(Path(case), output, name, heated=heated)
+        return
     from epicyclic.case.operating import AXES
     from epicyclic.maps.compute import coordinates, map_plan, states_left_out
     from epicyclic.maps.lumped import check_axis, lumped
@@ -153,6 +164,7 @@ def loss_map(
     from epicyclic.sweeps.plan import parse_vary
 
     loaded = load_with(case, changes)
+    _check_given(values)
     check_values(values)
     chosen = None if states is None else [name.strip() for name in states.split(",")]
     own = lumped(loaded) if heated else None
@@ -194,6 +206,18 @@ def map_writer(
         return points_written(rows, files)
 
     return write
+
+
+def _check_given(values: Mapping[str, str | None]) -> None:
+    """Raise `InputError` for options without which a map cannot be computed."""
+    examples = {"speed": "0:4000:41 rpm", "torque": "-1000:1000:41 N*m"}
+    problems = [
+        Problem(f"--{name}", "", "is missing.", f'For example --{name} "{example}".')
+        for name, example in examples.items()
+        if values[name] is None
+    ]
+    if problems:
+        raise InputError(problems, "the command")
 
 
 def check_values(values: Mapping[str, str | None]) -> None:

@@ -20,7 +20,7 @@ import numpy as np
 from epicyclic.builders.build import layout_of
 from epicyclic.case.case import Case, PlanetaryCase, TrainCase
 from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.operating import AXES, STATE, STATE_KEY
+from epicyclic.case.operating import AXES, STATE, STATE_KEY, axis_name
 from epicyclic.case.wording import written
 from epicyclic.elements.base import HOUSING
 from epicyclic.errors import InputError, Problem
@@ -28,7 +28,7 @@ from epicyclic.maps.interpolation_error import written_values
 from epicyclic.maps.near_zero import resolving_texts, torque_interpolation
 from epicyclic.maps.tables import check_map, map_case
 from epicyclic.results.result import Layout, number_fields
-from epicyclic.sweeps.dataset import to_dataset
+from epicyclic.sweeps.dataset import by_keys, to_dataset
 from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.plan import Axis, SweepPlan, make_plan
 from epicyclic.sweeps.runner import Progress, Runner
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "MapPlan",
-    "axis_name",
     "checked_map",
     "coordinates",
     "held_shaft",
@@ -307,16 +306,12 @@ def coordinates(plan: MapPlan) -> dict[str, tuple[float | str, ...]]:
     return values
 
 
-def axis_name(key: str) -> str:
-    """Name of the dimension of a key: ``"planet_count"`` for ``"planet.count"``."""
-    names = {own: name for name, own in _OWN_AXES.items()}
-    return names.get(key, key.replace(".", "_"))
-
-
 def to_map(plan: MapPlan, rows: Rows) -> xr.Dataset:
     """The map of `plan` from the rows of all its points."""
     layout = layout_of(plan.case)
-    data = to_dataset(plan, rows)[[*_kept_variables(layout), "status", "message", "warnings"]]
+    data = by_keys(to_dataset(plan, rows))[
+        [*_kept_variables(layout), "status", "message", "warnings"]
+    ]
     data = data.rename({axis.key: axis_name(axis.key) for axis in plan.axes})
     data = data.transpose(*(name for name in (*AXES, STATE) if name in data.dims), ...)
     to_rpm, _ = RPM.scale_and_offset()

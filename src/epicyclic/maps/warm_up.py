@@ -16,14 +16,14 @@ from pydantic_core import PydanticCustomError
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
 from epicyclic.case.fields import quantity_of
-from epicyclic.case.operating import AXES, STATE
+from epicyclic.case.operating import AXES, STATE, axis_name
 from epicyclic.case.wording import sentence, written
 from epicyclic.elements.base import OIL
 from epicyclic.elements.heat_paths import INLET
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.machine.heat_network import NetworkModel
 from epicyclic.machine.settle import HOTTEST
-from epicyclic.maps.compute import MapPlan, axis_name, held_shaft, map_plan
+from epicyclic.maps.compute import MapPlan, held_shaft, map_plan
 from epicyclic.maps.cycle import TIME, Cycle, open_cycle
 from epicyclic.maps.duty import check_states, crowded, point_of, texts_of
 from epicyclic.maps.heat_tables import SPACING, HeatSample, HeatTables, heat_samples

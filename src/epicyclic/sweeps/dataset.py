@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from epicyclic.builders.build import layout_of
+from epicyclic.case.operating import axis_name
 from epicyclic.errors import InputError, Problem
 from epicyclic.results.result import number_fields, versions
 from epicyclic.sweeps.journal import Rows
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FORMATS",
+    "by_keys",
     "check_output",
     "csv_safe",
     "to_dataset",
@@ -31,25 +34,28 @@ __all__ = [
 FORMATS = (".nc", ".csv", ".parquet")
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """What formulas of spreadsheets begin with."""
+_CASE_KEY = "case_key"
+"""Attribute of a dimension: the key that it varies."""
 _INTERPOLATION_ERROR = "pocket_interpolation_error"
 
 
 def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
-    """The rows of all points of `plan` over its axes."""
+    """The rows of all points of `plan` over its axes.
+
+    Dimensions have names without dots; the keys are coordinates beside them, of the same values.
+    """
     import xarray as xr
 
-    dims = tuple(axis.key for axis in plan.axes)
-    coords = {
-        axis.key: (axis.key, np.array(axis.coordinate), _about(axis.key, axis.unit))
-        for axis in plan.axes
-    }
+    numbers = {item.key: item for item in number_fields(layout_of(plan.case))}
+    dims = tuple(_dimension(axis.key, numbers) for axis in plan.axes)
+    coords = {}
+    for axis, name in zip(plan.axes, dims, strict=True):
+        values, about = np.array(axis.coordinate), _about(axis.key, axis.unit)
+        coords[axis.key] = (name, values, about)
+        coords[name] = (name, values, about | {_CASE_KEY: axis.key})
     variables = {
-        item.key: (
-            dims,
-            rows.numbers(item.key).reshape(plan.shape),
-            _about(item.label, item.unit),
-        )
-        for item in number_fields(layout_of(plan.case))
+        key: (dims, rows.numbers(key).reshape(plan.shape), _about(item.label, item.unit))
+        for key, item in numbers.items()
     }
     texts = {
         "status": ("how the point ended", rows.status),
@@ -60,6 +66,19 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
         column = np.array(values, dtype=object).reshape(plan.shape)
         variables[key] = (dims, column, _about(label, ""))
     return xr.Dataset(variables, coords, _attributes(plan, rows))
+
+
+def _dimension(key: str, numbers: Container[str]) -> str:
+    """Name of the dimension of a key: ``"sun_mesh_misalignment_given"`` beside the computed one."""
+    name = axis_name(key)
+    return f"{name}_given" if name in numbers else name
+
+
+def by_keys(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset of a sweep with its keys as dimensions; any other as it is."""
+    keys = {name: dataset[name].attrs.get(_CASE_KEY, name) for name in dataset.dims}
+    own = {name: key for name, key in keys.items() if key != name and key in dataset.coords}
+    return dataset.swap_dims(own).drop_vars(list(own))
 
 
 def _about(label: str, unit: str) -> dict[str, str]:
@@ -124,7 +143,8 @@ def _no_formula(value: Any) -> Any:
 
 
 def to_table(dataset: xr.Dataset) -> pd.DataFrame:
-    """One row for each point, units in the column names."""
+    """One row for each point, units in the column names; those of a sweep are its keys."""
+    dataset = by_keys(dataset)
     table = dataset.to_dataframe().reset_index()
     columns = {**dataset.coords, **dataset.data_vars}
     units = {str(name): str(array.attrs.get("units", "")) for name, array in columns.items()}
