@@ -78,7 +78,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         load_methods={key: title for key, (title, _) in methods.items()},
         load_sources={key: source for key, (_, source) in methods.items()},
         sources=_sources(terms, methods),
-        read_inputs=case.inputs,
+        case=case,
         planet_angles=() if sharing is None else sharing.angles,
         planet_shares=next(
             (

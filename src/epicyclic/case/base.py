@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 from pydantic import PrivateAttr
 
 from epicyclic.case.checks import cross_check
+from epicyclic.case.display import case_html, case_line
 from epicyclic.case.fields import find_field, locate, to_inputs
 from epicyclic.case.gear_sizes import (
     Found,
@@ -149,6 +150,14 @@ class CaseTable(Table):
                 if key not in getattr(self, name).model_fields_set:
                     del inputs[name][key]
         return inputs
+
+    def __repr__(self) -> str:
+        return case_line(type(self).__name__, self.given())
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        return case_html(type(self).__name__, self.given())
 
     def __eq__(self, other: object) -> bool:
         """Equal if every key has the same value, wherever the cases were read."""

@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from epicyclic.units import CELSIUS, NEWTON_METRE, RPM, Quantity
+from epicyclic.units import CELSIUS, NEWTON_METRE, RPM, Quantity, unit_text
 
-__all__ = ["AXES", "OPERATING", "PLANE", "STATE", "STATE_KEY", "OperatingValue", "axis_name"]
+__all__ = [
+    "AXES",
+    "OPERATING",
+    "PLANE",
+    "STATE",
+    "STATE_KEY",
+    "OperatingValue",
+    "axis_name",
+    "operating_line",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,3 +56,19 @@ _NAMES = {key: name for name, key in AXES.items()} | {STATE_KEY: STATE}
 def axis_name(key: str) -> str:
     """Name of the dimension of a key: ``"speed"``, ``"planet_count"`` for ``"planet.count"``."""
     return _NAMES.get(key, key.replace(".", "_"))
+
+
+def operating_line(operation: Mapping[str, Any]) -> str:
+    """The operating point, the table ``operation`` of a case, in one line."""
+    words = [f"{operation['speed']}, {operation['torque']}"]
+    if "output" in operation:
+        words.insert(0, f"{operation['input']} to {operation['output']}")
+    elif "input" in operation:
+        words.insert(0, f"input {operation['input']}")
+    if operation.get("state"):
+        words.insert(0, f"state {operation['state']}")
+    if operation.get("fixed"):
+        words.append(f"{operation['fixed']} fixed")
+    if "oil_inlet_temperature" in operation:
+        words.append(f"oil at {operation['oil_inlet_temperature']}")
+    return unit_text(", ".join(words))

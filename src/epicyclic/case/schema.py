@@ -16,7 +16,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetJsonSchem
 from pydantic_core import CoreSchema, PydanticCustomError
 
 from epicyclic import library
-from epicyclic.case.fields import Named
+from epicyclic.case.fields import Named, to_inputs
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.short_oil import ShortOil, whole_oil
 from epicyclic.geometry.roughness import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
@@ -42,6 +42,15 @@ class Table(BaseModel):
     EXACTLY_ONE: ClassVar[tuple[tuple[str, ...], ...]] = ()
     AT_MOST_ONE: ClassVar[tuple[tuple[str, ...], ...]] = ()
     STAND_INS: ClassVar[dict[str, object]] = {}
+
+    def __repr_args__(self) -> Iterable[tuple[str, Any]]:
+        """Keys with their values as a file has them, with units."""
+        return to_inputs(self).items()
+
+    def __dir__(self) -> list[str]:
+        """Keys, and what this package adds to them: not what Pydantic does."""
+        own = {name for name in super().__dir__() if not name.startswith("_") and name.islower()}
+        return sorted(own - set(dir(BaseModel)) | set(type(self).model_fields))
 
 
 def _no_preset(noun: str, name: str, known: Iterable[str], allowed: str) -> PydanticCustomError:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +24,7 @@ __all__ = [
     "check_ending",
     "check_page",
     "draw",
+    "parse_size",
     "picture_bytes",
     "show",
     "write_page",
@@ -30,6 +33,9 @@ __all__ = [
 
 PICTURES = (".png", ".svg", ".pdf")
 PAGE, PRINT = ".html", ".pdf"
+SIZES = (30, 2000)
+"""Of pictures, least and most. [mm]"""
+MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 
 
 def check_ending(option: str, path: Path, endings: Sequence[str] = PICTURES) -> None:
@@ -65,6 +71,21 @@ def show(
         write_file(Path(json_file), as_json() + "\n")
         click.echo(f"Wrote {json_file}.")
     terminal().print(tables())
+
+
+def parse_size(text: str) -> tuple[float, float]:
+    """Width and height of a picture, ``"160x90 mm"``. [mm]"""
+    low, high = SIZES
+    match = re.fullmatch(r"\s*([\d.]+)\s*[x×*]\s*([\d.]+)\s*(mm|cm|in)\s*", text)
+    if match:
+        with suppress(ValueError):  # "1.2.3"
+            scale = MILLIMETRES[match[3]]
+            width, height = float(match[1]) * scale, float(match[2]) * scale
+            if low <= min(width, height) and max(width, height) <= high:
+                return width, height
+    allowed = f"must be a width and a height of {low} to {high} mm, in mm, cm or in."
+    problem = Problem("--size", f'"{text}"', allowed, 'For example "160x90 mm".')
+    raise InputError([problem], "the command")
 
 
 def draw(figure: Figure, path: Path) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from epicyclic.cli.options import load_with, set_option
-from epicyclic.cli.output import PICTURES, check_ending, check_page, draw, write_page
+from epicyclic.cli.output import PICTURES, check_ending, check_page, draw, parse_size, write_page
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -52,13 +52,35 @@ def report(source: str, changes: tuple[str, ...], output: Path) -> None:
     type=click.Path(path_type=Path),
     help=f"The picture, {', '.join(PICTURES)}; default: WHAT.png.",
 )
-def plot(source: str, what: str | None, changes: tuple[str, ...], output: Path | None) -> None:
+@click.option("--size", metavar="SIZE", help='As in "160x90 mm"; default: that of a slide.')
+@click.option(
+    "--dpi",
+    type=click.IntRange(20, 1200),
+    help="Pixels an inch of a .png; default: 1920 pixels over the width.",
+)
+@click.option(
+    "--format",
+    "ending",
+    type=click.Choice([name[1:] for name in PICTURES]),
+    help="Of WHAT.FORMAT, if no output is named.",
+)
+def plot(
+    source: str,
+    what: str | None,
+    changes: tuple[str, ...],
+    output: Path | None,
+    size: str | None,
+    dpi: int | None,
+    ending: str | None,
+) -> None:
     """Draw one plot of a result or map; without WHAT, list what can be drawn.
 
     FILE.nc is what run --save, map or uncertainty wrote; a CASE is solved first.
     """
-    if output is not None:
-        check_ending("-o", output)
+    if output is None:
+        output = Path(f"{what}.{ending or 'png'}")
+    check_ending("-o", output, PICTURES if ending is None else (f".{ending}",))
+    millimetres = None if size is None else parse_size(size)
     from epicyclic.plots.catalogue import available, figure_of
 
     stored = _stored(source, changes)
@@ -68,7 +90,7 @@ def plot(source: str, what: str | None, changes: tuple[str, ...], output: Path |
         for name, entry in found.items():
             click.echo(f"{name:<{width}}  {entry.question}")
         return
-    draw(figure_of(stored, what), output or Path(f"{what}.png"))
+    draw(figure_of(stored, what, size=millimetres, dpi=dpi), output)
 
 
 def _stored(source: str, changes: Sequence[str]) -> Stored:

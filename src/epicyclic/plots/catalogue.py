@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from epicyclic.analysis.shapes import gear_shapes
+from epicyclic.case.operating import operating_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.maps.tables import map_case
 from epicyclic.plots.bearing import plot_roller_loads, plot_roller_profile
@@ -20,6 +21,7 @@ from epicyclic.plots.drawing import plot_gear_set, plot_teeth
 from epicyclic.plots.heat_network import plot_heat_network
 from epicyclic.plots.loss_map import (
     map_at,
+    map_line,
     plot_band_lines,
     plot_half_width,
     plot_map,
@@ -45,6 +47,9 @@ from epicyclic.results.result import in_words
 __all__ = ["PLOTS", "Panel", "Plot", "available", "figure_of", "panels_of"]
 
 Stored = ResultRecord | xr.Dataset
+MM_PER_INCH = 25.4
+SLIDE_WIDTHS = (6.4, 9.6, 12.8)
+"""Of figures with one, two, three and more panels side by side: letters stay readable. [inch]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -327,8 +332,14 @@ def panels_of(stored: Stored, name: str) -> list[Panel]:
     raise InputError([problem], "the command")
 
 
-def figure_of(stored: Stored, name: str) -> Figure:
-    """A plot as a figure, its panels side by side.
+def figure_of(
+    stored: Stored,
+    name: str,
+    *,
+    size: tuple[float, float] | None = None,
+    dpi: float | None = None,
+) -> Figure:
+    """A plot as a figure, its panels side by side, the operating point below.
 
     Parameters
     ----------
@@ -336,16 +347,22 @@ def figure_of(stored: Stored, name: str) -> Figure:
         As `epicyclic.open_result` returns it.
     name : str
         One of `PLOTS`.
+    size : tuple of float, optional
+        Width and height; default: in the proportion of a slide. [mm]
+    dpi : float, optional
+        Pixels an inch; default: such that the figure has the width of a slide in pixels.
     """
     panels = panels_of(stored, name)
     columns = math.ceil(math.sqrt(len(panels)))
     rows = math.ceil(len(panels) / columns)
-    title = stored.title if isinstance(stored, ResultRecord) else str(stored.attrs.get("title", ""))
+    title, point = _about(stored)
     plot = PLOTS[name]
-    with styled_figure(rows, columns, title, panel=plot.size, projection=plot.projection) as (
-        figure,
-        axes,
-    ):
+    inches = plot.size if plot.is_slide else _slide(rows, columns)
+    if size is not None:
+        inches = (size[0] / MM_PER_INCH, size[1] / MM_PER_INCH)
+    with styled_figure(
+        rows, columns, title, projection=plot.projection, size=inches, dpi=dpi, caption=point
+    ) as (figure, axes):
         spare = axes.ravel()[len(panels) :]
         for panel, ax in zip(panels, axes.ravel(), strict=False):
             panel.draw(ax)
@@ -354,3 +371,16 @@ def figure_of(stored: Stored, name: str) -> Figure:
         for ax in spare:
             ax.remove()
     return figure
+
+
+def _about(stored: Stored) -> tuple[str, str]:
+    """Title and operating point."""
+    if isinstance(stored, ResultRecord):
+        return stored.title, operating_line(stored.result.inputs["operation"])
+    return str(stored.attrs.get("title", "")), map_line(stored)
+
+
+def _slide(rows: int, columns: int) -> tuple[float, float]:
+    """Width and height of a figure in which all panels can be read on one slide. [inch]"""
+    width = SLIDE_WIDTHS[min(columns, len(SLIDE_WIDTHS)) - 1]
+    return width, width * SLIDE[1] / SLIDE[0] * max(1.0, rows / columns)

@@ -11,13 +11,14 @@ from matplotlib.colors import BoundaryNorm
 from matplotlib.ticker import NullLocator
 from numpy.typing import NDArray
 
-from epicyclic.case.operating import PLANE
+from epicyclic.case.operating import AXES, PLANE
 from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of
-from epicyclic.units import unit_text
+from epicyclic.units import format_number, unit_text
 
 __all__ = [
     "at_temperatures",
     "map_at",
+    "map_line",
     "plot_band_lines",
     "plot_half_width",
     "plot_map",
@@ -52,6 +53,21 @@ def at_temperatures(data: xr.Dataset) -> list[xr.Dataset]:
     if "temperature" not in data.dims:
         return [map_at(data)]
     return [map_at(data, temperature=float(celsius)) for celsius in data["temperature"]]
+
+
+def map_line(data: xr.Dataset) -> str:
+    """Which points the map has, in one line."""
+    axes = [name for name in AXES if name in data.dims]
+    spans = [f"{name} {_span(data[name])}" for name in axes]
+    return f"at the {data.attrs['reference_shaft']}: {', '.join(spans)}"
+
+
+def _span(axis: xr.DataArray) -> str:
+    low, high = float(axis.min()), float(axis.max())
+    unit = unit_text(str(axis.attrs["units"]))
+    if low == high:
+        return f"{format_number(low)} {unit}"
+    return f"{format_number(low)} to {format_number(high)} {unit}"
 
 
 def plot_map(data: xr.Dataset, name: str, ax: Axes) -> Axes:

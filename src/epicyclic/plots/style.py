@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -31,6 +32,10 @@ LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (
 """Beside colours, for prints in grey."""
 PANEL = (4.8, 3.4)
 """Width and height of one of the Axes of a figure. [inch]"""
+PIXELS = 1920
+"""Width of a picture, if nothing else is asked for: that of a slide."""
+CHARACTERS = 16
+"""That fit into an inch of a caption."""
 
 _STYLE: Any = {
     "axes.prop_cycle": rcsetup.cycler("color", COLOURS),
@@ -41,7 +46,6 @@ _STYLE: Any = {
     "axes.titlesize": "medium",
     "axes.titlelocation": "left",
     "font.size": 9.0,
-    "savefig.dpi": 160,
     "svg.fonttype": "none",
 }
 
@@ -54,6 +58,9 @@ def styled_figure(
     *,
     panel: tuple[float, float] = PANEL,
     projection: str | None = None,
+    size: tuple[float, float] | None = None,
+    dpi: float | None = None,
+    caption: str = "",
 ) -> Iterator[tuple[Figure, Any]]:
     """A figure and its array of Axes, drawn in the style of the package.
 
@@ -66,13 +73,24 @@ def styled_figure(
         Width and height of one of the Axes. [inch]
     projection : str, optional
         ``"polar"``.
+    size : tuple of float, optional
+        Width and height of the whole; default: that of all panels. [inch]
+    dpi : float, optional
+        Pixels an inch; default: such that it is `PIXELS` wide.
+    caption : str
+        Below all, as the operating point; none if empty.
     """
     with mpl.rc_context(_STYLE):
-        size = (panel[0] * columns, panel[1] * rows)
-        figure = Figure(figsize=size, layout="constrained")
+        size = size or (panel[0] * columns, panel[1] * rows)
+        figure = Figure(figsize=size, dpi=dpi or PIXELS / size[0], layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False, subplot_kw={"projection": projection})
         if title:
             figure.suptitle(title, x=0.01, ha="left", fontweight="bold", parse_math=False)
+        if caption:
+            lines = textwrap.fill(caption, max(1, int(size[0] * CHARACTERS)))
+            figure.supxlabel(
+                lines, x=0.01, ha="left", fontsize="small", color="0.3", parse_math=False
+            )
         yield figure, axes
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["ResultRecord", "record", "sets_of"]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ResultRecord:
     """A result and the fields behind it, as `save_result` keeps them.
 
@@ -53,6 +53,11 @@ class ResultRecord:
     created: str
     numbers: xr.Dataset
     fields: Mapping[str, xr.Dataset]
+
+    def __repr__(self) -> str:
+        fields = ", ".join(self.fields)
+        total = f"total loss {self.result.total:z.1f} W"
+        return f"<ResultRecord {self.title!r}: {total}, {self.created}; fields {fields}>"
 
     @property
     def title(self) -> str:

@@ -14,18 +14,20 @@ import jinja2
 import xarray as xr
 from markupsafe import Markup
 
+from epicyclic.case.operating import operating_line
 from epicyclic.maps.tables import map_inputs
 from epicyclic.plots.catalogue import Stored, available
+from epicyclic.plots.loss_map import map_line
 from epicyclic.records.record import ResultRecord
 from epicyclic.report.drawings import draw
 from epicyclic.report.inputs import input_tables
-from epicyclic.report.map_page import map_key_figures, map_line, map_sections
-from epicyclic.report.page import Drawings, Section, gallery
+from epicyclic.report.map_page import map_key_figures, map_sections
+from epicyclic.report.page import Drawings, Item, Section, gallery
 from epicyclic.report.result_page import result_sections
-from epicyclic.report.result_tables import key_figures, operation_line
+from epicyclic.report.result_tables import key_figures
 from epicyclic.report.uncertainty_tables import band_figures, uncertainty_items
 
-__all__ = ["page_html", "report_html"]
+__all__ = ["items_html", "page_html", "report_html"]
 
 KINDS = {
     "planetary": "Power losses of a planetary gear set",
@@ -74,7 +76,7 @@ def _result_content(record: ResultRecord, drawings: Drawings) -> dict[str, Any]:
     return {
         "title": record.title,
         "kind": KINDS[result.kind],
-        "operation": operation_line(result),
+        "operation": operating_line(result.inputs["operation"]),
         "source": f"Computed {_time(record.created)} with epicyclic {result.versions['epicyclic']}",
         "key_figures": key_figures(result),
         "sections": result_sections(record, drawings),
@@ -130,16 +132,25 @@ def _drawings(stored: Stored, progress: Callable[[int, int], None]) -> Drawings:
     return drawings
 
 
-@cache
+def items_html(*items: Item) -> str:
+    """Tables and lists as a page has them, without the page."""
+    render = _templates().get_template("items.html").module.render  # type: ignore[attr-defined]
+    return "".join(render(item) for item in items)
+
+
 def _template() -> jinja2.Template:
-    environment = jinja2.Environment(
+    return _templates().get_template("report.html")
+
+
+@cache
+def _templates() -> jinja2.Environment:
+    return jinja2.Environment(
         loader=jinja2.PackageLoader("epicyclic.report"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template("report.html")
 
 
 def _asset(name: str) -> Markup:

@@ -31,19 +31,12 @@ from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.status import Status
 from epicyclic.units import format_number, unit_text
 
-__all__ = ["map_key_figures", "map_line", "map_sections"]
+__all__ = ["map_key_figures", "map_sections"]
 
 _WHITE = "White: no power is passed on, or the point failed."
 _FOUND = re.compile(r"(Out of range: .*?) -?\d[^;]*;")
 GRIDS = {"efficiency": "Efficiency, %", "total": "Total loss, W"}
 """Variables of which there are tables of values."""
-
-
-def map_line(data: xr.Dataset) -> str:
-    """Which points the map has, in one line."""
-    axes = [name for name in AXES if name in data.dims]
-    spans = [f"{name} {_span(data[name])}" for name in axes]
-    return f"at the {data.attrs['reference_shaft']}: {', '.join(spans)}"
 
 
 def map_key_figures(data: xr.Dataset) -> list[KeyFigure]:
@@ -95,14 +88,6 @@ def _band(data: xr.Dataset, drawings: Drawings) -> tuple[Item, ...]:
     if "explained" not in data:
         return ()
     return (*gallery(drawings, "loss-band", "loss-band-lines"), *uncertainty_items(data))
-
-
-def _span(axis: xr.DataArray) -> str:
-    low, high = float(axis.min()), float(axis.max())
-    unit = unit_text(str(axis.attrs["units"]))
-    if low == high:
-        return f"{format_number(low)} {unit}"
-    return f"{format_number(low)} to {format_number(high)} {unit}"
 
 
 def _further(data: xr.Dataset) -> str:

@@ -19,7 +19,6 @@ __all__ = [
     "members_table",
     "mesh_tables",
     "oil_table",
-    "operation_line",
     "planets_table",
     "share_row",
     "standing_items",
@@ -58,23 +57,6 @@ def key_figures(result: ResultContents) -> list[KeyFigure]:
         KeyFigure("input power", _watts(result.input_power / 1e3, "", 2), "kW"),
         *(() if result.power_ratio is None else (rolling,)),
     ]
-
-
-def operation_line(result: ResultContents) -> str:
-    """The operating point in one line."""
-    operation = result.inputs["operation"]
-    words = [f"{operation['speed']}, {operation['torque']}"]
-    if "output" in operation:
-        words.insert(0, f"{operation['input']} to {operation['output']}")
-    elif "input" in operation:
-        words.insert(0, f"input {operation['input']}")
-    if operation.get("state"):
-        words.insert(0, f"state {operation['state']}")
-    if operation.get("fixed"):
-        words.append(f"{operation['fixed']} fixed")
-    if "oil_inlet_temperature" in operation:
-        words.append(f"oil at {operation['oil_inlet_temperature']}")
-    return unit_text(", ".join(words))
 
 
 def _watts(value: float, key: str, digits: int = 1) -> Cell:

@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from epicyclic.analysis.compare import FrictionComparison, recommended
+from epicyclic.case.operating import operating_line
 from epicyclic.case.wording import sentence
 from epicyclic.losses.validity import share_text
 from epicyclic.records.contents import ResultContents, contents_of
@@ -26,7 +27,6 @@ from epicyclic.report.result_tables import (
     members_table,
     mesh_tables,
     oil_table,
-    operation_line,
     planets_table,
     standing_items,
     users_text,
@@ -95,7 +95,10 @@ def result_tables(
 def _headline(contents: ResultContents) -> Group:
     """Operating point and key figures."""
     found = [f"{one.label} {one.cell.text} {one.unit}".rstrip() for one in key_figures(contents)]
-    lines: list[RenderableType] = [Text(operation_line(contents)), Columns(found, padding=(0, 3))]
+    lines: list[RenderableType] = [
+        Text(operating_line(contents.inputs["operation"])),
+        Columns(found, padding=(0, 3)),
+    ]
     if locking := locking_text(contents):
         lines.append(Text(locking, style="bold"))
     return Group(*lines)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from importlib import metadata
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from epicyclic.elements.base import LOAD_DEPENDENT, LOAD_INDEPENDENT
 from epicyclic.elements.figures import (
@@ -24,6 +24,7 @@ from epicyclic.elements.figures import (
 from epicyclic.losses.validity import ModelUse, ValidityFlag, describe_flags, flags_with_loss
 from epicyclic.results.heat import HeatBalance
 from epicyclic.results.lubrication import OilSupply
+from epicyclic.results.views import Views
 from epicyclic.status import Status
 from epicyclic.units import CELSIUS, DEGREE, NEWTON_METRE, RPM, WATT
 
@@ -197,8 +198,15 @@ class Train:
     output: str
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Result:
+class Stated(Protocol):
+    """What was solved: a case, of which a result knows only this."""
+
+    def inputs(self) -> Mapping[str, Any]:
+        """Its keys, defaults included, as a case file has them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Result(Views):
     """The losses of one case, where they arise, and how they were found.
 
     Attributes
@@ -230,8 +238,8 @@ class Result:
         How the load is found, along the teeth and between planets.
     sources : tuple of str
         Literature of the models used.
-    read_inputs : callable
-        Gives the case, defaults included, as a case file has it: few results are asked for it.
+    case : PlanetaryCase, GearPairCase or TrainCase
+        What was solved.
     planet_angles : tuple of float
         Positions of the planets; empty for a pair. [rad]
     planet_shares : tuple of float
@@ -263,7 +271,7 @@ class Result:
     load_methods: Mapping[str, str]
     load_sources: Mapping[str, str]
     sources: tuple[str, ...]
-    read_inputs: Callable[[], Mapping[str, Any]]
+    case: Stated
     planet_angles: tuple[float, ...] = ()
     planet_shares: tuple[float, ...] = ()
     train: Train | None = None
@@ -275,7 +283,15 @@ class Result:
     @property
     def inputs(self) -> Mapping[str, Any]:
         """The case, defaults included, as a case file has it."""
-        return self.read_inputs()
+        return self.case.inputs()
+
+    def __repr__(self) -> str:
+        title = self.title or in_words(self.kind)
+        words = [f"total loss {self.total:z.1f} W of {self.input_power / 1e3:z.2f} kW"]
+        if self.efficiency is not None:
+            words.append(f"efficiency {self.efficiency:.3%}")
+        words.append(f"{len(self.warnings)} warnings")
+        return f"<Result {title!r}: {', '.join(words)}>"
 
     @property
     def bearing(self) -> BearingFigures | None:

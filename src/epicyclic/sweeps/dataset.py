@@ -50,9 +50,9 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
     dims = tuple(_dimension(axis.key, numbers) for axis in plan.axes)
     coords = {}
     for axis, name in zip(plan.axes, dims, strict=True):
-        values, about = np.array(axis.coordinate), _about(axis.key, axis.unit)
-        coords[axis.key] = (name, values, about)
-        coords[name] = (name, values, about | {_CASE_KEY: axis.key})
+        points, about = np.array(axis.coordinate), _about(axis.key, axis.unit)
+        coords[axis.key] = (name, points, about)
+        coords[name] = (name, points, about | {_CASE_KEY: axis.key})
     variables = {
         key: (dims, rows.numbers(key).reshape(plan.shape), _about(item.label, item.unit))
         for key, item in numbers.items()
