@@ -1,4 +1,4 @@
-"""What cases and results show of themselves: lines, pages of a notebook, tables, pictures, files."""
+"""What cases and results show of themselves: lines, notebook pages, tables, pictures, files."""
 
 from __future__ import annotations
 
