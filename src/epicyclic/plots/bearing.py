@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
-from epicyclic.plots.style import COLOURS, LINE_STYLES, label_of
+from epicyclic.plots.style import COLOURS, LINE_STYLES, label_of, legend_below
 
 __all__ = ["plot_roller_loads", "plot_roller_profile"]
 
@@ -67,5 +67,5 @@ def plot_roller_profile(bearing: xr.Dataset, ax: Axes) -> Axes:
         ylabel=label_of(bearing["pressure"]),
     )
     ax.set_ylim(bottom=0.0)
-    ax.legend(fontsize="small")
+    legend_below(ax, ncols=2)
     return ax

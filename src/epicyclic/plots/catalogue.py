@@ -20,6 +20,7 @@ from epicyclic.plots.bearing import plot_roller_loads, plot_roller_profile
 from epicyclic.plots.drawing import plot_gear_set, plot_teeth
 from epicyclic.plots.heat_network import plot_heat_network
 from epicyclic.plots.loss_map import (
+    limits_of,
     map_at,
     map_line,
     plot_band_lines,
@@ -50,6 +51,8 @@ Stored = ResultRecord | xr.Dataset
 MM_PER_INCH = 25.4
 SLIDE_WIDTHS = (6.4, 9.6, 12.8)
 """Of figures with one, two, three and more panels side by side: letters stay readable. [inch]"""
+FLATTEST = 0.75
+"""Height of a figure over that of a slide of its width, at least."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,12 +149,16 @@ def _teeth(stored: Stored) -> list[Panel]:
     ]
 
 
-def _of_map(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], list[Panel]]:
-    """One panel for each state and temperature of a map, at the first value of further keys."""
+def _of_map(draw: Callable[..., Axes], name: str, *more: object) -> Callable[[Stored], list[Panel]]:
+    """One panel for each state and temperature of a map, at the first value of further keys.
+
+    All panels have one scale for `name`.
+    """
 
     def panels(stored: Stored) -> list[Panel]:
         if isinstance(stored, ResultRecord) or "torque_loss" not in stored:
             return []
+        scale = {"limits": limits_of(stored, name)}
         titles = {"state": "state {}", "temperature": "{:g} °C"}
         names = [name for name in titles if name in stored.dims]
         return [
@@ -159,7 +166,13 @@ def _of_map(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], list
                 ", ".join(
                     titles[name].format(value) for name, value in zip(names, point, strict=True)
                 ),
-                partial(draw, map_at(stored, **dict(zip(names, point, strict=True))), *more),
+                partial(
+                    draw,
+                    map_at(stored, **dict(zip(names, point, strict=True))),
+                    name,
+                    *more,
+                    **scale,
+                ),
             )
             for point in itertools.product(*(stored[name].values.tolist() for name in names))
         ]
@@ -298,7 +311,7 @@ PLOTS: dict[str, Plot] = {
     "loss-over-torque": Plot(
         "How does the loss grow with torque?", _of_map(plot_map_lines, "total", "torque")
     ),
-    "loss-parts": Plot("Which components make up the loss?", _of_map(plot_map_parts)),
+    "loss-parts": Plot("Which components make up the loss?", _of_map(plot_map_parts, "total")),
     "loss-band": Plot(
         "How well is the loss known over speed and torque?", _of_band(plot_half_width)
     ),
@@ -353,7 +366,7 @@ def figure_of(
         Pixels an inch; default: such that the figure has the width of a slide in pixels.
     """
     panels = panels_of(stored, name)
-    columns = math.ceil(math.sqrt(len(panels)))
+    columns = 3 if len(panels) == 3 else math.ceil(math.sqrt(len(panels)))
     rows = math.ceil(len(panels) / columns)
     title, point = _about(stored)
     plot = PLOTS[name]
@@ -367,7 +380,7 @@ def figure_of(
         for panel, ax in zip(panels, axes.ravel(), strict=False):
             panel.draw(ax)
             if panel.subject:
-                ax.set_title(f"{ax.get_title(loc='left')}: {panel.subject}")
+                ax.set_title(f"{ax.get_title(loc='left')}, {panel.subject}")
         for ax in spare:
             ax.remove()
     return figure
@@ -383,4 +396,4 @@ def _about(stored: Stored) -> tuple[str, str]:
 def _slide(rows: int, columns: int) -> tuple[float, float]:
     """Width and height of a figure in which all panels can be read on one slide. [inch]"""
     width = SLIDE_WIDTHS[min(columns, len(SLIDE_WIDTHS)) - 1]
-    return width, width * SLIDE[1] / SLIDE[0] * max(1.0, rows / columns)
+    return width, width * SLIDE[1] / SLIDE[0] * max(FLATTEST, rows / columns)

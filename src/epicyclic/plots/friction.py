@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from epicyclic.analysis.compare import FrictionComparison, recommended
-from epicyclic.plots.style import COLOURS, legend_below, styled_figure
+from epicyclic.plots.style import COLOURS, decimals_of, legend_below, styled_figure
 
 __all__ = ["friction_figure", "plot_friction_models"]
 
@@ -31,6 +31,7 @@ def friction_figure(rows: Sequence[FrictionComparison], title: str) -> Figure:
 def plot_friction_models(rows: Sequence[FrictionComparison], ax: Axes) -> Axes:
     """A bar for each model; hatched as far as the loss is outside its range."""
     best, _ = recommended(rows)
+    digits = decimals_of(max(row.sliding for row in rows))
     for place, row in enumerate(rows):
         colour = OTHER if row.other_oil else COLOUR
         inside = row.sliding * (1 - row.outside)
@@ -39,10 +40,10 @@ def plot_friction_models(rows: Sequence[FrictionComparison], ax: Axes) -> Axes:
             place,
             row.sliding - inside,
             left=inside,
-            color=colour,
+            color="white",
             hatch="////",
-            edgecolor="black",
-            linewidth=0.5,
+            edgecolor=colour,
+            linewidth=1.0,
         )
         marks = [
             mark
@@ -54,7 +55,7 @@ def plot_friction_models(rows: Sequence[FrictionComparison], ax: Axes) -> Axes:
             if holds
         ]
         ax.annotate(
-            ", ".join([f"{row.sliding:.1f} W", *marks]),
+            ", ".join([f"{row.sliding:.{digits}f} W", *marks]),
             (row.sliding, place),
             xytext=(3, 0),
             textcoords="offset points",
@@ -70,7 +71,7 @@ def plot_friction_models(rows: Sequence[FrictionComparison], ax: Axes) -> Axes:
     handles = [
         Patch(facecolor=COLOUR, edgecolor="black", label="for this oil, or for any"),
         Patch(facecolor=OTHER, edgecolor="black", label="made for another oil"),
-        Patch(facecolor="white", edgecolor="black", hatch="////", label="outside its range"),
+        Patch(facecolor="white", edgecolor=COLOUR, hatch="////", label="outside its range"),
     ]
     legend_below(ax, handles=handles, ncols=3)
     return ax

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm
-from matplotlib.ticker import NullLocator
+from matplotlib.colors import FuncNorm, Normalize
+from matplotlib.ticker import MaxNLocator, NullLocator
 from numpy.typing import NDArray
 
-from epicyclic.case.operating import AXES, PLANE
-from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of
+from epicyclic.case.operating import AXES, PLANE, STATE
+from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of, legend_below
 from epicyclic.units import format_number, unit_text
 
 __all__ = [
     "at_temperatures",
+    "limits_of",
     "map_at",
     "map_line",
     "plot_band_lines",
@@ -27,11 +26,18 @@ __all__ = [
 ]
 
 FloatArray = NDArray[np.float64]
+Limits = tuple[float, float] | None
 
 LEVELS = 7
-EFFICIENCIES = (0, 20, 40, 60, 70, 80, 85, 90, 92, 94, 95, 96, 97, 98, 99, 100)
-"""Where the colours of an efficiency change: it bends most where it is lowest. [%]"""
-LINED_EFFICIENCIES = (60, 80, 90, 94, 96, 97, 98, 99)
+EFFICIENCIES = (50, 70, 80, 90, 95, 97, 98, 98.5, 99, 99.3, 99.5, 99.7, 99.9)
+"""Of lines and ticks. [%]"""
+LEAST_EFFICIENCY, BEST_EFFICIENCY = 50.0, 99.95
+"""Between which colours of an efficiency differ, evenly in the logarithm of the loss. [%]"""
+LABELS = 4
+"""Of lines of equal value, at most: more collide where lines are close."""
+HATCHES = ("", "///", "...", "\\\\\\", "xxx")
+ROOM = 1.03
+"""Height of an axis over the greatest value that it has to show. [1]"""
 STRETCHED = 0.02
 """Part of the torque axis of an efficiency that is linear, over the largest torque. [1]"""
 MOST_LINES = 5
@@ -70,35 +76,51 @@ def _span(axis: xr.DataArray) -> str:
     return f"{format_number(low)} to {format_number(high)} {unit}"
 
 
-def plot_map(data: xr.Dataset, name: str, ax: Axes) -> Axes:
+def limits_of(data: xr.Dataset, name: str) -> Limits:
+    """Least and greatest value in all panels: states and temperatures, at the first of other keys.
+
+    An efficiency is in percent; None if there is no value.
+    """
+    values = _shown(data[name])
+    panels = (*AXES, STATE)
+    found = values.isel({dim: 0 for dim in values.dims if dim not in panels}).to_numpy()
+    known = found[np.isfinite(found)]
+    return (float(known.min()), float(known.max())) if known.size else None
+
+
+def plot_map(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Axes:
     """`name` over speed and torque, with lines of equal value.
 
     Parameters
     ----------
     data : xarray.Dataset
         Of `map_at`.
+    limits : tuple of float, optional
+        Of the scale of colours, from `limits_of`; default: those of `data`.
     """
     values = _shown(data[name]).transpose("torque", "speed")
     if min(values.shape) < 2 or not np.isfinite(values).any():
         longest = "torque" if data.sizes["torque"] > data.sizes["speed"] else "speed"
-        return plot_map_lines(data, name, longest, ax)
+        return plot_map_lines(data, name, longest, ax, limits)
+    low, high = limits or limits_of(data, name) or (0.0, 1.0)
     speed, torque = (data[axis].to_numpy() for axis in PLANE)
     of_efficiency = name == "efficiency"
-    norm = BoundaryNorm(EFFICIENCIES, 256) if of_efficiency else None
+    norm = _efficiency_norm(low, high) if of_efficiency else Normalize(low, high)
     field = ax.pcolormesh(
         speed, torque, values, shading="gouraud", cmap=COLOUR_MAP, norm=norm, rasterized=True
     )
     figure = ax.get_figure()
     assert figure is not None
-    bar = figure.colorbar(field, ax=ax, label=label_of(values))
+    below = of_efficiency and low < LEAST_EFFICIENCY
+    bar = figure.colorbar(
+        field, ax=ax, label=label_of(values), extend="min" if below else "neither"
+    )
+    levels = list(MaxNLocator(LEVELS).tick_values(low, high))
     if of_efficiency:
-        bar.set_ticks(list(EFFICIENCIES))
-    if float(values.max()) > float(values.min()):
-        levels = LINED_EFFICIENCIES if of_efficiency else LEVELS
-        with warnings.catch_warnings():  # a map need not reach any of them
-            warnings.filterwarnings("ignore", message="No contour levels")
-            lines = ax.contour(speed, torque, values, levels=levels, colors="white", linewidths=0.7)
-        ax.clabel(lines, fontsize="x-small")
+        levels = [one for one in EFFICIENCIES if low <= one <= high]
+        bar.set_ticks(levels, labels=[f"{one:g}" for one in levels])
+        bar.ax.minorticks_off()
+    _draw_lines(ax, values, [one for one in levels if values.min() < one < values.max()])
     if of_efficiency and torque.min() <= 0 <= torque.max():
         _stretch_zero(ax, torque)
     ax.grid(visible=False)
@@ -106,6 +128,34 @@ def plot_map(data: xr.Dataset, name: str, ax: Axes) -> Axes:
         title=_title(values), xlabel=_axis_label(data, "speed"), ylabel=_axis_label(data, "torque")
     )
     return ax
+
+
+def _draw_lines(ax: Axes, values: xr.DataArray, levels: list[float]) -> None:
+    """Lines of equal value, some of them with it."""
+    if not levels:
+        return
+    place = values["speed"], values["torque"], values
+    lines = ax.contour(*place, levels=levels, colors="white", linewidths=0.7)
+    labelled = levels[:: -(-len(levels) // LABELS)] if values.name != "efficiency" else levels
+    ax.clabel(lines, labelled[-LABELS:], fontsize="x-small", fmt="%g")
+
+
+def _efficiency_norm(low: float, high: float) -> FuncNorm:
+    """Colours of efficiencies, for which 98 and 99 % differ as much as 80 and 90 %."""
+    best = min(high, BEST_EFFICIENCY)
+    least = min(max(low, LEAST_EFFICIENCY), best)
+    if least == best:
+        best += 100 - BEST_EFFICIENCY
+    return FuncNorm((_log_of_loss, _from_log_of_loss), least, best)
+
+
+def _log_of_loss(efficiency: FloatArray) -> FloatArray:
+    return -np.log10(100 - np.minimum(efficiency, BEST_EFFICIENCY))
+
+
+def _from_log_of_loss(value: FloatArray) -> FloatArray:
+    found: FloatArray = 100 - np.power(10.0, -value)
+    return found
 
 
 def _stretch_zero(ax: Axes, torque: FloatArray) -> None:
@@ -119,7 +169,7 @@ def _stretch_zero(ax: Axes, torque: FloatArray) -> None:
     ax.yaxis.set_minor_locator(NullLocator())
 
 
-def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes) -> Axes:
+def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes, limits: Limits = None) -> Axes:
     """`name` over speed or torque, one line for some values of the other that are not negative."""
     other = "torque" if over == "speed" else "speed"
     unit = unit_text(str(data[other].attrs["units"]))
@@ -132,9 +182,11 @@ def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes) -> Axes:
             ls=LINE_STYLES[number],
             marker=".",
             ms=3,
-            label=f"{float(line[other]):g} {unit}",
+            label=f"{format_number(float(line[other]), 3)} {unit}",
         )
-    ax.legend(title=other, fontsize="small", title_fontsize="small")
+    legend_below(ax, title=other, title_fontsize="small", ncols=3)
+    if limits is not None and limits[1] > 0:
+        ax.set_ylim(min(0.0, limits[0]), ROOM * limits[1])
     values = _shown(data[name])
     ax.set(
         title=f"{_title(values)} over {over}",
@@ -144,34 +196,43 @@ def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes) -> Axes:
     return ax
 
 
-def plot_map_parts(data: xr.Dataset, ax: Axes) -> Axes:
-    """Components of the loss over speed, one above the other, at the highest torque."""
+def plot_map_parts(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Axes:
+    """Components of the loss `name` over speed, one above the other, at the highest torque."""
     highest = data.isel(torque=-1)
-    unit = data["total"].attrs["units"]
+    unit = data[name].attrs["units"]
     parts = [
-        name
-        for name, values in highest.data_vars.items()
-        if values.attrs.get("units") == unit and name not in LOSS_SUMS and float(values.max()) > 0
+        part
+        for part, values in highest.data_vars.items()
+        if values.attrs.get("units") == unit and part not in LOSS_SUMS and float(values.max()) > 0
     ]
-    parts = parts or ["total"]  # nothing is lost, as where a train turns as one body
+    parts = parts or [name]  # nothing is lost, as where a train turns as one body
     areas = ax.stackplot(
         highest["speed"],
-        [highest[name] for name in parts],
-        labels=[str(name).replace("_", " ") for name in parts],
+        [highest[part] for part in parts],
+        labels=[str(part).replace("_", " ") for part in parts],
         colors=COLOURS,
         edgecolor="white",
         linewidth=0.6,
     )
-    for number, area in enumerate(areas):
-        area.set_hatch("//" * (number // len(COLOURS)))
+    for number, area in enumerate(areas):  # which tell the same colours apart, and all in grey
+        area.set_hatch(HATCHES[number % len(HATCHES)])
+    if limits is not None and limits[1] > 0:
+        ax.set_ylim(0.0, ROOM * limits[1])
     torque = f"{float(highest['torque']):g} {unit_text(str(highest['torque'].attrs['units']))}"
     ax.set(
         title=f"Components of the loss at {torque}",
         xlabel=_axis_label(data, "speed"),
-        ylabel=label_of(data["total"]),
+        ylabel=label_of(data[name]),
     )
     handles, labels = ax.get_legend_handles_labels()
-    ax.legend(handles[::-1], labels[::-1], fontsize="x-small", loc="upper left")
+    ax.legend(
+        handles[::-1],
+        labels[::-1],
+        fontsize="x-small",
+        loc="center left",
+        bbox_to_anchor=(1.0, 0.5),
+        frameon=False,
+    )
     return ax
 
 
@@ -213,12 +274,14 @@ def _shown(values: xr.DataArray) -> xr.DataArray:
 
 
 def _some(axis: xr.DataArray) -> list[int]:
-    """Places of some values on an axis, evenly spaced, of one sign if there are both."""
-    places = np.flatnonzero(axis.to_numpy() >= 0)
+    """Places of values near to evenly spaced ones on an axis, of one sign if there are both."""
+    values = axis.to_numpy()
+    places = np.flatnonzero(values >= 0)
     if not places.size:
         places = np.arange(axis.size)
-    chosen = np.linspace(0, places.size - 1, min(places.size, MOST_LINES)).round().astype(int)
-    return [int(one) for one in places[chosen]]
+    wanted = np.linspace(values[places].min(), values[places].max(), MOST_LINES)
+    nearest = np.abs(values[places] - wanted[:, None]).argmin(axis=1)
+    return [int(one) for one in np.unique(places[nearest])]
 
 
 def _title(values: xr.DataArray) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
-from epicyclic.plots.style import COLOURS, legend_below
+from epicyclic.plots.style import COLOURS, decimals_of, legend_below
 from epicyclic.records.contents import ResultContents
 
 __all__ = ["plot_loss_sum", "plot_losses"]
@@ -37,7 +37,7 @@ def plot_losses(result: ResultContents, ax: Axes) -> Axes:
     for row, value in enumerate(sums.values()):
         share = f" ({value / result.total:.1%})" if result.total else ""
         ax.annotate(
-            f"{value:.1f}{share}",
+            f"{value:.{decimals_of(result.total)}f}{share}",
             (value, row),
             xytext=(3, 0),
             textcoords="offset points",
@@ -53,14 +53,14 @@ def plot_loss_sum(result: ResultContents, ax: Axes) -> Axes:
     """How the components add up to the total loss, the largest of each group first."""
     start = 0.0
     labels: list[str] = []
-    rows = _rows(result)
+    rows, digits = _rows(result), decimals_of(result.total)
     for group, colour in GROUP_COLOURS.items():
         terms = [(watts, label) for label, own, watts in rows if own == group and watts]
         for watts, label in sorted(terms, reverse=True):
-            _step(ax, len(labels), start, watts, colour)
+            _step(ax, len(labels), start, watts, colour, digits)
             labels.append(label)
             start += watts
-    _step(ax, len(labels), 0.0, result.total, SUM_COLOUR)
+    _step(ax, len(labels), 0.0, result.total, SUM_COLOUR, digits)
     ax.set_yticks(range(len(labels) + 1), [*labels, "total"])
     _finish(ax, [result.total])
     ax.set(title="How the losses add up", xlabel="power loss, W")
@@ -78,10 +78,10 @@ def _rows(result: ResultContents) -> list[tuple[str, str, float]]:
     return [(label, group, watts) for (label, group), watts in sums.items()]
 
 
-def _step(ax: Axes, row: int, start: float, watts: float, colour: str) -> None:
+def _step(ax: Axes, row: int, start: float, watts: float, colour: str, digits: int) -> None:
     ax.barh(row, watts, left=start, color=colour, edgecolor="black", linewidth=0.5)
     ax.annotate(
-        f"{watts:.1f}",
+        f"{watts:.{digits}f}",
         (start + watts, row),
         xytext=(3, 0),
         textcoords="offset points",

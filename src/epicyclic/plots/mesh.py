@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 from numpy.typing import NDArray
 
-from epicyclic.plots.style import COLOUR_MAP, label_of, styled_figure
+from epicyclic.plots.style import COLOUR_MAP, closed_period, label_of, legend_below, styled_figure
 
 __all__ = [
     "mesh_figure",
@@ -29,6 +29,12 @@ FloatArray = NDArray[np.float64]
 MAPS = ("line_load", "hertz_pressure", "sliding_speed", "friction_power")
 """Variables drawn over the plane of action."""
 MORE_MAPS = ("film_ratio", "friction_coefficient", "flash_temperature")
+FRICTION = "friction_coefficient"
+SAME = 1e-9
+"""Relative difference of coefficients of friction that are one number."""
+NO_PEAK, PEAKED = 0.95, 1.15
+"""A scale of colours ends at this quantile where the highest value is more than so many times it:
+peaks at corners would take the scale from all the rest."""
 PATH_PLACES = 40
 """Places on the path of contact at which values are taken together."""
 
@@ -74,10 +80,21 @@ def _draw_map(ax: Axes, path: FloatArray, face: FloatArray, values: FloatArray, 
     scale = np.ptp(path) / np.ptp(face)
     triangles = Triangulation(path, face * scale).triangles
     corners = Triangulation(path, face, triangles)
-    drawn = ax.tripcolor(corners, values, shading="gouraud", cmap=COLOUR_MAP, rasterized=True)
+    highest, limit = float(values.max()), float(np.quantile(values, NO_PEAK))
+    peaked = highest > PEAKED * limit > 0
+    drawn = ax.tripcolor(
+        corners,
+        values,
+        shading="gouraud",
+        cmap=COLOUR_MAP,
+        rasterized=True,
+        vmax=limit if peaked else highest,
+    )
     figure = ax.get_figure()
     assert figure is not None
-    figure.colorbar(drawn, ax=ax, label=label)
+    if peaked:
+        label = f"{label}; highest {highest:.3g}"
+    figure.colorbar(drawn, ax=ax, label=label, extend="max" if peaked else "neither")
 
 
 def _say(ax: Axes, text: str) -> None:
@@ -116,7 +133,9 @@ def plot_mesh_stiffness(mesh: xr.Dataset, ax: Axes) -> Axes:
 def _plot_over_period(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
     values = mesh[name].to_numpy()
     if np.isfinite(values).any():
-        ax.plot(mesh["roll_angle"].to_numpy(), values, marker=".", ms=3)
+        angles = mesh["roll_angle"].to_numpy()
+        pitch = float(mesh.attrs["pitch_angle_deg"])
+        ax.plot(*closed_period(angles, values, pitch), marker=".", ms=3)
     else:
         _say(ax, "not known with this load distribution")
     ax.set(
@@ -141,10 +160,13 @@ def plot_along_path(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
             np.array([pick(values[place == one]) for one in found])
             for pick in (np.min, np.mean, np.max)
         )
-        ax.fill_between(middle, low, high, alpha=0.25, lw=0, label="range across the face")
-        ax.plot(middle, mean, label="mean across the face")
+        if name == FRICTION and np.ptp(values) <= SAME * abs(values).max():
+            ax.plot(middle, mean, label="one mean for the whole mesh: the model has no other")
+        else:
+            ax.fill_between(middle, low, high, alpha=0.25, lw=0, label="range across the face")
+            ax.plot(middle, mean, label="mean across the face")
         ax.axvline(0.0, color="black", lw=0.8, ls="--", label="pitch point")
-        ax.legend(fontsize="small")
+        legend_below(ax, ncols=3)
         ax.set_ylim(bottom=min(0.0, float(low.min())))
     else:
         _say(ax, "no motion")

@@ -17,7 +17,15 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of, styled_figure
+from epicyclic.plots.style import (
+    COLOUR_MAP,
+    COLOURS,
+    LINE_STYLES,
+    closed_period,
+    label_of,
+    legend_below,
+    styled_figure,
+)
 
 __all__ = [
     "plot_areas",
@@ -81,7 +89,7 @@ def _plot_kinds(mesh: xr.Dataset, values: xr.DataArray, ax: Axes, title: str) ->
         style = LINE_STYLES[kind]
         ax.plot(mesh["roll_angle"][kind], values[kind], style, label=_name(mesh, kind))
     ax.set_ylim(bottom=0)
-    ax.legend()
+    legend_below(ax, ncols=2)
     return _over_roll(mesh, ax, title, label_of(values))
 
 
@@ -95,7 +103,7 @@ def plot_gaps(mesh: xr.Dataset, ax: Axes) -> Axes:
             ax.plot(mesh["roll_angle"][kind], values, style, color=COLOURS[kind], label=label)
     gap = first["backlash_gap"]
     ax.set_ylim(0, max(GAP_HEIGHT * float(gap.min()), GAP_SHARE * float(gap.max())))
-    ax.legend(loc="upper center")
+    legend_below(ax, ncols=2)
     return _over_roll(mesh, ax, "Gaps at the first end", "gap, µm")
 
 
@@ -136,10 +144,11 @@ def _spread(count: int) -> Sequence[int]:
 
 def plot_power(mesh: xr.Dataset, ax: Axes) -> Axes:
     """Power of all pockets of the mesh over one mesh period, and its mean."""
-    ax.plot(mesh["period_angle"], mesh["instant_power"])
+    angles, powers = mesh["period_angle"].to_numpy(), mesh["instant_power"].to_numpy()
+    ax.plot(*closed_period(angles, powers, angles.size * float(angles[1] - angles[0])))
     mean = float(mesh["power"])
-    ax.axhline(mean, color="black", ls="--", lw=0.8, label=f"mean {mean:.4g} W")
-    ax.legend()
+    ax.axhline(mean, color="black", ls="--", lw=0.8, label=f"mean {mean:.3g} W")
+    legend_below(ax)
     ax.set(
         title="Power over one mesh period",
         xlabel=label_of(mesh["period_angle"]),

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 import xarray as xr
 from matplotlib import rcsetup
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.transforms import ScaledTranslation
+from numpy.typing import NDArray
 
 from epicyclic.units import unit_text
 
@@ -20,10 +24,14 @@ __all__ = [
     "COLOUR_MAP",
     "LINE_STYLES",
     "PANEL",
+    "closed_period",
+    "decimals_of",
     "label_of",
     "legend_below",
     "styled_figure",
 ]
+
+FloatArray = NDArray[np.float64]
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """Of M. Okabe and K. Ito, Color Universal Design (2008)."""
@@ -32,6 +40,8 @@ LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (
 """Beside colours, for prints in grey."""
 PANEL = (4.8, 3.4)
 """Width and height of one of the Axes of a figure. [inch]"""
+BELOW = 0.42
+"""Room for the ticks and the label of an x axis. [inch]"""
 PIXELS = 1920
 """Width of a picture, if nothing else is asked for: that of a slide."""
 CHARACTERS = 16
@@ -96,9 +106,29 @@ def styled_figure(
 
 def legend_below(ax: Axes, **options: Any) -> None:
     """A legend under the label of the x axis, where it hides nothing."""
+    figure = ax.get_figure()
+    assert figure is not None
+    below = ScaledTranslation(0, -BELOW, figure.dpi_scale_trans)
     ax.legend(
-        loc="upper center", bbox_to_anchor=(0.5, -0.2), fontsize="small", frameon=False, **options
+        loc="upper center",
+        bbox_to_anchor=(0.5, 0.0),
+        bbox_transform=ax.transAxes + below,
+        fontsize="small",
+        frameon=False,
+        **options,
     )
+
+
+def closed_period(
+    places: FloatArray, values: FloatArray, period: float
+) -> tuple[FloatArray, FloatArray]:
+    """A curve over one period with its first point repeated at the end."""
+    return np.append(places, places[0] + period), np.append(values, values[0])
+
+
+def decimals_of(total: float) -> int:
+    """Decimals of powers beside their `total`: models are not known to more than three digits."""
+    return min(3, max(0, 2 - math.floor(math.log10(total)))) if total > 0 else 0
 
 
 def label_of(variable: xr.DataArray) -> str:

@@ -1,0 +1,105 @@
+"""Scales, periods and digits of pictures."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import epicyclic as ep
+from epicyclic.cli.output import parse_size
+from epicyclic.plots.catalogue import figure_of
+from epicyclic.plots.loss_map import limits_of
+from epicyclic.plots.mesh import plot_along_path, plot_plane_of_action, plot_transmission_error
+from epicyclic.plots.pockets import plot_power
+from epicyclic.plots.style import decimals_of
+
+
+def axes():
+    return Figure().subplots()
+
+
+@pytest.mark.parametrize("name", ["efficiency-map", "loss-map", "torque-loss-map"])
+def test_panels_of_a_map_have_one_scale(pair_map, name):
+    figure = figure_of(pair_map, name)
+    panels = [ax for ax in figure.axes if ax.get_label() != "<colorbar>"]
+    assert len(panels) == pair_map.sizes["temperature"] > 1
+    scales = {(ax.collections[0].norm.vmin, ax.collections[0].norm.vmax) for ax in panels}
+    assert len(scales) == 1
+    if name == "loss-map":
+        assert scales == {limits_of(pair_map, "total")}
+
+
+def test_lines_of_all_panels_reach_the_same_height(pair_map):
+    figure = figure_of(pair_map, "loss-over-speed")
+    assert len({ax.get_ylim() for ax in figure.axes}) == 1
+    assert figure.axes[0].get_ylim()[1] > float(pair_map["total"].max())
+
+
+def test_an_efficiency_map_tells_98_from_99_percent(pair_map):
+    figure = figure_of(pair_map, "efficiency-map")
+    norm = figure.axes[0].collections[0].norm
+    high = norm.vmax
+    near, far = norm(high) - norm(high - 1), norm(high - 10) - norm(high - 11)
+    assert near > 2 * far > 0
+
+
+def test_curves_over_a_mesh_period_are_closed(talbot_record):
+    mesh = talbot_record.group("meshes")["sun_mesh"]
+    angles, errors = plot_transmission_error(mesh, axes()).lines[0].get_data()
+    assert errors[0] == errors[-1] != errors[1]
+    assert angles[-1] - angles[0] == pytest.approx(mesh.attrs["pitch_angle_deg"], rel=1e-12)
+    assert len(errors) == mesh.sizes["mesh_position"] + 1
+    pockets = talbot_record.group("pockets")["sun_mesh"]
+    angles, powers = plot_power(pockets, axes()).lines[0].get_data()
+    assert powers[0] == powers[-1]
+    assert angles[-1] - angles[0] == pytest.approx(mesh.attrs["pitch_angle_deg"], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("model", "words"), [("schlenk", "one mean for the whole mesh"), ("xu-2007", "mean across the face")]
+)
+def test_friction_says_when_the_model_is_a_mean(model, words):
+    case = ep.load_case("talbot-2012-pair").updated(
+        {"operation.torque": "413 N*m", "models.friction": model}
+    )
+    ax = plot_along_path(ep.mesh_details(case)["mesh"], "friction_coefficient", axes())
+    assert any(words in text.get_text() for text in ax.get_legend().get_texts())
+
+
+def test_a_peak_at_a_corner_does_not_take_the_scale(talbot_record):
+    mesh = talbot_record.group("meshes")["ring_mesh"].copy()
+    loads = mesh["line_load"].copy()
+    most = float(loads.quantile(0.9))
+    mesh["line_load"] = loads.where(loads < most, most)
+    ax = plot_plane_of_action(mesh, "line_load", axes())
+    assert ax.collections[0].norm.vmax == pytest.approx(most)
+    corner = loads.where(loads < most, most)
+    place = np.unravel_index(np.nanargmax(corner.values), corner.shape)
+    corner.values[place] = 7 * most
+    mesh["line_load"] = corner
+    ax = plot_plane_of_action(mesh, "line_load", axes())
+    assert ax.collections[0].norm.vmax == pytest.approx(most, rel=1e-3)
+    labels = [one.get_ylabel() for one in ax.figure.axes]
+    assert any(f"highest {7 * most:.3g}" in label for label in labels)
+
+
+@pytest.mark.parametrize(
+    ("total", "decimals"), [(0.0, 0), (2602.0, 0), (867.3, 0), (86.7, 1), (8.67, 2), (0.0867, 3)]
+)
+def test_powers_have_three_digits_of_their_total(total, decimals):
+    assert decimals_of(total) == decimals
+
+
+@pytest.mark.parametrize(
+    ("text", "size"),
+    [("160x90 mm", (160.0, 90.0)), ("16.5 x 9cm", (165.0, 90.0)), ("10×4in", (254.0, 101.6))],
+)
+def test_sizes_of_pictures(text, size):
+    assert parse_size(text) == pytest.approx(size)
+
+
+@pytest.mark.parametrize("text", ["160x90", "160 mm", "1x90 mm", "160x9000 mm", "1.2.3x90 mm"])
+def test_sizes_that_are_none_are_refused(text):
+    with pytest.raises(ep.InputError, match="must be a width and a height of 30 to 2000 mm"):
+        parse_size(text)
