@@ -15,7 +15,9 @@ from epicyclic.plots.loss_map import map_at
 OF_MAPS = [name for name in PLOTS if "map" in name or name.startswith("loss-over")] + ["loss-parts"]
 OF_BANDS = ["loss-band", "loss-band-lines"]
 OF_HEAT = "heat-network"
-OF_RESULTS = [name for name in PLOTS if name not in (*OF_MAPS, *OF_BANDS, OF_HEAT)]
+OF_SWEEPS = ["lines", "contours", "parallel"]
+OTHERS = (*OF_MAPS, *OF_BANDS, *OF_SWEEPS, OF_HEAT)
+OF_RESULTS = [name for name in PLOTS if name not in OTHERS]
 
 
 def drawn_texts(figure):

@@ -11,6 +11,7 @@ import xarray as xr
 
 import epicyclic as ep
 from epicyclic.errors import InputError
+from epicyclic.records.files import open_map
 
 
 @pytest.fixture(scope="module")
@@ -203,8 +204,12 @@ def test_a_map_without_its_text_is_refused(pair_map, tmp_path):
     assert [problem.key for problem in caught.value.problems] == ["total", "status"]
 
 
-def test_a_sweep_is_no_map(tmp_path):
+def test_a_sweep_is_no_map_and_what_is_neither_is_refused(tmp_path):
     case = ep.load_case("talbot-2012-pair").updated({"losses.mesh_pocketing.include": False})
-    ep.sweep(case, {"operation.torque": ["10 N*m"]}).to_netcdf(tmp_path / "sweep.nc")
+    swept = ep.sweep(case, {"operation.torque": ["10 N*m"]})
+    swept.to_netcdf(tmp_path / "sweep.nc")
+    with pytest.raises(InputError, match="is no loss map; it lacks"):
+        open_map(tmp_path / "sweep.nc")
+    swept.drop_vars("status").to_netcdf(tmp_path / "sweep.nc")
     with pytest.raises(InputError, match="neither a stored result nor a loss map"):
         ep.open_result(tmp_path / "sweep.nc")

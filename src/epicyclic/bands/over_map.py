@@ -15,8 +15,8 @@ from epicyclic.bands.plan import SampledCase, SamplePlan, check_samples, sampled
 from epicyclic.bands.sampling import make_samples
 from epicyclic.bands.statistics import COVERAGE, index_values
 from epicyclic.bands.study import LABELS, UNIT_OF_RESULT, about_inputs, drivers_of, summaries
-from epicyclic.case.operating import AXES
-from epicyclic.maps.compute import MapPlan, axis_name, stored_plan
+from epicyclic.case.operating import AXES, axis_name
+from epicyclic.maps.compute import MapPlan, stored_plan
 from epicyclic.sweeps.journal import Rows
 from epicyclic.units import NEWTON_METRE, RPM
 

@@ -33,6 +33,7 @@ from epicyclic.cli.merge import merge
 from epicyclic.cli.oil import oil
 from epicyclic.cli.pockets import pockets, study
 from epicyclic.cli.pockets_table import pockets_table
+from epicyclic.cli.progress import tell_compilation
 from epicyclic.cli.reproduce import reproduce
 from epicyclic.cli.rexs import rexs
 from epicyclic.cli.show import plot, report
@@ -95,6 +96,7 @@ for command in COMMANDS:
 
 def main() -> None:
     """Entry point: errors become messages and exit codes, never tracebacks."""
+    tell_compilation()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # signs that a terminal does not know become ?
             stream.reconfigure(errors="replace")

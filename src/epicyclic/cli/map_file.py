@@ -7,7 +7,6 @@ from pathlib import Path
 
 import click
 
-from epicyclic.cli.output import finishing
 from epicyclic.errors import InputError, Problem
 
 __all__ = ["convert", "refuse_options"]
@@ -33,9 +32,10 @@ def convert(file: Path, output: Path, name: str | None, *, heated: bool) -> None
     """Write the map of `file` to `output`, with the temperature as a state if it is `heated`."""
     from epicyclic.maps.formats import write_map
     from epicyclic.maps.lumped import with_temperature_state
-    from epicyclic.maps.tables import map_case, read_netcdf
+    from epicyclic.maps.tables import map_case
+    from epicyclic.records.files import open_map
 
-    data = read_netcdf(file)
+    data = open_map(file)
     if heated:
         case = map_case(data)
         if case is None:
@@ -43,6 +43,5 @@ def convert(file: Path, output: Path, name: str | None, *, heated: bool) -> None
             problem = Problem("--temperature-state", "", allowed, "Compute the map again.")
             raise InputError([problem], str(file))
         data = with_temperature_state(data, case)
-    with finishing(f"Writing {output}."):
-        write_map(data, output, name)
+    write_map(data, output, name)
     click.echo(f"Wrote the map of {file} to {output}.")

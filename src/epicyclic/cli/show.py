@@ -73,9 +73,9 @@ def plot(
     dpi: int | None,
     ending: str | None,
 ) -> None:
-    """Draw one plot of a result or map; without WHAT, list what can be drawn.
+    """Draw one plot of a result, map or sweep; without WHAT, list what can be drawn.
 
-    FILE.nc is what run --save, map or uncertainty wrote; a CASE is solved first.
+    FILE.nc is what run --save, map, sweep or uncertainty wrote; a CASE is solved first.
     """
     if output is None:
         output = Path(f"{what}.{ending or 'png'}")

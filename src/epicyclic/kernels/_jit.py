@@ -16,9 +16,10 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import numba
-from numba.core import caching
+from numba.core import caching, event
 
 from epicyclic.cache_folder import is_private, private_folder
+from epicyclic.kernels.compiling import listeners
 
 __all__ = ["cache_notes", "kernel"]
 
@@ -109,6 +110,21 @@ def _note_lost(error: Exception) -> None:
     reason = getattr(error, "strerror", None) or error
     text = f"Compiled code cannot be kept in {_CACHE_DIR}: {reason}. Every start compiles it anew."
     _notes[text] = None
+
+
+class _Listener(event.Listener):
+    """Tells of kernels of this package that are compiled, not of what numba compiles for them."""
+
+    def on_start(self, event: Any) -> None:
+        if event.data["dispatcher"].py_func.__module__.startswith("epicyclic."):
+            for tell in listeners:
+                tell()
+
+    def on_end(self, event: Any) -> None:
+        """Of no interest."""
+
+
+event.register("numba:compile", _Listener())  # type: ignore[no-untyped-call]
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:

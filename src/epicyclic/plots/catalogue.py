@@ -40,8 +40,18 @@ from epicyclic.plots.mesh import (
 from epicyclic.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.plots.power_flow import SLIDE, plot_power_flow
 from epicyclic.plots.style import PANEL, styled_figure
+from epicyclic.plots.sweep import (
+    fields_of,
+    plot_sweep_field,
+    plot_sweep_lines,
+    plot_sweep_parallel,
+    shown_results,
+    sweep_line,
+    varied,
+)
 from epicyclic.plots.uncertainty import WIDE, banded, plot_band, plot_drivers
 from epicyclic.records.contents import set_of
+from epicyclic.records.files import is_sweep
 from epicyclic.records.record import ResultRecord, sets_of
 from epicyclic.results.result import in_words
 
@@ -126,7 +136,7 @@ def _gears_of(stored: Stored) -> Mapping[str, xr.Dataset]:
     """Shapes of the gears; those of a map follow from its case."""
     if isinstance(stored, ResultRecord):
         return stored.group("gears")
-    case = map_case(stored)
+    case = None if is_sweep(stored) else map_case(stored)
     return {} if case is None else gear_shapes(case)
 
 
@@ -150,45 +160,40 @@ def _teeth(stored: Stored) -> list[Panel]:
 
 
 def _of_map(draw: Callable[..., Axes], name: str, *more: object) -> Callable[[Stored], list[Panel]]:
-    """One panel for each state and temperature of a map, at the first value of further keys.
-
-    All panels have one scale for `name`.
-    """
+    """The panels of a map, all with one scale for `name`."""
 
     def panels(stored: Stored) -> list[Panel]:
         if isinstance(stored, ResultRecord) or "torque_loss" not in stored:
             return []
-        scale = {"limits": limits_of(stored, name)}
-        titles = {"state": "state {}", "temperature": "{:g} °C"}
-        names = [name for name in titles if name in stored.dims]
-        return [
-            Panel(
-                ", ".join(
-                    titles[name].format(value) for name, value in zip(names, point, strict=True)
-                ),
-                partial(
-                    draw,
-                    map_at(stored, **dict(zip(names, point, strict=True))),
-                    name,
-                    *more,
-                    **scale,
-                ),
-            )
-            for point in itertools.product(*(stored[name].values.tolist() for name in names))
-        ]
+        limits = limits_of(stored, name)
+        return _over_plane(stored, lambda data: partial(draw, data, name, *more, limits=limits))
 
     return panels
 
 
 def _of_band(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], list[Panel]]:
-    """As `_of_map`, of a map with its uncertainty."""
-    panels = _of_map(draw, *more)
+    """The panels of a map with its uncertainty."""
 
-    def found(stored: Stored) -> list[Panel]:
-        known = not isinstance(stored, ResultRecord) and "explained" in stored
-        return panels(stored) if known else []
+    def panels(stored: Stored) -> list[Panel]:
+        if isinstance(stored, ResultRecord) or not {"torque_loss", "explained"} <= set(stored):
+            return []
+        return _over_plane(stored, lambda data: partial(draw, data, *more))
 
-    return found
+    return panels
+
+
+def _over_plane(
+    data: xr.Dataset, draw: Callable[[xr.Dataset], Callable[[Axes], Axes]]
+) -> list[Panel]:
+    """One panel for each state and temperature of a map, at the first value of further keys."""
+    titles = {"state": "state {}", "temperature": "{:g} °C"}
+    names = [name for name in titles if name in data.dims]
+    panels = []
+    for point in itertools.product(*(data[name].values.tolist() for name in names)):
+        at = dict(zip(names, point, strict=True))
+        subject = ", ".join(titles[name].format(value) for name, value in at.items())
+        panels.append(Panel(subject, draw(map_at(data, **at))))
+    return panels
 
 
 def _uncertainty_of(stored: Stored) -> xr.Dataset | None:
@@ -209,6 +214,27 @@ def _band(stored: Stored) -> list[Panel]:
     if data is None:
         return []
     return [Panel("", partial(plot_band, data, name)) for name in banded(data)]
+
+
+def _of_sweep(
+    draw: Callable[..., Axes], dimensions: Callable[[xr.Dataset], list[str]], least: int
+) -> Callable[[Stored], list[Panel]]:
+    """One panel for each result of a sweep that has enough dimensions."""
+
+    def panels(stored: Stored) -> list[Panel]:
+        if isinstance(stored, ResultRecord) or not is_sweep(stored):
+            return []
+        enough = len(dimensions(stored)) >= least
+        names = shown_results(stored) if enough else []
+        return [Panel("", partial(draw, stored, name)) for name in names]
+
+    return panels
+
+
+def _sweep_points(stored: Stored) -> list[Panel]:
+    if isinstance(stored, ResultRecord) or not shown_results(stored) or len(varied(stored)) < 2:
+        return []
+    return [Panel("", partial(plot_sweep_parallel, stored))]
 
 
 def _pocket_pressure(stored: Stored) -> list[Panel]:
@@ -318,6 +344,14 @@ PLOTS: dict[str, Plot] = {
     "loss-band-lines": Plot(
         "How far may the loss be off along a line?", _of_band(plot_band_lines, "torque")
     ),
+    "lines": Plot(
+        "How do loss and efficiency follow the keys that are varied?",
+        _of_sweep(plot_sweep_lines, varied, 1),
+    ),
+    "contours": Plot(
+        "Where over two keys is the least loss?", _of_sweep(plot_sweep_field, fields_of, 2)
+    ),
+    "parallel": Plot("Which values of all keys go with a small loss?", _sweep_points),
 }
 """By the names that ``epicyclic plot`` takes."""
 
@@ -370,7 +404,9 @@ def figure_of(
     rows = math.ceil(len(panels) / columns)
     title, point = _about(stored)
     plot = PLOTS[name]
-    inches = plot.size if plot.is_slide else _slide(rows, columns)
+    inches = _slide(rows, columns)
+    if plot.is_wide:
+        inches = (plot.size[0] * columns, plot.size[1] * rows)
     if size is not None:
         inches = (size[0] / MM_PER_INCH, size[1] / MM_PER_INCH)
     with styled_figure(
@@ -390,7 +426,10 @@ def _about(stored: Stored) -> tuple[str, str]:
     """Title and operating point."""
     if isinstance(stored, ResultRecord):
         return stored.title, operating_line(stored.result.inputs["operation"])
-    return str(stored.attrs.get("title", "")), map_line(stored)
+    title = str(stored.attrs.get("title", ""))
+    if is_sweep(stored):
+        return title, sweep_line(stored)
+    return title, map_line(stored) if "torque_loss" in stored else ""
 
 
 def _slide(rows: int, columns: int) -> tuple[float, float]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -10,11 +13,12 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 from numpy.typing import NDArray
 
 from epicyclic.case.operating import AXES, PLANE, STATE
-from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of, legend_below
+from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of, legend_below, title_of
 from epicyclic.units import format_number, unit_text
 
 __all__ = [
     "at_temperatures",
+    "draw_lines",
     "limits_of",
     "map_at",
     "map_line",
@@ -115,29 +119,42 @@ def plot_map(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Ax
     bar = figure.colorbar(
         field, ax=ax, label=label_of(values), extend="min" if below else "neither"
     )
-    levels = list(MaxNLocator(LEVELS).tick_values(low, high))
+    levels: list[float] | int = LEVELS
     if of_efficiency:
         levels = [one for one in EFFICIENCIES if low <= one <= high]
         bar.set_ticks(levels, labels=[f"{one:g}" for one in levels])
         bar.ax.minorticks_off()
-    _draw_lines(ax, values, [one for one in levels if values.min() < one < values.max()])
+    draw_lines(ax, (speed, torque, values.to_numpy()), levels)
     if of_efficiency and torque.min() <= 0 <= torque.max():
         _stretch_zero(ax, torque)
     ax.grid(visible=False)
     ax.set(
-        title=_title(values), xlabel=_axis_label(data, "speed"), ylabel=_axis_label(data, "torque")
+        title=title_of(values),
+        xlabel=_axis_label(data, "speed"),
+        ylabel=_axis_label(data, "torque"),
     )
     return ax
 
 
-def _draw_lines(ax: Axes, values: xr.DataArray, levels: list[float]) -> None:
-    """Lines of equal value, some of them with it."""
-    if not levels:
+def draw_lines(ax: Axes, field: tuple[Any, Any, Any], levels: Sequence[float] | int) -> None:
+    """Lines of equal value, some of them with it.
+
+    Parameters
+    ----------
+    field : tuple of array
+        Places across and up, values.
+    levels : sequence of float or int
+        Values of the lines, of which the highest have labels; or about how many there are.
+    """
+    low, high = float(np.nanmin(field[2])), float(np.nanmax(field[2]))
+    even = isinstance(levels, int)
+    wanted = MaxNLocator(levels).tick_values(low, high) if isinstance(levels, int) else levels
+    drawn = [float(one) for one in wanted if low < one < high]
+    if not drawn:
         return
-    place = values["speed"], values["torque"], values
-    lines = ax.contour(*place, levels=levels, colors="white", linewidths=0.7)
-    labelled = levels[:: -(-len(levels) // LABELS)] if values.name != "efficiency" else levels
-    ax.clabel(lines, labelled[-LABELS:], fontsize="x-small", fmt="%g")
+    lines = ax.contour(*field, levels=drawn, colors="white", linewidths=0.7)
+    labelled = drawn[:: -(-len(drawn) // LABELS)] if even else drawn[-LABELS:]
+    ax.clabel(lines, labelled, fontsize="x-small", fmt="%g")
 
 
 def _efficiency_norm(low: float, high: float) -> FuncNorm:
@@ -150,7 +167,8 @@ def _efficiency_norm(low: float, high: float) -> FuncNorm:
 
 
 def _log_of_loss(efficiency: FloatArray) -> FloatArray:
-    return -np.log10(100 - np.minimum(efficiency, BEST_EFFICIENCY))
+    found: FloatArray = -np.log10(100 - np.minimum(efficiency, BEST_EFFICIENCY))
+    return found
 
 
 def _from_log_of_loss(value: FloatArray) -> FloatArray:
@@ -189,7 +207,7 @@ def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes, limits: Lim
         ax.set_ylim(min(0.0, limits[0]), ROOM * limits[1])
     values = _shown(data[name])
     ax.set(
-        title=f"{_title(values)} over {over}",
+        title=f"{title_of(values)} over {over}",
         xlabel=_axis_label(data, over),
         ylabel=label_of(values),
     )
@@ -282,11 +300,6 @@ def _some(axis: xr.DataArray) -> list[int]:
     wanted = np.linspace(values[places].min(), values[places].max(), MOST_LINES)
     nearest = np.abs(values[places] - wanted[:, None]).argmin(axis=1)
     return [int(one) for one in np.unique(places[nearest])]
-
-
-def _title(values: xr.DataArray) -> str:
-    text = str(values.attrs["long_name"])
-    return f"{text[:1].upper()}{text[1:]}"
 
 
 def _axis_label(data: xr.Dataset, name: str) -> str:

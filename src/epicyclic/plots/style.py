@@ -29,6 +29,7 @@ __all__ = [
     "label_of",
     "legend_below",
     "styled_figure",
+    "title_of",
 ]
 
 FloatArray = NDArray[np.float64]
@@ -136,3 +137,9 @@ def label_of(variable: xr.DataArray) -> str:
     unit = unit_text(str(variable.attrs["units"]))
     name = str(variable.attrs["long_name"])
     return f"{name}, {unit}" if unit else name
+
+
+def title_of(variable: xr.DataArray) -> str:
+    """Name of a variable with a capital."""
+    text = str(variable.attrs["long_name"])
+    return f"{text[:1].upper()}{text[1:]}"

@@ -13,7 +13,7 @@ from epicyclic.errors import Problem
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["RUN_AGAIN", "field_problems", "map_problems"]
+__all__ = ["RUN_AGAIN", "field_problems", "map_problems", "sweep_problems"]
 
 RUN_AGAIN = (
     "Write it again: epicyclic run CASE --save FILE.nc, or epicyclic map CASE ... -o FILE.nc."
@@ -136,6 +136,17 @@ def map_problems(data: xr.Dataset) -> Iterator[Problem]:
     for name in _MAP_TEXTS:
         if name not in data or data[name].dtype.kind not in "OU":
             yield Problem(name, "", "must be text for every point.", RUN_AGAIN)
+    yield from _label_problems("", data)
+
+
+def sweep_problems(data: xr.Dataset) -> Iterator[Problem]:
+    """What plots would miss in a sweep."""
+    dims = tuple(map(str, data["total"].dims))
+    for dim in dims:
+        if dim not in data.coords or data[dim].dtype.kind not in "fiuOU":
+            yield Problem(dim, "", "must be numbers or names.", RUN_AGAIN)
+    for name in ("total", "efficiency"):
+        yield from _number_problems(name, data, name, dims)
     yield from _label_problems("", data)
 
 

@@ -22,6 +22,7 @@ __all__ = [
     "Member",
     "RecordContents",
     "ResultContents",
+    "SweepContents",
     "Validity",
     "contents_of",
     "set_of",
@@ -275,11 +276,16 @@ class RecordContents(_Part):
     given: Annotated[dict[str, Any], BeforeValidator(_from_text)]
 
 
-class MapContents(_Part):
-    """Attributes of a loss map."""
+class SweepContents(_Part):
+    """Attributes of a sweep."""
 
     title: str
     source: str
-    reference_shaft: str
     case: Annotated[Inputs, BeforeValidator(_from_text)]
     versions: Annotated[Versions, BeforeValidator(_from_text)]
+
+
+class MapContents(SweepContents):
+    """Attributes of a loss map."""
+
+    reference_shaft: str

@@ -14,15 +14,15 @@ from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.maps.tables import check_map
 from epicyclic.netcdf_file import read_groups
-from epicyclic.records.checks import RUN_AGAIN, field_problems, map_problems
-from epicyclic.records.contents import MapContents, RecordContents
+from epicyclic.records.checks import RUN_AGAIN, field_problems, map_problems, sweep_problems
+from epicyclic.records.contents import MapContents, RecordContents, SweepContents
 from epicyclic.records.record import ResultRecord, record
 from epicyclic.whole_file import check_place, whole_file
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["is_stored", "open_map", "open_result", "save_result"]
+__all__ = ["is_stored", "is_sweep", "open_map", "open_result", "save_result"]
 
 Stated = TypeVar("Stated", bound=BaseModel)
 
@@ -78,12 +78,17 @@ def check_result_output(path: Path) -> None:
 
 
 def is_stored(name: str | Path) -> bool:
-    """True for the name of a stored result or map, False for that of a case."""
+    """True for the name of a stored result, map or sweep, False for that of a case."""
     return Path(name).suffix.lower() == SUFFIX
 
 
+def is_sweep(data: xr.Dataset) -> bool:
+    """True for what a sweep makes, False for a loss map."""
+    return "torque_loss" not in data and {"total", "status"} <= set(data.data_vars)
+
+
 def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
-    """Read what `save_result` or `write_map` wrote, or 'epicyclic uncertainty'.
+    """Read what `save_result`, `write_map`, 'epicyclic sweep' or 'epicyclic uncertainty' wrote.
 
     Parameters
     ----------
@@ -93,7 +98,8 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
     Returns
     -------
     ResultRecord or xarray.Dataset
-        A loss map is a dataset as `loss_map` returns it, an uncertainty as `uncertainty` does.
+        A loss map is a dataset as `loss_map` returns it, a sweep as `sweep`, an uncertainty as
+        `uncertainty`.
 
     Raises
     ------
@@ -114,7 +120,11 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
         if {"contribution", "nominal"} <= set(root.data_vars):
             _check(field_problems("uncertainty/", root))
             return root
-        _refuse("is neither a stored result nor a loss map nor an uncertainty.")
+        if is_sweep(root):
+            _check(sweep_problems(root))
+            _sound(SweepContents, dict(root.attrs))
+            return root
+        _refuse("is neither a stored result nor a loss map nor an uncertainty nor a sweep.")
     except InputError as error:
         raise InputError(error.problems, str(source)) from None
 
@@ -125,6 +135,7 @@ def open_map(path: str | Path) -> xr.Dataset:
     if isinstance(found, ResultRecord):
         problem = Problem("MAP", str(path), "is a stored result.", "Give a loss map.")
         raise InputError([problem], "the command")
+    check_map(found, str(path))
     return found
 
 

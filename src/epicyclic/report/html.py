@@ -15,9 +15,11 @@ import xarray as xr
 from markupsafe import Markup
 
 from epicyclic.case.operating import operating_line
+from epicyclic.errors import InputError, Problem
 from epicyclic.maps.tables import map_inputs
 from epicyclic.plots.catalogue import Stored, available
 from epicyclic.plots.loss_map import map_line
+from epicyclic.records.files import is_sweep
 from epicyclic.records.record import ResultRecord
 from epicyclic.report.drawings import draw
 from epicyclic.report.inputs import input_tables
@@ -51,6 +53,10 @@ def report_html(stored: Stored, progress: Callable[[int, int], None] | None = No
     str
         HTML. The same for the same content, whether computed or read from a file.
     """
+    if not isinstance(stored, ResultRecord) and is_sweep(stored):
+        allowed = "is a sweep, of which there are plots but no report."
+        problem = Problem("FILE", "", allowed, "See epicyclic plot FILE.nc.")
+        raise InputError([problem], "the report")
     drawings = _drawings(stored, progress or (lambda done, total: None))
     if isinstance(stored, ResultRecord):
         content = _result_content(stored, drawings)

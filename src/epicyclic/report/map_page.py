@@ -29,7 +29,7 @@ from epicyclic.report.page import (
 from epicyclic.report.shown import MISSING
 from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.status import Status
-from epicyclic.units import format_number, unit_text
+from epicyclic.units import unit_text
 
 __all__ = ["map_key_figures", "map_sections"]
 

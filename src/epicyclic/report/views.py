@@ -20,7 +20,7 @@ from epicyclic.report.pdf import check_pdf, report_pdf
 from epicyclic.report.result_tables import key_figures, losses_table
 from epicyclic.report.train_tables import sums_table
 from epicyclic.results.result import Result
-from epicyclic.whole_file import check_place, whole_file, write_file
+from epicyclic.whole_file import check_place, whole_file
 
 if TYPE_CHECKING:
     import pandas as pd

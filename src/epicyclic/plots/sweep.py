@@ -1,0 +1,243 @@
+"""Sweeps: a number over the keys that were varied, as lines, as a field, point by point."""
+
+from __future__ import annotations
+
+import json
+import textwrap
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from epicyclic.case.operating import operating_line
+from epicyclic.plots.loss_map import draw_lines
+from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of, legend_below, title_of
+from epicyclic.records.files import is_sweep
+from epicyclic.units import format_number, unit_text
+
+__all__ = [
+    "fields_of",
+    "plot_sweep_field",
+    "plot_sweep_lines",
+    "plot_sweep_parallel",
+    "shown_results",
+    "sweep_line",
+    "varied",
+]
+
+FloatArray = NDArray[np.float64]
+
+RESULTS = ("total", "efficiency")
+"""That pictures of a sweep show."""
+MOST_LINES = len(COLOURS)
+LEVELS = 8
+LABEL_WIDTH = 14
+"""Of the labels of parallel axes. [characters]"""
+MOST_POINTS = 5000
+"""Drawn point by point."""
+
+
+def varied(data: xr.Dataset) -> list[str]:
+    """Dimensions with several values: numbers before names, those with most values first."""
+    found = [str(name) for name in data["total"].dims if data.sizes[name] > 1]
+    return sorted(found, key=lambda name: (not _is_number(data[name]), -data.sizes[name]))
+
+
+def shown_results(data: xr.Dataset) -> list[str]:
+    """Results of which there is a number."""
+    if not is_sweep(data):
+        return []
+    return [name for name in RESULTS if name in data and np.isfinite(data[name].values).any()]
+
+
+def fields_of(data: xr.Dataset) -> list[str]:
+    """The two dimensions of numbers over which a field is drawn; fewer if there are not two."""
+    return [name for name in varied(data) if _is_number(data[name])][:2]
+
+
+def sweep_line(data: xr.Dataset) -> str:
+    """What was varied, and the operating point with the rest."""
+    operation = dict(json.loads(data.attrs["case"])["operation"])
+    spans = []
+    for dim in map(str, data["total"].dims):
+        key = _key(data, dim)
+        spans.append(f"{key} {_span(data[dim])}")
+        table, _, name = key.partition(".")
+        if table == "operation" and name in operation:
+            operation[name] = f"varied {name.rpartition('_')[2]}"
+    return f"{'; '.join(spans)}; else {operating_line(operation)}"
+
+
+def plot_sweep_lines(data: xr.Dataset, name: str, ax: Axes) -> Axes:
+    """`name` over the dimension with most values, a line for each value of the next one."""
+    over, *others = varied(data)
+    between = others[:1]
+    part = _at_first(data, [over, *between])
+    values = _in_percent(part[name])
+    places = values[over].to_numpy()
+    for number, index in enumerate(_some(data, between)):
+        line = values.isel(index)
+        ax.plot(
+            places if _is_number(values[over]) else places.astype(str),
+            line,
+            color=COLOURS[number],
+            ls=LINE_STYLES[number],
+            marker=".",
+            label=", ".join(_value(line[dim]) for dim in index),
+        )
+    if between:
+        legend_below(ax, title=_axis_label(data, between[0]), title_fontsize="small", ncols=4)
+    ax.set(title=_titled(values, part), xlabel=_axis_label(data, over), ylabel=label_of(values))
+    return ax
+
+
+def plot_sweep_field(data: xr.Dataset, name: str, ax: Axes) -> Axes:
+    """`name` over two dimensions, with lines of equal value and the points that were computed."""
+    across, up = fields_of(data)
+    part = _at_first(data, [across, up])
+    values = _in_percent(part[name]).transpose(up, across).sortby([up, across])
+    x, y, z = (array.to_numpy() for array in (values[across], values[up], values))
+    if np.isfinite(z).any():
+        field = ax.pcolormesh(x, y, z, shading="gouraud", cmap=COLOUR_MAP, rasterized=True)
+        figure = ax.get_figure()
+        assert figure is not None
+        figure.colorbar(field, ax=ax, label=label_of(values))
+        draw_lines(ax, (x, y, z), LEVELS)
+    ax.plot(*(grid.ravel() for grid in np.meshgrid(x, y)), ls="", marker=".", ms=2, color="black")
+    ax.grid(visible=False)
+    ax.set(
+        title=_titled(values, part),
+        xlabel=_axis_label(data, across),
+        ylabel=_axis_label(data, up),
+    )
+    return ax
+
+
+def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
+    """A line for each point through the values of all keys and results, coloured by its loss."""
+    dims, results = varied(data), shown_results(data)
+    points = data[results].stack(point=dims).dropna("point", subset=["total"])
+    points = points.isel(point=slice(0, None, -(-points.sizes["point"] // MOST_POINTS)))
+    arrays = [points[dim] for dim in dims] + [_in_percent(points[name]) for name in results]
+    columns = [_column(array) for array in arrays]
+    places = np.arange(len(arrays), dtype=float)
+    heights = np.column_stack([heights for heights, _ in columns])
+    total = points["total"].to_numpy()
+    lines = LineCollection(
+        [np.column_stack([places, row]) for row in heights],
+        cmap=mpl.colormaps[COLOUR_MAP],
+        norm=Normalize(float(total.min()), float(total.max())),
+        linewidths=0.9,
+        alpha=0.8,
+    )
+    lines.set_array(total)
+    ax.add_collection(lines)
+    for place, (_, ticks) in zip(places, columns, strict=True):
+        ax.axvline(place, color="black", lw=0.8)
+        for height, text in ticks:
+            ax.annotate(
+                text,
+                (place, height),
+                xytext=(3, 0),
+                textcoords="offset points",
+                va="center",
+                fontsize="x-small",
+                bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5},
+            )
+    labels = [_axis_label(data, dim) for dim in dims]
+    labels += [label_of(array) for array in arrays[len(dims) :]]
+    ax.set_xticks(places, [_wrapped(label) for label in labels], fontsize="small")
+    ax.set_yticks([])
+    ax.grid(visible=False)
+    ax.spines["left"].set_visible(False)
+    ax.set(title="Every point of the sweep", xlim=(-0.1, places[-1] + 0.3), ylim=(-0.05, 1.05))
+    figure = ax.get_figure()
+    assert isinstance(figure, Figure)
+    figure.colorbar(lines, ax=ax, label=label_of(data["total"]))
+    return ax
+
+
+def _wrapped(label: str) -> str:
+    """A label on short lines, the key in words."""
+    return textwrap.fill(label.replace(".", " ").replace("_", " "), LABEL_WIDTH)
+
+
+def _column(values: xr.DataArray) -> tuple[FloatArray, list[tuple[float, str]]]:
+    """Heights from 0 to 1 of values, numbers in proportion and names in order, with its ticks."""
+    if not _is_number(values):
+        names, numbers = np.unique(values.to_numpy(), return_inverse=True)
+        steps = max(1, len(names) - 1)
+        return numbers / steps, [(place / steps, str(one)) for place, one in enumerate(names)]
+    heights = values.to_numpy().astype(np.float64)
+    low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
+    span = high - low if high > low else 1.0
+    shown = (low,) if high == low else (low, (low + high) / 2, high)
+    ticks = [((one - low) / span, format_number(one, 3)) for one in shown]
+    return np.subtract(heights, low) / span, ticks
+
+
+def _some(data: xr.Dataset, between: list[str]) -> list[dict[str, int]]:
+    """Indices of the lines: all values, or some that are evenly spaced."""
+    if not between:
+        return [{}]
+    (name,) = between
+    size = data.sizes[name]
+    chosen = np.linspace(0, size - 1, min(size, MOST_LINES)).round().astype(int)
+    return [{name: int(index)} for index in chosen]
+
+
+def _at_first(data: xr.Dataset, kept: list[str]) -> xr.Dataset:
+    return data.isel({dim: 0 for dim in data["total"].dims if dim not in kept})
+
+
+def _titled(values: xr.DataArray, part: xr.Dataset) -> str:
+    """What is shown, and the values of the dimensions that are not."""
+    held = [f"{_key(part, dim)} {_value(part[dim])}" for dim in _held(part)]
+    return ", ".join([title_of(values), *held])
+
+
+def _held(part: xr.Dataset) -> list[str]:
+    keys = [name for name in map(str, part.coords) if "case_key" in part[name].attrs]
+    return [name for name in keys if part[name].ndim == 0]
+
+
+def _is_number(values: xr.DataArray) -> bool:
+    return values.dtype.kind in "fiu"
+
+
+def _in_percent(values: xr.DataArray) -> xr.DataArray:
+    if values.name != "efficiency":
+        return values
+    return (100 * values).assign_attrs(values.attrs | {"units": "%"})
+
+
+def _key(data: xr.Dataset, dim: str) -> str:
+    return str(data[dim].attrs.get("case_key", dim))
+
+
+def _unit(values: xr.DataArray) -> str:
+    return unit_text(str(values.attrs.get("units", "1")))
+
+
+def _axis_label(data: xr.Dataset, dim: str) -> str:
+    """``"operation.speed, rpm"``."""
+    unit = _unit(data[dim])
+    return f"{_key(data, dim)}, {unit}" if unit else _key(data, dim)
+
+
+def _value(value: xr.DataArray) -> str:
+    text = format_number(float(value), 4) if _is_number(value) else str(value.item())
+    return f"{text} {_unit(value)}".rstrip()
+
+
+def _span(values: xr.DataArray) -> str:
+    if not _is_number(values):
+        return ", ".join(map(str, values.values))
+    low, high = float(values.min()), float(values.max())
+    texts = [format_number(one) for one in ((low,) if low == high else (low, high))]
+    return f"{' to '.join(texts)} {_unit(values)}".rstrip()
