@@ -206,6 +206,7 @@ def test_the_other_sign_of_a_ring_is_proposed_where_it_fits():
     problems = problems_of(load_case, changed(ring={X: 0.42}))
     (problem,) = [one for one in problems if "too thick" in one.allowed]
     assert "With the other sign, -0.42" in problem.remedy
+    assert len(str(problem)) < 600
     tight = problems_of(load_case, changed(ring={X: -0.30}))
     assert all("other sign" not in one.remedy for one in tight)
 

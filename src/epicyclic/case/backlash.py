@@ -36,15 +36,16 @@ def check_backlash(mesh: Mesh, tables: Tables, distance_key: str) -> list[Proble
     gears = (mesh.gear1, mesh.gear2)
     keys = [thickness_key(gear.name, tables[gear.name]) for gear in gears]
     fits = " or ".join(_fitting(mesh, gear, tables[gear.name]) for gear in gears)
+    usual = micrometres(_recommended(mesh))
     return [
         Problem(
             ", ".join(keys),
             "",
             f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
             f"centre distance of {millimetres(mesh.center_distance)} (negative backlash).",
-            f"Without backlash {fits} fits{_distance(mesh, distance_key)}; a normal backlash of "
-            f"{micrometres(_recommended(mesh))}, recommended by ISO/TR 10064-2, takes "
-            f"{_recommended_shift(mesh):.4f} less of one x.{_other_sign(mesh, tables)}",
+            f"Without backlash {fits} fits{_distance(mesh, distance_key)}; "
+            f"{_recommended_shift(mesh):.4f} less of one x leaves {usual}, recommended by "
+            f"ISO/TR 10064-2.{_other_sign(mesh, tables)}",
         )
     ]
 
@@ -110,6 +111,6 @@ def _other_sign(mesh: Mesh, tables: Tables) -> str:
     if not -GROSS * _recommended_shift(mesh) <= over <= 10.0**-DIGITS:
         return ""
     return (
-        f" With the other sign, {-shift:g}, the profile shift of the {ring.name} fits: DIN 3960 "
-        "and ISO 21771 count it positive towards the tips, where the teeth become thicker."
+        f" With the other sign, {-shift:g}, x of the {ring.name} fits: in ISO 21771 positive x "
+        "thickens the teeth."
     )
