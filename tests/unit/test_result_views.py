@@ -40,7 +40,8 @@ def test_names_of_a_case_are_its_own(case):
     assert {"sun", "planet_bearing", "updated", "given"} <= set(names)
     foreign = ("model_dump", "copy", "json", "schema", "EXACTLY_ONE", "_tables")
     assert not set(names) & set(foreign)
-    assert set(dir(case.gears)) == set(type(case.gears).model_fields)
+    assert set(type(case.gears).model_fields) <= set(dir(case.gears))
+    assert not set(dir(case.gears)) & set(foreign)
     assert dir(ep) == sorted(ep.__all__)
 
 
