@@ -296,6 +296,14 @@ def test_every_problem_of_the_table_is_told(case):
     assert "sliding" in told['uncertainty."model_form.slding"']
 
 
+def test_an_oil_given_by_its_name_has_no_keys_of_its_own():
+    key = "lubricant.oil.density_slope.value"
+    case = ep.load_case("talbot-2012-pair")
+    with pytest.raises(InputError, match="has no keys") as caught:
+        case.updated({"uncertainty": {key: {"normal": "3 %"}}})
+    assert [problem.key for problem in caught.value.problems] == [f'uncertainty."{key}"']
+
+
 def test_every_assumption_has_a_source():
     for name in ("talbot-2012", "talbot-2012-pair", "train-eaxle"):
         own = ep.load_case(name)

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from epicyclic.case.lubrication_tables import LubricationTable
     from epicyclic.case.operation_tables import Surroundings
 
-__all__ = ["CaseTable", "as_given", "with_changes", "with_sizes"]
+__all__ = ["CaseTable", "as_given", "owner_without_keys", "with_changes", "with_sizes"]
 
 
 _DECIDED = (
@@ -124,6 +124,8 @@ class CaseTable(Table):
         cls, case: Self | None, tables: dict[str, Any], source: str, problems: list[Problem]
     ) -> Self:
         """The case with what it was made from; an error with all problems, if there are any."""
+        if case is not None:
+            case._tables, case._source = tables, source
         if case is not None and getattr(case, "uncertainty", {}):
             from epicyclic.case.uncertain_values import check_uncertainty
 
@@ -131,8 +133,6 @@ class CaseTable(Table):
         if case is None or problems:
             ordered = sorted(problems, key=lambda problem: _position(cls, problem))
             raise InputError(ordered, source)
-        case._tables = tables
-        case._source = source
         return case
 
     def given(self) -> dict[str, Any]:
@@ -217,16 +217,23 @@ def with_changes(
     return tables, problems
 
 
-def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
-    """`tables` with dotted `key` set to `value`, or removed if that is None."""
+def owner_without_keys(tables: Mapping[str, Any], key: str) -> Problem | None:
+    """Why `tables` have no place for a key: what should hold it is no table, but a name."""
     path = key_parts(key)
     for depth in range(1, len(path)):
         owner = value_at(tables, path[:depth])
         if owner is not None and not isinstance(owner, dict):
             name = ".".join(path[:depth])
             allowed = f"{name} is {written(owner)}, which has no keys."
-            remedy = f"Change {name} to a table first."
-            raise InputError([Problem(key, written(value), allowed, remedy)])
+            return Problem(key, "", allowed, f"Change {name} to a table first.")
+    return None
+
+
+def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
+    """`tables` with dotted `key` set to `value`, or removed if that is None."""
+    path = key_parts(key)
+    if problem := owner_without_keys(tables, key):
+        raise InputError([replace(problem, value=written(value))])
     if value is not None:
         return with_value(tables, path, value)
     if value_at(tables, path) is not None:

@@ -12,7 +12,7 @@ from typing import Any, Literal
 from pydantic_core import PydanticCustomError
 
 from epicyclic import library
-from epicyclic.case.base import CaseTable
+from epicyclic.case.base import CaseTable, owner_without_keys
 from epicyclic.case.fields import quantity_of
 from epicyclic.case.keys import field_at, known_keys, value_of
 from epicyclic.case.lubrication import FACTOR_KEY, SHARE_KEY, assumed_factor
@@ -219,6 +219,8 @@ def _own(case: CaseTable, key: str, table: DistributionTable) -> UncertainValue 
     parameter = parameter_of(case, key)
     if isinstance(parameter, Problem):
         return replace(parameter, key=_name(key))
+    if problem := owner_without_keys(case.given(), key):
+        return replace(problem, key=_name(key), value=_given(table))
     if not _has_effect(case, key):
         allowed = "has no effect: another key decides the share of oil."
         remedy = f"State {FACTOR_KEY}, or lubrication.oil_share where it is given."
