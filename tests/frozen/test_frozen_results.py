@@ -18,7 +18,6 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.sweeps.dataset import by_keys
 
 _EMPTY_PLANET = (
     "The flow through the pockets takes the driving flank of the planets' mean load; it took that "
@@ -167,7 +166,7 @@ def test_maps_and_sweeps_are_the_frozen_ones(name):
     if entry["kind"] == "loss_map":
         data = ep.loss_map(case, **entry["asked"], jobs=1)
     else:
-        data = by_keys(ep.sweep(case, entry["asked"], jobs=1))
+        data = ep.sweep(case, entry["asked"], jobs=1)
     found = {
         str(key): {"dims": list(array.dims), "values": array.values.tolist()}
         for key, array in {**data.coords, **data.data_vars}.items()

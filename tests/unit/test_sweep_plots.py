@@ -64,7 +64,8 @@ def test_a_field_is_over_two_keys_of_numbers(data):
     ax = plot_sweep_field(data, "efficiency", Figure().subplots())
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("operation.speed, rpm", "operation.torque, N·m")
     (field,) = (one for one in ax.collections if isinstance(one, QuadMesh))
-    wanted = 100 * data["efficiency"].sel(models_friction="schlenk").transpose("torque", "speed")
+    wanted = 100 * data["efficiency"].sel(models_friction="schlenk")
+    wanted = wanted.transpose("operation.torque", "operation.speed")
     np.testing.assert_array_equal(np.asarray(field.get_array()).ravel(), wanted.values.ravel())
 
 

@@ -64,9 +64,8 @@ def sweep_line(data: xr.Dataset) -> str:
     """What was varied, and the operating point with the rest."""
     operation = dict(json.loads(data.attrs["case"])["operation"])
     spans = []
-    for dim in map(str, data["total"].dims):
-        key = _key(data, dim)
-        spans.append(f"{key} {_span(data[dim])}")
+    for key in map(str, data["total"].dims):
+        spans.append(f"{key} {_span(data[key])}")
         table, _, name = key.partition(".")
         if table == "operation" and name in operation:
             operation[name] = f"varied {name.rpartition('_')[2]}"
@@ -197,13 +196,13 @@ def _at_first(data: xr.Dataset, kept: list[str]) -> xr.Dataset:
 
 def _titled(values: xr.DataArray, part: xr.Dataset) -> str:
     """What is shown, and the values of the dimensions that are not."""
-    held = [f"{_key(part, dim)} {_value(part[dim])}" for dim in _held(part)]
+    held = [f"{key} {_value(part[key])}" for key in _held(part)]
     return ", ".join([title_of(values), *held])
 
 
 def _held(part: xr.Dataset) -> list[str]:
-    keys = [name for name in map(str, part.coords) if "case_key" in part[name].attrs]
-    return [name for name in keys if part[name].ndim == 0]
+    single = (array for array in part.coords.values() if array.ndim == 0)
+    return [array.attrs["case_key"] for array in single if "case_key" in array.attrs]
 
 
 def _is_number(values: xr.DataArray) -> bool:
@@ -216,10 +215,6 @@ def _in_percent(values: xr.DataArray) -> xr.DataArray:
     return (100 * values).assign_attrs(values.attrs | {"units": "%"})
 
 
-def _key(data: xr.Dataset, dim: str) -> str:
-    return str(data[dim].attrs.get("case_key", dim))
-
-
 def _unit(values: xr.DataArray) -> str:
     return unit_text(str(values.attrs.get("units", "1")))
 
@@ -227,7 +222,7 @@ def _unit(values: xr.DataArray) -> str:
 def _axis_label(data: xr.Dataset, dim: str) -> str:
     """``"operation.speed, rpm"``."""
     unit = _unit(data[dim])
-    return f"{_key(data, dim)}, {unit}" if unit else _key(data, dim)
+    return f"{dim}, {unit}" if unit else dim
 
 
 def _value(value: xr.DataArray) -> str:

@@ -35,24 +35,25 @@ FORMATS = (".nc", ".csv", ".parquet")
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """What formulas of spreadsheets begin with."""
 _CASE_KEY = "case_key"
-"""Attribute of a dimension: the key that it varies."""
+"""Attribute of a coordinate: the key that it varies."""
 _INTERPOLATION_ERROR = "pocket_interpolation_error"
 
 
 def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
     """The rows of all points of `plan` over its axes.
 
-    Dimensions have names without dots; the keys are coordinates beside them, of the same values.
+    Dimensions are called as the keys. Beside each stands a coordinate of the same values with a
+    name without dots, for attributes and keywords.
     """
     import xarray as xr
 
     numbers = {item.key: item for item in number_fields(layout_of(plan.case))}
-    dims = tuple(_dimension(axis.key, numbers) for axis in plan.axes)
+    dims = tuple(axis.key for axis in plan.axes)
     coords = {}
-    for axis, name in zip(plan.axes, dims, strict=True):
+    for axis in plan.axes:
         points, about = np.array(axis.coordinate), _about(axis.key, axis.unit)
-        coords[axis.key] = (name, points, about)
-        coords[name] = (name, points, about | {_CASE_KEY: axis.key})
+        coords[axis.key] = (axis.key, points, about)
+        coords[_plain_name(axis.key, numbers)] = (axis.key, points, about | {_CASE_KEY: axis.key})
     variables = {
         key: (dims, rows.numbers(key).reshape(plan.shape), _about(item.label, item.unit))
         for key, item in numbers.items()
@@ -68,17 +69,20 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
     return xr.Dataset(variables, coords, _attributes(plan, rows))
 
 
-def _dimension(key: str, numbers: Container[str]) -> str:
-    """Name of the dimension of a key: ``"sun_mesh_misalignment_given"`` beside the computed one."""
+def _plain_name(key: str, numbers: Container[str]) -> str:
+    """Name of a key without dots: ``"sun_mesh_misalignment_given"`` beside the computed one."""
     name = axis_name(key)
     return f"{name}_given" if name in numbers else name
 
 
 def by_keys(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset of a sweep with its keys as dimensions; any other as it is."""
-    keys = {name: dataset[name].attrs.get(_CASE_KEY, name) for name in dataset.dims}
-    own = {name: key for name, key in keys.items() if key != name and key in dataset.coords}
-    return dataset.swap_dims(own).drop_vars(list(own))
+    """The dataset of a sweep without the names beside its keys; any other as it is."""
+    beside = [
+        name
+        for name, array in dataset.coords.items()
+        if name not in dataset.dims and _CASE_KEY in array.attrs
+    ]
+    return dataset.drop_vars(beside)
 
 
 def _about(label: str, unit: str) -> dict[str, str]:
