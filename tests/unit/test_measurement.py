@@ -214,7 +214,7 @@ def test_a_fit_of_physical_inputs_of_a_planetary_set(talbot):
         },
         jobs=1,
     )
-    table = data["total"].to_dataframe().reset_index()
+    table = data["total"].to_dataframe()["total"].reset_index()
     table.columns = ["speed [rpm]", "torque [N*m]", "temperature [degC]", "loss [W]"]
     fit = ep.compare_measured(bare, noisy(table, 3, 0.003, 0.5), fit=keys, jobs=1).fit
     for item, wanted in zip(fit.parameters, [0.08, 1.1, 0.3], strict=True):

@@ -137,7 +137,7 @@ class Runner:
     def check(self) -> None:
         """Raise `InputError` if there is no such cluster: before anything is written."""
         if self.dask is not None:
-            _client(self.dask).close()
+            _client(self.dask, trial=True).close()
 
     def run(self, plan: Plan) -> Rows:
         """All points of `plan`; those of other shards are not computed."""
@@ -341,10 +341,13 @@ def _distributed() -> Any:
     return distributed
 
 
-def _client(address: str) -> Any:
-    """A connection to the scheduler at `address`."""
+def _client(address: str, *, trial: bool = False) -> Any:
+    """A connection to the scheduler at `address`.
+
+    One on trial is not the default of Dask: a refused address would remain it for all that follows.
+    """
     try:
-        return _distributed().Client(address, timeout="10s")
+        return _distributed().Client(address, timeout="10s", set_as_default=not trial)
     except (OSError, ValueError) as error:
         raise _cluster_error(address, f"cannot be reached: {error}.") from None
 
