@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 
@@ -17,6 +18,7 @@ def epicyclic(tmp_path):
             return subprocess.run(
                 [sys.executable, "-m", "epicyclic", *arguments],
                 cwd=folder,
+                env={"EPICYCLIC_PROGRESS": "0"} | os.environ,  # however slow the machine is
                 capture_output=True,
                 text=True,
                 check=False,

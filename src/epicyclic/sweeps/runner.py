@@ -346,8 +346,10 @@ def _client(address: str, *, trial: bool = False) -> Any:
 
     One on trial is not the default of Dask: a refused address would remain it for all that follows.
     """
+    distributed = _distributed()
     try:
-        return _distributed().Client(address, timeout="10s", set_as_default=not trial)
+        distributed.comm.resolve_address(address)  # a client of a malformed one leaves threads
+        return distributed.Client(address, timeout="10s", set_as_default=not trial)
     except (OSError, ValueError) as error:
         raise _cluster_error(address, f"cannot be reached: {error}.") from None
 
