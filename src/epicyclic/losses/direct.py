@@ -188,30 +188,30 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
         f"models.friction ehl-direct: {found.size} contacts of the {contact.mesh.name} solved, "
         f"{np.count_nonzero(~found)} of them without convergence and left out; error of "
         f"interpolated contacts {error:.1%} in the mean{missed}, of their power {bias:+.1%}."
-        f"{_unvalidated(contact, power)}{_dry(contact, power)}{_unresolved(kept)}",
+        f"{_limits_left(contact, power)}{_unresolved(kept)}",
     )
 
 
-def _unvalidated(contact: MeshContact, power: FloatArray) -> str:
-    """What to say of film ratios for which the solver is not validated."""
-    share = power[contact.film_ratio < VALIDATED_FILM_RATIO].sum() / power.sum()
-    if not share > SMALLEST_SHOWN_SHARE:
-        return ""
-    return (
-        f" {share:.0%} of the sliding power is at film ratios below {VALIDATED_FILM_RATIO:g}, "
-        "for which the solver is not validated."
-    )
-
-
-def _dry(contact: MeshContact, power: FloatArray) -> str:
-    """What to say of speeds at which real surfaces would touch more than ridges across do."""
-    share = power[contact.rolling_speed < DRY_SPEED].sum() / power.sum()
-    if not share > SMALLEST_SHOWN_SHARE:
-        return ""
-    return (
-        f" {share:.0%} of the sliding power is at less than {DRY_SPEED:g} m/s, where oil leaks out "
-        "of the valleys of real surfaces: their friction is larger."
-    )
+def _limits_left(contact: MeshContact, power: FloatArray) -> str:
+    """What to say of film ratios and speeds at which the solver is not to be relied on."""
+    told = ""
+    for beyond, what in (
+        (
+            contact.film_ratio < VALIDATED_FILM_RATIO,
+            f"at film ratios below {VALIDATED_FILM_RATIO:g}, for which the solver is not "
+            "validated.",
+        ),
+        (
+            contact.rolling_speed < DRY_SPEED,
+            f"at less than {DRY_SPEED:g} m/s, where oil leaks out of the valleys of real "
+            "surfaces: their friction is larger.",
+        ),
+    ):
+        # no share of no power
+        if power[beyond].sum() > SMALLEST_SHOWN_SHARE * power.sum():
+            share = power[beyond].sum() / power.sum()
+            told += f" {share:.0%} of the sliding power is {what}"
+    return told
 
 
 def _unresolved(kept: float) -> str:
