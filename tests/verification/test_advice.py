@@ -6,14 +6,14 @@ import json
 
 import numpy as np
 import pytest
-import xarray as xr
 from click.testing import CliRunner
 
 import epicyclic as ep
 from asymmetric import gear_pair
 from epicyclic import library
 from epicyclic.bands.advice import limits_of, measurements_of, model_remarks
-from epicyclic.bands.quick import quick_dataset
+from epicyclic.bands.known import Known, known_of
+from epicyclic.bands.quick import quick_dataset, quick_known
 from epicyclic.case.uncertain_values import remedy_for
 from epicyclic.cli.single import run
 from epicyclic.report.advice import advice_texts
@@ -31,28 +31,23 @@ def band(case):
     return quick_dataset(case, ep.solve(case))
 
 
-def width_of(data):
-    total = data.sel(result="total")
-    return float(total["high"] - total["low"])
-
-
 def test_values_that_limit_the_trust_come_in_order_with_their_own_bands(band):
-    limits = limits_of(band)
+    limits = limits_of(known_of(band))
     shares = band["first_order"].sel(sum="total").to_series().sort_values(ascending=False)
     told = shares[shares >= 0.02]
     assert [limit.name for limit in limits] == [remedy_for(key)[0] for key in told.index]
     np.testing.assert_allclose(
-        [limit.width for limit in limits], width_of(band) * np.sqrt(told), rtol=1e-12
+        [limit.width for limit in limits], known_of(band).width * np.sqrt(told), rtol=1e-12
     )
     assert len(limits) > 3
 
 
 @pytest.mark.parametrize("key", ["surroundings.oil_air_ratio", "gear.roughness"])
 def test_a_known_input_leaves_the_band_that_was_foretold(case, band, key):
-    foretold = {it.name: it.width for it in measurements_of(band) if it.is_input}
+    foretold = {it.name: it.width for it in measurements_of(known_of(band)) if it.is_input}
     known = case.updated({"uncertainty": {key: {"exact": True}}})
-    left = width_of(quick_dataset(known, ep.solve(known)))
-    assert left < width_of(band)
+    left = quick_known(known, ep.solve(known)).width
+    assert left < known_of(band).width
     assert left == pytest.approx(foretold[remedy_for(key)[0]], rel=0.04)
 
 
@@ -64,17 +59,8 @@ def test_a_measured_part_of_the_loss_leaves_what_a_fit_to_it_leaves():
     idle = rng.normal(150, 40, size) + 0.1 * (loaded - 900)
     values = {"load_dependent": loaded, "load_independent": idle, "total": loaded + idle}
     nominal = {"load_dependent": 900.0, "load_independent": 150.0, "total": 1050.0}
-    data = xr.Dataset(
-        {
-            "value": (("result", "sample"), np.array(list(values.values()))),
-            "nominal": ("result", list(nominal.values())),
-            "low": ("result", [0.0, 0.0, 800.0]),
-            "high": ("result", [0.0, 0.0, 1300.0]),
-            "first_order": (("sum", "driver"), np.zeros((1, 0))),
-        },
-        {"result": list(values), "sum": ["total"], "driver": []},
-    )
-    found = {it.name: it.width for it in measurements_of(data)}
+    known = Known("W", nominal, {"total": (800.0, 1300.0)}, values, {}, {}, {}, ())
+    found = {it.name: it.width for it in measurements_of(known)}
     for entry in library.uncertainty_table()["measurements"]:
         error = entry["uncertainty"] * nominal[entry["result"]]
         measured = values[entry["result"]] + rng.normal(0, error, size)
@@ -112,7 +98,7 @@ def test_the_recommended_model_and_the_largest_warning_are_told():
 
 
 def test_run_tells_it_in_four_sentences_and_as_json(band):
-    texts = list(advice_texts(band, brief=True))
+    texts = list(advice_texts(known_of(band), brief=True))
     assert 3 <= len(texts) <= 4
     printed = CliRunner().invoke(run, ["talbot-2012-pair"])
     assert printed.exit_code == 0, printed.output
@@ -128,5 +114,5 @@ def test_run_tells_it_in_four_sentences_and_as_json(band):
     assert found["band"]["total"] == [
         float(data[end].sel(result="total")) for end in ("low", "high")
     ]
-    assert found["advice"]["limits"][0]["width"] == limits_of(data)[0].width
+    assert found["advice"]["limits"][0]["width"] == limits_of(known_of(data))[0].width
     assert found["advice"]["unit"] == "W"

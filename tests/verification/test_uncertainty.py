@@ -12,12 +12,14 @@ from scipy import stats
 import epicyclic as ep
 from asymmetric import gear_pair
 from epicyclic.bands.distributions import cut_off, quantiles, standard_uncertainty
+from epicyclic.bands.nearby import look_nearby
 from epicyclic.bands.quick import quick_dataset
 from epicyclic.bands.sampling import make_samples
 from epicyclic.bands.statistics import sobol_indices, summary
 from epicyclic.case.uncertain_values import UncertainValue, uncertain_values
 from epicyclic.errors import InputError
 from epicyclic.plots.catalogue import available
+from epicyclic.pocketing.similarity import FlowFamily
 from epicyclic.sweeps.dataset import write_dataset
 
 ISOLATED = {
@@ -173,6 +175,34 @@ def test_the_quick_band_is_that_of_many_samples(case, study):
                      (study["total_order"], band["first_order"]))  # fmt: skip
     assert alone.idxmax() == shares.idxmax()
     assert alone.sum() == pytest.approx(1.0)
+
+
+def test_flows_through_pockets_stay_where_they_are_nearly_the_same(monkeypatch):
+    """With voids, and oil that is 3 K colder or warmer."""
+    fast = ep.load_case("talbot-2012-pair").updated({
+        "operation.speed": "9000 rpm",
+        "surroundings.oil_air_ratio": 0.3,
+        "uncertainty": {
+            "operation.oil_inlet_temperature": {"normal": "3 K"},
+            "surroundings.oil_air_ratio": {"exact": True},
+        },
+    })  # fmt: skip
+    result = ep.solve(fast)
+    assert any("hold voids" in note for note in result.warnings)
+    solved = []
+    flow = FlowFamily.flow
+    monkeypatch.setattr(FlowFamily, "flow", lambda *at: (solved.append(at), flow(*at))[1])
+    near = look_nearby(fast, result)
+    monkeypatch.undo()
+    assert len(set(solved)) == 1
+    (number,) = (
+        i for i, it in enumerate(near.values) if it.key == "operation.oil_inlet_temperature"
+    )
+    pockets = near.outputs.losses.index("mesh_pocketing")
+    for end, degrees in zip(near.ends[number, :, pockets], (87, 93), strict=True):
+        own = fast.updated({"operation.oil_inlet_temperature": f"{degrees} degC"})
+        assert end == pytest.approx(ep.solve(own).losses["mesh_pocketing"], rel=2e-3)
+        assert end != result.losses["mesh_pocketing"]
 
 
 def test_a_report_shows_the_band_of_a_stored_result_and_of_samples(case, study, tmp_path):

@@ -18,11 +18,11 @@ from epicyclic.case.operating import AXES
 from epicyclic.elasticity.loaded_mesh import LoadedMesh
 from epicyclic.elements.base import OIL
 from epicyclic.elements.gear_mesh import elastic_loads, load_mesh
-from epicyclic.elements.pocket_flow import flow_numbers
+from epicyclic.elements.pocket_flow import flow_numbers, flow_requests
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.contact import MeshContact
-from epicyclic.pocketing.similarity import FlowFamily
-from epicyclic.pocketing.table import FlowTables
+from epicyclic.pocketing.similarity import FlowFamily, scaled_figures
+from epicyclic.pocketing.table import FlowTables, table_around
 from epicyclic.results.physical import judged
 from epicyclic.results.result import Result
 
@@ -30,7 +30,14 @@ WARMER = (30.0, 60.0)
 """How much warmer than its inlet the oil is where tables are asked for flows through pockets; they
 are read between two of their flows where one between them was foretold. [K]"""
 
-__all__ = ["loaded_meshes", "mesh_contacts", "pocket_flow_numbers", "solve", "without_torque"]
+__all__ = [
+    "flows_around",
+    "loaded_meshes",
+    "mesh_contacts",
+    "pocket_flow_numbers",
+    "solve",
+    "without_torque",
+]
 
 
 def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
@@ -94,6 +101,29 @@ def pocket_flow_numbers(case: Case) -> tuple[tuple[FlowFamily, float], ...]:
             for rise in WARMER
         ]
     return tuple(number for each in fluids for number in flow_numbers(duties, each))
+
+
+def flows_around(case: Case, reach: float) -> FlowTables:
+    """The flows of a case, for flows of nearly the same number. Theory (Q22).
+
+    Parameters
+    ----------
+    case : Case
+    reach : float
+        Difference of the numbers, relative, at most. [1]
+    """
+    built = build(case)
+    if built.known_fluids is None:
+        return {}
+    duties = tuple(built.mean_duties().values())
+    found = {}
+    for family, speed, mixture, pressure in flow_requests(duties, built.fluids):
+        figures = family.figures(speed, mixture, pressure)
+        if figures.periodic:
+            number = family.number(speed, mixture, pressure)
+            scaled = scaled_figures(figures, speed, mixture.density)
+            found[family] = table_around(number, scaled, reach)
+    return found
 
 
 def mesh_contacts(case: Case) -> dict[str, MeshContact]:

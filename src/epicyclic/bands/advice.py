@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from math import sqrt
 
 import numpy as np
 
 from epicyclic import library
 from epicyclic.analysis.compare import compare_friction, recommended
+from epicyclic.bands.known import Known
 from epicyclic.builders.build import layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.uncertain_values import MODEL_FORM
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.validity import range_text
 from epicyclic.results.result import Result
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["Limit", "Measurement", "limits_of", "measurements_of", "model_remarks"]
 
@@ -64,39 +62,31 @@ class Measurement:
     width: float
 
 
-def limits_of(data: xr.Dataset) -> list[Limit]:
+def limits_of(known: Known) -> list[Limit]:
     """What makes the band, the most important first.
 
     The band that a value makes alone is that of the total times the root of its share.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        As `uncertainty` returns it of a case or cycle, or as it is kept with a result.
     """
-    whole, shares = _width(data), _shares(data)
     found = []
-    for driver in sorted(shares, key=lambda it: -shares[it]):
-        if shares[driver] < LEAST:
+    for driver, share in known.drivers:
+        if share < LEAST:
             break
-        advice = (str(data["input_advice"].sel(input=key).values) for key in _keys(driver))
-        width = whole * float(np.sqrt(shares[driver]))
-        found.append(Limit(_called(data, driver), "; ".join(dict.fromkeys(advice)), width))
+        advice = dict.fromkeys(known.advice[key] for key in _keys(driver))
+        found.append(Limit(_called(known, driver), "; ".join(advice), known.width * sqrt(share)))
     return found
 
 
-def measurements_of(data: xr.Dataset) -> list[Measurement]:
+def measurements_of(known: Known) -> list[Measurement]:
     """What could be measured, that which narrows the band most first. Theory (U12)."""
-    whole = _width(data)
     found = [
-        Measurement(_called(data, driver), True, whole * float(np.sqrt(1 - share)))
-        for driver, share in _shares(data).items()
+        Measurement(_called(known, driver), True, known.width * sqrt(1 - share))
+        for driver, share in known.shares.items()
         if not driver.startswith(MODEL_FORM)
     ]
     for entry in library.uncertainty_table()["measurements"]:
-        left = _left(data, entry["result"], entry["uncertainty"])
+        left = _left(known, entry["result"], entry["uncertainty"])
         name = f"{entry['name']} (u {entry['uncertainty']:.0%})".replace("%", " %")
-        found.append(Measurement(name, False, whole * float(np.sqrt(left))))
+        found.append(Measurement(name, False, known.width * sqrt(left)))
     return sorted(found, key=lambda it: it.width)
 
 
@@ -105,29 +95,18 @@ def _keys(driver: str) -> list[str]:
     return driver.split(" + ")
 
 
-def _called(data: xr.Dataset, driver: str) -> str:
-    return " + ".join(str(data["input_name"].sel(input=key).values) for key in _keys(driver))
+def _called(known: Known, driver: str) -> str:
+    return " + ".join(known.names[key] for key in _keys(driver))
 
 
-def _width(data: xr.Dataset) -> float:
-    total = data.sel(result="total")
-    return float(total["high"] - total["low"])
-
-
-def _shares(data: xr.Dataset) -> dict[str, float]:
-    """Shares of the drivers in the variance of the total, each alone."""
-    own = data["first_order"].sel(sum="total").clip(0.0, 1.0)
-    return dict(zip(map(str, own["driver"].values), own.values.tolist(), strict=True))
-
-
-def _left(data: xr.Dataset, name: str, uncertainty: float) -> float:
+def _left(known: Known, name: str, uncertainty: float) -> float:
     """Part of the variance of the total that is left once a part of the loss is measured."""
-    part, total = (data["value"].sel(result=it).values for it in (name, "total"))
+    part, total = known.draws[name], known.draws["total"]
     sound = np.isfinite(part) & np.isfinite(total)
     (own, both), (_, whole) = np.cov(part[sound], total[sound])
-    error = uncertainty * float(data["nominal"].sel(result=name))
-    known = own + error**2
-    return float(np.clip(1 - both**2 / known / whole, 0.0, 1.0)) if known and whole else 1.0
+    error = uncertainty * known.nominal[name]
+    spread = own + error**2
+    return float(np.clip(1 - both**2 / spread / whole, 0.0, 1.0)) if spread and whole else 1.0
 
 
 def model_remarks(case: Case, result: Result, *, brief: bool = False) -> list[str]:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.analysis.solve import solve
+from epicyclic.analysis.solve import flows_around
 from epicyclic.bands.outputs import Outputs, loss_numbers, outputs_of
 from epicyclic.case.case import Case
 from epicyclic.case.uncertain_values import UncertainValue, uncertain_values
 from epicyclic.errors import EpicyclicError, InputError
+from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Result
 
 __all__ = [
@@ -30,6 +31,10 @@ FloatArray = NDArray[np.float64]
 
 HALF_WIDTH = math.sqrt(3.0)
 """Half the width of a uniform distribution over its standard deviation. [1]"""
+
+SAME_FLOW = 0.005
+"""Difference of the number of a flow through pockets below which its scaled figures stay, relative:
+that of 10 K. [1]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +61,11 @@ class Nearby:
     ends: FloatArray
 
     @property
+    def nominal(self) -> FloatArray:
+        """Results at the values of the case, in the order of `Outputs.names`."""
+        return self.outputs.of(self.losses[:, None], np.array([self.input_power]), {})[:, 0]
+
+    @property
     def active(self) -> tuple[bool, ...]:
         """Which values change any loss."""
         moved = np.abs(self.ends - self.losses).max(axis=(1, 2), initial=0.0)
@@ -79,14 +89,15 @@ def without_table(case: Case) -> Case:
     return case.updated({"uncertainty": None}) if case.uncertainty else case
 
 
-def look_nearby(case: Case, result: Result, solved: Callable[[Case], Result] = solve) -> Nearby:
+def look_nearby(case: Case, result: Result) -> Nearby:
     """Solve a case with each of its uncertain inputs changed."""
     values, outputs = known_values(case, result), outputs_of(case, result)
     plain = without_table(case)
-    stepped = [_losses(plain, changes, outputs, solved) for changes in steps(values)]
+    flows = flows_around(plain, SAME_FLOW)
+    stepped = [_losses(plain, changes, outputs, flows) for changes in steps(values)]
     losses = np.array([result.losses[name] for name in outputs.losses])
     if outputs.tested:
-        losses = _losses(plain, {}, outputs, solved)
+        losses = _losses(plain, {}, outputs, flows)
     return nearby_of(values, outputs, losses, result.input_power, np.array(stepped))
 
 
@@ -115,10 +126,10 @@ def nearby_of(
 
 
 def _losses(
-    case: Case, changes: Mapping[str, Any], outputs: Outputs, solved: Callable[[Case], Result]
+    case: Case, changes: Mapping[str, Any], outputs: Outputs, flows: FlowTables
 ) -> FloatArray:
     try:
-        found = loss_numbers(case.updated(changes) if changes else case, outputs, solved)
+        found = loss_numbers(case.updated(changes) if changes else case, outputs, flows)
     except EpicyclicError:
         return np.full(len(outputs.numbers), np.nan)
     return np.array([found[name] for name in outputs.numbers])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from epicyclic.analysis.solve import solve, without_torque
 from epicyclic.case.case import Case
 from epicyclic.case.uncertain_values import MODEL_FORM, UncertainValue, model_form_of
 from epicyclic.elements.base import LOAD_DEPENDENT
+from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Result
 from epicyclic.sweeps.unloaded import AS_TESTED
 
@@ -101,14 +102,14 @@ def outputs_of(case: Case, result: Result) -> Outputs:
 
 
 def loss_numbers(
-    case: Case, outputs: Outputs, solved: Callable[[Case], Result] = solve
+    case: Case, outputs: Outputs, flow_tables: FlowTables | None = None
 ) -> dict[str, float]:
     """`Outputs.numbers` of a case, and its input power. [W]"""
     plain = case.updated({"models.load_dependent": "computed"}) if outputs.tested else case
-    result = solved(plain)
+    result = solve(plain, flow_tables=flow_tables)
     found = {**result.losses, INPUT_POWER: result.input_power}
     if outputs.tested:
-        unloaded = solved(without_torque(plain)).losses
+        unloaded = solve(without_torque(plain), flow_tables=flow_tables).losses
         found |= {f"{UNLOADED}{name}": watts for name, watts in unloaded.items()}
     return found
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from epicyclic.analysis.heat import takes_minutes
 from epicyclic.bands.advice import model_remarks
 from epicyclic.bands.distributions import correlations
+from epicyclic.bands.known import Known
 from epicyclic.bands.nearby import HALF_WIDTH, Nearby, look_nearby
 from epicyclic.bands.outputs import factors_of
 from epicyclic.bands.study import (
@@ -23,13 +24,13 @@ from epicyclic.bands.study import (
     summaries,
 )
 from epicyclic.case.case import Case
-from epicyclic.case.uncertain_values import UncertainValue
+from epicyclic.case.uncertain_values import UncertainValue, remedy_for
 from epicyclic.results.result import Result
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Band", "quick_band", "quick_dataset"]
+__all__ = ["Band", "quick_band", "quick_dataset", "quick_known"]
 
 FloatArray = NDArray[np.float64]
 
@@ -66,6 +67,12 @@ class Band:
         shares = zip(keys, (variances / whole).tolist(), strict=True)
         return tuple(sorted(shares, key=lambda item: -item[1]))
 
+    @cached_property
+    def summaries(self) -> dict[str, FloatArray]:
+        """The fields of `Summary` of each result; NaN where a draw has none."""
+        known = np.isfinite(self.results).all(axis=1, keepdims=True)
+        return summaries(np.where(known, self.results, np.nan))
+
 
 def quick_band(nearby: Nearby) -> Band:
     """The band from parabolas through three points of every input. Theory (U8)."""
@@ -82,25 +89,47 @@ def quick_band(nearby: Nearby) -> Band:
     return Band(nearby, outputs.of(losses, power, factors), _parts(nearby, shifts, factors))
 
 
-def quick_dataset(case: Case, result: Result, *, brief: bool = False) -> xr.Dataset | None:
-    """The band with the budget of the total loss, as `uncertainty` has them but without samples.
+def quick_known(case: Case, result: Result, *, brief: bool = False) -> Known | None:
+    """What `quick_dataset` says of the total, without a dataset.
 
     None if a solution takes minutes, or nothing is uncertain. For `brief` see `model_remarks`.
     """
+    band = _band(case, result)
+    if band is None:
+        return None
+    outputs = band.nearby.outputs
+    found = band.summaries
+    ends = zip(found["low"].tolist(), found["high"].tolist(), strict=True)
+    remedies = {value.key: remedy_for(value.key) for value in band.nearby.values}
+    return Known(
+        unit="W",
+        nominal=dict(zip(outputs.names, band.nearby.nominal.tolist(), strict=True)),
+        ends=dict(zip(outputs.names, ends, strict=True)),
+        draws=dict(zip(outputs.names, band.results[:, :KEPT], strict=True)),
+        shares=dict(band.drivers),
+        names={key: name for key, (name, _) in remedies.items()},
+        advice={key: advice for key, (_, advice) in remedies.items()},
+        remarks=tuple(model_remarks(case, result, brief=brief)),
+    )
+
+
+def quick_dataset(case: Case, result: Result) -> xr.Dataset | None:
+    """The band with the budget of the total loss, as `uncertainty` has them but without samples.
+
+    None if a solution takes minutes, or nothing is uncertain.
+    """
     import xarray as xr
 
-    nearby = None if takes_minutes(result) else look_nearby(case, result)
-    if nearby is None or not any(nearby.active):
+    band = _band(case, result)
+    if band is None:
         return None
-    band, outputs, values = quick_band(nearby), nearby.outputs, nearby.values
-    remarks = model_remarks(case, result, brief=brief)
-    nominal = outputs.of(nearby.losses[:, None], np.array([nearby.input_power]), {})[:, 0]
-    known = [np.isfinite(row).all() for row in band.results]
-    found = summaries(np.where(np.array(known)[:, None], band.results, np.nan))
+    nearby, outputs, values = band.nearby, band.nearby.outputs, band.nearby.values
     shares = dict(band.drivers)
     keys = [value.key for value in values]
     lost = [it.key for it, ends in zip(values, nearby.ends, strict=True) if np.isnan(ends).any()]
-    variables = banded_variables(nominal, found, contributions(nearby), band.results[:, :KEPT])
+    variables = banded_variables(
+        nearby.nominal, band.summaries, contributions(nearby), band.results[:, :KEPT]
+    )
     first_order = np.array([[shares[key] for key in keys]])
     about_shares = {"long_name": "share of the variance alone", "units": "1"}
     variables["first_order"] = (("sum", "driver"), first_order, about_shares)
@@ -111,9 +140,15 @@ def quick_dataset(case: Case, result: Result, *, brief: bool = False) -> xr.Data
         "driver": keys,
         "sum": ["total"],
     }
-    about = about_study(case, outputs, DRAWN, SEED)
-    about |= {"left_out": ", ".join(lost), "remarks": "\n".join(remarks)}
+    remarks = "\n".join(model_remarks(case, result))
+    about = about_study(case, outputs, DRAWN, SEED) | {"left_out": ", ".join(lost)}
+    about["remarks"] = remarks
     return xr.Dataset({**variables, **about_inputs(values)}, coords, about)
+
+
+def _band(case: Case, result: Result) -> Band | None:
+    nearby = None if takes_minutes(result) else look_nearby(case, result)
+    return None if nearby is None or not any(nearby.active) else quick_band(nearby)
 
 
 def _drawn(value: UncertainValue, rng: np.random.Generator) -> FloatArray:

@@ -103,9 +103,8 @@ class UncertaintyStudy:
     def dataset(self, rows: Rows) -> xr.Dataset:
         """What the solved points say; see `uncertainty`."""
         nearby, outputs = self.nearby, self.nearby.outputs
-        nominal = outputs.of(nearby.losses[:, None], np.array([nearby.input_power]), {})[:, 0]
         sets = self.sampled.results(rows)[0]
-        data = sample_variables(sets[:2], nominal, contributions(nearby), self.sampled, rows)
+        data = sample_variables(sets[:2], nearby.nominal, contributions(nearby), self.sampled, rows)
         # efficiency has the shares of the total loss; those of single losses follow from samples
         sums = sets[:, -len(SUMS) : -1]
         data = data.assign(

@@ -33,11 +33,10 @@ __all__ = ["check", "friction", "mesh", "run"]
 def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path | None) -> None:
     """Compute the losses of a case and print them by component."""
     from epicyclic.analysis.solve import solve
-    from epicyclic.bands.quick import quick_dataset
-    from epicyclic.report.advice import result_json
+    from epicyclic.bands.quick import quick_known
+    from epicyclic.report.advice import band_texts, result_json
     from epicyclic.report.heat_tables import remarks
     from epicyclic.report.tables import result_tables
-    from epicyclic.report.uncertainty_tables import band_texts
 
     loaded = load_with(case, changes)
     if save is not None:
@@ -46,7 +45,7 @@ def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path |
         check_result_output(save)
     with telling_contacts(loaded):
         result = solve(loaded)
-    known = quick_dataset(loaded, result, brief=True)
+    known = quick_known(loaded, result, brief=True)
     if save is not None:
         from epicyclic.records.files import save_result
         from epicyclic.records.record import record

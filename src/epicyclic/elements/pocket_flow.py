@@ -46,6 +46,7 @@ __all__ = [
     "flow_family",
     "flow_numbers",
     "flow_request",
+    "flow_requests",
     "mesh_flows",
     "oil_in_mesh",
     "pocket_notes",
@@ -182,7 +183,13 @@ def solve_pockets(duty: MeshDuty, fluids: Fluids) -> PocketFlow | None:
 
 
 def flow_numbers(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[tuple[FlowFamily, float]]:
-    """Family and number of the flow of each mesh whose loss is included.
+    """Family and number of the flow of each mesh, as `flow_requests` has them."""
+    for request in flow_requests(duties, fluids):
+        yield request[0], FlowFamily.number(*request[1:])
+
+
+def flow_requests(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[FlowRequest]:
+    """The flow of each mesh whose loss is included.
 
     Those that a stored table holds are left out, and those that another flow gives by scaling.
 
@@ -195,7 +202,7 @@ def flow_numbers(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[tuple[F
         if duty.models.pockets.include and duty.speed1 != 0:
             request = flow_request(duty, fluids)
             if _stored_figures(duty.models.pockets, request) is None and not _scales(request):
-                yield request[0], FlowFamily.number(*request[1:])
+                yield request
 
 
 def mesh_flows(duties: Sequence[MeshDuty], fluids: Fluids) -> Mapping[str, MeshFlow]:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.similarity import FlowFamily, FlowFigures, from_scaled
 
-__all__ = ["FlowTable", "FlowTables", "make_tables"]
+__all__ = ["FlowTable", "FlowTables", "make_tables", "table_around"]
 
 Floats = NDArray[np.float64]
 
@@ -80,6 +80,15 @@ class FlowTable:
 
 
 FlowTables = Mapping[FlowFamily, FlowTable]
+
+
+def table_around(number: float, scaled: Floats, reach: float) -> FlowTable:
+    """One flow for all numbers that differ from its own by `reach` at most, relatively.
+
+    The error is not known: scaled figures change about as much as their number.
+    """
+    numbers = number * np.array([1 - reach, 1.0, 1 + reach])
+    return FlowTable(numbers, np.tile(scaled, (3, 1)), np.ones(2, dtype=np.bool_), math.nan)
 
 
 def interpolate(place: Floats, values: Floats, at: float) -> Floats:

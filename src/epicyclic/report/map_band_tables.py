@@ -7,25 +7,17 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import xarray as xr
 
-from epicyclic.case.uncertain_values import MODEL_FORM
 from epicyclic.plots.loss_map import at_temperatures
+from epicyclic.report.advice import driver_name
 from epicyclic.report.grids import grid_table
 from epicyclic.report.page import Cell, Table, aligned
 from epicyclic.report.shown import MISSING
-from epicyclic.results.result import in_words
 from epicyclic.units import format_number, unit_text
 
-__all__ = ["driver_name", "map_band_tables"]
+__all__ = ["map_band_tables"]
 
 LEAST = 0.02
 """Largest share in the variance at any point, from which an input is shown. [1]"""
-
-
-def driver_name(key: str) -> str:
-    """What an uncertain value is called."""
-    if key.startswith(MODEL_FORM):
-        return f"model of {in_words(key.removeprefix(MODEL_FORM)).replace('-', ' ')}"
-    return key
 
 
 def map_band_tables(data: xr.Dataset) -> Iterator[Table]:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 from rich.console import RenderableType
 
+from epicyclic.bands.known import known_of
 from epicyclic.case.wording import one_line
-from epicyclic.report.advice import advice_texts
-from epicyclic.report.map_band_tables import driver_name, map_band_tables
+from epicyclic.report.advice import advice_texts, driver_name
+from epicyclic.report.map_band_tables import map_band_tables
 from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import as_on_page, titled
@@ -22,15 +23,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "band_figures",
-    "band_texts",
-    "driver_name",
     "pair_tables",
     "uncertainty_items",
     "uncertainty_tables",
 ]
 
-MOST, LEAST = 3, 0.005
-"""Inputs and models that are named after a band, and their share of its variance."""
+LEAST = 0.005
+"""Share in the variance from which an input or a model is named. [1]"""
 NO_SHARE = 1e-3
 """Share in the variance of a loss below which curves through samples show no effect. [1]"""
 CUT_OFF = 1e-3
@@ -49,7 +48,7 @@ def uncertainty_items(data: xr.Dataset) -> Iterator[Table | Listing]:
     else:
         yield _results(data)
         yield _budget(data)
-        yield Listing(tuple(advice_texts(data)), "What limits the trust in it")
+        yield Listing(tuple(advice_texts(known_of(data))), "What limits the trust in it")
     yield Listing(tuple(_notes(data)), "Notes")
 
 
@@ -79,29 +78,6 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
     if data.attrs["failed"]:
         notes.append(f"{data.attrs['failed']} of {data.attrs['pairs']} pairs have no result.")
     return titled(one_line(title), as_on_page(table), as_on_page(Listing(tuple(notes), "Notes")))
-
-
-def band_texts(data: xr.Dataset | None) -> list[str | Listing]:
-    """How well a single result is known, and what limits that; nothing if all is exact."""
-    if data is None:
-        return []
-    ends = {name: [float(data[end].sel(result=name)) for end in ("low", "high")]
-            for name in ("total", "efficiency")}  # fmt: skip
-    low, high = ends["total"]
-    text = f"95 % band: total loss {low:.0f} to {high:.0f} W"
-    if math.isfinite(ends["efficiency"][0]):
-        low, high = (100 * end for end in ends["efficiency"])
-        text += f", efficiency {low:.2f} to {high:.2f} %"
-    shares = data["first_order"].sel(sum="total").to_series().sort_values(ascending=False)
-    drivers = ", ".join(
-        f"{driver_name(str(key))} {share:.0%}".replace("%", " %")
-        for key, share in shares.iloc[:MOST].items()
-    )
-    return [
-        f"{text}; most of it from {drivers}. Assumed where [uncertainty] of the case says nothing: "
-        "'epicyclic uncertainty' shows all.",
-        Listing(tuple(advice_texts(data, brief=True)), "What limits the trust in it"),
-    ]
 
 
 def band_figures(data: xr.Dataset) -> list[KeyFigure]:

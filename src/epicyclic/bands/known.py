@@ -1,0 +1,76 @@
+"""How well a result is known: what sentences about it need, however it was found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
+
+__all__ = ["Known", "known_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """The band of a result, what makes it, and what to know of it.
+
+    Attributes
+    ----------
+    unit : str
+        Of the total and its parts.
+    nominal : mapping of str to float
+        Results of the case.
+    ends : mapping of str to tuple of float
+        Of the symmetric 95 % interval of each result.
+    draws : mapping of str to ndarray of float, shape (n,)
+        What each result may be.
+    shares : mapping of str to float
+        Of drivers in the variance of the total, each alone. [1]
+    names, advice : mapping of str to str
+        What each input is called, and how to know it better.
+    remarks : tuple of str
+        Sentences on warnings and models.
+    """
+
+    unit: str
+    nominal: Mapping[str, float]
+    ends: Mapping[str, tuple[float, float]]
+    draws: Mapping[str, NDArray[np.float64]]
+    shares: Mapping[str, float]
+    names: Mapping[str, str]
+    advice: Mapping[str, str]
+    remarks: tuple[str, ...]
+
+    @property
+    def width(self) -> float:
+        """Of the band of the total."""
+        low, high = self.ends["total"]
+        return high - low
+
+    @property
+    def drivers(self) -> list[tuple[str, float]]:
+        """Drivers with their shares, the largest first."""
+        return sorted(self.shares.items(), key=lambda item: -item[1])
+
+
+def known_of(data: xr.Dataset) -> Known:
+    """What a dataset of `uncertainty`, of a case or cycle or kept with a result, says."""
+    results = [str(name) for name in data["result"].values]
+    inputs = [str(key) for key in data["input"].values]
+    own = data["first_order"].sel(sum="total").clip(0.0, 1.0)
+    ends = zip(data["low"].values.tolist(), data["high"].values.tolist(), strict=True)
+    return Known(
+        unit=str(data["unit"].sel(result="total").values),
+        nominal=dict(zip(results, data["nominal"].values.tolist(), strict=True)),
+        ends=dict(zip(results, ends, strict=True)),
+        draws=dict(zip(results, data["value"].values, strict=True)),
+        shares=dict(zip(map(str, own["driver"].values), own.values.tolist(), strict=True)),
+        names=dict(zip(inputs, map(str, data["input_name"].values), strict=True)),
+        advice=dict(zip(inputs, map(str, data["input_advice"].values), strict=True)),
+        remarks=tuple(str(data.attrs["remarks"]).splitlines()),
+    )
