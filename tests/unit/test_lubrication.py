@@ -474,6 +474,30 @@ def test_flanks_of_each_set_follow_its_method():
     assert bath["planets.sun"] - inlet < 0.3 * (spray["planets.sun"] - inlet)
 
 
+def test_heat_of_each_set_leaves_as_its_method_says():
+    heat = {
+        "models.temperatures": "network",
+        "lubrication.method": "jet",
+        "lubrication.oil_flow": "1.3 l/min",
+    }
+    jets, both = (
+        ep.solve(small_axle(**heat, **more)).heat
+        for more in ({}, {"sets.planets.lubrication.method": "submerged"})
+    )
+    ways = [{way.key: way for way in it.ways} for it in (jets, both)]
+    assert {"pair.pinion-jet", "planets.sun-jet", "planets.pin-jet"} <= set(ways[0])
+    jetted = {key for key in ways[1] if key.endswith("-jet")}
+    assert {"pair.pinion-jet", "pair.gear-jet", "motor_front-jet"} <= jetted
+    assert not any(key.startswith("planets.") for key in jetted)
+    # each set had a flow of its own, of oil that is somewhat colder then
+    carried = [sum(w.conductance for k, w in it.items() if k.endswith("-jet")) for it in ways]
+    assert carried[1] == pytest.approx(carried[0] / 2, rel=0.05)
+    assert ways[1]["planets.sun-oil"].conductance > 3 * ways[0]["planets.sun-oil"].conductance
+    assert ways[1]["pair.gear-oil"].conductance == pytest.approx(
+        ways[0]["pair.gear-oil"].conductance, rel=0.2
+    )
+
+
 # --- what is refused ------------------------------------------------------------------------------
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -22,7 +22,7 @@ from epicyclic.losses.validity import Flags, ValidityFlag
 from epicyclic.lubricant.oil import Oil
 from epicyclic.lubricant.properties import mixture_state, oil_state
 from epicyclic.machine.flank import FlankModel
-from epicyclic.machine.heat_network import Change, HeatSettings, Housing, NetworkModel
+from epicyclic.machine.heat_network import Change, HeatSettings, Housing, NetworkModel, Wet
 from epicyclic.machine.machine import Machine
 from epicyclic.machine.settle import ThermalModel
 from epicyclic.results.result import in_words
@@ -51,7 +51,7 @@ def thermal_model(case: Case, machine: Machine) -> ThermalModel | None:
         factors = {key: _lubrication_factor(case.thermal, table) for key, table in tables.items()}
         return FlankModel(machine, inlet, case.thermal.bulk, factors, fluids)
     flows = [table.oil_flow for table in tables.values() if table is not None and table.oil_flow]
-    settings = _settings(case, machine, sum(flows) if flows else None, inlet)
+    settings = _settings(case, machine, tables, sum(flows) if flows else None, inlet)
     pressure, share = case.surroundings.pressure, oil_share(case).share
     return NetworkModel(machine, settings, fluids, _media(case.lubricant.oil, pressure, share))
 
@@ -168,17 +168,27 @@ def oil_medium(oil: Oil, temperature: float) -> Fluid:
     )
 
 
-def _settings(case: Case, machine: Machine, to_gears: float | None, inlet: float) -> HeatSettings:
+def _settings(
+    case: Case,
+    machine: Machine,
+    tables: Mapping[str, LubricationTable | None],
+    to_gears: float | None,
+    inlet: float,
+) -> HeatSettings:
     table = with_lubrication(case.thermal, case.lubrication, to_gears)
-    baths = {"dip": _bath_share(table, machine), "submerged": 1.0}
-    bath = baths.get(table.lubrication, 0.0)
+    gear_sets = [own for own in machine.elements if isinstance(own, GearSet)]
     return HeatSettings(
         inlet=inlet,
         outlet=table.oil_outlet_temperature,
         flow=table.oil_flow or 0.0,
-        effectiveness=_effectiveness(table, to_gears),
+        wet=_wet(table, gear_sets, to_gears),
+        wet_sets={
+            own.key: _wet(
+                with_lubrication(case.thermal, tables[own.key], to_gears), [own], to_gears
+            )
+            for own in gear_sets
+        },
         jet_shares=table.jet_shares,
-        bath=bath,
         press_fit=table.press_fit,
         shaft=table.shaft_conductance,
         ambient=table.ambient_temperature,
@@ -197,15 +207,20 @@ def _settings(case: Case, machine: Machine, to_gears: float | None, inlet: float
     )
 
 
-def _bath_share(table: ThermalTable, machine: Machine) -> float:
+def _wet(table: ThermalTable, gear_sets: Sequence[GearSet], to_gears: float | None) -> Wet:
+    """How oil gets to some sets."""
+    baths = {"dip": _bath_share(table, gear_sets), "submerged": 1.0}
+    return Wet(baths.get(table.lubrication, 0.0), _effectiveness(table, to_gears))
+
+
+def _bath_share(table: ThermalTable, gear_sets: Sequence[GearSet]) -> float:
     """Share of the gears that dips, as given or as the oil stands; the mean of all gears.
 
     Theory (N10).
     """
     parts = [
         disc.sump.part
-        for own in machine.elements
-        if isinstance(own, GearSet)
+        for own in gear_sets
         for discs in own.discs.values()
         for disc in discs
         if disc.sump is not None

@@ -124,6 +124,22 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
+class Wet:
+    """How oil gets to gears.
+
+    Attributes
+    ----------
+    bath : float
+        Share of them that dips into oil. [1]
+    effectiveness : float
+        Of jets. [1]
+    """
+
+    bath: float
+    effectiveness: float
+
+
+@dataclass(frozen=True, slots=True)
 class HeatSettings:
     """How heat leaves the parts of a machine.
 
@@ -133,13 +149,13 @@ class HeatSettings:
         Temperatures of the oil; the outlet where it was measured. [K]
     flow : float
         Of oil. [m^3/s]
-    effectiveness : float
-        Of jets. [1]
+    wet : Wet
+        How oil gets to what is in no set.
+    wet_sets : mapping of str to Wet
+        How it gets to each set.
     jet_shares : mapping of str to float
         Shares of the flow that meet some of the nodes; what is left meets the others, as their heat
         demands. [1]
-    bath : float
-        Share of the gears that dips into oil. [1]
     press_fit : float
         [W/(m^2 K)]
     shaft : float
@@ -164,9 +180,9 @@ class HeatSettings:
     inlet: float
     outlet: float | None
     flow: float
-    effectiveness: float
+    wet: Wet
+    wet_sets: Mapping[str, Wet]
     jet_shares: Mapping[str, float]
-    bath: float
     press_fit: float
     shaft: float
     ambient: float
@@ -221,8 +237,7 @@ class NetworkModel:
         found: dict[str, None] = {}
         for own in self.machine.elements:
             if isinstance(own, GearSet):
-                found |= dict.fromkeys(node for mesh in own.meshes for node in mesh.nodes)
-                found |= dict.fromkeys(planet.nodes[1] for planet in own.planets if planet.bearing)
+                found |= dict.fromkeys(_wetted_nodes(own))
             elif isinstance(own, ShaftBearing):
                 found[own.key] = None
         return tuple(found)
@@ -324,13 +339,17 @@ class NetworkModel:
         own = self.settings
         oil, mixture = self.media_at(around)
         carried = self._carried(oil, sum(heat.values()))
-        wetting = Wetting(
-            around=oil if own.bath else mixture,
-            bath=own.bath,
-            jet=own.effectiveness * carried,
-            jet_shares=self._jet_shares(heat),
-            press_fit=own.press_fit,
-        )
+        shares = self._jet_shares(heat)
+
+        def wetting(wet: Wet) -> Wetting:
+            return Wetting(
+                around=oil if wet.bath else mixture,
+                bath=wet.bath,
+                jet=wet.effectiveness * carried,
+                jet_shares=shares,
+                press_fit=own.press_fit,
+            )
+
         ways = (*self._of_parts(solution, wetting), *self._of_shafts(), *self._of_oil(carried))
         return tuple(map(self._changed, ways))
 
@@ -374,21 +393,32 @@ class NetworkModel:
     def _jet_shares(self, heat: Mapping[str, float]) -> dict[str, float]:
         """The oil goes where the heat arises, unless the user says otherwise. Theory (W30)."""
         given = self.settings.jet_shares
-        own = {node: heat.get(node, 0.0) for node in self.wetted if node not in given}
+        own = {node: heat.get(node, 0.0) for node in self._met_by_jets() if node not in given}
         left = max(0.0, 1 - sum(given.values()))
         even = LEAST_SHARE * sum(own.values()) + SMALLEST_HEAT
         weights = {node: watts + even for node, watts in own.items()}
         total = sum(weights.values())
         return dict(given) | {node: left * weight / total for node, weight in weights.items()}
 
-    def _of_parts(self, solution: Solution, wetting: Wetting) -> Iterator[Link]:
+    def _met_by_jets(self) -> tuple[str, ...]:
+        """Nodes to which oil is not brought by a bath alone; all where it is nowhere else."""
+        elsewhere: set[str] = set()
+        for own in self.machine.elements:
+            if isinstance(own, GearSet) and not self.settings.wet_sets[own.key].effectiveness:
+                elsewhere |= set(_wetted_nodes(own))
+            elif isinstance(own, ShaftBearing) and not self.settings.wet.effectiveness:
+                elsewhere.add(own.key)
+        return tuple(node for node in self.wetted if node not in elsewhere) or self.wetted
+
+    def _of_parts(self, solution: Solution, wetting: Callable[[Wet], Wetting]) -> Iterator[Link]:
         housing = self.settings.housing is not None
         for own in self.machine.elements:
             if isinstance(own, GearSet):
                 result = solution.results[own.key]
-                found = gear_set_links(own, solution.state, result, wetting)
+                wet = self.settings.wet_sets[own.key]
+                found = gear_set_links(own, solution.state, result, wetting(wet))
             elif isinstance(own, ShaftBearing):
-                found = bearing_links(own, wetting)
+                found = bearing_links(own, wetting(self.settings.wet))
             else:
                 continue
             yield from (link for link in found if housing or link.cold != HOUSING)
@@ -433,6 +463,12 @@ class NetworkModel:
                     )
                 ]
             )
+
+
+def _wetted_nodes(own: GearSet) -> Iterator[str]:
+    """Gears and pins of a set."""
+    yield from (node for mesh in own.meshes for node in mesh.nodes)
+    yield from (planet.nodes[1] for planet in own.planets if planet.bearing)
 
 
 def _seats(own: object) -> Iterator[tuple[str, str]]:
