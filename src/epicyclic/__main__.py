@@ -1,6 +1,32 @@
-"""``python -m epicyclic``."""
+"""Entry point of the command: ``epicyclic`` and ``python -m epicyclic``.
 
-from epicyclic.cli.main import main
+Imports take a second or two. Until `epicyclic.cli.interrupt` watches, Ctrl-C ends the process at
+once: nothing has been begun, and libraries may swallow or wrap an exception.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+from typing import NoReturn
+
+from epicyclic.cli.exit_codes import EXIT_INTERRUPTED
+
+__all__ = ["main"]
+
+
+def main() -> None:
+    """Run the command."""
+    signal.signal(signal.SIGINT, _end)
+    from epicyclic.cli.main import main as run
+
+    run()
+
+
+def _end(number: int, frame: object) -> NoReturn:
+    os.write(2, b"Interrupted.\n")
+    os._exit(EXIT_INTERRUPTED)
+
 
 if __name__ == "__main__":
     main()

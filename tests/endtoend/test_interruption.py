@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
@@ -113,3 +114,32 @@ def test_a_terminal_shows_that_pockets_are_being_solved(tmp_path):
                 os.read(ours, 4096)
         os.close(ours)
     assert process.returncode == 130
+
+
+INTERRUPTS_ITSELF = """\
+import os, signal, sys
+
+class Interrupting:
+    def find_spec(self, name, path=None, target=None):
+        if name == "{module}":
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupting())
+sys.argv = ["epicyclic", "run", "talbot-2012"]
+from epicyclic.__main__ import main
+main()
+"""
+
+
+@pytest.mark.parametrize("module", ["click", "epicyclic.cli.main", "pydantic", "numpy"])
+def test_imports_are_left_at_once(module):
+    script = INTERRUPTS_ITSELF.format(module=module)
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.returncode == 130
+    assert done.stdout == ""
+    assert done.stderr.strip() == "Interrupted."
+
+
+def test_the_command_is_the_module():
+    (command,) = (point for point in entry_points(group="console_scripts", name="epicyclic"))
+    assert command.value == "epicyclic.__main__:main"
