@@ -74,8 +74,12 @@ __all__ = [
     "describe_range",
     "format_number",
     "from_pint",
+    "in_unit",
+    "one_of",
+    "pure_number",
     "range_remedy",
     "registry",
+    "with_unit",
 ]
 
 PLAIN_NUMBERS = 1e7
@@ -163,6 +167,39 @@ def from_pint(value: Any) -> tuple[float, str] | None:
         return float(value.magnitude), str(value.units)
     except (TypeError, ValueError):
         return None
+
+
+def with_unit(number: float, unit: str) -> Any:
+    """A pint quantity."""
+    return registry().Quantity(number, unit)
+
+
+def one_of(unit: str) -> Any:
+    """One `unit` as a pint quantity; raises what pint raises."""
+    return registry().Quantity(1.0, _parse_unit(unit))
+
+
+def in_unit(value: Any, unit: str) -> float:
+    """A pint quantity, or a number, in `unit`; radians count as numbers.
+
+    Raises
+    ------
+    TypeError
+        If its dimension is another one.
+    """
+    quantity = value if hasattr(value, "magnitude") else with_unit(value, "")
+    return float(quantity.to(unit).magnitude)
+
+
+def pure_number(value: Any) -> float:
+    """The value of a number or pint quantity without dimension; angles are in radians.
+
+    Raises
+    ------
+    TypeError
+        If it has one.
+    """
+    return in_unit(value, "")
 
 
 class _UnitError(ValueError):

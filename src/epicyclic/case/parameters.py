@@ -22,7 +22,7 @@ from epicyclic.case.nearest import did_you_mean
 from epicyclic.errors import InputError, Problem
 from epicyclic.units import Quantity
 
-__all__ = ["Parameter", "make_parameters", "parameter_of"]
+__all__ = ["Parameter", "is_continuous", "make_parameters", "parameter_of"]
 
 OFF_OPEN_BOUND = 1e-6
 """Distance kept from a bound that is no value itself, over that of the start value. [1]"""
@@ -96,7 +96,7 @@ def parameter_of(case: CaseTable, key: str, varied: Collection[str] = ()) -> Par
         remedy = did_you_mean(key, known_keys(case)) or "See 'epicyclic init' for keys."
         return Problem(key, "", "is not a known key.", remedy)
     quantity = quantity_of(*field)
-    if not _is_number(field, quantity):
+    if not is_continuous(field, quantity):
         return Problem(key, "", "holds no continuous number.", "Fit a key that does.")
     if key in varied:
         return Problem(key, "", "is given by a column of the table.", "Fit another key.")
@@ -109,7 +109,8 @@ def parameter_of(case: CaseTable, key: str, varied: Collection[str] = ()) -> Par
     return Parameter(key, "" if quantity is None else quantity.display, start, low, high)
 
 
-def _is_number(field: tuple[Any, tuple[Any, ...]], quantity: Quantity | None) -> bool:
+def is_continuous(field: tuple[Any, tuple[Any, ...]], quantity: Quantity | None) -> bool:
+    """True for keys that hold a number which does not count."""
     annotation = field[0]
     if is_array(annotation) or is_whole_number(annotation) or table_of(annotation) is not None:
         return False

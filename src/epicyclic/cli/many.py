@@ -53,8 +53,27 @@ SHOWN_FAILURES = 10
     "--vary",
     metavar="KEY=VALUES",
     multiple=True,
-    required=True,
     help='a,b,c or start:stop:count, as in "operation.speed=1000:4000:4 rpm".',
+)
+@click.option(
+    "--vary-together",
+    "together",
+    metavar="KEY=VALUES; KEY=VALUES",
+    multiple=True,
+    help='Keys whose values change together, as in "sun.teeth=30,33; ring.teeth=84,90".',
+)
+@click.option(
+    "--points",
+    metavar="FILE.csv",
+    type=click.Path(path_type=Path),
+    help='A point in each row, a key in each column: "gears.normal_module [mm]".',
+)
+@click.option(
+    "--link",
+    "links",
+    metavar="KEY=EXPRESSION",
+    multiple=True,
+    help='A key that follows from others, as in "ring.teeth = sun.teeth + 2 * planet.teeth".',
 )
 @click.option(
     "-o", "--output", required=True, type=click.Path(path_type=Path), help=".nc, .csv or .parquet"
@@ -62,19 +81,36 @@ SHOWN_FAILURES = 10
 @shard_option
 @runner_options
 def sweep(
-    case: str, changes: tuple[str, ...], vary: tuple[str, ...], output: Path, runner: Runner
+    case: str,
+    changes: tuple[str, ...],
+    vary: tuple[str, ...],
+    together: tuple[str, ...],
+    points: Path | None,
+    links: tuple[str, ...],
+    output: Path,
+    runner: Runner,
 ) -> None:
     """Compute the full product of the values of some keys.
+
+    Keys that change together, or the rows of a table, are one dimension of it. In the expression
+    of a key, the key itself is its value in the case, as is case(KEY) of any other.
 
     Finished points are kept in a file beside OUTPUT that ends in .partial, so that an interrupted
     sweep goes on where it stopped when the same command is given again.
     """
     from epicyclic.sweeps.dataset import check_output
-    from epicyclic.sweeps.plan import make_plan, parse_vary
+    from epicyclic.sweeps.plan import make_plan, parse_links, parse_together, parse_vary
+    from epicyclic.sweeps.points import columns_of
 
     loaded = load_with(case, changes)
     check_output(output)
-    plan = make_plan(loaded, parse_vary(loaded, vary))
+    plan = make_plan(
+        loaded,
+        parse_vary(loaded, vary),
+        together=parse_together(loaded, together),
+        points=None if points is None else columns_of(points),
+        links=parse_links(links),
+    )
     compute(plan, output, runner, sweep_writer(plan, output))
 
 

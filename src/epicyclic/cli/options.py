@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from functools import wraps
 from pathlib import Path
@@ -81,7 +82,8 @@ def set_option_for(what: str, example: str) -> Callable[[Any], Any]:
         "changes",
         metavar="KEY=VALUE",
         multiple=True,
-        help=f'Change a key of {what}, as in --set "{example}". An empty value removes the key.',
+        help=f'Change a key of {what}, as in --set "{example}". An empty value removes the key; '
+        "{sun,ring}.teeth are two keys.",
     )
 
 
@@ -132,7 +134,19 @@ def parse_changes(options: Sequence[str]) -> dict[str, Any]:
                 )
             )
         else:
-            changes[key.strip()] = parse_value(text.strip()) if text.strip() else None
+            value = parse_value(text.strip()) if text.strip() else None
+            changes |= dict.fromkeys(_alternatives(key.strip()), value)
     if problems:
         raise InputError(problems, "the command")
     return changes
+
+
+def _alternatives(key: str) -> list[str]:
+    """The keys that braces stand for: ``{sun,ring}.teeth``."""
+    match = re.fullmatch(r"(.*?)\{([^{}]*)\}(.*)", key)
+    if match is None:
+        return [key]
+    start, names, end = match.groups()
+    return [
+        f"{start}{name.strip()}{rest}" for name in names.split(",") for rest in _alternatives(end)
+    ]

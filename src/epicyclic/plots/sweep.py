@@ -64,12 +64,18 @@ def sweep_line(data: xr.Dataset) -> str:
     """What was varied, and the operating point with the rest."""
     operation = dict(json.loads(data.attrs["case"])["operation"])
     spans = []
-    for key in map(str, data["total"].dims):
+    for key in map(str, [*data["total"].dims, *_with_dimensions(data)]):
         spans.append(f"{key} {_span(data[key])}")
         table, _, name = key.partition(".")
         if table == "operation" and name in operation:
             operation[name] = f"varied {name.rpartition('_')[2]}"
     return f"{'; '.join(spans)}; else {operating_line(operation)}"
+
+
+def _with_dimensions(data: xr.Dataset) -> list[str]:
+    """Keys that change with a dimension or follow from it."""
+    keys = (name for name, array in data.coords.items() if "case_key" not in array.attrs)
+    return [str(name) for name in keys if name not in data.dims]
 
 
 def plot_sweep_lines(data: xr.Dataset, name: str, ax: Axes) -> Axes:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Container
+from collections.abc import Container, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from epicyclic.builders.build import layout_of
 from epicyclic.case.operating import axis_name
 from epicyclic.errors import InputError, Problem
 from epicyclic.results.result import number_fields, versions
+from epicyclic.sweeps.axes import ROW, unit_of
 from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.plan import SweepPlan
 from epicyclic.whole_file import check_place, whole_file
@@ -43,17 +45,18 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
     """The rows of all points of `plan` over its axes.
 
     Dimensions are called as the keys. Beside each stands a coordinate of the same values with a
-    name without dots, for attributes and keywords.
+    name without dots, for attributes and keywords. Keys that change with another one, or follow
+    from others, are coordinates over those.
     """
     import xarray as xr
 
     numbers = {item.key: item for item in number_fields(layout_of(plan.case))}
     dims = tuple(axis.key for axis in plan.axes)
     coords = {}
-    for axis in plan.axes:
-        points, about = np.array(axis.coordinate), _about(axis.key, axis.unit)
-        coords[axis.key] = (axis.key, points, about)
-        coords[_plain_name(axis.key, numbers)] = (axis.key, points, about | {_CASE_KEY: axis.key})
+    for key, over, points, unit in _coordinates(plan):
+        about = _about("row of the table of points" if key == ROW else key, unit)
+        coords[key] = (over, points, about)
+        coords.setdefault(_plain_name(key, numbers), (over, points, about | {_CASE_KEY: key}))
     variables = {
         key: (dims, rows.numbers(key).reshape(plan.shape), _about(item.label, item.unit))
         for key, item in numbers.items()
@@ -67,6 +70,25 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
         column = np.array(values, dtype=object).reshape(plan.shape)
         variables[key] = (dims, column, _about(label, ""))
     return xr.Dataset(variables, coords, _attributes(plan, rows))
+
+
+def _coordinates(plan: SweepPlan) -> Iterator[tuple[str, tuple[str, ...], Any, str]]:
+    """Key, dimensions, values and unit of all that is varied, and of what follows from it."""
+    for axis in plan.axes:
+        for part in (replace(axis, together=()), *axis.together):
+            yield part.key, (axis.key,), np.array(part.coordinate), part.unit
+    for key in plan.links:
+        behind = plan.axes_behind(key)
+        shape = tuple(
+            plan.shape[number] if number in behind else 1 for number in range(len(plan.shape))
+        )
+        values = [
+            plan.point(int(np.ravel_multi_index(place, plan.shape))).coordinate(key)
+            for place in np.ndindex(shape)
+        ]
+        kept = [plan.shape[number] for number in behind]
+        known = np.array([np.nan if value is None else value for value in values]).reshape(kept)
+        yield key, tuple(plan.axes[number].key for number in behind), known, unit_of(plan.case, key)
 
 
 def _plain_name(key: str, numbers: Container[str]) -> str:
@@ -100,7 +122,14 @@ def _attributes(plan: SweepPlan, rows: Rows) -> dict[str, str]:
         "conventions": "losses in W of the whole gear set, summed over planets; "
         "torque and speed of the input member",
         "pocketing": _about_pocketing(rows),
-    }
+    } | _about_links(plan)
+
+
+def _about_links(plan: SweepPlan) -> dict[str, str]:
+    """Which keys changed together, and which followed from others."""
+    groups = [[part.key for part in axis.keys] for axis in plan.axes if axis.together]
+    told = {"together": groups, "links": dict(plan.links)}
+    return {name: json.dumps(content) for name, content in told.items() if content}
 
 
 def _about_pocketing(rows: Rows) -> str:

@@ -6,51 +6,56 @@ import hashlib
 import math
 import re
 from abc import abstractmethod
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
-from itertools import islice
-from numbers import Integral, Real
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from pydantic_core import PydanticCustomError
 
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case, TrainCase, build_case
-from epicyclic.case.fields import (
-    all_keys,
-    is_array,
-    is_named,
-    is_text,
-    is_whole_number,
-    quantity_of,
-    table_of,
-)
-from epicyclic.case.keys import field_at, known_keys
-from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.fields import is_whole_number
+from epicyclic.case.keys import field_at
 from epicyclic.case.plain import plain
 from epicyclic.case.values import parse_value
-from epicyclic.case.wording import sentence, written
 from epicyclic.errors import InputError, Problem
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.status import Status
+from epicyclic.sweeps.axes import (
+    MOST_POINTS,
+    Axis,
+    listed,
+    make_axis,
+    make_group,
+    make_rows,
+    too_many,
+)
 from epicyclic.sweeps.journal import Row
+from epicyclic.sweeps.links import Point, check_links, keys_behind
 from epicyclic.sweeps.pockets import flow_tables
 from epicyclic.sweeps.runner import Plan, guarded
-from epicyclic.units import Quantity, format_number
+from epicyclic.units import format_number
 
-__all__ = ["Axis", "CasePlan", "PointList", "SweepPlan", "make_plan", "parse_vary"]
+__all__ = [
+    "Axis",
+    "CasePlan",
+    "PointList",
+    "SweepPlan",
+    "make_plan",
+    "parse_links",
+    "parse_together",
+    "parse_vary",
+]
 
 _RANGE = re.compile(
     r"\s*(?P<start>[^:,]+?)\s*:\s*(?P<stop>[^:,]+?)\s*:\s*(?P<count>\d+)\s*(?P<unit>[^:,\d][^:,]*)?"
 )
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 
-_MOST_POINTS = 1_000_000
-"""Rows of more points do not fit into memory."""
-_LARGEST_WHOLE = 2**53
-"""Larger whole numbers are no exact coordinates."""
+_TRIED = 100
+"""Points at which links are tried before anything is computed."""
 
 # Tables whose keys leave geometry alone: varied innermost, so that geometry is built once.
 _OPERATING_TABLES = (
@@ -62,28 +67,6 @@ _OPERATING_TABLES = (
     "losses",
     "thermal",
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Axis:
-    """One swept key.
-
-    Attributes
-    ----------
-    key : str
-        Dotted key of the case.
-    values : tuple
-        As a case file has them.
-    coordinate : tuple of float or str
-        The same as numbers in `unit`, or as names.
-    unit : str
-        Display unit; ``"1"`` for pure numbers, empty for names.
-    """
-
-    key: str
-    values: tuple[Any, ...]
-    coordinate: tuple[float | str, ...]
-    unit: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,19 +135,17 @@ def _files(case: Case) -> Iterator[str]:
 
 @dataclass(frozen=True, slots=True)
 class SweepPlan(CasePlan):
-    """A sweep: a case and its axes."""
+    """A sweep: a case, its axes, and the keys that follow from others."""
 
     kind: ClassVar[str] = "sweep"
     axes: tuple[Axis, ...] = ()
+    links: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def again(cls, content: Mapping[str, Any], source: str) -> Self:
         """The plan that `describe` described."""
-        axes = [
-            Axis(axis["key"], tuple(axis["values"]), tuple(axis["coordinate"]), axis["unit"])
-            for axis in content["axes"]
-        ]
-        return cls(build_case(content["case"], {}, source), tuple(axes))
+        case = build_case(content["case"], {}, source)
+        return cls(case, tuple(map(Axis.again, content["axes"])), content.get("links", {}))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -176,21 +157,53 @@ class SweepPlan(CasePlan):
         """Number of cases."""
         return int(np.prod(self.shape, dtype=int))
 
-    def changes(self, index: int) -> dict[str, Any]:
-        """The keys that case number `index`, counted with the last axis fastest, changes."""
+    def point(self, index: int) -> Point:
+        """Case number `index`, counted with the last axis fastest."""
         position = np.unravel_index(index, self.shape)
-        return {axis.key: axis.values[i] for axis, i in zip(self.axes, position, strict=True)}
+        varied = {
+            part.key: part.values[i]
+            for axis, i in zip(self.axes, position, strict=True)
+            for part in axis.keys
+        }
+        return Point(self.case, varied, self.links)
+
+    def changes(self, index: int) -> dict[str, Any]:
+        """The keys that case number `index` changes; raises `InputError` if a link has no value."""
+        return self.point(index).followed()
+
+    def axes_behind(self, key: str) -> list[int]:
+        """Numbers of the axes that the linked `key` follows."""
+        behind = keys_behind(key, self.links)
+        return [
+            number
+            for number, axis in enumerate(self.axes)
+            if behind.intersection(part.key for part in axis.keys)
+        ]
 
     def order(self) -> list[int]:
         """Indices of all cases, those that share geometry next to each other."""
-        inner = [axis.key.split(".")[0] in _OPERATING_TABLES for axis in self.axes]
+        outer = {
+            number
+            for key in self.links
+            if not _is_operating(key)
+            for number in self.axes_behind(key)
+        }
+        inner = [
+            number not in outer and all(_is_operating(part.key) for part in axis.keys)
+            for number, axis in enumerate(self.axes)
+        ]
         by_cost = sorted(range(len(self.axes)), key=lambda i: inner[i])
         numbers = np.arange(self.size).reshape(self.shape)
         return [int(index) for index in numbers.transpose(by_cost).ravel()]
 
     def describe(self) -> dict[str, Any]:
-        """The case and the axes."""
-        return {**CasePlan.describe(self), "axes": [asdict(axis) for axis in self.axes]}
+        """The case, the axes and the links."""
+        content = {**CasePlan.describe(self), "axes": [axis.describe() for axis in self.axes]}
+        return content | ({"links": dict(self.links)} if self.links else {})
+
+
+def _is_operating(key: str) -> bool:
+    return key.split(".")[0] in _OPERATING_TABLES
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,7 +233,7 @@ class PointList(CasePlan):
     def _place(self, index: int) -> tuple[list[str], list[str], str]:
         torque = "operation.torque"
         changes = {key: str(value) for key, value in sorted(self.points[index].items())}
-        inner = [key for key in changes if key.split(".")[0] in _OPERATING_TABLES]
+        inner = [key for key in changes if _is_operating(key)]
         return (
             [f"{key}={text}" for key, text in changes.items() if key not in inner],
             [f"{key}={changes[key]}" for key in inner if key != torque],
@@ -228,131 +241,78 @@ class PointList(CasePlan):
         )
 
 
-def make_plan(case: Case, vary: Mapping[str, Iterable[Any]]) -> SweepPlan:
+def make_plan(
+    case: Case,
+    vary: Mapping[str, Iterable[Any]] | None = None,
+    *,
+    together: Iterable[Mapping[str, Iterable[Any]]] = (),
+    points: Mapping[str, Iterable[Any]] | None = None,
+    links: Mapping[str, str] | None = None,
+) -> SweepPlan:
     """Check what is to be varied.
 
     Parameters
     ----------
     case : PlanetaryCase or GearPairCase
-    vary : mapping of str to iterable
+    vary : mapping of str to iterable, optional
         Dotted keys to their values, as a case file has them.
+    together : iterable of mapping, optional
+        Groups of keys whose values change together.
+    points : mapping of str to iterable, optional
+        The columns of a table of points.
+    links : mapping of str to str, optional
+        Keys to expressions of others.
 
     Raises
     ------
     InputError
-        For unknown or unsuitable keys, no values, values that cannot be read, or repeated ones.
+        For unknown or unsuitable keys, no values, values that cannot be read, repeated ones, or
+        links that have no value.
     """
-    problems: list[Problem] = []
-    axes = []
-    if not vary:
-        problems.append(Problem("vary", "", "is empty.", "Give at least one key and its values."))
-    listed = {str(key): _listed(values) for key, values in vary.items()}
-    size = math.prod(len(values) for values in listed.values())
-    if size > _MOST_POINTS:  # not worth reading them
-        raise InputError([_too_many("vary", size)], "the sweep")
-    for key, values in listed.items():
-        axis, found = _make_axis(case, key, values)
-        problems += found
-        if axis is not None:
-            axes.append(axis)
+    single = {str(key): listed(values) for key, values in (vary or {}).items()}
+    groups = [
+        {str(key): listed(values) for key, values in group.items()}
+        for group in (*together, *([] if points is None else [points]))
+    ]
+    sizes = [*map(len, single.values()), *(max(map(len, it.values()), default=0) for it in groups)]
+    if not sizes:
+        problem = Problem("vary", "", "is empty.", "Give at least one key and its values.")
+        raise InputError([problem], "the sweep")
+    if math.prod(sizes) > MOST_POINTS:  # not worth reading them
+        raise InputError([too_many("vary", math.prod(sizes))], "the sweep")
+    made = [make_axis(case, key, values) for key, values in single.items()]
+    rows = [] if points is None else [make_rows(case, groups.pop())]
+    made += [*(make_group(case, group) for group in groups), *rows]
+    axes = tuple(axis for axis, _ in made if axis is not None)
+    problems = [problem for _, found in made for problem in found]
+    problems += _repeated([*single, *(key for group in groups for key in group), *(points or {})])
+    linked = {str(key): str(text) for key, text in (links or {}).items()}
+    problems += check_links(case, linked, {part.key for axis in axes for part in axis.keys})
     if problems:
         raise InputError(problems, "the sweep")
-    return SweepPlan(case, tuple(axes))
+    plan = SweepPlan(case, axes, linked)
+    _check_first(plan)
+    return plan
 
 
-def _listed(values: Any) -> list[Any]:
-    """`values` as a list; anything that is one value by itself as a list of it."""
-    if isinstance(values, str | Mapping):
-        return [values]
-    try:
-        return list(islice(values, _MOST_POINTS + 1))
-    except TypeError:
-        return [values]
+def _repeated(keys: Iterable[str]) -> list[Problem]:
+    counts = Counter(map(str, keys))
+    again = (key for key, count in counts.items() if count > 1)
+    return [Problem(key, "", "is varied twice.", "Name a key once.") for key in again]
 
 
-def _too_many(key: str, count: int) -> Problem:
-    allowed = f"must have {_MOST_POINTS} points or fewer, not {count}."
-    return Problem(key, "", allowed, "Give fewer values.")
-
-
-def _make_axis(case: Case, key: str, values: list[Any]) -> tuple[Axis | None, list[Problem]]:
-    field = field_at(case, key)
-    if field is None:
-        remedy = did_you_mean(key, known_keys(case)) or "See 'epicyclic init' for the keys."
-        return None, [Problem(key, "", "is not a known key.", remedy)]
-    unsuitable = _unsuitable(key, *field)
-    if unsuitable is not None:
-        return None, [unsuitable]
-    if not values:
-        return None, [Problem(key, "", "has no values.", "Give at least one.")]
-    quantity = quantity_of(*field)
-    if is_text(field[0]):  # a name may be a bare number
-        values = [str(value) if isinstance(value, Integral) else value for value in values]
-    coordinate: list[float | str] = []
-    problems = []
-    for value in values:
+def _check_first(plan: SweepPlan) -> None:
+    """Raise `InputError` if links have no value at any of the first points."""
+    first: InputError | None = None
+    for index in range(min(plan.size, _TRIED) if plan.links else 0):
         try:
-            coordinate.append(_coordinate(value, quantity))
-        except PydanticCustomError as error:
-            remedy = str((error.context or {}).get("remedy", ""))
-            problems.append(
-                Problem(
-                    key, written(value), sentence(error.message(), capital=False), sentence(remedy)
-                )
-            )
-    if not problems and len(set(coordinate)) < len(coordinate):
-        problems.append(Problem(key, "", "has the same value twice.", "Give each value once."))
-    if problems:
-        return None, _one_for_alike(problems)
-    if any(isinstance(item, str) for item in coordinate):
-        coordinate = [str(item) for item in coordinate]
-        unit = ""
-    else:
-        unit = "1" if quantity is None else quantity.display
-    return Axis(key, tuple(map(plain, values)), tuple(coordinate), unit), []
-
-
-def _one_for_alike(problems: Sequence[Problem]) -> list[Problem]:
-    """One problem for all values that have the same."""
-    alike: dict[str, list[Problem]] = {}
-    for problem in problems:
-        alike.setdefault(problem.allowed, []).append(problem)
-    return [
-        replace(first, value=f"{first.value} and {len(others)} more") if others else first
-        for first, *others in alike.values()
-    ]
-
-
-def _unsuitable(key: str, annotation: Any, metadata: tuple[Any, ...]) -> Problem | None:
-    """Why a key cannot be an axis: it holds several values."""
-    if is_array(annotation):
-        allowed = "is a list; a sweep varies keys that hold one value."
-        return Problem(key, "", allowed, "Set it in the case, and run a sweep for each list.")
-    table = table_of(annotation)
-    if table is None or is_named(metadata):
-        return None
-    allowed = "is a table; a sweep varies keys that hold one value."
-    return Problem(
-        key, "", allowed, f"Vary keys of it, such as {next(all_keys(table, f'{key}.'))}."
-    )
-
-
-def _coordinate(value: Any, quantity: Quantity | None) -> float | str:
-    if quantity is not None:
-        return quantity.to_display(quantity.parse(value))
-    if isinstance(value, bool | np.bool):
-        return str(bool(value)).lower()
-    if isinstance(value, str):
-        return value
-    if isinstance(value, Integral):
-        whole = int(value)
-        if abs(whole) <= _LARGEST_WHOLE:
-            return whole
-    elif isinstance(value, Real):
-        return float(value)
-    raise PydanticCustomError(
-        "axis", "is no value of one key", {"remedy": "give numbers, text or names"}
-    )
+            plan.changes(index)
+        except InputError as error:
+            first = first or error
+        else:
+            return
+    if first is not None:
+        raise InputError(first.problems, "the sweep")
 
 
 def parse_vary(
@@ -396,12 +356,42 @@ def parse_vary(
                 Problem(key, f'"{text}"', f"{error}.", "Write start:stop:count in one unit.")
             )
         size = math.prod(map(len, vary.values()))
-        if size > _MOST_POINTS:
-            problems.append(_too_many(name, size))
+        if size > MOST_POINTS:
+            problems.append(too_many(name, size))
             break
     if problems:
         raise InputError(problems, "the command")
     return vary
+
+
+def parse_together(case: Case, options: Sequence[str]) -> list[dict[str, list[Any]]]:
+    """The options ``key=a,b; key=c,d`` of a command line. Errors as for `parse_vary`."""
+    example = "planet.count=3,4; operation.speed"
+    groups = ([part for part in option.split(";") if part.strip()] for option in options)
+    return [parse_vary(case, group, "--vary-together", example) for group in groups]
+
+
+def parse_links(options: Sequence[str]) -> dict[str, str]:
+    """The options ``key = expression`` of a command line.
+
+    Raises
+    ------
+    InputError
+        If an option is not of that form, or names a key again.
+    """
+    links: dict[str, str] = {}
+    problems = []
+    for option in options:
+        key, equals, text = (part.strip() for part in option.partition("="))
+        if not equals or not key or not text:
+            example = 'For example --link "ring.teeth = sun.teeth + 2 * planet.teeth".'
+            problems.append(Problem("--link", f'"{option}"', "must be key = expression.", example))
+        elif key in links:
+            problems.append(Problem("--link", f'"{option}"', f"links {key} again.", "Keep one."))
+        links[key] = text
+    if problems:
+        raise InputError(problems, "the command")
+    return links
 
 
 def _values(case: Case, key: str, text: str) -> Iterator[Any]:
@@ -422,8 +412,8 @@ def _range(case: Case, key: str, match: re.Match[str]) -> Iterator[Any]:
     count = int(match["count"])
     if count < 1:
         raise ValueError("the count must be 1 or more")
-    if count > _MOST_POINTS:
-        raise ValueError(f"the count must be {_MOST_POINTS} or less")
+    if count > MOST_POINTS:
+        raise ValueError(f"the count must be {MOST_POINTS} or less")
     units = {unit for unit in (start[2], stop[2], (match["unit"] or "").strip()) if unit}
     if len(units) > 1:
         raise ValueError(f"the units {' and '.join(sorted(units))} differ")

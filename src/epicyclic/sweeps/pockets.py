@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from epicyclic.analysis.solve import pocket_flow_numbers
@@ -38,11 +39,11 @@ def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = No
     are done, and where.
     """
     bound = plan.case.numerics.pocket_interpolation
-    samples = {_flow(changes): changes for changes in map(plan.changes, range(plan.size))}
+    samples = {_flow(changes): changes for changes in _changes(plan, range(plan.size))}
     alike = {tuple(changes.get(key) for key in _LIKE_SPEED) for changes in samples.values()}
     if bound == 0 or len(alike) < _FEWEST:
         return {}
-    wanted = set(map(_flow, map(plan.changes, indices)))
+    wanted = set(map(_flow, _changes(plan, indices)))
     asked: dict[FlowFamily, set[float]] = defaultdict(set)
     read: set[FlowFamily] = set()
     for flow, changes in samples.items():
@@ -60,6 +61,13 @@ def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = No
         if family in read and len(numbers) >= _FEWEST
     }
     return make_tables(many, bound, threads)
+
+
+def _changes(plan: CasePlan, indices: Iterable[int]) -> Iterator[dict[str, Any]]:
+    """What the points change; those that cannot be made report it themselves."""
+    for index in indices:
+        with suppress(InputError):
+            yield plan.changes(index)
 
 
 def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:

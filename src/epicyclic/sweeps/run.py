@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 from epicyclic.case.case import Case
 from epicyclic.sweeps.dataset import to_dataset
 from epicyclic.sweeps.plan import make_plan
+from epicyclic.sweeps.points import columns_of
 from epicyclic.sweeps.runner import Progress, Runner
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 __all__ = ["sweep"]
@@ -19,23 +21,35 @@ __all__ = ["sweep"]
 
 def sweep(
     case: Case,
-    vary: Mapping[str, Iterable[Any]],
+    vary: Mapping[str, Iterable[Any]] | None = None,
     *,
+    together: Iterable[Mapping[str, Iterable[Any]]] = (),
+    points: str | Path | Mapping[str, Iterable[Any]] | pd.DataFrame | None = None,
+    links: Mapping[str, str] | None = None,
     jobs: int | None = None,
     dask: str | None = None,
     shard: tuple[int, int] | None = None,
     journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Losses over the full product of the values of some keys.
+    """Losses over the full product of the values of some keys, or groups of keys.
 
     Parameters
     ----------
     case : PlanetaryCase or GearPairCase
         Every key that is not varied stays as it is here.
-    vary : mapping of str to iterable
+    vary : mapping of str to iterable, optional
         Dotted keys to values, ``{"operation.speed": ["1000 rpm", "2000 rpm"]}``: numbers, text
         with units, choices, names.
+    together : iterable of mapping, optional
+        Groups of keys with as many values each, which change together. Each group is one
+        dimension, named after its first key.
+    points : str, Path, mapping or pandas.DataFrame, optional
+        A table of points, one in each row, by its columns: a ``.csv`` file, or the same in memory.
+        It is the dimension ``row``.
+    links : mapping of str to str, optional
+        Keys to expressions of others, ``{"ring.teeth": "sun.teeth + 2 * planet.teeth"}``. In that
+        of a key, the key itself is its value in the case, as is ``case(KEY)`` of any.
     jobs : int, optional
         Worker processes. Default: one for each core if the work is worth it, else none.
     dask : str, optional
@@ -53,16 +67,18 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        One dimension for each key, every number with its unit; points that failed have NaN, the
-        status ``"failed"`` and the reason in ``message``. Which variables there are depends on
-        the kind of the case only.
+        One dimension for each key or group, every number with its unit; points that failed have
+        NaN, the status ``"failed"`` and the reason in ``message``. Which variables there are
+        depends on the kind of the case only. Keys that change with others or follow from them are
+        coordinates; the attributes ``together`` and ``links`` name them.
 
     Raises
     ------
     InputError
-        If a key cannot be varied, a value cannot be read, or the journal is that of another
-        sweep.
+        If a key cannot be varied, a value cannot be read, a link has no value, or the journal is
+        that of another sweep.
     """
     runner = Runner(jobs, dask, shard, journal, progress)
-    plan = make_plan(case, vary)
+    table = points if points is None or isinstance(points, Mapping) else columns_of(points)
+    plan = make_plan(case, vary, together=together, points=table, links=links)
     return to_dataset(plan, runner.run(plan))
