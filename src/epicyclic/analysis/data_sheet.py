@@ -10,10 +10,11 @@ from epicyclic.case import build
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.listed_set import gear_of, meshes_of
-from epicyclic.case.thickness import allowance_shift
+from epicyclic.case.thickness import allowance_shift, allowances, tolerances_of
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet
 from epicyclic.geometry import tooth_measures as measures
+from epicyclic.geometry.accuracy import FlankTolerances
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.profile_shifts import recommended_backlash
@@ -41,6 +42,10 @@ class GearSheet:
         k and W_k [m]; None for a helical ring, and where a span does not touch the flanks.
     pins : tuple of (float, float) or None
         D_M and M_d [m]; None where balls do not touch the flanks.
+    allowances : tuple of (float, float) or None
+        A_sne and A_sni, where the case states them. [m]
+    tolerances : FlankTolerances or None
+        By the class that the case states.
     """
 
     gear: Gear
@@ -50,6 +55,8 @@ class GearSheet:
     roughness: float
     span: tuple[int, float] | None
     pins: tuple[float, float] | None
+    allowances: tuple[float, float] | None
+    tolerances: FlankTolerances | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,6 +166,8 @@ def _gear_sheet(gear: Gear, table: GearTable) -> GearSheet:
         table.roughness,
         _span(gear, table),
         _pins(gear, table),
+        allowances(table, rack),
+        tolerances_of(gear, table),
     )
 
 

@@ -12,7 +12,7 @@ from epicyclic.case import build
 from epicyclic.case.backlash import ROUNDING, Tables, check_backlash
 from epicyclic.case.flank_checks import check_flanks
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring
-from epicyclic.case.thickness import check_measure, thickness_key
+from epicyclic.case.thickness import check_fit, check_measure, thickness_key
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 from epicyclic.geometry.assembly import nearest_admissible_angle, smallest_planet_gap
@@ -63,7 +63,7 @@ def check_gears(gears: Gears, tables: Tables) -> tuple[dict[str, Gear], list[Pro
         except ValueError:
             problems.append(_no_involute_for_thickness(name, table, gears))
             continue
-        found = _check_tooth(gear, table) or check_measure(gear, table)
+        found = _check_tooth(gear, table) or check_measure(gear, table) or check_fit(gear, table)
         if found is None:
             sound[name] = gear
         else:

@@ -334,12 +334,7 @@ class _Solver:
             )
         self.shifts[name] = shift
         self.changed[name] = self.tables[name].model_copy(
-            update={
-                key: None
-                for group in GearTable.AT_MOST_ONE
-                for choice in group
-                for key in choice.split("+")
-            }
+            update={key: None for choice in GearTable.THICKNESS for key in choice.split("+")}
             | {"profile_shift_coefficient": shift}
         )
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from epicyclic.case.schema import NamedMaterial, Roughness, ShortLength, Table
+from epicyclic.case.schema import NamedMaterial, Roughness, ShortLength, Table, ThicknessFit
 from epicyclic.units import (
     Angle,
     Deviation,
@@ -147,13 +147,15 @@ class GearTable(Table):
         "tool_tip_radius": None,
         "micro_geometry": None,
     }
+    THICKNESS: ClassVar[tuple[str, ...]] = (
+        "tooth_thickness+thickness_diameter",
+        "span_measurement+teeth_in_span",
+        "dimension_over_pins+measuring_pin_diameter",
+        "profile_shift_coefficient",
+    )
     AT_MOST_ONE: ClassVar[tuple[tuple[str, ...], ...]] = (
-        (
-            "tooth_thickness+thickness_diameter",
-            "span_measurement+teeth_in_span",
-            "dimension_over_pins+measuring_pin_diameter",
-            "profile_shift_coefficient",
-        ),
+        THICKNESS,
+        ("tooth_thickness_allowance", "tooth_thickness_fit"),
     )
 
     teeth: int = Field(ge=LEAST_TEETH, le=MOST_TEETH, description="Number of teeth.")
@@ -189,6 +191,11 @@ class GearTable(Table):
         description="Upper and lower allowance, A_sne and A_sni of DIN 3967, negative; the teeth "
         "are thinner by their mean.",
     )
+    tooth_thickness_fit: ThicknessFit | None = Field(
+        default=None,
+        description='Series of both by DIN 3967 instead, "27cd": tolerance 21 to 30, allowance a '
+        "to h.",
+    )
     profile_shift_coefficient: Number | None = Field(
         default=None,
         ge=-3,
@@ -200,6 +207,12 @@ class GearTable(Table):
         description='rms roughness Rq of the flanks, also as "Ra 0.4 um" or "Rz 3 um", or a finish.'
     )
     material: NamedMaterial = Field(default=as_stated("steel"), description="A name or a table.")
+    accuracy_class: int | None = Field(
+        default=None,
+        ge=1,
+        le=11,
+        description="Flank tolerance class of ISO 1328-1:2013: its slopes are uncertain by it.",
+    )
     tool_tip_radius: ShortLength | None = Field(
         default=None,
         description="Rounding of the cutting tool's tip, which leaves the root fillet. Default: "
@@ -212,7 +225,7 @@ class GearTable(Table):
     @property
     def states_thickness(self) -> bool:
         """True if it says how thick its teeth are."""
-        first = (choice.split("+")[0] for group in GearTable.AT_MOST_ONE for choice in group)
+        first = (choice.split("+")[0] for choice in GearTable.THICKNESS)
         return any(getattr(self, key) is not None for key in first)
 
 

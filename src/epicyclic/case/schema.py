@@ -19,6 +19,7 @@ from epicyclic import library
 from epicyclic.case.fields import Named, to_inputs
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.short_oil import ShortOil, whole_oil
+from epicyclic.geometry.accuracy import named_fit
 from epicyclic.geometry.roughness import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity, Oil
 from epicyclic.thermal.solids import Solid
@@ -95,6 +96,25 @@ class _Roughness(Quantity):
 
 Roughness = Annotated[
     float, _Roughness("an rms roughness", "m", "um", low=0.0, high=100.0, open_low=True)
+]
+
+
+def _known_fit(value: object) -> str:
+    """The series of DIN 3967 as the standard writes them."""
+    fit = named_fit(value) if isinstance(value, str) else None
+    if fit is None:
+        raise PydanticCustomError(
+            "preset",
+            "is no series of DIN 3967; it must be a tolerance series from 21 to 30 with an "
+            "allowance series a, ab, b, bc, c, cd, d, e, f, g or h",
+            {"remedy": 'For example "25cd"'},
+        )
+    return fit
+
+
+ThicknessFit = Annotated[
+    str,
+    BeforeValidator(_known_fit, json_schema_input_type=str),
 ]
 
 

@@ -9,6 +9,12 @@ from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 from epicyclic.geometry import tooth_measures as measures
+from epicyclic.geometry.accuracy import (
+    LARGEST_FIT,
+    FlankTolerances,
+    fit_allowances,
+    flank_tolerances,
+)
 from epicyclic.geometry.gear import (
     BasicRack,
     Gear,
@@ -16,7 +22,16 @@ from epicyclic.geometry.gear import (
     half_angle_from_thickness,
 )
 
-__all__ = ["allowance_shift", "check_measure", "fitting", "half_angle", "thickness_key"]
+__all__ = [
+    "allowance_shift",
+    "allowances",
+    "check_fit",
+    "check_measure",
+    "fitting",
+    "half_angle",
+    "thickness_key",
+    "tolerances_of",
+]
 
 DIGITS = 4
 """Of the profile shifts that messages propose: 0.1 um at a module of 1.5 mm."""
@@ -59,12 +74,25 @@ def _stated(table: GearTable, rack: BasicRack, *, internal: bool) -> float:
     )
 
 
+def allowances(table: GearTable, rack: BasicRack) -> tuple[float, float] | None:
+    """Upper and lower allowance of the tooth thickness, A_sne and A_sni. [m]"""
+    if table.tooth_thickness_fit is not None:
+        diameter = min(table.teeth * rack.transverse_module, LARGEST_FIT)
+        return fit_allowances(table.tooth_thickness_fit, diameter)
+    if table.tooth_thickness_allowance is None:
+        return None
+    upper, lower = table.tooth_thickness_allowance
+    return upper, lower
+
+
 def allowance_shift(table: GearTable, rack: BasicRack) -> float:
     """Profile shift of the mean tooth-thickness allowance. DIN 3960. Theory (G52). [1]"""
-    if table.tooth_thickness_allowance is None:
-        return 0.0
-    mean = sum(table.tooth_thickness_allowance) / 2
-    return mean / (2 * rack.normal_module * math.tan(rack.normal_pressure_angle))
+    stated = allowances(table, rack)
+    return (
+        0.0
+        if stated is None
+        else sum(stated) / (4 * rack.normal_module * math.tan(rack.normal_pressure_angle))
+    )
 
 
 def thickness_key(name: str, table: GearTable) -> str:
@@ -100,6 +128,28 @@ def _length(key: str, value: float, *, up: bool) -> str:
     """A key with its length, rounded to a micrometre towards thinner teeth."""
     step = math.ceil if up else math.floor
     return f'{key} = "{step(value * 1e6) / 1e3:.3f} mm"'
+
+
+def tolerances_of(gear: Gear, table: GearTable) -> FlankTolerances | None:
+    """Tolerances of the flanks of a gear by its class."""
+    if table.accuracy_class is None:
+        return None
+    return flank_tolerances(
+        table.accuracy_class, gear.rack.normal_module, 2 * gear.reference_radius, gear.face_width
+    )
+
+
+def check_fit(gear: Gear, table: GearTable) -> Problem | None:
+    """DIN 3967 has no allowances for larger gears."""
+    if table.tooth_thickness_fit is None or 2 * gear.reference_radius <= LARGEST_FIT:
+        return None
+    return Problem(
+        f"{gear.name}.tooth_thickness_fit",
+        f'"{table.tooth_thickness_fit}"',
+        f"is for reference diameters up to {millimetres(LARGEST_FIT)}, and this one has "
+        f"{millimetres(2 * gear.reference_radius)}.",
+        "Give tooth_thickness_allowance.",
+    )
 
 
 def check_measure(gear: Gear, table: GearTable) -> Problem | None:

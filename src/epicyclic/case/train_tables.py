@@ -180,8 +180,8 @@ class GivenPair(Table):
 class ListedGear(PairGear):
     """A gear of a listed set whose losses are computed."""
 
-    EXACTLY_ONE = GearTable.AT_MOST_ONE
-    AT_MOST_ONE = ()
+    EXACTLY_ONE = (GearTable.THICKNESS,)
+    AT_MOST_ONE = GearTable.AT_MOST_ONE[1:]
 
     body: str | None = Field(
         default=None, description="Gears with the same body turn together. Default: its own."

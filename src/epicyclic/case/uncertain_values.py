@@ -19,10 +19,11 @@ from epicyclic.case.lubrication import FACTOR_KEY, SHARE_KEY, assumed_factor
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.parameters import Parameter, parameter_of
 from epicyclic.case.plain import value_at
+from epicyclic.case.slopes import slope_limit
 from epicyclic.case.uncertainty_tables import DistributionTable
 from epicyclic.case.wording import dotted, path_of, sentence, written
 from epicyclic.errors import Problem
-from epicyclic.units import CELSIUS, Quantity, format_number
+from epicyclic.units import CELSIUS, MICROMETRE, Quantity, format_number
 
 __all__ = [
     "MODEL_FORM",
@@ -35,6 +36,7 @@ __all__ = [
 
 MODEL_FORM = "model_form."
 """What keys of [uncertainty] begin with that are no keys of the case, but kinds of losses."""
+_MICROMETRE = 1e-6
 Kind = Literal["normal", "uniform", "lognormal"]
 
 
@@ -235,6 +237,9 @@ def _assumed(case: CaseTable, key: str) -> UncertainValue | None:
         return None
     if key.endswith(FACTOR_KEY):
         return _assumed_factor(case, key)
+    limit = slope_limit(case, key)
+    if limit is not None:
+        return _assumed_slope(case, key, limit)
     for assumption in _assumptions():
         if assumption.holds_for(key):
             parameter = parameter_of(case, key)
@@ -243,6 +248,16 @@ def _assumed(case: CaseTable, key: str) -> UncertainValue | None:
             made = _made(case, parameter, assumption.table, assumption.source)
             return made if isinstance(made, UncertainValue) else None
     return None
+
+
+def _assumed_slope(case: CaseTable, key: str, limit: float) -> UncertainValue:
+    """The slope of a flank, anywhere within its tolerance."""
+    value = (value_of(case, key) or 0.0) / _MICROMETRE
+    spread = limit / _MICROMETRE
+    source = "tolerance of the accuracy class, ISO 1328-1:2013; all values within it alike"
+    return UncertainValue(
+        key, MICROMETRE.display, value, "uniform", (value - spread, value + spread), source=source
+    )
 
 
 def _assumed_factor(case: CaseTable, key: str) -> UncertainValue | None:

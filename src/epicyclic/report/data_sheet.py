@@ -27,6 +27,14 @@ def _mm(value: float) -> str:
     return f"{MM * value:.3f}"
 
 
+def _allowance(one: GearSheet, which: int) -> str:
+    return MISSING if one.allowances is None else f"{UM * one.allowances[which]:.1f}"
+
+
+def _tolerance(one: GearSheet, name: str) -> str:
+    return MISSING if one.tolerances is None else f"{UM * getattr(one.tolerances, name):.1f}"
+
+
 _GEAR_ROWS: tuple[_GearRow, ...] = (
     ("teeth z", "", lambda one: str(one.gear.teeth)),
     ("profile shift x, nominal", "", lambda one: f"{one.nominal_shift:z.4f}"),
@@ -46,6 +54,13 @@ _GEAR_ROWS: tuple[_GearRow, ...] = (
     ("span W_k", "mm", lambda one: _mm(one.span[1]) if one.span else MISSING),
     ("measuring ball D_M", "mm", lambda one: _mm(one.pins[0]) if one.pins else MISSING),
     ("dimension over balls M_d", "mm", lambda one: _mm(one.pins[1]) if one.pins else MISSING),
+    ("allowance A_sne", "um", lambda one: _allowance(one, 0)),
+    ("allowance A_sni", "um", lambda one: _allowance(one, 1)),
+    ("single pitch f_pT, ISO 1328-1", "um", lambda one: _tolerance(one, "single_pitch")),
+    ("total profile F_alphaT", "um", lambda one: _tolerance(one, "profile")),
+    ("profile slope f_HalphaT", "um", lambda one: _tolerance(one, "profile_slope")),
+    ("total helix F_betaT", "um", lambda one: _tolerance(one, "helix")),
+    ("helix slope f_HbetaT", "um", lambda one: _tolerance(one, "helix_slope")),
     ("roughness Rq", "um", lambda one: f"{UM * one.roughness:.3f}"),
 )
 
@@ -105,11 +120,14 @@ def _table(
     rows: Sequence[tuple[str, str, Callable[[Any], str]]],
     columns: Sequence[Any],
 ) -> page.Table:
+    """The rows in which any column has a value."""
+    filled = ((label, unit, [text(one) for one in columns]) for label, unit, text in rows)
     return page.Table(
         ("", *names, "unit"),
         tuple(
-            (page.Cell(label), *(page.aligned(text(one)) for one in columns), page.Cell(unit))
-            for label, unit, text in rows
+            (page.Cell(label), *map(page.aligned, texts), page.Cell(unit))
+            for label, unit, texts in filled
+            if any(text != MISSING for text in texts)
         ),
         title,
     )
