@@ -97,8 +97,8 @@ def test_the_chapters_hold_what_an_engineer_asks_for(page, map_page):
         "oil", "methods", "inputs", "versions",
     ]  # fmt: skip
     assert Page(map_page).sections == [
-        "efficiency", "losses", "lines", "tables", "validity", "gears", "methods", "conventions",
-        "inputs", "versions",
+        "explorer", "efficiency", "losses", "lines", "tables", "validity", "gears", "methods",
+        "conventions", "inputs", "versions",
     ]  # fmt: skip
 
 

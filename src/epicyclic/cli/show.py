@@ -29,7 +29,7 @@ stored_argument = click.argument("source", metavar="CASE|FILE.nc")
 def report(source: str, changes: tuple[str, ...], output: Path) -> None:
     """Write a report as one file that needs nothing else: a page, or print.
 
-    FILE.nc is what run --save, map or uncertainty wrote; a CASE is solved first.
+    FILE.nc is what run --save, map, sweep or uncertainty wrote; a CASE is solved first.
     """
     from epicyclic.cli.progress import progress_bar
 

@@ -351,7 +351,7 @@ PLOTS: dict[str, Plot] = {
     "contours": Plot(
         "Where over two keys is the least loss?", _of_sweep(plot_sweep_field, fields_of, 2)
     ),
-    "parallel": Plot("Which values of all keys go with a small loss?", _sweep_points),
+    "parallel": Plot("Which values of all keys go with a small loss?", _sweep_points, size=WIDE),
 }
 """By the names that ``epicyclic plot`` takes."""
 

@@ -126,7 +126,8 @@ def plot_sweep_field(data: xr.Dataset, name: str, ax: Axes) -> Axes:
 def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
     """A line for each point through the values of all keys and results, coloured by its loss."""
     dims, results = varied(data), shown_results(data)
-    points = data[results].stack(point=dims).dropna("point", subset=["total"])
+    part = _at_first(data, dims)[results]
+    points = part.stack(point=dims).dropna("point", subset=["total"])
     points = points.isel(point=slice(0, None, -(-points.sizes["point"] // MOST_POINTS)))
     arrays = [points[dim] for dim in dims] + [_in_percent(points[name]) for name in results]
     columns = [_column(array) for array in arrays]

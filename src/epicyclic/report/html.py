@@ -15,10 +15,10 @@ import xarray as xr
 from markupsafe import Markup
 
 from epicyclic.case.operating import operating_line
-from epicyclic.errors import InputError, Problem
 from epicyclic.maps.tables import map_inputs
 from epicyclic.plots.catalogue import Stored, available
 from epicyclic.plots.loss_map import map_line
+from epicyclic.plots.sweep import sweep_line
 from epicyclic.records.files import is_sweep
 from epicyclic.records.record import ResultRecord
 from epicyclic.report.drawings import draw
@@ -27,6 +27,7 @@ from epicyclic.report.map_page import map_key_figures, map_sections
 from epicyclic.report.page import Drawings, Item, Section, gallery
 from epicyclic.report.result_page import result_sections
 from epicyclic.report.result_tables import key_figures
+from epicyclic.report.sweep_page import sweep_key_figures, sweep_sections
 from epicyclic.report.uncertainty_tables import band_figures, uncertainty_items
 
 __all__ = ["items_html", "page_html", "report_html"]
@@ -39,12 +40,13 @@ KINDS = {
 
 
 def report_html(stored: Stored, progress: Callable[[int, int], None] | None = None) -> str:
-    """The report of a result, of a loss map, or of how well one is known.
+    """The report of a result, of a loss map or a sweep, or of how well one is known.
 
     Parameters
     ----------
     stored : ResultRecord or xarray.Dataset
-        As `epicyclic.record`, `loss_map` or `uncertainty` returns it, or `epicyclic.open_result`.
+        As `epicyclic.record`, `loss_map`, `sweep` or `uncertainty` returns it, or
+        `epicyclic.open_result`.
     progress : callable, optional
         Called with the numbers of plots drawn and to draw.
 
@@ -53,13 +55,11 @@ def report_html(stored: Stored, progress: Callable[[int, int], None] | None = No
     str
         HTML. The same for the same content, whether computed or read from a file.
     """
-    if not isinstance(stored, ResultRecord) and is_sweep(stored):
-        allowed = "is a sweep, of which there are plots but no report."
-        problem = Problem("FILE", "", allowed, "See epicyclic plot FILE.nc.")
-        raise InputError([problem], "the report")
     drawings = _drawings(stored, progress or (lambda done, total: None))
     if isinstance(stored, ResultRecord):
         content = _result_content(stored, drawings)
+    elif is_sweep(stored):
+        content = _sweep_content(stored, drawings)
     elif "torque_loss" in stored:
         content = _map_content(stored, drawings)
     else:
@@ -73,6 +73,7 @@ def page_html(**content: Any) -> str:
         **content,
         style=_asset("report.css"),
         script=_asset("report.js"),
+        explorer=_asset("explorer.js"),
         library=_library(),
     )
 
@@ -98,6 +99,18 @@ def _map_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
         "source": f"Computed with {data.attrs['source']}",
         "key_figures": map_key_figures(data),
         "sections": map_sections(data, drawings),
+    }
+
+
+def _sweep_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
+    kind = map_inputs(data)["kind"]
+    return {
+        "title": str(data.attrs["title"]) or kind.replace("_", " "),
+        "kind": f"Sweep: {KINDS[kind]}",
+        "operation": sweep_line(data),
+        "source": f"Computed with {data.attrs['source']}",
+        "key_figures": sweep_key_figures(data),
+        "sections": sweep_sections(data, drawings),
     }
 
 

@@ -13,6 +13,7 @@ from epicyclic.analysis.methods import methods_of
 from epicyclic.case.operating import AXES
 from epicyclic.maps.tables import map_case, map_inputs, statements
 from epicyclic.plots.loss_map import at_temperatures, map_at
+from epicyclic.report.explorer import EXPLORER_LEAD, explorer_items
 from epicyclic.report.grids import grid_table
 from epicyclic.report.inputs import input_tables
 from epicyclic.report.page import (
@@ -31,10 +32,14 @@ from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.status import Status
 from epicyclic.units import unit_text
 
-__all__ = ["map_key_figures", "map_sections"]
+__all__ = ["map_key_figures", "map_sections", "validity_items", "versions_table"]
 
 _WHITE = "White: no power is passed on, or the point failed."
 _FOUND = re.compile(r"(Out of range: .*?) -?\d[^;]*;")
+_SMALL = "Out of range, each"
+"""Begins the warning that puts together what matters little."""
+_QUANTITY = re.compile(r" -?\d.*")
+_NUMBER = re.compile(r"-?\d[\d.]*(e[+-]?\d+)?")
 GRIDS = {"efficiency": "Efficiency, %", "total": "Total loss, W"}
 """Variables of which there are tables of values."""
 
@@ -61,6 +66,7 @@ def map_key_figures(data: xr.Dataset) -> list[KeyFigure]:
 def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
     """All chapters of a map."""
     sections = [
+        Section("explorer", "Explorer", explorer_items(data), EXPLORER_LEAD),
         Section("efficiency", "Efficiency", gallery(drawings, "efficiency-map"), _WHITE),
         Section("losses", "Losses", gallery(drawings, "loss-map", "torque-loss-map")),
         Section(
@@ -70,12 +76,12 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
         ),
         Section("band", "How well it is known", _band(data, drawings), BAND_LEAD),
         Section("tables", "Values", tuple(_tables(data)), _further(data)),
-        Section("validity", "Validity", _validity(data)),
+        Section("validity", "Validity", validity_items(data)),
         Section("gears", "Gears", gallery(drawings, "gear-set")),
         Section("methods", "Methods", _methods(data)),
         Section("conventions", "Conventions", _conventions(data)),
         Section("inputs", "Inputs", tuple(input_tables(map_inputs(data), map_inputs(data)))),
-        Section("versions", "Versions", _versions(data)),
+        Section("versions", "Versions", versions_table(data)),
     ]
     return [section for section in sections if section.items]
 
@@ -122,28 +128,38 @@ def _value(name: str, value: float, key: str) -> Cell:
     return number(float(value), key, text=text)
 
 
-def _validity(data: xr.Dataset) -> tuple[Listing, ...]:
-    """Warnings and failures, each once with the number of its points."""
+def validity_items(data: xr.Dataset) -> tuple[Listing, ...]:
+    """Warnings and failures, each kind once with the number of its points."""
     size = data["total"].size
     lines: list[Listing] = []
     for name, title in (("message", "Failed points"), ("warnings", "Warnings")):
-        counts = Counter(
-            line
-            for text in data[name].values.ravel()
-            for line in dict.fromkeys(_without_values(one) for one in str(text).split(" | "))
-            if line
-        )
+        counts: Counter[str] = Counter()
+        first: dict[str, str] = {}
+        for text in data[name].values.ravel():
+            kinds = {
+                _NUMBER.sub("#", one): one
+                for line in filter(None, str(text).split(" | "))
+                for one in _without_values(line)
+            }
+            first = kinds | first
+            counts.update(list(kinds))
         if counts:
             items = tuple(
-                f"{line} ({count} of {size} points)" for line, count in counts.most_common()
+                f"{first[kind]} ({count} of {size} points)" for kind, count in counts.most_common()
             )
             lines.append(Listing(items, title))
     return tuple(lines) or (Listing(("There are no warnings.",)),)
 
 
-def _without_values(warning: str) -> str:
+def _without_values(warning: str) -> list[str]:
     """A warning without what was found at its point, so that like ones are counted together."""
-    return _FOUND.sub(r"\1;", warning).partition(" Share of the loss")[0]
+    if not warning.startswith(_SMALL):
+        return [_FOUND.sub(r"\1;", warning).partition(" Share of the loss")[0]]
+    parts = warning.partition(": ")[2].removesuffix(".").split("; ")
+    return [
+        f"Out of range with little loss: {_QUANTITY.sub('', found)}; {limits}."
+        for found, limits in zip(parts[::2], parts[1::2], strict=False)
+    ]
 
 
 def _methods(data: xr.Dataset) -> tuple[Table | Listing, ...]:
@@ -162,7 +178,7 @@ def _conventions(data: xr.Dataset) -> tuple[Table, ...]:
     return (Table(("", "statement"), rows),)
 
 
-def _versions(data: xr.Dataset) -> tuple[Table, ...]:
+def versions_table(data: xr.Dataset) -> tuple[Table, ...]:
     rows = tuple(
         (Cell(name), Cell(str(version)))
         for name, version in json.loads(data.attrs["versions"]).items()

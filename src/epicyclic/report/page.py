@@ -14,6 +14,7 @@ __all__ = [
     "Cell",
     "Drawing",
     "Drawings",
+    "Explorer",
     "Gallery",
     "Item",
     "KeyFigure",
@@ -129,7 +130,15 @@ class KeyFigure:
     unit: str = ""
 
 
-Item = Table | Listing | Gallery | Row
+@dataclass(frozen=True, slots=True)
+class Explorer:
+    """Sliders, table, curve and map, which the script of the page makes from `contents`."""
+
+    contents: Mapping[str, Any]
+    kind: str = "explorer"
+
+
+Item = Table | Listing | Gallery | Row | Explorer
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,6 +149,11 @@ class Section:
     title: str
     items: tuple[Item, ...]
     lead: str = ""
+
+    @property
+    def needs_script(self) -> bool:
+        """True if there is nothing to see until the script of the page has run, as in print."""
+        return any(isinstance(item, Explorer) for item in self.items)
 
 
 Drawings = Mapping[str, Sequence[Drawing]]
