@@ -14,6 +14,7 @@ from contextlib import suppress
 
 import click
 
+from epicyclic.cli.app import app
 from epicyclic.cli.compare import compare
 from epicyclic.cli.contact import contact
 from epicyclic.cli.duty import duty
@@ -85,6 +86,7 @@ COMMANDS = (
     cases,
     oils,
     init,
+    app,
     report,
     plot,
     rexs,

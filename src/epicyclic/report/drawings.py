@@ -13,7 +13,7 @@ from epicyclic.plots.style import styled_figure
 from epicyclic.report.explore import explorable
 from epicyclic.report.page import Drawing
 
-__all__ = ["draw"]
+__all__ = ["draw", "svg_text"]
 
 PANEL = (4.3, 3.1)
 """Width and height of a figure in a page. [inch]"""

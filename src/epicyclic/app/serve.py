@@ -1,0 +1,78 @@
+"""The server of the app: one address on this machine, with a token."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+from collections.abc import Callable
+from contextlib import closing
+
+import uvicorn
+from fastapi import FastAPI
+from nicegui import ui
+
+from epicyclic.app.desk import Desk
+from epicyclic.app.guard import Guard
+from epicyclic.app.page import Page
+from epicyclic.app.worker import Worker
+from epicyclic.errors import InputError, Problem
+
+__all__ = ["LOOPBACK", "application", "serve"]
+
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
+"""Addresses that only this machine can reach."""
+_TOKEN_BYTES = 24
+
+
+def serve(desk: Desk, host: str, port: int, told: Callable[[str], None]) -> None:
+    """Serve a case until the command is interrupted.
+
+    Parameters
+    ----------
+    desk : Desk
+    host : str
+        The address that is listened at.
+    port : int
+        0 for any that is free.
+    told : callable
+        Called with the address to open.
+    """
+    token = secrets.token_urlsafe(_TOKEN_BYTES)
+    with closing(_listening(host, port)) as listening:
+        found = listening.getsockname()[1]
+        names = {"127.0.0.1", "localhost"} if host in LOOPBACK else {host}
+        shown = f"[{host}]" if ":" in host else host
+        hosts = [f"{name}:{found}" for name in {*names, shown}]
+        app = Guard(application(desk), token, hosts)
+        told(f"http://{shown}:{found}/?token={token}")
+        config = uvicorn.Config(app, log_level="error", access_log=False, ws="websockets-sansio")
+        uvicorn.Server(config).run(sockets=[listening])
+
+
+def _listening(host: str, port: int) -> socket.socket:
+    """A socket that listens at an address, before anything else is started."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    listening = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        listening.bind((host, port))
+    except (OSError, OverflowError) as error:
+        listening.close()
+        told = getattr(error, "strerror", None) or str(error)
+        problem = Problem(
+            "--host", f"{host}:{port}", f"cannot be listened at: {told}.", "Take another."
+        )
+        raise InputError([problem], "the command") from None
+    return listening
+
+
+def application(desk: Desk) -> FastAPI:
+    """The pages, without anything that keeps others away."""
+    app = FastAPI(openapi_url=None)
+    worker = Worker()
+    app.router.on_shutdown.append(worker.end)
+
+    async def root() -> None:
+        await Page(desk, worker).build()
+
+    ui.run_with(app, root=root, title="Epicyclic", show_welcome_message=False)
+    return app

@@ -1,0 +1,100 @@
+"""A process beside the app that solves and draws: pages stay quick, and work can be ended."""
+
+from __future__ import annotations
+
+import asyncio
+import multiprocessing
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from typing import Any
+
+from epicyclic.errors import EpicyclicError
+
+__all__ = ["Ended", "WorkError", "Worker"]
+
+Progress = Callable[[int, int], None]
+"""Called with what is done and what there is to do."""
+
+
+class Ended(Exception):  # noqa: N818  no error: the user has asked for it
+    """The work was ended before it was done."""
+
+
+class WorkError(EpicyclicError):
+    """An error that was not foreseen, from the other process."""
+
+
+class Worker:
+    """Does one thing after the other, each in the same process as long as none is ended."""
+
+    def __init__(self) -> None:
+        self._process: Any = None
+        self._ours: Connection | None = None
+        self._lock = asyncio.Lock()
+
+    async def do(self, task: Callable[..., Any], *arguments: Any, progress: Progress) -> Any:
+        """What a function of a module returns, computed in the process.
+
+        Parameters
+        ----------
+        task : callable
+            Takes `arguments` and a function that it tells its progress.
+        progress : callable
+            Called in this process.
+
+        Raises
+        ------
+        Ended
+            If `end` was called meanwhile.
+        EpicyclicError
+            As the task raises it.
+        """
+        async with self._lock:
+            pipe = self._pipe()
+            try:
+                pipe.send((task, arguments))
+                while True:
+                    what, content = await asyncio.to_thread(pipe.recv)
+                    if what == "done":
+                        return content
+                    if what == "failed":
+                        raise content
+                    progress(*content)
+            except (EOFError, OSError):
+                self.end()
+                raise Ended from None
+
+    def end(self) -> None:
+        """End what is being done; the next thing starts a new process."""
+        if self._process is not None:
+            self._process.terminate()
+            self._process = None
+        if self._ours is not None:
+            self._ours = None
+
+    def _pipe(self) -> Connection:
+        if self._process is None or not self._process.is_alive():
+            context = multiprocessing.get_context("spawn")
+            self._ours, theirs = context.Pipe()
+            self._process = context.Process(target=_serve, args=(theirs,), daemon=True)
+            self._process.start()
+            theirs.close()
+        assert self._ours is not None
+        return self._ours
+
+
+def _serve(pipe: Connection) -> None:
+    """What the process does: tasks until the pipe is closed."""
+    import signal
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the app ends this process
+    with suppress(EOFError, OSError):
+        while True:
+            task, arguments = pipe.recv()
+            try:
+                pipe.send(("done", task(*arguments, lambda *count: pipe.send(("progress", count)))))
+            except EpicyclicError as error:
+                pipe.send(("failed", error))
+            except Exception as error:
+                pipe.send(("failed", WorkError(f"{type(error).__name__}: {error}")))

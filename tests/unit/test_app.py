@@ -1,0 +1,252 @@
+"""The app without a browser: form, changes, commands, the guard, the simulated page."""
+
+from __future__ import annotations
+
+import asyncio
+import shlex
+
+import pytest
+from click.testing import CliRunner
+
+pytest.importorskip("nicegui", reason="optional")
+
+from epicyclic.app.desk import Desk, opened
+from epicyclic.app.form import form_of
+from epicyclic.app.guard import LARGEST_BODY, Guard
+from epicyclic.case.fields import all_keys
+
+TOKEN, HOST = "the-token", "127.0.0.1:4711"
+
+
+# --- the form -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["talbot-2012", "talbot-2012-pair"])
+def test_the_form_has_every_key_of_the_schema_that_holds_a_value(name):
+    desk = opened(name)
+    shown = {entry.key for entry in desk.form().walk()}
+    presets = (".material.", "lubricant.oil.", "NAME")
+    expected = {key for key in all_keys(type(desk.case)) if not any(one in key for one in presets)}
+    assert expected - shown == {"kind"}
+
+
+def test_numbers_are_shown_in_the_unit_of_the_field_and_typed_in_it(talbot):
+    entries = {entry.key: entry for entry in form_of(talbot.given()).walk()}
+    torque = entries["operation.torque"]
+    assert (torque.text, torque.unit) == ("1000", "N·m")
+    assert torque.value("730") == "730 N*m"
+    assert torque.value("0.73 kN*m") == "0.73 kN*m"
+    assert torque.value("  ") is None
+    faster = form_of(talbot.updated({"operation.speed": "25 rev/s"}).given())
+    assert {it.key: it.text for it in faster.walk()}["operation.speed"] == "1500"
+
+
+def test_fields_of_a_train_are_those_of_its_sets():
+    keys = {entry.key for entry in opened("train-eaxle").form().walk()}
+    assert {"operation.speed", "sets.planets.sun.teeth", "sets.pair.gears.normal_module"} <= keys
+
+
+# --- changes --------------------------------------------------------------------------------------
+
+
+def test_a_wrong_value_is_a_problem_of_its_field_and_the_case_is_not_solved():
+    desk = opened("talbot-2012")
+    desk.change("operation.torque", "3 kg")
+    assert desk.case is None
+    (problem,) = desk.problems_of("operation.torque")
+    assert "unit" in problem.allowed
+    desk.change("operation.torque", "310 N*m")
+    assert desk.case is not None
+    assert not desk.problems
+    assert desk.changes == {"operation.torque": "310 N*m"}
+
+
+def test_what_is_put_back_is_no_change():
+    desk = opened("talbot-2012")
+    desk.change("operation.torque", "310 N*m")
+    desk.change("operation.torque", desk.tables["operation"]["torque"])
+    assert desk.changes == {}
+
+
+def test_the_command_gives_the_same_case():
+    from epicyclic.cli.options import load_with
+
+    desk = opened("talbot-2012")
+    desk.change("operation.torque", "310 N*m")
+    desk.change("planet.count", 5)
+    desk.change("models.friction", None)
+    desk.change("title", "a b' c")
+    words = shlex.split(desk.command())
+    assert words[:3] == ["epicyclic", "run", "talbot-2012"]
+    assert load_with(words[2], words[4::2]) == desk.case
+
+
+# --- who may talk to it ---------------------------------------------------------------------------
+
+
+async def _inner(scope, receive, send):
+    if scope["type"] == "http":
+        more = True
+        while more:
+            message = await receive()
+            more = message.get("more_body", False)
+        status = 200 if message["type"] == "http.request" else 499
+        await send({"type": "http.response.start", "status": status, "headers": []})
+        await send({"type": "http.response.body", "body": b"inside"})
+    else:
+        await send({"type": "websocket.accept"})
+
+
+def _ask(kind="http", path="/", query="", bodies=(b"",), **headers):
+    """What the guard sends."""
+    sent = []
+    messages = [
+        {"type": "http.request", "body": body, "more_body": number + 1 < len(bodies)}
+        for number, body in enumerate(bodies)
+    ]
+
+    async def receive():
+        return messages.pop(0) if kind == "http" else {"type": "websocket.connect"}
+
+    async def send(message):
+        sent.append(message)
+
+    scope = {
+        "type": kind,
+        "method": "GET",
+        "path": path,
+        "query_string": query.encode(),
+        "headers": [
+            (name.replace("_", "-").encode(), text.encode())
+            for name, text in ({"host": HOST} | headers).items()
+        ],
+    }
+    asyncio.run(Guard(_inner, TOKEN, [HOST])(scope, receive, send))
+    return sent
+
+
+COOKIE = f"epicyclic-4711={TOKEN}"
+
+
+def test_the_token_in_the_address_becomes_a_cookie():
+    first = _ask(query=f"token={TOKEN}")[0]
+    headers = dict(first["headers"])
+    assert first["status"] == 303
+    assert headers[b"location"] == b"/"
+    assert COOKIE in headers[b"set-cookie"].decode()
+    for word in ("HttpOnly", "SameSite=Strict"):
+        assert word in headers[b"set-cookie"].decode()
+    assert _ask(cookie=COOKIE)[1]["body"] == b"inside"
+
+
+@pytest.mark.parametrize(
+    ("query", "headers"),
+    [
+        ("", {}),
+        ("token=wrong", {}),
+        ("token=", {}),
+        ("", {"cookie": "epicyclic-4711=wrong"}),
+        ("", {"cookie": "epicyclic-4712=the-token"}),
+        (f"token={TOKEN}", {"host": "evil.example:4711"}),
+        ("", {"cookie": COOKIE, "host": "evil.example:4711"}),
+        ("", {"cookie": COOKIE, "host": "127.0.0.1:80"}),
+        ("", {"cookie": COOKIE, "origin": "http://evil.example"}),
+        ("", {"cookie": COOKIE, "origin": "null"}),
+        ("", {"cookie": COOKIE, "origin": "http://127.0.0.1:80"}),
+    ],
+)
+@pytest.mark.parametrize("kind", ["http", "websocket"])
+def test_others_are_refused_also_at_the_websocket(kind, query, headers):
+    first = _ask(kind, query=query, **headers)[0]
+    refused = {"http": first.get("status") == 403, "websocket": first["type"] == "websocket.close"}
+    assert refused[kind]
+
+
+def test_the_token_opens_no_websocket_and_no_other_path():
+    assert _ask("websocket", query=f"token={TOKEN}")[0]["type"] == "websocket.close"
+    assert _ask(path="/_nicegui/x", query=f"token={TOKEN}")[0]["status"] == 403
+    assert _ask("websocket", cookie=COOKIE)[0]["type"] == "websocket.accept"
+    assert (
+        _ask("websocket", cookie=COOKIE, origin=f"http://{HOST}")[0]["type"] == "websocket.accept"
+    )
+
+
+def test_what_is_too_large_is_refused_whatever_it_says():
+    assert _ask(cookie=COOKIE, content_length=str(LARGEST_BODY + 1))[0]["status"] == 413
+    assert _ask(cookie=COOKIE, content_length="many")[0]["status"] == 413
+    part = b"x" * (LARGEST_BODY // 2 + 1)
+    assert _ask(cookie=COOKIE, bodies=(part, part))[0]["status"] == 499
+    assert _ask(cookie=COOKIE, bodies=(part, b"x"))[0]["status"] == 200
+
+
+def test_every_answer_forbids_what_lies_elsewhere():
+    for sent in (_ask(), _ask(cookie=COOKIE), _ask(query=f"token={TOKEN}")):
+        headers = dict(sent[0]["headers"])
+        assert b"default-src 'self'" in headers[b"content-security-policy"]
+        assert headers[b"x-frame-options"] == b"DENY"
+
+
+def test_a_port_that_is_taken_and_a_case_that_is_none_are_told():
+    import socket
+
+    from epicyclic.cli.app import app
+    from epicyclic.errors import InputError
+
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        options = ["talbot-2012", "--port", str(taken.getsockname()[1]), "--no-browser"]
+        found = CliRunner().invoke(app, options)
+    assert isinstance(found.exception, InputError)
+    assert "cannot be listened at" in str(found.exception)
+    assert isinstance(CliRunner().invoke(app, ["talbot-2013"]).exception, InputError)
+
+
+# --- the page -------------------------------------------------------------------------------------
+
+
+class _Here:
+    """In place of the worker: does the work here."""
+
+    async def do(self, task, *arguments, progress):
+        return task(*arguments, progress)
+
+    def end(self):
+        pass
+
+
+@pytest.fixture
+def simulate():
+    from nicegui.testing import user_simulation
+
+    from epicyclic.app.page import Page
+
+    def run(desk: Desk, script) -> None:
+        async def root():
+            await Page(desk, _Here()).build()
+
+        async def visit():
+            async with user_simulation(root=root) as user:
+                await user.open("/")
+                await script(user)
+
+        asyncio.run(visit())
+
+    return run
+
+
+def test_the_page_shows_form_and_losses_and_the_message_beside_a_wrong_field(simulate):
+    desk = opened("talbot-2012-pair")
+    desk.change("losses.mesh_pocketing.include", False)
+
+    async def script(user):
+        await user.should_see("Talbot 2012, Table 4.1")
+        await user.should_see("total loss", retries=200)
+        found = user.find(marker="operation.torque")
+        (field,) = found.elements
+        found.clear().type("3 kg").trigger("change")
+        await user.should_see("has a unit that measures something else", retries=50)
+        assert "measures something else" in field.error
+        assert desk.case is None
+
+    simulate(desk, script)
