@@ -51,7 +51,8 @@ def gear_shapes(case: Case) -> dict[str, xr.Dataset]:
         By gear, ``"sun"``, of a train ``"P1.sun"``. ``x``, ``y`` over ``point``: one tooth from the
         middle of a space to the middle of the next; absent if the tooth has no outline.
         ``center_x``, ``center_y``, ``direction`` over ``place``. Diameters without dimension. Units
-        in ``attrs["units"]``.
+        in ``attrs["units"]``. The attribute ``relative_speed`` is that of the gear over that of the
+        first one of its set, seen from the carrier.
     """
     return {
         joined_key(prefix, name): shape
@@ -96,8 +97,12 @@ def _set_shapes(found: SetPlaces, duties: tuple[MeshDuty, ...]) -> dict[str, xr.
         for duty in duties
         for gear, tool in zip((duty.mesh.gear1, duty.mesh.gear2), duty.tools, strict=True)
     }
-    places = found.places([duty.mesh for duty in duties])
-    return {name: _shape(*gears[name], table, places[name]) for name, table in found.tables.items()}
+    meshes = [duty.mesh for duty in duties]
+    places, speeds = found.places(meshes), found.relative_speeds(meshes)
+    return {
+        name: _shape(*gears[name], table, places[name]).assign_attrs(relative_speed=speeds[name])
+        for name, table in found.tables.items()
+    }
 
 
 # --- datasets -------------------------------------------------------------------------------------

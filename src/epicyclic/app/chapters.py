@@ -7,15 +7,17 @@ from collections.abc import Awaitable, Callable
 from nicegui import ui
 
 from epicyclic.app.tasks import IN_PAGE, Answer
+from epicyclic.app.turning import FORMATS, TurningView
 from epicyclic.app.worker import Ended
 from epicyclic.case.case import Case
 from epicyclic.errors import EpicyclicError
 from epicyclic.report.html import items_html
 from epicyclic.report.page import Drawing, Gallery, Item, Row, Section
 
-__all__ = ["FORMATS", "Chapters", "key_figures"]
+__all__ = ["Chapters", "key_figures"]
 
-FORMATS = ("png", "svg", "pdf")
+TURNS = "gears"
+"""The chapter in which gears turn."""
 Picture = Callable[[Case, str, str], Awaitable[bytes]]
 """Draws a figure of the result of a case, by its name, in a format."""
 
@@ -37,12 +39,14 @@ class Chapters:
     ----------
     picture : callable
         Draws a figure.
+    turning : TurningView
+        The chapter of the gears begins with it.
     """
 
-    def __init__(self, picture: Picture) -> None:
-        self._picture = picture
+    def __init__(self, picture: Picture, turning: TurningView) -> None:
+        self._picture, self._turning = picture, turning
         self._case: Case | None = None
-        self._wide: frozenset[str] = frozenset()
+        self._answer: Answer
         self._sections: dict[str, Section] = {}
         self._tabs = ui.tabs(on_change=self._turned).props(
             "dense no-caps align=left outside-arrows"
@@ -51,7 +55,7 @@ class Chapters:
 
     async def show(self, case: Case, answer: Answer) -> None:
         """Show the chapters of a result, the same one open as before."""
-        self._case, self._wide, sections = case, answer.wide, answer.sections
+        self._case, self._answer, sections = case, answer, answer.sections
         names = [section.name for section in sections]
         if names != list(self._sections):
             self._tabs.clear()
@@ -70,18 +74,23 @@ class Chapters:
 
     async def _open(self, name: str) -> None:
         section, case = self._sections[name], self._case
+        assert case is not None
         self._drawn: list[tuple[ui.html, str]] = []
         self._body.clear()
         with self._body:
+            if name == TURNS:
+                self._turning.build(self._answer.turning)
             if section.lead:
                 ui.label(section.lead).classes("lead")
             for item in section.items:
                 self._item(item)
+        if name == TURNS:
+            await self._turning.draw(case)
         for place, figure in self._drawn:
             if section is not self._sections.get(name) or case is not self._case:
                 return
             try:
-                svg = await self._picture(self._case, figure, IN_PAGE)  # type: ignore[arg-type]
+                svg = await self._picture(case, figure, IN_PAGE)
             except Ended:
                 return
             except EpicyclicError as error:
@@ -102,7 +111,7 @@ class Chapters:
             ui.html(items_html(item), sanitize=False)
 
     def _figure(self, drawing: Drawing) -> None:
-        with ui.element("figure").classes("wide" if drawing.name in self._wide else ""):
+        with ui.element("figure").classes("wide" if drawing.name in self._answer.wide else ""):
             place = ui.html("", sanitize=False).classes("still")
             with place:
                 ui.spinner(size="2em")

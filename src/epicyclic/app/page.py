@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from importlib import resources
+from typing import Any
 
 from nicegui import ui
 
@@ -11,7 +12,9 @@ from epicyclic.app import tasks
 from epicyclic.app.chapters import Chapters, key_figures
 from epicyclic.app.desk import Desk
 from epicyclic.app.fields import Form
+from epicyclic.app.turning import TurningView
 from epicyclic.app.worker import Ended, Worker
+from epicyclic.case.case import Case
 from epicyclic.errors import EpicyclicError
 
 __all__ = ["Page"]
@@ -36,8 +39,8 @@ class Page:
 
     async def build(self) -> None:
         """Make the page; results follow when they are known."""
-        style = (resources.files("epicyclic.app") / "app.css").read_text(encoding="utf-8")
-        ui.add_css(style)
+        ui.add_css(_asset("app.css"))
+        ui.add_body_html(f"<script>{_asset('turning.js')}</script>")
         with ui.header().classes("bar"):
             ui.label("Epicyclic").classes("name")
             self.title = ui.label(self.desk.title).classes("title")
@@ -51,7 +54,7 @@ class Page:
                 self._state()
                 with ui.element("div") as self._results:
                     self.figures = ui.element("div").classes("key-figures")
-                    self.chapters = Chapters(self._picture)
+                    self.chapters = Chapters(self._picture, TurningView(self._turning))
         ui.timer(0, self.solve, once=True)
 
     def _state(self) -> None:
@@ -110,8 +113,16 @@ class Page:
         self.bar.set_value(done / total if total else 0)
         self.doing.set_text(f"solving: contact {done} of {total}")
 
-    async def _picture(self, case: object, name: str, ending: str) -> bytes:
+    async def _picture(self, case: Case, name: str, ending: str) -> bytes:
         return bytes(await self.worker.do(tasks.picture, case, name, ending, progress=_silent))
+
+    async def _turning(
+        self, case: Case, what: str, ending: str, phase: float
+    ) -> tuple[bytes, dict[str, Any]]:
+        found: tuple[bytes, dict[str, Any]] = await self.worker.do(
+            tasks.turning, case, what, ending, phase, progress=_silent
+        )
+        return found
 
     def _show_command(self) -> None:
         with ui.dialog() as dialog, ui.card().classes("command"):
@@ -119,6 +130,11 @@ class Page:
             for verb, more in _VERBS.items():
                 ui.code(self.desk.command(verb, *more), language="bash").classes("wrapped")
         dialog.open()
+
+
+def _asset(name: str) -> str:
+    """A file of the package that goes into the page."""
+    return (resources.files("epicyclic.app") / name).read_text(encoding="utf-8")
 
 
 def _toggled(name: str, is_on: bool) -> dict[str, str]:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from epicyclic.plots.style import COLOURS, legend_below
 from epicyclic.results.result import in_words
 
-__all__ = ["plot_gear_set", "plot_teeth"]
+__all__ = ["layer_of", "plot_gear_set", "plot_teeth"]
 
 Floats = NDArray[np.float64]
 
@@ -63,6 +63,7 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
                     edgecolor="black",
                     linewidth=0.5,
                     label=label if number == 0 else None,
+                    gid=layer_of(name, number),
                 )
             )
             ax.plot(*center, marker="+", color="black", ms=5, mew=0.6)
@@ -92,6 +93,7 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
                 edgecolor="black",
                 linewidth=0.8,
                 label=in_words(name),
+                gid=layer_of(name, 0),
             )
         )
         pitch = _circle(float(view["operating_radius"][number])) + center
@@ -107,6 +109,11 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
     legend_below(ax, ncols=3)
     ax.set_title("Teeth in contact")
     return ax
+
+
+def layer_of(name: str, number: int) -> str:
+    """What the layer of a gear is called in a picture, at one of its places."""
+    return f"gear-{name}-{number}"
 
 
 def _is_behind(item: tuple[str, xr.Dataset]) -> tuple[bool, float]:
