@@ -216,14 +216,14 @@ class _Here:
 
 
 @pytest.fixture
-def simulate():
+def simulate(tmp_path):
     from nicegui.testing import user_simulation
 
-    from epicyclic.app.page import Page
+    from epicyclic.app.page import Page, Shelf
 
     def run(desk: Desk, script) -> None:
         async def root():
-            await Page(desk, _Here()).build()
+            await Page(Shelf(desk, _Here(), _Here(), tmp_path)).build()
 
         async def visit():
             async with user_simulation(root=root) as user:

@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
+from epicyclic import library
 from epicyclic.app.form import Group, form_of
-from epicyclic.case.case import Case, changed_tables
-from epicyclic.case.template import toml_value
+from epicyclic.case.base import FILE_KEYS
+from epicyclic.case.case import Case, build_case, changed_tables
+from epicyclic.case.reading import read_file
+from epicyclic.case.template import case_text, toml_value
+from epicyclic.case.train_text import train_text
+from epicyclic.case.wording import dotted, key_parts, written
 from epicyclic.errors import InputError, Problem
 from epicyclic.exchange.load import load_case
 from epicyclic.exchange.rexs.file import is_rexs
 
-__all__ = ["Desk", "opened"]
+__all__ = ["ENDINGS", "Desk", "built_in", "opened", "received"]
+
+ENDINGS = (".toml", ".rexs", ".rexsj", ".rexsz")
+"""Of files that hold a case."""
+_HEAD = "A case file of epicyclic, saved by its app. Keys behind a # have defaults."
 
 
 @dataclass
@@ -29,6 +39,8 @@ class Desk:
         What the source holds.
     build : callable
         Makes the case of the source with changed keys.
+    original : str or None
+        The REXS file it came from.
     changes : dict
         Of dotted keys, as ``--set`` has them; None for keys that are removed.
     case : Case or None
@@ -40,6 +52,7 @@ class Desk:
     source: str
     tables: Mapping[str, Any]
     build: Callable[[dict[str, Any]], Case]
+    original: str | None = None
     changes: dict[str, Any] = field(default_factory=dict)
     case: Case | None = None
     problems: tuple[Problem, ...] = ()
@@ -64,14 +77,17 @@ class Desk:
     def change(self, key: str, value: Any) -> None:
         """Set a key, or remove it if `value` is None; see `problems` then."""
         changes = {name: was for name, was in self.changes.items() if name != key}
-        if changed_tables(self.tables, changes) != changed_tables(
-            self.tables, {**changes, key: value}
-        ):
-            changes[key] = value
+        changed = {**changes, key: value}
+        if changed_tables(self.tables, changes) != changed_tables(self.tables, changed):
+            changes = changed
         self.changes = changes
         self._check()
 
     def _check(self) -> None:
+        typed = list(_elsewhere(self.changes))
+        if typed:  # before anything looks for the file
+            self.case, self.problems = None, tuple(typed)
+            return
         try:
             self.case, self.problems = self.build(self.changes), ()
         except InputError as error:
@@ -83,10 +99,15 @@ class Desk:
 
     def command(self, verb: str = "run", *arguments: str) -> str:
         """The command that does the same."""
-        words = ["epicyclic", verb, self.source, *arguments]
+        words = ["epicyclic", verb, self.source]
         for key, value in self.changes.items():
             words += ["--set", f"{key}={_text(value)}"]
-        return shlex.join(words)
+        return shlex.join([*words, *arguments])
+
+    def text(self) -> str:
+        """The case file of the case as it is now."""
+        write = train_text if self.tables["kind"] == "train" else case_text
+        return write(self.current, [_HEAD], {})
 
 
 def _text(value: Any) -> str:
@@ -96,8 +117,30 @@ def _text(value: Any) -> str:
     return value if isinstance(value, str) else toml_value(value)
 
 
+def _elsewhere(tables: Any, path: tuple[str, ...] = ()) -> Iterator[Problem]:
+    """Keys that name files elsewhere than beside the case: pages do not open those."""
+    if isinstance(tables, Mapping):
+        for name, value in tables.items():
+            yield from _elsewhere(value, (*path, *key_parts(name)))
+    elif isinstance(tables, list | tuple):
+        for item in tables:
+            yield from _elsewhere(item, path)
+    elif path and path[-1] in FILE_KEYS and not _is_name(tables):
+        allowed = "must be the name of a file beside the case: the app opens no others."
+        remedy = "Upload the file together with the case, and give its name."
+        yield Problem(dotted(path), written(tables), allowed, remedy)
+
+
+def _is_name(value: object) -> bool:
+    """True for what cannot lead to another folder; what is no text is refused later."""
+    text = value if isinstance(value, str) else ""
+    return text not in (".", "..") and not set(text) & set("/\\:\0")
+
+
 def opened(path: str, shown: str = "") -> Desk:
     """The desk of a case: a file, or a built-in one.
+
+    A case with problems is opened, if it is known what kind it is.
 
     Parameters
     ----------
@@ -109,12 +152,49 @@ def opened(path: str, shown: str = "") -> Desk:
     Raises
     ------
     InputError
-        If it is no case, or not a sound one; a REXS file may lack keys.
+        If it cannot be read.
     """
     if is_rexs(path):
         from epicyclic.exchange.rexs.importing import read_rexs
 
         found = read_rexs(path)
-        return Desk(shown or path, found.tables, found.case)
+        return Desk(shown or path, found.tables, found.case, path)
+    if Path(path).suffix.lower() == ".toml":
+        tables, problems = read_file(Path(path))
+        if not problems and tables.get("kind") in ("planetary", "gear_pair", "train"):
+            return Desk(shown or path, tables, lambda changes: build_case(tables, changes, path))
     case = load_case(path)
-    return Desk(shown or path, case.given(), lambda changes: case.updated(changes))
+    return Desk(shown or path, case.given(), case.updated)
+
+
+def received(name: str, files: Mapping[str, bytes], folder: Path) -> Desk:
+    """The desk of an uploaded case.
+
+    Parameters
+    ----------
+    name : str
+        Of the file with the case.
+    files : mapping of str to bytes
+        That file, and those that the case names.
+    folder : Path
+        Of the app, empty.
+
+    Raises
+    ------
+    InputError
+        If it is no case, or names files elsewhere.
+    """
+    for other, content in files.items():
+        (folder / Path(other).name).write_bytes(content)
+    desk = opened(str(folder / Path(name).name), Path(name).name)
+    problems = list(_elsewhere(desk.tables))
+    if problems:
+        raise InputError(problems, desk.source)
+    return desk
+
+
+def built_in(name: str) -> Desk:
+    """The desk of a built-in case, and of nothing else."""
+    if name not in library.case_files():
+        raise InputError([Problem("CASE", name, "is no built-in case.", "Choose one.")])
+    return opened(name)

@@ -15,6 +15,11 @@ __all__ = ["Form"]
 
 _OPEN = "operation"
 """The table that is open at first."""
+_STEPS, _DIGITS = 200, 6
+"""Of the slider of an input, and of its values."""
+_THROTTLE = 0.05
+"""Between two values of a slider that moves. [s]"""
+Call = Callable[[], Awaitable[None]]
 
 
 class Form:
@@ -25,10 +30,12 @@ class Form:
     desk : Desk
     changed : callable
         Called after the desk has changed.
+    moved : callable
+        Called while a slider changes it.
     """
 
-    def __init__(self, desk: Desk, changed: Callable[[], Awaitable[None]]) -> None:
-        self._desk, self._changed = desk, changed
+    def __init__(self, desk: Desk, changed: Call, moved: Call) -> None:
+        self._desk, self._changed, self._moved = desk, changed, moved
         self._fields: dict[str, ui.input | ui.select] = {}
         self._groups: dict[str, ui.expansion] = {}
         form = desk.form()
@@ -44,13 +51,13 @@ class Form:
             field.error = f"{found[0].allowed} {found[0].remedy}" if found else None
         for key, group in self._groups.items():
             wrong = any(problem.key.startswith(f"{key}.") for problem in self._desk.problems)
-            group.classes(add="wrong" if wrong else "", remove="" if wrong else "wrong")
+            group.classes(**{"add" if wrong else "remove": "wrong"})
 
     def _group(self, group: Group) -> None:
         name = group.key.rpartition(".")[2]
         is_open = group.key == _OPEN
         box = ui.expansion(name, caption=group.about, value=is_open).classes("group")
-        box.classes(add="" if group.is_given else "unset")
+        box.classes(add="" if group.is_given else "unset").mark(f"group-{group.key}")
         self._groups[group.key] = box
         if is_open:
             self._fill(box, group)
@@ -71,28 +78,73 @@ class Form:
                 self._group(inner)
 
     def _field(self, entry: Entry) -> None:
-        field: ui.input | ui.select
-        if entry.choices:
-            options = dict.fromkeys(entry.choices) | {one: one for one in entry.choices}
-            field = ui.select(
-                {"": f"{entry.default} (default)"} | options, value=entry.text, label=entry.name
-            )
-            field.on_value_change(partial(self._take, entry))
-        else:
-            field = ui.input(
-                entry.name,
-                value=entry.text,
-                placeholder=entry.default,
-                suffix=entry.unit,
-                autocomplete=list(entry.suggestions),
-            )
-            field.on("change", partial(self._take, entry))
-        field.props("dense outlined stack-label hide-bottom-space no-error-icon")
-        field.classes("field").mark(entry.key)
-        with field:
-            ui.tooltip(f"{entry.key}: {entry.about}").props("delay=600 max-width=26rem")
+        with ui.element("div").classes("holder"):
+            field = _choice(entry) if entry.choices else _line(entry)
+            event = "update:model-value" if entry.choices else "change"
+            field.on(event, partial(self._take, entry))
+            field.props("dense outlined stack-label hide-bottom-space no-error-icon")
+            field.classes("field").mark(entry.key)
+            with field:
+                ui.tooltip(f"{entry.key}: {entry.about}").props("delay=600 max-width=26rem")
         self._fields[entry.key] = field
+        if not entry.choices and _number(entry.text) is not None:
+            self._movable(entry, field)
+
+    def _movable(self, entry: Entry, field: Element) -> None:
+        """A button in a field of a number, for a slider below it."""
+        assert field.parent_slot is not None
+        holder = field.parent_slot.parent
+        with field.add_slot("append"):
+            ui.button(icon="tune", on_click=partial(self._slider, entry, holder)).props(
+                "flat dense round size=sm tabindex=-1"
+            ).mark(f"tune-{entry.key}")
+
+    def _slider(self, entry: Entry, holder: Element) -> None:
+        """Show the slider of an input, or take it away."""
+        sliders = [child for child in holder if isinstance(child, ui.slider)]
+        if sliders:
+            sliders[0].delete()
+            return
+        now = _number(str(self._fields[entry.key].value)) or 0.0
+        low, high = sorted((0.0, 2 * now or 1.0))
+        is_count = entry.quantity is None and now == int(now) and "." not in entry.text
+        with holder:
+            slider = ui.slider(
+                min=low, max=high, step=1 if is_count else (high - low) / _STEPS, value=now
+            )
+        slider.props("label dense").mark(f"slider-{entry.key}")
+        slider.on("update:model-value", partial(self._move, entry, slider), throttle=_THROTTLE)
+        slider.on("change", self._changed)
+
+    async def _move(self, entry: Entry, slider: ui.slider) -> None:
+        text = f"{slider.value:.{_DIGITS}g}"
+        self._fields[entry.key].set_value(text)
+        self._desk.change(entry.key, entry.value(text))
+        await self._moved()
 
     async def _take(self, entry: Entry) -> None:
         self._desk.change(entry.key, entry.value(str(self._fields[entry.key].value or "")))
         await self._changed()
+
+
+def _choice(entry: Entry) -> ui.select:
+    options = {"": f"{entry.default} (default)"} | {one: one for one in entry.choices}
+    value = entry.text if entry.text in options else ""
+    return ui.select(options, value=value, label=entry.name)
+
+
+def _line(entry: Entry) -> ui.input:
+    return ui.input(
+        entry.name,
+        value=entry.text,
+        placeholder=entry.default,
+        suffix=entry.unit,
+        autocomplete=list(entry.suggestions),
+    )
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None

@@ -2,40 +2,68 @@
 
 from __future__ import annotations
 
-import asyncio
+from dataclasses import dataclass
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 from nicegui import ui
 
 from epicyclic.app import tasks
-from epicyclic.app.chapters import Chapters, key_figures
+from epicyclic.app.chapters import Chapters, View
 from epicyclic.app.desk import Desk
 from epicyclic.app.fields import Form
-from epicyclic.app.turning import TurningView
+from epicyclic.app.files import ask_for_case, save_menu
+from epicyclic.app.sheet import key_figures
+from epicyclic.app.state import Doing
+from epicyclic.app.tasks import Study
+from epicyclic.app.views import CompareView, MapView
 from epicyclic.app.worker import Ended, Worker
-from epicyclic.case.case import Case
 from epicyclic.errors import EpicyclicError
 
-__all__ = ["Page"]
+__all__ = ["Page", "Shelf"]
 
 _VERBS = {"run": (), "check": (), "report": ("-o", "report.html")}
 """Commands that do what the page does, and what they need more."""
 
 
+@dataclass
+class Shelf:
+    """What is kept while pages come and go.
+
+    Attributes
+    ----------
+    desk : Desk
+        The case that is open.
+    worker, studies : Worker
+        Solves and draws; computes maps meanwhile.
+    folder : Path
+        For uploaded files.
+    """
+
+    desk: Desk
+    worker: Worker
+    studies: Worker
+    folder: Path
+
+
 class Page:
-    """What one browser shows of a desk.
+    """What a browser shows of the open case.
 
     Parameters
     ----------
-    desk : Desk
-    worker : Worker
-        That solves and draws.
+    shelf : Shelf
     """
 
-    def __init__(self, desk: Desk, worker: Worker) -> None:
-        self.desk, self.worker = desk, worker
+    def __init__(self, shelf: Shelf) -> None:
+        self._shelf = shelf
         self._wanted = 0
+        self._is_moving = self._has_moved = False
+
+    @property
+    def desk(self) -> Desk:
+        """The open case."""
+        return self._shelf.desk
 
     async def build(self) -> None:
         """Make the page; results follow when they are known."""
@@ -43,86 +71,113 @@ class Page:
         ui.add_body_html(f"<script>{_asset('turning.js')}</script>")
         with ui.header().classes("bar"):
             ui.label("Epicyclic").classes("name")
-            self.title = ui.label(self.desk.title).classes("title")
+            self._title = ui.label().classes("title")
             ui.space()
+            ui.button("Open", icon="folder_open", on_click=self._ask).props("flat no-caps")
+            save_menu(lambda: self.desk, self._do)
             ui.button("Command", icon="terminal", on_click=self._show_command).props("flat no-caps")
         with ui.element("div").classes("desk"):
-            with ui.element("aside"):
-                self.form = Form(self.desk, self._changed)
+            self._form_place = ui.element("aside")
             with ui.element("main"):
-                self.problems = ui.element("div").classes("problems")
-                self._state()
+                self._problems = ui.element("div").classes("problems")
+                self._doing = Doing(self._shelf.worker.end)
                 with ui.element("div") as self._results:
-                    self.figures = ui.element("div").classes("key-figures")
-                    self.chapters = Chapters(self._picture, TurningView(self._turning))
-        ui.timer(0, self.solve, once=True)
+                    self._figures = ui.element("div").classes("key-figures")
+                    views: dict[str, View] = {
+                        "map": MapView(lambda: self.desk, self._shelf.studies),
+                        "compare": CompareView(lambda: self.desk, self._do, self._choose),
+                    }
+                    self._chapters = Chapters(self._do, views)
+        self._build_form()
+        ui.timer(0, self._changed, once=True)
 
-    def _state(self) -> None:
-        """What is being computed, and how to end it."""
-        with ui.row().classes("state") as self.state:
-            ui.spinner(size="1.2em")
-            self.doing = ui.label("solving")
-            self.bar = ui.linear_progress(0, show_value=False).classes("progress")
-            ui.button("Cancel", on_click=self.worker.end).props("flat dense no-caps")
-        self.state.set_visibility(False)
+    def _build_form(self) -> None:
+        self._form_place.clear()
+        with self._form_place:
+            self._form = Form(self.desk, self._changed, self._moved)
+
+    def _ask(self) -> None:
+        self._choose(self._open)
+
+    def _choose(self, then: Any) -> None:
+        ask_for_case(self._shelf.folder, then)
+
+    def _open(self, desk: Desk) -> None:
+        self._shelf.desk = desk
+        self._build_form()
+        with self._results:
+            ui.timer(0, self._changed, once=True)
+
+    async def _do(self, *work: Any) -> Any:
+        return await self._shelf.worker.do(*work, progress=_silent)
 
     async def _changed(self) -> None:
         """After a change of the case."""
-        self.title.set_text(self.desk.title)
-        self.form.show_problems()
-        self.problems.clear()
-        with self.problems:
-            for problem in self.desk.problems:
-                ui.label(str(problem)).classes("problem")
-        self._results.classes(**_toggled("stale", self.desk.case is None))
-        await self.solve()
+        self._tell()
+        await self._solve()
 
-    async def solve(self) -> None:
+    def _tell(self) -> None:
+        """Title and problems of the case as it is."""
+        self._title.set_text(self.desk.title)
+        self._form.show_problems()
+        self._problems.clear()
+        for problem in self.desk.problems:
+            self._say(str(problem))
+        is_stale = self.desk.case is None
+        self._results.classes(**{"add" if is_stale else "remove": "stale"})
+
+    async def _solve(self) -> None:
         """Solve the case as it is, and show what comes out; the last change counts."""
         case = self.desk.case
         self._wanted += 1
         own = self._wanted
         if case is None:
             return
-        await asyncio.sleep(0)
-        self.state.set_visibility(True)
-        self.bar.set_visibility(False)
+        study = Study(case)
         try:
-            answer = await self.worker.do(tasks.solved, case, progress=self._progress)
-        except Ended:
-            self._say("Ended before it was solved.")
-            return
-        except EpicyclicError as error:
+            with self._doing.shown("solving"):
+                answer = await self._shelf.worker.do(
+                    tasks.answered, study, progress=self._doing.progress
+                )
+        except (Ended, EpicyclicError) as error:
             self._say(str(error))
             return
-        finally:
-            if own == self._wanted:
-                self.state.set_visibility(False)
         if own == self._wanted:
-            self.figures.clear()
-            with self.figures:
-                key_figures(answer)
-            await self.chapters.show(case, answer)
+            self._show_figures(answer.key_figures)
+            await self._chapters.show(study, answer)
+
+    async def _moved(self) -> None:
+        """While an input moves: what follows quickly, for the last of its values."""
+        self._has_moved = True
+        if self._is_moving:
+            return
+        self._is_moving = True
+        try:
+            while self._has_moved:
+                self._has_moved = False
+                self._tell()
+                if self.desk.case is not None:
+                    await self._follow()
+        except (Ended, EpicyclicError) as error:
+            self._say(str(error))
+        finally:
+            self._is_moving = False
+
+    async def _follow(self) -> None:
+        place, name = self._chapters.sheet.first or (None, "")
+        figures, svg = await self._do(tasks.moved, self.desk.case, name)
+        self._show_figures(figures)
+        if svg and place is not None and not place.is_deleted:
+            place.set_content(svg)
+
+    def _show_figures(self, figures: Any) -> None:
+        self._figures.clear()
+        with self._figures:
+            key_figures(figures)
 
     def _say(self, text: str) -> None:
-        with self.problems:
+        with self._problems:
             ui.label(text).classes("problem")
-
-    def _progress(self, done: int, total: int) -> None:
-        self.bar.set_visibility(total > 0)
-        self.bar.set_value(done / total if total else 0)
-        self.doing.set_text(f"solving: contact {done} of {total}")
-
-    async def _picture(self, case: Case, name: str, ending: str) -> bytes:
-        return bytes(await self.worker.do(tasks.picture, case, name, ending, progress=_silent))
-
-    async def _turning(
-        self, case: Case, what: str, ending: str, phase: float
-    ) -> tuple[bytes, dict[str, Any]]:
-        found: tuple[bytes, dict[str, Any]] = await self.worker.do(
-            tasks.turning, case, what, ending, phase, progress=_silent
-        )
-        return found
 
     def _show_command(self) -> None:
         with ui.dialog() as dialog, ui.card().classes("command"):
@@ -135,11 +190,6 @@ class Page:
 def _asset(name: str) -> str:
     """A file of the package that goes into the page."""
     return (resources.files("epicyclic.app") / name).read_text(encoding="utf-8")
-
-
-def _toggled(name: str, is_on: bool) -> dict[str, str]:
-    """How to give an element a class, or to take it away."""
-    return {"add": name} if is_on else {"remove": name}
 
 
 def _silent(done: int, total: int) -> None:

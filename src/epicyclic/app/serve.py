@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import secrets
 import socket
-from collections.abc import Callable
-from contextlib import closing
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
 
 import uvicorn
 from fastapi import FastAPI
@@ -13,7 +15,7 @@ from nicegui import ui
 
 from epicyclic.app.desk import Desk
 from epicyclic.app.guard import Guard
-from epicyclic.app.page import Page
+from epicyclic.app.page import Page, Shelf
 from epicyclic.app.worker import Worker
 from epicyclic.errors import InputError, Problem
 
@@ -43,10 +45,25 @@ def serve(desk: Desk, host: str, port: int, told: Callable[[str], None]) -> None
         names = {"127.0.0.1", "localhost"} if host in LOOPBACK else {host}
         shown = f"[{host}]" if ":" in host else host
         hosts = [f"{name}:{found}" for name in {*names, shown}]
-        app = Guard(application(desk), token, hosts)
-        told(f"http://{shown}:{found}/?token={token}")
-        config = uvicorn.Config(app, log_level="error", access_log=False, ws="websockets-sansio")
-        uvicorn.Server(config).run(sockets=[listening])
+        with _shelf(desk) as shelf:
+            app = Guard(application(shelf), token, hosts)
+            told(f"http://{shown}:{found}/?token={token}")
+            config = uvicorn.Config(
+                app, log_level="error", access_log=False, timeout_graceful_shutdown=1
+            )
+            uvicorn.Server(config).run(sockets=[listening])
+
+
+@contextmanager
+def _shelf(desk: Desk) -> Iterator[Shelf]:
+    """Processes and a folder that last as long as the server."""
+    workers = Worker(), Worker()
+    with tempfile.TemporaryDirectory(prefix="epicyclic-app-") as folder:
+        try:
+            yield Shelf(desk, *workers, Path(folder))
+        finally:
+            for worker in workers:
+                worker.end()
 
 
 def _listening(host: str, port: int) -> socket.socket:
@@ -65,14 +82,12 @@ def _listening(host: str, port: int) -> socket.socket:
     return listening
 
 
-def application(desk: Desk) -> FastAPI:
+def application(shelf: Shelf) -> FastAPI:
     """The pages, without anything that keeps others away."""
     app = FastAPI(openapi_url=None)
-    worker = Worker()
-    app.router.on_shutdown.append(worker.end)
 
     async def root() -> None:
-        await Page(desk, worker).build()
+        await Page(shelf).build()
 
     ui.run_with(app, root=root, title="Epicyclic", show_welcome_message=False)
     return app

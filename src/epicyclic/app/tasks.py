@@ -2,29 +2,45 @@
 
 from __future__ import annotations
 
-import io
+import tempfile
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
+from epicyclic.analysis.solve import solve
 from epicyclic.case.case import Case
-from epicyclic.case.operating import operating_line
+from epicyclic.case.operating import AXES, operating_line
+from epicyclic.exchange.rexs.exporting import rexs_bytes
+from epicyclic.exchange.rexs.file import is_rexs
 from epicyclic.losses.direct import contacts_told
-from epicyclic.plots.catalogue import available, figure_of
+from epicyclic.maps.compute import loss_map
+from epicyclic.plots.catalogue import Stored, available, figure_of
+from epicyclic.plots.style import figure_bytes
 from epicyclic.plots.turning import POSITION, Turning, turning_mesh, turning_set
 from epicyclic.records.contents import set_of
 from epicyclic.records.record import ResultRecord, record, sets_of
 from epicyclic.report.drawings import svg_text
-from epicyclic.report.page import Drawing, KeyFigure, Section
+from epicyclic.report.map_page import map_key_figures, map_sections
+from epicyclic.report.page import Drawing, Drawings, KeyFigure, Section, Table
 from epicyclic.report.result_page import result_sections
 from epicyclic.report.result_tables import key_figures
+from epicyclic.report.side_by_side import side_by_side
 from epicyclic.results.result import in_words
+from epicyclic.sweeps.plan import parse_vary
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-__all__ = ["IN_PAGE", "Answer", "picture", "solved", "turning"]
+__all__ = [
+    "IN_PAGE",
+    "MESH",
+    "Answer",
+    "Study",
+    "answered",
+    "compared",
+    "moved",
+    "picture",
+    "saved",
+    "turning",
+]
 
 Progress = Callable[[int, int], None]
 STILL = ("gear-set", "teeth")
@@ -33,11 +49,31 @@ MESH = "/"
 """Before the key of a mesh among what turns."""
 IN_PAGE = "svg-page"
 """Format of a figure that becomes a part of the page."""
+QUICK = ("gears", "views", "bearings", "meshes")
+"""Groups of a record that follow an input while it moves; the others take longer."""
+MOST_KEPT = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """The result of a case, or its map over speed and torque.
+
+    Attributes
+    ----------
+    case : Case
+    speed, torque, temperature : str
+        Values of the map, as the command has them; empty for a result.
+    """
+
+    case: Case
+    speed: str = ""
+    torque: str = ""
+    temperature: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a page shows of a result; its figures have no pictures yet.
+    """What a page shows of a study; its figures have no pictures yet.
 
     Attributes
     ----------
@@ -55,45 +91,99 @@ class Answer:
     turning: dict[str, str]
 
 
-def solved(case: Case, progress: Progress) -> Answer:
-    """Chapters of the result of a case."""
+_kept: dict[Study, Stored] = {}
+"""Of the last studies, so that their figures are drawn without computing them again."""
+
+
+def _stored(study: Study, progress: Progress) -> Stored:
+    if study not in _kept:
+        _kept[study] = _mapped(study, progress) if study.speed else _recorded(study, progress)
+        while len(_kept) > MOST_KEPT:
+            del _kept[next(iter(_kept))]
+    return _kept[study]
+
+
+def _recorded(study: Study, progress: Progress) -> ResultRecord:
     with contacts_told(progress):
-        found = _record(case)
-    turns = _turning_titles(found)
+        return record(study.case)
+
+
+def _mapped(study: Study, progress: Progress) -> Stored:
+    texts = {"speed": study.speed, "torque": study.torque, "temperature": study.temperature}
+    options = [f"{AXES[axis]}={text}" for axis, text in texts.items() if text.strip()]
+    values = parse_vary(study.case, options, "map")
+    return loss_map(
+        study.case,
+        values.get(AXES["speed"], ()),
+        values.get(AXES["torque"], ()),
+        values.get(AXES["temperature"]),
+        resolve_zero=":" in study.torque,
+        progress=progress,
+    )
+
+
+def answered(study: Study, progress: Progress) -> Answer:
+    """Key figures and chapters of a study."""
+    found = _stored(study, progress)
+    turns = _turning_titles(found) if isinstance(found, ResultRecord) else {}
     plots = {
         name: plot for name, plot in available(found).items() if not turns or name not in STILL
     }
-    drawings = {name: (Drawing(name, plot.question, ""),) for name, plot in plots.items()}
+    drawings: Drawings = {name: (Drawing(name, plot.question, ""),) for name, plot in plots.items()}
     wide = frozenset(name for name, plot in plots.items() if len(plot.panels(found)) > 1)
-    return Answer(key_figures(found.result), result_sections(found, drawings), wide, turns)
+    if isinstance(found, ResultRecord):
+        figures, sections = key_figures(found.result), result_sections(found, drawings)
+    else:
+        figures, sections = map_key_figures(found), map_sections(found, drawings)
+    return Answer(figures, sections, wide, turns)
 
 
 def _turning_titles(found: ResultRecord) -> dict[str, str]:
-    sets = {name: in_words(name) or "Gears" for name in sets_of(found.group("gears"))}
+    sets = {name: in_words(name) or "gears" for name in sets_of(found.group("gears"))}
     meshes = {f"{MESH}{key}": in_words(key) for key in found.group("meshes")}
     return sets | meshes
 
 
-def picture(case: Case, name: str, ending: str, progress: Progress) -> bytes:
-    """A figure of the result of a case, as a file of this type holds it."""
-    figure = figure_of(_record(case), name)
+def moved(case: Case, name: str, progress: Progress) -> tuple[list[KeyFigure], str]:
+    """Key figures of a case, and one figure if it follows quickly; nothing is kept."""
+    found = record(case, groups=QUICK)
+    figures = key_figures(found.result)
+    if name not in available(found):
+        return figures, ""
+    return figures, svg_text(figure_of(found, name), name)
+
+
+def compared(first: Case, second: Case, names: tuple[str, str], progress: Progress) -> list[Table]:
+    """Two cases side by side."""
+    contents = []
+    for case in (first, second):
+        found = _stored(Study(case), progress)
+        assert isinstance(found, ResultRecord)
+        contents.append(found.result)
+    return list(side_by_side(contents[0], contents[1], names))
+
+
+def picture(study: Study, name: str, ending: str, progress: Progress) -> bytes:
+    """A figure of a study, as a file of this type holds it."""
+    figure = figure_of(_stored(study, progress), name)
     if ending == IN_PAGE:
         return svg_text(figure, name).encode()
-    return _file(figure, ending)
+    return figure_bytes(figure, ending)
 
 
 def turning(
     case: Case, what: str, ending: str, phase: float, progress: Progress
 ) -> tuple[bytes, dict[str, Any]]:
-    """Gears that turn as a file at one phase, or for a page at all, with what its script needs."""
-    drawn = _turning(_record(case), what, None if ending == IN_PAGE else phase)
+    """Gears that turn, as a file at one phase, or for a page with what its script needs."""
+    found = _stored(Study(case), progress)
+    assert isinstance(found, ResultRecord)
+    drawn = _turning(found, what, None if ending == IN_PAGE else phase)
     if ending != IN_PAGE:
-        return _file(drawn.figure, ending), {}
-    key = f"turning-{what.replace(MESH, '')}"
+        return figure_bytes(drawn.figure, ending), {}
+    key = f"turning-{what.removeprefix(MESH)}"
     svg = svg_text(drawn.figure, key).encode()
     layers = [asdict(layer) | {"name": f"{key}-{layer.name}"} for layer in drawn.layers()]
-    position = f"{key}-{POSITION}"
-    return svg, {"layers": layers, "phases": drawn.phases, "position": position}
+    return svg, {"layers": layers, "phases": drawn.phases, "position": f"{key}-{POSITION}"}
 
 
 def _turning(found: ResultRecord, what: str, phase: float | None) -> Turning:
@@ -106,12 +196,13 @@ def _turning(found: ResultRecord, what: str, phase: float | None) -> Turning:
     return turning_mesh(view, sets[set_of(key)], mesh, found.title, caption, phase)
 
 
-def _file(figure: Figure, ending: str) -> bytes:
-    file = io.BytesIO()
-    figure.savefig(file, format=ending)
-    return file.getvalue()
-
-
-@lru_cache(maxsize=4)
-def _record(case: Case) -> ResultRecord:
-    return record(case)
+def saved(case: Case, ending: str, original: str | None, progress: Progress) -> bytes:
+    """The result of a case as a file of this type; of a REXS file, in a copy of the original."""
+    with contacts_told(progress):
+        result = solve(case)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"result{ending}"
+        if is_rexs(path):
+            return rexs_bytes(path, result, original, None)
+        result.save(path)
+        return path.read_bytes()

@@ -11,7 +11,7 @@ const turning = {
       holder.querySelectorAll(`[id^="${CSS.escape(data.position)}-${number}-"]`));
     positions.flatMap((shown) => [...shown]).forEach((one) => { one.style.display = "none"; });
     turning.drawings.set(id, { holder, layers, positions, phases: data.phases, shown: -1 });
-    turning.turn(turning.phase);
+    turning.turn(data.phase);
   },
 
   turn(phase) {

@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Awaitable, Callable, Mapping
-from functools import partial
-from typing import Any
+from collections.abc import Mapping
+from typing import cast
 
 from nicegui import ui
 
+from epicyclic.app import tasks
+from epicyclic.app.sheet import Do, save_buttons
+from epicyclic.app.tasks import IN_PAGE, MESH
 from epicyclic.app.worker import Ended
 from epicyclic.case.case import Case
-from epicyclic.errors import EpicyclicError
 
-__all__ = ["FORMATS", "TurningView"]
+__all__ = ["TurningView"]
 
-FORMATS = ("png", "svg", "pdf")
 PERIODS, STEP = 4, 0.005
 """Range and step of the slider. [mesh periods]"""
-IN_PAGE = "svg-page"
-Draw = Callable[[Case, str, str, float], Awaitable[tuple[bytes, dict[str, Any]]]]
-"""Draws what turns of a case in a format at a phase."""
 
 
 class TurningView:
@@ -28,14 +25,15 @@ class TurningView:
 
     Parameters
     ----------
-    draw : callable
+    do : callable
+        Has a task done.
     """
 
-    def __init__(self, draw: Draw) -> None:
-        self._draw = draw
+    def __init__(self, do: Do) -> None:
+        self._do = do
         self._case: Case | None = None
         self._places: dict[str, ui.html] = {}
-        self._phase = 0.0
+        self._slider: ui.slider | None = None
 
     def build(self, titles: Mapping[str, str]) -> None:
         """Make the slider and places for pictures."""
@@ -43,42 +41,41 @@ class TurningView:
         if not titles:
             return
         with ui.row().classes("turner"):
-            ui.button(icon="play_arrow").props("flat round dense").on(
-                "click", js_handler="(event) => turning.play(event.currentTarget)"
-            ).tooltip("Turn, or stop")
-            self._slider = ui.slider(min=0, max=PERIODS, step=STEP, value=self._phase)
+            play = ui.button(icon="play_arrow").props("flat round dense").tooltip("Turn, or stop")
+            play.on("click", js_handler="(event) => turning.play(event.currentTarget)")
+            phase = self._slider.value if self._slider else 0.0
+            self._slider = ui.slider(min=0, max=PERIODS, step=STEP, value=phase).mark("phase")
             self._slider.on("update:model-value", js_handler="(phase) => turning.turn(phase)")
             ui.label("mesh periods").classes("soft")
         with ui.element("div").classes("turned"):
             for what, title in titles.items():
-                with ui.element("figure").classes("mesh" if what.startswith("/") else ""):
-                    self._places[what] = ui.html("", sanitize=False).classes("still")
-                    with ui.element("figcaption"):
-                        ui.label(title)
-                        with ui.element("div").classes("formats"):
-                            for ending in FORMATS:
-                                ui.button(ending, on_click=partial(self._save, what, ending)).props(
-                                    "flat dense no-caps"
-                                )
+                self._place(what, title)
+
+    def _place(self, what: str, title: str) -> None:
+        async def draw(ending: str) -> bytes:
+            assert self._slider is not None
+            phase = float(self._slider.value)
+            content, _ = await self._do(tasks.turning, self._case, what, ending, phase)
+            return cast(bytes, content)
+
+        with ui.element("figure").classes("mesh" if what.startswith(MESH) else ""):
+            self._places[what] = ui.html("", sanitize=False).classes("still")
+            with self._places[what]:
+                ui.spinner(size="2em")
+            with ui.element("figcaption"):
+                ui.label(title)
+                save_buttons("turning", draw)
 
     async def draw(self, case: Case) -> None:
         """Draw everything for a case."""
         self._case = case
         for what, place in list(self._places.items()):
             try:
-                svg, data = await self._draw(case, what, IN_PAGE, 0.0)
+                svg, data = await self._do(tasks.turning, case, what, IN_PAGE, 0.0)
             except Ended:
                 return
-            except EpicyclicError as error:
-                place.set_content(str(error))
-                continue
-            if self._places.get(what) is not place:
+            if place.is_deleted:
                 return
             place.set_content(svg.decode())
+            data["phase"] = self._slider.value if self._slider else 0.0
             ui.run_javascript(f"turning.add({json.dumps(place.html_id)}, {json.dumps(data)})")
-
-    async def _save(self, what: str, ending: str) -> None:
-        if self._case is not None:
-            phase = float(self._slider.value)
-            content, _ = await self._draw(self._case, what, ending, phase)
-            ui.download(content, f"turning.{ending}")

@@ -20,6 +20,9 @@ Progress = Callable[[int, int], None]
 class Ended(Exception):  # noqa: N818  no error: the user has asked for it
     """The work was ended before it was done."""
 
+    def __str__(self) -> str:
+        return "Ended before it was done."
+
 
 class WorkError(EpicyclicError):
     """An error that was not foreseen, from the other process."""
@@ -77,7 +80,7 @@ class Worker:
         if self._process is None or not self._process.is_alive():
             context = multiprocessing.get_context("spawn")
             self._ours, theirs = context.Pipe()
-            self._process = context.Process(target=_serve, args=(theirs,), daemon=True)
+            self._process = context.Process(target=_serve, args=(theirs,))
             self._process.start()
             theirs.close()
         assert self._ours is not None

@@ -30,9 +30,11 @@ if TYPE_CHECKING:
     from epicyclic.case.lubrication_tables import LubricationTable
     from epicyclic.case.operation_tables import Surroundings
 
-__all__ = ["CaseTable", "as_given", "owner_without_keys", "with_changes", "with_sizes"]
+__all__ = ["FILE_KEYS", "CaseTable", "as_given", "owner_without_keys", "with_changes", "with_sizes"]
 
 
+FILE_KEYS = ("oil_model", "pocketing_table", "file")
+"""Keys that name files, wherever they stand."""
 _DECIDED = (
     ("surroundings", "oil_air_ratio"),
     ("thermal", "lubrication"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -95,9 +94,9 @@ def draw(figure: Figure, path: Path) -> None:
 
 def picture_bytes(figure: Figure, path: Path) -> bytes:
     """What a file of the type of `path` holds of a figure."""
-    picture = io.BytesIO()
-    figure.savefig(picture, format=path.suffix[1:])
-    return picture.getvalue()
+    from epicyclic.plots.style import figure_bytes
+
+    return figure_bytes(figure, path.suffix[1:])
 
 
 def check_page(path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 import textwrap
 from collections.abc import Iterator
@@ -26,6 +27,7 @@ __all__ = [
     "PANEL",
     "closed_period",
     "decimals_of",
+    "figure_bytes",
     "label_of",
     "legend_below",
     "styled_figure",
@@ -125,6 +127,13 @@ def closed_period(
 ) -> tuple[FloatArray, FloatArray]:
     """A curve over one period with its first point repeated at the end."""
     return np.append(places, places[0] + period), np.append(values, values[0])
+
+
+def figure_bytes(figure: Figure, ending: str) -> bytes:
+    """What a file of the type `ending`, ``"png"``, holds of a figure."""
+    picture = io.BytesIO()
+    figure.savefig(picture, format=ending)
+    return picture.getvalue()
 
 
 def decimals_of(total: float) -> int:

@@ -174,6 +174,7 @@ def turning_mesh(
             )
             for number, name in enumerate(view["gear"].values)
         }
+    figure.draw_without_rendering()  # labels of the ticks follow from the window, room from them
     return Turning(figure, teeth, layers, tuple(phases.tolist()))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
@@ -78,7 +78,9 @@ class ResultRecord:
         }
 
 
-def record(case: Case, *, result: Result | None = None) -> ResultRecord:
+def record(
+    case: Case, *, result: Result | None = None, groups: Collection[str] | None = None
+) -> ResultRecord:
     """Solve a case and keep everything that reports and plots show.
 
     Parameters
@@ -86,6 +88,8 @@ def record(case: Case, *, result: Result | None = None) -> ResultRecord:
     case : PlanetaryCase, GearPairCase or TrainCase
     result : Result, optional
         Of that case, if it is solved already.
+    groups : collection of str, optional
+        Groups of fields to keep, of those of `ResultRecord`. Default: all.
 
     Returns
     -------
@@ -98,28 +102,15 @@ def record(case: Case, *, result: Result | None = None) -> ResultRecord:
     """
     result = solve(case) if result is None else result
     contents = contents_of(result)
-    fields = {"gears": gear_shapes(case), "views": mesh_views(case)}
-    fields["bearings"] = {
-        key: bearing_details(_bearing_of(case, key), figures.loads)
-        for key, figures in result.bearings.items()
-        if figures.loads is not None
+    makers: dict[str, Callable[[], Mapping[str, xr.Dataset]]] = {
+        "gears": lambda: gear_shapes(case),
+        "views": lambda: mesh_views(case),
+        "bearings": lambda: _bearings(case, result),
+        "meshes": lambda: _meshes(case, contents),
+        "uncertainty": lambda: _uncertainty(case, result),
+        "pockets": lambda: _pockets(case, contents),
     }
-    if case.operation.torque != 0 and contents.meshes:
-        fields["meshes"] = mesh_details(case)
-    known = quick_dataset(case, result)
-    if known is not None:
-        fields["uncertainty"] = {"result": known}
-    # of sets in which every mesh turns and has the flow of its pockets solved
-    lacking = {
-        set_of(key)
-        for key, mesh in contents.meshes.items()
-        if mesh["pocket_pressure_max"].value is None
-    }
-    flowing = [key for key in contents.meshes if set_of(key) not in lacking]
-    if flowing:
-        # the outlines, for pictures of one moment, would be ten times all the rest
-        pockets = pocket_details(case, flowing)
-        fields["pockets"] = {name: data.drop_dims("end") for name, data in pockets.items()}
+    fields = {name: make() for name, make in makers.items() if groups is None or name in groups}
     return ResultRecord(
         result=contents,
         given=json.loads(json.dumps(case.given())),
@@ -129,6 +120,36 @@ def record(case: Case, *, result: Result | None = None) -> ResultRecord:
             f"{group}/{name}": data for group, all_ in fields.items() for name, data in all_.items()
         },
     )
+
+
+def _bearings(case: Case, result: Result) -> dict[str, xr.Dataset]:
+    return {
+        key: bearing_details(_bearing_of(case, key), figures.loads)
+        for key, figures in result.bearings.items()
+        if figures.loads is not None
+    }
+
+
+def _meshes(case: Case, contents: ResultContents) -> dict[str, xr.Dataset]:
+    return mesh_details(case) if case.operation.torque != 0 and contents.meshes else {}
+
+
+def _uncertainty(case: Case, result: Result) -> dict[str, xr.Dataset]:
+    known = quick_dataset(case, result)
+    return {} if known is None else {"result": known}
+
+
+def _pockets(case: Case, contents: ResultContents) -> dict[str, xr.Dataset]:
+    """Of sets in which every mesh turns and has the flow of its pockets solved."""
+    lacking = {
+        set_of(key)
+        for key, mesh in contents.meshes.items()
+        if mesh["pocket_pressure_max"].value is None
+    }
+    flowing = [key for key in contents.meshes if set_of(key) not in lacking]
+    # the outlines, for pictures of one moment, would be ten times all the rest
+    pockets = pocket_details(case, flowing) if flowing else {}
+    return {name: data.drop_dims("end") for name, data in pockets.items()}
 
 
 def _bearing_of(case: Case, key: str) -> RollerBearing:

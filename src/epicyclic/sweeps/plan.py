@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from epicyclic.analysis.solve import solve
+from epicyclic.case.base import FILE_KEYS
 from epicyclic.case.case import Case, TrainCase, build_case
 from epicyclic.case.fields import is_whole_number
 from epicyclic.case.keys import field_at
@@ -127,7 +128,7 @@ def _files(case: Case) -> Iterator[str]:
         tables += [table.models for table in case.sets.values() if hasattr(table, "models")]
         tables += [table for _, _, table in case.elements]
     for table in tables:
-        for key in ("oil_model", "pocketing_table", "file"):
+        for key in FILE_KEYS:
             file = getattr(table, key, None)
             if file is not None:
                 yield file

@@ -1,0 +1,78 @@
+"""Two results beside each other: what differs in their inputs, and what that changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from epicyclic.case.template import toml_value
+from epicyclic.records.contents import ResultContents
+from epicyclic.report.page import Cell, Table, aligned, number
+from epicyclic.report.result_tables import key_figures
+from epicyclic.report.shown import MISSING
+
+__all__ = ["side_by_side"]
+
+
+def side_by_side(
+    first: ResultContents, second: ResultContents, names: tuple[str, str]
+) -> Iterator[Table]:
+    """Key figures, losses and inputs of two results.
+
+    Parameters
+    ----------
+    first, second : ResultContents
+    names : tuple of str
+        What they are called.
+    """
+    figures = [
+        {figure.label: (figure.cell, figure.unit) for figure in key_figures(result)}
+        for result in (first, second)
+    ]
+    rows = tuple(
+        (Cell(label), *(one.get(label, (Cell(MISSING), ""))[0] for one in figures), Cell(unit))
+        for label, (_, unit) in (figures[0] | figures[1]).items()
+    )
+    yield Table(("", *names, "unit"), rows, "Key figures")
+    yield _losses(first, second, names)
+    inputs = [dict(_flat(result.inputs)) for result in (first, second)]
+    changed = [key for key in inputs[0] | inputs[1] if inputs[0].get(key) != inputs[1].get(key)]
+    rows = tuple((Cell(key), *(Cell(one.get(key, MISSING)) for one in inputs)) for key in changed)
+    if rows:
+        yield Table(("key", *names), rows, "Inputs that differ")
+
+
+def _losses(first: ResultContents, second: ResultContents, names: tuple[str, str]) -> Table:
+    found = first.losses, second.losses
+    rows = [_difference(name, *(one.get(name) for one in found)) for name in found[0] | found[1]]
+    rows.append(_difference("total", first.total, second.total))
+    strong = frozenset({len(rows) - 1})
+    return Table(("", *names, "difference", ""), tuple(rows), "Losses in W", strong)
+
+
+def _difference(name: str, first: float | None, second: float | None) -> tuple[Cell, ...]:
+    label = name.replace("_", " ")
+    values = (_watts(first), _watts(second))
+    if first is None or second is None:
+        return (Cell(label), *values, Cell(MISSING), Cell(MISSING))
+    share = f"{(second - first) / first:+.1%}" if first else ""
+    return (
+        Cell(label),
+        *values,
+        number(second - first, "", text=f"{second - first:+z.1f}"),
+        aligned(share),
+    )
+
+
+def _watts(value: float | None) -> Cell:
+    return Cell(MISSING) if value is None else number(value, "", text=f"{value:z.1f}")
+
+
+def _flat(tables: Mapping[str, Any], key: str = "") -> Iterator[tuple[str, str]]:
+    """Dotted keys with their values as text."""
+    for name, value in tables.items():
+        full = f"{key}.{name}" if key else name
+        if isinstance(value, Mapping):
+            yield from _flat(value, full)
+        else:
+            yield full, value if isinstance(value, str) else toml_value(value)
