@@ -304,7 +304,7 @@ def test_an_unexpected_error_is_one_line(monkeypatch, capsys):
         raise RuntimeError("something new")
 
     # what takes the function over when it is imported must not find the broken one
-    importlib.import_module("epicyclic.report.uncertainty_tables")
+    importlib.import_module("epicyclic.bands.quick")
     monkeypatch.setattr("epicyclic.analysis.solve.solve", broken)
     monkeypatch.setattr("sys.argv", ["epicyclic", "run", "talbot-2012"])
     with pytest.raises(SystemExit) as ended:

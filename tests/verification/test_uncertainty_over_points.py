@@ -16,7 +16,9 @@ from epicyclic.bands.statistics import index_values
 from epicyclic.case.uncertain_values import UncertainValue
 from epicyclic.cli.uncertainty import uncertainty as command
 from epicyclic.errors import InputError
+from epicyclic.report.advice import LIMITS
 from epicyclic.report.html import report_html
+from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.sweeps.dataset import write_dataset
 
 ISOLATED = {
@@ -104,6 +106,21 @@ def test_drivers_over_a_map_are_those_of_the_indices_at_a_point(case, over_map):
         exact = alone[name].sel(sum="total")
         assert float(abs(point[name] - exact).max()) < 0.06, name
     assert float(exact.max()) > 0.3
+
+
+def test_what_limits_the_trust_in_a_map_is_told_where_it_is_largest(over_map):
+    (advice,) = (it for it in uncertainty_items(over_map) if it.title == LIMITS)
+    mean = (over_map["first_order"] * over_map["total"]).sum(over_map["total"].dims)
+    first = str(mean["driver"][int(mean.values.argmax())].values)
+    about = over_map.sel(input=first)
+    assert advice.items[0].startswith(f"{about['input_name'].item()}: up to ")
+    assert advice.items[0].endswith(f"; {about['input_advice'].item()}.")
+    width = over_map.sel(result="total")["high"] - over_map.sel(result="total")["low"]
+    alone = width * np.sqrt(over_map["first_order"].sel(driver=first).clip(0.0))
+    largest = alone.isel(alone.argmax(alone.dims))
+    assert f"{float(largest):.3g} W of the band" in advice.items[0]
+    assert f"torque {float(largest['torque']):g} N·m" in advice.items[0]
+    assert 1 <= len(advice.items) <= 3
 
 
 def test_a_map_with_its_uncertainty_remains_a_map(plain_map, over_map, tmp_path):

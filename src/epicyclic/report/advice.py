@@ -18,6 +18,7 @@ __all__ = ["advice_texts", "band_texts", "driver_name", "result_json"]
 
 MOST = 3
 """Inputs and models that are named after a band."""
+LIMITS = "What limits the trust in it"
 FEW = 2
 """Limits that a short list names."""
 WORTH = 0.98
@@ -39,7 +40,7 @@ def band_texts(known: Known | None) -> list[str | Listing]:
     return [
         f"{text}; most of it from {drivers}. Assumed where [uncertainty] of the case says nothing: "
         "'epicyclic uncertainty' shows all.",
-        Listing(tuple(advice_texts(known, brief=True)), "What limits the trust in it"),
+        Listing(tuple(advice_texts(known, brief=True)), LIMITS),
     ]
 
 

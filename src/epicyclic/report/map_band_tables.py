@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 
 from epicyclic.plots.loss_map import at_temperatures
-from epicyclic.report.advice import driver_name
+from epicyclic.report.advice import LIMITS, MOST, driver_name
 from epicyclic.report.grids import grid_table
-from epicyclic.report.page import Cell, Table, aligned
+from epicyclic.report.page import Cell, Listing, Table, aligned
 from epicyclic.report.shown import MISSING
 from epicyclic.units import format_number, unit_text
 
@@ -20,12 +20,45 @@ LEAST = 0.02
 """Largest share in the variance at any point, from which an input is shown. [1]"""
 
 
-def map_band_tables(data: xr.Dataset) -> Iterator[Table]:
+def map_band_tables(data: xr.Dataset) -> Iterator[Table | Listing]:
     """The band of the total loss over speed and torque at each temperature, and what makes it."""
     for point in at_temperatures(data):
         total = point.sel(result="total").transpose("speed", "torque", ...)
         yield grid_table(point, "95 % band of the total loss, W", _band_of(total))
     yield _drivers(data)
+    yield Listing(tuple(_limits(data)), LIMITS)
+
+
+def _limits(data: xr.Dataset) -> Iterator[str]:
+    """What to do about the drivers that matter over the whole map, in the order of `_drivers`."""
+    total, mean = data.sel(result="total"), _mean_shares(data)
+    width = total["high"] - total["low"]
+    for driver in mean["driver"].values[:MOST]:
+        if mean.sel(driver=driver) <= LEAST:
+            return
+        keys = str(driver).split(" + ")
+        own = data.sel(input=keys)
+        name = " + ".join(map(str, own["input_name"].values))
+        advice = "; ".join(dict.fromkeys(map(str, own["input_advice"].values)))
+        alone = width * np.sqrt(data["first_order"].sel(driver=driver).clip(0.0, 1.0))
+        place = _place(data, alone.isel(alone.argmax(alone.dims)))
+        yield (
+            f"{name}: up to {format_number(float(alone.max()), 3)} W of the band, at {place}; "
+            f"{advice}."
+        )
+
+
+def _mean_shares(data: xr.Dataset) -> xr.DataArray:
+    """Shares of the variance of the total loss, the mean where the loss is, the largest first."""
+    shares, weights = data["first_order"], data["total"].fillna(0.0)
+    mean = (shares.fillna(0.0) * weights).sum(weights.dims) / weights.sum()
+    return mean.sortby(-mean)
+
+
+def _place(data: xr.Dataset, point: xr.DataArray) -> str:
+    """The operating point, by the axes of the map that have more than one value."""
+    axes = [str(name) for name in data["total"].dims if data.sizes[name] > 1]
+    return ", ".join(f"{name} {_value(point[name])}" for name in axes)
 
 
 def _band_of(total: xr.Dataset) -> Callable[[int, int], Cell]:
@@ -41,23 +74,20 @@ def _band_of(total: xr.Dataset) -> Callable[[int, int], Cell]:
 
 def _drivers(data: xr.Dataset) -> Table:
     """Shares of the variance of the total loss: where the loss is, and where they are largest."""
-    shares, weights = data["first_order"], data["total"].fillna(0.0)
-    axes = [name for name in weights.dims if weights.sizes[name] > 1]
-    mean = (shares.fillna(0.0) * weights).sum(weights.dims) / weights.sum()
+    shares, mean = data["first_order"], _mean_shares(data)
     rows = []
-    for driver in mean.sortby(-mean)["driver"].values:
+    for driver in mean["driver"].values:
         own = shares.sel(driver=driver)
         if not (own > LEAST).any():
             continue
         largest = own.isel(own.argmax(own.dims))
-        place = ", ".join(f"{name} {_value(largest[name])}" for name in map(str, axes))
         name = " + ".join(map(driver_name, str(driver).split(" + ")))
         rows.append(
             (
                 Cell(name),
                 aligned(f"{max(float(mean.sel(driver=driver)), 0.0):.1%}"),
                 aligned(f"{float(largest):.1%}"),
-                Cell(place),
+                Cell(_place(data, largest)),
             )
         )
     known = float(data["explained"].min())

@@ -10,7 +10,7 @@ from rich.console import RenderableType
 
 from epicyclic.bands.known import known_of
 from epicyclic.case.wording import one_line
-from epicyclic.report.advice import advice_texts, driver_name
+from epicyclic.report.advice import LIMITS, advice_texts, driver_name
 from epicyclic.report.map_band_tables import map_band_tables
 from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number
 from epicyclic.report.shown import shown
@@ -48,7 +48,7 @@ def uncertainty_items(data: xr.Dataset) -> Iterator[Table | Listing]:
     else:
         yield _results(data)
         yield _budget(data)
-        yield Listing(tuple(advice_texts(known_of(data))), "What limits the trust in it")
+        yield Listing(tuple(advice_texts(known_of(data))), LIMITS)
     yield Listing(tuple(_notes(data)), "Notes")
 
 
