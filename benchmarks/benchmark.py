@@ -20,14 +20,13 @@ import time
 from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import resources
+from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from rich.console import Console
-from rich.table import Table
 
 import epicyclic as ep
 from epicyclic.analysis.contact import solve_contact
@@ -376,25 +375,24 @@ def campaign_seconds(runner: Runner) -> float:
         return time.perf_counter() - start
 
 
-def campaign_table() -> Table:
-    """Simulations a minute in one process, in two, and on a local Dask cluster of two."""
+def show_campaign() -> None:
+    """Simulations in one process, in two, and on a local Dask cluster of two."""
+
+    def row(workers: str, seconds: float, count: int) -> None:
+        a_minute = f"{60 * CAMPAIGN_SIZE / seconds:.0f}"
+        show(workers, f"{seconds:.1f} s", a_minute, f"{one / (count * seconds):.0%}")
+
+    heading(f"Oil campaign, {CAMPAIGN_SIZE} contacts", "measured", "a minute", "efficiency")
+    one = campaign_seconds(Runner(jobs=1))
+    row("one process", one, 1)
+    row("two processes", campaign_seconds(Runner(jobs=2)), 2)
+    if find_spec("distributed") is None:
+        print("left out: two of a Dask cluster; it needs the extra dask")
+        return
     from distributed import LocalCluster
 
-    one, two = campaign_seconds(Runner(jobs=1)), campaign_seconds(Runner(jobs=2))
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
-        dask = campaign_seconds(Runner(dask=cluster.scheduler_address))
-    title = f"Oil campaign, {CAMPAIGN_SIZE} contacts"
-    table = Table("workers", title=title, title_justify="left")
-    for column in ("seconds", "contacts a minute", "efficiency"):
-        table.add_column(column, justify="right")
-    for name, seconds, workers in (
-        ("one process", one, 1), ("two processes", two, 2), ("two of a Dask cluster", dask, 2)
-    ):  # fmt: skip
-        table.add_row(
-            name, f"{seconds:.1f}", f"{60 * CAMPAIGN_SIZE / seconds:.0f}",
-            f"{one / (workers * seconds):.0%}",
-        )  # fmt: skip
-    return table
+        row("two of a Dask cluster", campaign_seconds(Runner(dask=cluster.scheduler_address)), 2)
 
 
 def direct_seconds() -> float:
@@ -409,14 +407,30 @@ def direct_seconds() -> float:
     return time.perf_counter() - start
 
 
-def main() -> None:
-    case = test_article()
+def show(what: str, *cells: str) -> None:
+    """Print a row as soon as it is known: three columns of numbers, then words."""
+    numbers = "".join(f"{cell:>12}" for cell in cells[:3])
+    print(f"{what:<46}{numbers}  {' '.join(cells[3:])}".rstrip(), flush=True)
+
+
+def heading(title: str, *columns: str) -> None:
+    print(f"\n{title}")
+    show("", *columns)
+
+
+def show_commands() -> float:
+    """Whole commands; seconds of a warm operating point."""
     with tempfile.TemporaryDirectory() as empty:
         first = process_seconds("-m", "epicyclic", "run", "talbot-2012", NUMBA_CACHE_DIR=empty)
     python = median_process_seconds("-c", "pass")
     importing = median_process_seconds("-c", "import epicyclic") - python
+    show("import epicyclic", f"{importing:.3f} s", "0.5 s", f"{importing / python:.2f}",
+         "starting Python")  # fmt: skip
     warm = median_process_seconds("-m", "epicyclic", "run", "talbot-2012")
-    ep.solve(case)
+    show("first run, compiling", f"{first:.1f} s", "60 s", f"{first / warm:.1f}", "a warm run")
+    show("run talbot-2012, warm", f"{warm:.2f} s", "2 s", f"{warm / python:.0f}",
+         "starting Python")  # fmt: skip
+    ep.solve(test_article())
     batch = itertools.cycle(points())
     point = median_seconds(lambda: ep.solve(next(batch)), repeats=50)
 
@@ -425,82 +439,82 @@ def main() -> None:
         ep.solve(next(batch))
 
     alone = median_seconds(unshared, repeats=20)
-    segments = (10, 20, 30, 60, 120)
-    elastic = {count: compliance_seconds(count) for count in segments}
-    ep.solve(case)
-    pocket_shape, pocket_new, pocket_waves, pocket_scaled = pocket_seconds()
-    matrix_seconds = median_seconds(lambda: matrix(None), repeats=3)
-    settled_matrix = median_seconds(lambda: matrix(None, SETTLED), repeats=1)
-    settled = itertools.cycle([each.updated(SETTLED) for each in points()])
-    settled_point = median_seconds(lambda: ep.solve(next(settled)), repeats=20)
-    here = str(Path(__file__).resolve().parent)
-    command = "import benchmark; benchmark.matrix(None)"
-    matrix_process = process_seconds("-c", command, PYTHONPATH=here)
-    whole_map = map_seconds()
-    gearbox_map = gearbox_map_seconds()
-    duty, reading = duty_seconds()
-    uncertain = uncertainty_seconds()
-    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+    show("one operating point, warm", f"{1e3 * point:.2f} ms", "20 ms", f"{alone / point:.1f}",
+         "times faster than without shared work")  # fmt: skip
+    return point
 
-    table = Table(title="Epicyclic benchmark", title_justify="left")
-    table.add_column("what")
-    for column in ("measured", "aim", "ratio"):
-        table.add_column(column, justify="right")
-    table.add_column("to")
-    for row in (
-        ("import epicyclic", f"{importing:.3f} s", "0.5 s", f"{importing / python:.2f}",
-         "starting Python"),
-        ("first run, compiling", f"{first:.1f} s", "60 s", f"{first / warm:.1f}", "a warm run"),
-        ("run talbot-2012, warm", f"{warm:.2f} s", "2 s", f"{warm / python:.0f}",
-         "starting Python"),
-        ("one operating point, warm", f"{1e3 * point:.2f} ms", "20 ms", f"{alone / point:.1f}",
-         "times faster than without shared work"),
-        ("influence coefficients of a mesh, 30 segments", f"{elastic[30][0]:.3f} s", "0.3 s",
-         f"{elastic[30][0] / elastic[30][1]:.0f}", "loading both meshes"),
-        ("loading both meshes, 30 segments", f"{1e3 * elastic[30][1]:.2f} ms", "30 ms",
-         f"{elastic[30][1] / point:.2f}", "one operating point"),
-        ("pockets of a new set, processor time", f"{1e3 * pocket_new:.0f} ms", "150 ms",
-         f"{pocket_new / pocket_shape:.1f}", "their geometry"),
-        ("the same with a compressible mixture", f"{1e3 * pocket_waves:.0f} ms", "",
-         f"{pocket_waves / pocket_new:.1f}", "an incompressible one"),
-        ("new speed, pockets known, processor time", f"{1e3 * pocket_scaled:.1f} ms", "10 ms",
-         f"{pocket_new / pocket_scaled:.0f}", "times faster than pockets of a new set"),
-        ("test matrix, 300 points", f"{matrix_seconds:.2f} s", "15 s",
-         f"{matrix_seconds / (300 * point):.2f}", "300 single points"),
-        ("the same in a new process", f"{matrix_process:.2f} s", "15 s",
-         f"{matrix_process / matrix_seconds:.2f}", "the matrix, warm"),
-        ("test matrix, temperatures settled", f"{settled_matrix:.2f} s", "30 s",
-         f"{settled_matrix / matrix_seconds:.2f}", "the matrix, warm"),
-        ("one operating point, temperatures settled", f"{1e3 * settled_point:.0f} ms", "5 points",
-         f"{settled_point / point:.2f}", "one operating point, warm"),
-        ("loss map, 8200 points, to NetCDF", f"{whole_map:.1f} s", "60 s",
-         f"{whole_map / (8200 * point):.2f}", "8200 single points"),
-        ("map of a gearbox, nine states of 200 points", f"{gearbox_map:.1f} s", "60 s",
-         f"{gearbox_map / whole_map:.2f}", "the loss map"),
-        ("duty cycle, a million rows of CSV", f"{duty:.1f} s", "5 s", f"{duty / reading:.1f}",
-         "reading it with pandas"),
-        ("uncertainty of 20 inputs, two cores", f"{uncertain:.0f} s", "120 s",
-         f"{2 * uncertain / (SAMPLED * point):.2f}", f"half of {SAMPLED} single points"),
-        ("largest memory of a process", f"{peak:.0f} MB", "500 MB", "", ""),
-    ):  # fmt: skip
-        table.add_row(*row)
-    cost = Table(title="Elastic teeth against segments", title_justify="left")
-    for column in ("segments", "coefficients of a mesh", "loading both meshes"):
-        cost.add_column(column, justify="right")
-    for count, (building, loading) in elastic.items():
-        cost.add_row(str(count), f"{1e3 * building:.0f} ms", f"{1e3 * loading:.2f} ms")
-    contacts = Table(title="Line contacts, one core", title_justify="left")
-    for column in ("roughness of both", "measured", "aim", "time steps", "a step"):
-        contacts.add_column(column, justify="right")
+
+def show_pockets() -> None:
+    ep.solve(test_article())
+    shape, new, waves, scaled = pocket_seconds()
+    show("pockets of a new set, processor time", f"{1e3 * new:.0f} ms", "150 ms",
+         f"{new / shape:.1f}", "their geometry")  # fmt: skip
+    show("the same with a compressible mixture", f"{1e3 * waves:.0f} ms", "",
+         f"{waves / new:.1f}", "an incompressible one")  # fmt: skip
+    show("new speed, pockets known, processor time", f"{1e3 * scaled:.1f} ms", "10 ms",
+         f"{new / scaled:.0f}", "times faster than pockets of a new set")  # fmt: skip
+
+
+def show_many_cases(point: float) -> None:
+    """The test matrix, maps, cycles and uncertainty, beside single points."""
+    warm = median_seconds(lambda: matrix(None), repeats=3)
+    show("test matrix, 300 points", f"{warm:.2f} s", "15 s", f"{warm / (300 * point):.2f}",
+         "300 single points")  # fmt: skip
+    here = str(Path(__file__).resolve().parent)
+    fresh = process_seconds("-c", "import benchmark; benchmark.matrix(None)", PYTHONPATH=here)
+    show("the same in a new process", f"{fresh:.2f} s", "15 s", f"{fresh / warm:.2f}",
+         "the matrix, warm")  # fmt: skip
+    settled = median_seconds(lambda: matrix(None, SETTLED), repeats=1)
+    show("test matrix, temperatures settled", f"{settled:.2f} s", "30 s", f"{settled / warm:.2f}",
+         "the matrix, warm")  # fmt: skip
+    batch = itertools.cycle([each.updated(SETTLED) for each in points()])
+    one = median_seconds(lambda: ep.solve(next(batch)), repeats=20)
+    show("one operating point, temperatures settled", f"{1e3 * one:.0f} ms", "5 points",
+         f"{one / point:.2f}", "one operating point, warm")  # fmt: skip
+    whole = map_seconds()
+    show("loss map, 8200 points, to NetCDF", f"{whole:.1f} s", "60 s",
+         f"{whole / (8200 * point):.2f}", "8200 single points")  # fmt: skip
+    train = gearbox_map_seconds()
+    show("map of a gearbox, nine states of 200 points", f"{train:.1f} s", "60 s",
+         f"{train / whole:.2f}", "the loss map")  # fmt: skip
+    duty, reading = duty_seconds()
+    show("duty cycle, a million rows of CSV", f"{duty:.1f} s", "5 s", f"{duty / reading:.1f}",
+         "reading it with pandas")  # fmt: skip
+    uncertain = uncertainty_seconds()
+    show("uncertainty of 20 inputs, two cores", f"{uncertain:.0f} s", "120 s",
+         f"{2 * uncertain / (SAMPLED * point):.2f}", f"half of {SAMPLED} points")  # fmt: skip
+
+
+def show_elastic_teeth() -> None:
+    heading("Elastic teeth against segments", "coefficients", "both loaded", "ratio")
+    for count in (10, 20, 30, 60, 120):
+        building, loading = compliance_seconds(count)
+        aims = "aims 300 ms, 30 ms" if count == 30 else ""
+        show(f"{count} segments", f"{1e3 * building:.0f} ms", f"{1e3 * loading:.2f} ms",
+             f"{building / loading:.0f}", aims)  # fmt: skip
+
+
+def show_contacts() -> None:
+    heading("Line contacts, one core", "measured", "aim", "a step")
     for roughness, aim in (("", "10 ms"), ("0.05 um", "500 ms"), ("0.4 um", "500 ms")):
         seconds, steps = contact_seconds(roughness)
         each = f"{1e3 * seconds / steps:.2f} ms" if steps else ""
-        contacts.add_row(roughness or "none", f"{1e3 * seconds:.1f} ms", aim, str(steps), each)
-    for shown in (table, cost, contacts, campaign_table()):
-        Console().print(shown)
-    Console().print(
-        f"Contacts of both meshes solved (ehl-direct): {direct_seconds():.0f} s, aim 300 s"
-    )
+        show(f"roughness of both: {roughness or 'none'}", f"{1e3 * seconds:.1f} ms", aim, each,
+             f"{steps} steps" if steps else "")  # fmt: skip
+
+
+def main() -> None:
+    heading("Epicyclic benchmark", "measured", "aim", "ratio", "to")
+    point = show_commands()
+    show_pockets()
+    show_many_cases(point)
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+    show("largest memory of a process", f"{peak:.0f} MB", "500 MB")
+    show_elastic_teeth()
+    show_contacts()
+    show_campaign()
+    heading("Contacts of both meshes solved (ehl-direct)", "measured", "aim")
+    show("talbot-2012", f"{direct_seconds():.0f} s", "300 s")
 
 
 if __name__ == "__main__":
