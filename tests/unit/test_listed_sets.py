@@ -389,8 +389,13 @@ def test_keys_of_a_gear_are_told_where_the_user_wrote_them():
     problem = only(found("wolfrom", gears__wide__roughness=None))
     assert problem.key == "sets.S.gears.wide.roughness"
     assert "gears.wide" in problem.remedy
-    problem = only(found("wolfrom", gears__wide__profile_shift_coefficient=None))
-    assert problem.key == "sets.S.gears.wide.tooth_thickness"
+    left = {"gears__narrow__profile_shift_coefficient": None}
+    left["gears__output_ring__profile_shift_coefficient"] = None
+    problem = only(found("wolfrom", **left))
+    assert problem.key == (
+        "sets.S.gears.narrow.profile_shift_coefficient, "
+        "sets.S.gears.output_ring.profile_shift_coefficient"
+    )
 
 
 def test_gear_that_cannot_be_cut():
@@ -416,11 +421,12 @@ def test_mates_of_different_module_or_helix():
 
 
 def test_centre_distance_that_nothing_states():
-    problems = found("wolfrom", gears__center_distance=None)
-    assert problems[0].key == "sets.S.mesh.sun-wide.center_distance"
-    assert len(problems) == 3
-    problems = of_mesh("double_planet", "outer-inner")
-    assert only(problems).key == "sets.S.mesh.inner-outer.center_distance"
+    left = {f"gears__{name}__profile_shift_coefficient": None for name in ("sun", "fixed_ring")}
+    left["gears__narrow__profile_shift_coefficient"] = None
+    problem = only(found("wolfrom", gears__center_distance=None, **left))
+    assert problem.key == "sets.S.mesh.sun-wide.center_distance"
+    assert "sun and wide or wide and fixed_ring or narrow and output_ring" in problem.allowed
+    assert problem.remedy.startswith('Add center_distance = "... mm" to [mesh.sun-wide]')
 
 
 def test_centre_distances_that_put_one_pin_at_two_places():

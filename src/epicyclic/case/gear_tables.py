@@ -19,6 +19,8 @@ from epicyclic.units import (
     as_stated,
 )
 
+RackName = Literal["iso-53-a", "iso-53-b", "iso-53-c", "iso-53-d"]
+
 
 class Gears(Table):
     """What all gears share."""
@@ -57,7 +59,7 @@ class Gears(Table):
         description="h_fP/m_n, for gears without root_diameter. ISO 53, profile A.",
     )
 
-    basic_rack: Literal["iso-53-a", "iso-53-b", "iso-53-c", "iso-53-d"] | None = Field(
+    basic_rack: RackName | None = Field(
         default=None,
         description="A profile of ISO 53 instead of both coefficients, also for the tool's tip.",
     )

@@ -43,7 +43,7 @@ from epicyclic.geometry.assembly import nearest_places
 from epicyclic.geometry.gear import Gear, involute
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = ["listed_set_problems"]
+__all__ = ["listed_set_problems", "rack_problems", "sound_gears"]
 
 SAME_PITCH = 1e-6
 """Base pitches and helix angles that differ by less, relatively and in radians, are equal. [1]"""
@@ -60,10 +60,10 @@ def listed_set_problems(table: ListedSet, shape: SetShape) -> list[Problem]:
         *_planet_problems(table, shape),
         *_sharing_problems(table),
     ]
-    racks = list(dict.fromkeys(_rack_problems(table)))
+    racks = list(dict.fromkeys(rack_problems(table)))
     if racks:
         return problems + racks
-    sound, found = _sound_gears(table)
+    sound, found = sound_gears(table)
     problems += found
     problems += _hand_problems(table, shape, sound)
     problems += _bearing_problems(table, shape, sound)
@@ -169,7 +169,7 @@ def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
 # --- gears ----------------------------------------------------------------------------------------
 
 
-def _rack_problems(table: ListedSet) -> Iterator[Problem]:
+def rack_problems(table: ListedSet) -> Iterator[Problem]:
     """What the basic racks of the gears lack, or have twice."""
     given = {gear: rack_keys(table, gear) for gear in table.members}
     for group in RACK_KEYS:
@@ -191,11 +191,13 @@ def _rack_problems(table: ListedSet) -> Iterator[Problem]:
                 yield Problem(both, "", "state the same twice.", "Keep one of them.")
 
 
-def _sound_gears(table: ListedSet) -> tuple[dict[str, Gear], list[Problem]]:
-    """The gears that can be cut, and the problems of the others."""
+def sound_gears(table: ListedSet) -> tuple[dict[str, Gear], list[Problem]]:
+    """The gears that can be cut, and the problems of the others that state their thickness."""
     sound: dict[str, Gear] = {}
     problems: list[Problem] = []
     for name, member in table.members.items():
+        if not member.states_thickness:
+            continue
         found, wrong = check_gears(gears_table(table, name), {name: member})
         sound |= found
         problems += [_below_gears(problem, table) for problem in wrong]

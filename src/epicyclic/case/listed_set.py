@@ -45,8 +45,10 @@ __all__ = [
     "hands_of",
     "meshes_of",
     "outward_of",
+    "own_mesh",
     "pair_of",
     "pins_of",
+    "planet_of",
     "positions_of",
     "rack_keys",
     "terms_of",
@@ -210,7 +212,7 @@ def pair_of(table: ListedSet, shape: SetShape, mesh: ShapeMesh) -> tuple[str, st
     return table.meshes[shape.meshes.index(mesh)]
 
 
-def _own_mesh(table: ListedSet, pair: tuple[str, str]) -> tuple[str, ListedMesh]:
+def own_mesh(table: ListedSet, pair: tuple[str, str]) -> tuple[str, ListedMesh]:
     """Name and table of a mesh."""
     one, two = pair
     names = (f"{one}-{two}", f"{two}-{one}")
@@ -220,7 +222,7 @@ def _own_mesh(table: ListedSet, pair: tuple[str, str]) -> tuple[str, ListedMesh]
 
 def distance_key(table: ListedSet, shape: SetShape, mesh: ShapeMesh) -> str:
     """The key that states the centre distance of a mesh."""
-    name, own = _own_mesh(table, pair_of(table, shape, mesh))
+    name, own = own_mesh(table, pair_of(table, shape, mesh))
     shared = own.center_distance is None and table.gears.center_distance is not None
     return "gears.center_distance" if shared else f"mesh.{name}.center_distance"
 
@@ -231,23 +233,23 @@ def distances_of(table: ListedSet, shape: SetShape) -> dict[str, float | None]:
     The central gears of a planet share its pin radius, so that one of its meshes tells it for all.
     """
     stated = {
-        mesh.key: _own_mesh(table, pair_of(table, shape, mesh))[1].center_distance
+        mesh.key: own_mesh(table, pair_of(table, shape, mesh))[1].center_distance
         or table.gears.center_distance
         for mesh in shape.meshes
     }
     radii: dict[str, float] = {}
     for mesh in shape.meshes:
         distance = stated[mesh.key]
-        planet = _planet_of(shape, mesh)
+        planet = planet_of(shape, mesh)
         if planet is not None and distance is not None:
             radii.setdefault(planet, distance)
     return {
-        mesh.key: stated[mesh.key] or radii.get(_planet_of(shape, mesh) or "")
+        mesh.key: stated[mesh.key] or radii.get(planet_of(shape, mesh) or "")
         for mesh in shape.meshes
     }
 
 
-def _planet_of(shape: SetShape, mesh: ShapeMesh) -> str | None:
+def planet_of(shape: SetShape, mesh: ShapeMesh) -> str | None:
     """The planet of a mesh with a central gear; None for other meshes."""
     if central_gear(shape, mesh) is None:
         return None
@@ -271,7 +273,7 @@ def meshes_of(table: ListedSet, shape: SetShape) -> Iterator[tuple[ShapeMesh, Me
         distance = distances[mesh.key]
         assert distance is not None
         gears = (gear_of(table, mesh.first), gear_of(table, mesh.second))
-        yield mesh, Mesh(f"{'-'.join(pair)} mesh", *gears, distance), _own_mesh(table, pair)[1]
+        yield mesh, Mesh(f"{'-'.join(pair)} mesh", *gears, distance), own_mesh(table, pair)[1]
 
 
 def hands_of(table: ListedSet, shape: SetShape) -> dict[str, int]:
@@ -342,7 +344,7 @@ def pins_of(table: ListedSet, shape: SetShape) -> dict[str, Pin]:
     distances = distances_of(table, shape)
     radii: dict[str, float] = {}
     for mesh in shape.meshes:
-        planet, distance = _planet_of(shape, mesh), distances[mesh.key]
+        planet, distance = planet_of(shape, mesh), distances[mesh.key]
         if planet is not None and distance is not None:
             radii.setdefault(planet, distance)
     between: dict[tuple[str, str], float] = {}
@@ -395,7 +397,7 @@ def directions_of(table: ListedSet, shape: SetShape) -> dict[str, float]:
     directions = {}
     for mesh in shape.meshes:
         one, two = pair_of(table, shape, mesh)
-        angle = _own_mesh(table, (one, two))[1].direction
+        angle = own_mesh(table, (one, two))[1].direction
         if shape.planets:
             places = [
                 pins[body].place if body in pins else (0.0, 0.0)

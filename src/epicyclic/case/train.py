@@ -18,6 +18,7 @@ from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.gear_sizes import Found, told_oil
 from epicyclic.case.listed_checks import listed_set_problems
 from epicyclic.case.listed_set import directions_of, hands_of
+from epicyclic.case.listed_sizes import find_listed_sizes
 from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
 from epicyclic.case.model_tables import (
     ContactSolver,
@@ -196,10 +197,9 @@ class _TrainTables(CaseTable):
                 shapes[name] = shape
                 found += [_below(f"sets.{name}", problem) for problem in wrong]
                 if isinstance(read.table, ListedSet) and not wrong:
-                    found += [
-                        as_given(_below(f"sets.{name}", problem), tables)
-                        for problem in listed_set_problems(read.table, shape)
-                    ]
+                    sets[name], told, lacks = _complete(read.table, shape, raw_sets[name])
+                    sizes += [replace(one, key=f"sets.{name}.{one.key}") for one in told]
+                    found += [as_given(_below(f"sets.{name}", lack), tables) for lack in lacks]
         case = whole.case
         if case is None or len(sets) < len(named) or not named:
             return cls._made(None, tables, source, found)
@@ -426,6 +426,14 @@ def _with_gears(problem: Problem) -> Problem:
     """A problem of a gear of a listed set with the key that the user wrote."""
     key, remedy = (text.replace("members", "gears", 1) for text in (problem.key, problem.remedy))
     return replace(problem, key=key, remedy=remedy)
+
+
+def _complete(
+    table: ListedSet, shape: SetShape, raw: Mapping[str, Any]
+) -> tuple[ListedSet, tuple[Found, ...], list[Problem]]:
+    """A listed set with what it leaves out, what was found, and its problems."""
+    whole, told, problems = find_listed_sizes(table, shape, raw)
+    return whole, told, problems or listed_set_problems(whole, shape)
 
 
 # --- bearings, seals, drags -----------------------------------------------------------------------

@@ -11,9 +11,9 @@ from epicyclic.case.gear_tables import (
     RING_TEETH,
     Gears,
     GearTable,
-    MeshTable,
     PairGear,
     Planet,
+    RackName,
     Ring,
     SetMesh,
     internal_if_negative,
@@ -180,9 +180,6 @@ class GivenPair(Table):
 class ListedGear(PairGear):
     """A gear of a listed set whose losses are computed."""
 
-    EXACTLY_ONE = (GearTable.THICKNESS,)
-    AT_MOST_ONE = GearTable.AT_MOST_ONE[1:]
-
     body: str | None = Field(
         default=None, description="Gears with the same body turn together. Default: its own."
     )
@@ -224,6 +221,8 @@ def _of_gears(key: str) -> Any:
 class SharedGears(Table):
     """What all gears of a listed set share; below it the file has one table for each gear."""
 
+    AT_MOST_ONE = Gears.AT_MOST_ONE
+
     normal_module: Length | None = Field(default=None, description="m_n.")
     transverse_module: Length | None = Field(default=None, description="m_t = m_n/cos(beta).")
     normal_pressure_angle: _Pressure | None = Field(
@@ -238,15 +237,16 @@ class SharedGears(Table):
     center_distance: Length | None = Field(default=None, description="Of every mesh.")
     addendum_coefficient: Number = _of_gears("addendum_coefficient")
     dedendum_coefficient: Number = _of_gears("dedendum_coefficient")
+    basic_rack: RackName | None = _of_gears("basic_rack")
 
 
-class ListedMesh(MeshTable):
+class ListedMesh(SetMesh):
     """What belongs to one mesh of a listed set, ``[sets.NAME.mesh.GEAR-GEAR]``."""
 
     center_distance: Length | None = Field(
         default=None,
-        description="Default: of [gears], or that of another mesh of the same planet with a "
-        "central gear.",
+        description="Default: of [gears], that of another mesh of the same planet with a "
+        "central gear, or from the profile shifts, x.",
     )
     direction: Angle = Field(
         default=as_stated("0 deg"),
