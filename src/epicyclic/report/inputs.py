@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase
@@ -21,16 +23,34 @@ DATUM = {"value", "temperature", "source"}
 """Keys of a table that states one value."""
 MOST_VALUES = 12
 """Of an array that are shown."""
+WORDS, VALUES = 18, 42
+"""Widths of the columns of keys and values, beside their meaning. [%]"""
 _SCHEMAS = {"planetary": PlanetaryCase, "gear_pair": GearPairCase, "train": TrainCase}
 _SHARED = ("models", "numerics", "lubrication")
 """Tables that the sets of a train take from it."""
 _OF_LOSSES = ("lubrication", "surroundings", "models", "contact_solver", "numerics")
 _TITLES_OF_PARTS = {"bearings": "Shaft bearings", "drags": "Other drags"}
 Path = tuple[str | int, ...]
+_ONLY_WITH: dict[tuple[str, str], tuple[tuple[str, ...], tuple[str, ...]]] = {
+    ("models", "constant_friction"): (("friction",), ("constant",)),
+    ("models", "fluid_friction"): (("friction",), ("matsumoto", "doleschel")),
+    ("models", "application_factor"): (("friction",), ("niemann-winter",)),
+    ("models", "mesh_load_factor"): (("friction",), ("niemann-winter",)),
+    ("models", "fitted_form"): (("friction", "rolling", "bearing"), ("fitted",)),
+    ("models", "oil_beyond_range"): (("friction", "rolling", "bearing"), ("mixed-ehl",)),
+    ("models", "pocket_void_pressure"): (("pocketing",), ("incompressible",)),
+    ("contact_solver", ""): (("friction",), ("ehl-direct",)),
+    ("thermal", ""): (("temperatures",), ("flank", "network")),
+}
+"""Keys, and tables, that have an effect only if the names of some models contain some words."""
 
 
-def input_tables(inputs: Mapping[str, Any], given: Mapping[str, Any]) -> list[Table]:
-    """All inputs, one table for each table of the case, gears side by side.
+def input_tables(
+    inputs: Mapping[str, Any],
+    given: Mapping[str, Any],
+    models: Mapping[str, str] = MappingProxyType({}),
+) -> list[Table]:
+    """The inputs, one table for each table of the case, gears side by side.
 
     Of a train the tables of each set, and bearings, seals and drags side by side. Tables without
     effect, because every loss is given, are left out.
@@ -41,10 +61,12 @@ def input_tables(inputs: Mapping[str, Any], given: Mapping[str, Any]) -> list[Ta
         The case with its defaults.
     given : mapping
         The case as it was given; defaults are marked.
+    models : mapping of str to str, optional
+        The models that were used. Defaults of keys that have no effect with them are left out.
     """
-    source = _Source(_SCHEMAS[inputs["kind"]], given)
+    source = _Source(_SCHEMAS[inputs["kind"]], given, _used(inputs, models))
     if inputs["kind"] != "train":
-        return _set_tables(source, (), inputs)
+        return [table for table in _set_tables(source, (), inputs) if table.rows]
     tables = []
     for name, table in inputs.items():
         if name in NOT_SHOWN or not table or ("lubricant" not in inputs and name in _OF_LOSSES):
@@ -59,7 +81,7 @@ def input_tables(inputs: Mapping[str, Any], given: Mapping[str, Any]) -> list[Ta
             tables.append(_side_by_side(source, title, (name,), table))
         else:
             tables.append(_plain_table(source, (name,), table))
-    return tables
+    return [table for table in tables if table.rows]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +90,29 @@ class _Source:
 
     schema: Any
     given: Mapping[str, Any]
+    used: Mapping[str, str]
+
+    def shows(self, path: Path) -> bool:
+        """False for a default that has no effect with the models that were used."""
+        tables = [(str(part), "") for part in path]
+        keys = [(str(table), str(key)) for table, key in itertools.pairwise(path)]
+        for place in (*tables, *keys):
+            models, words = _ONLY_WITH.get(place, ((), ()))
+            used = [self.used[model] for model in models if model in self.used]
+            if used and not any(word in names for word in words for names in used):
+                return _is_given(path, self.given)
+        return True
+
+
+def _used(inputs: Mapping[str, Any], models: Mapping[str, str]) -> dict[str, str]:
+    """All names that each model has, of whichever set; those of a case if none are known."""
+    if not models:
+        return {}
+    used = {"temperatures": str(inputs.get("models", {}).get("temperatures", ""))}
+    for key, name in models.items():
+        model = key.rpartition(".")[2]
+        used[model] = f"{used.get(model, '')} {name}"
+    return used
 
 
 def _title(name: str) -> str:
@@ -107,6 +152,7 @@ def _plain_table(source: _Source, place: Path, table: Any, title: str = "") -> T
             _about(source.schema, path),
         )
         for path, value in _leaves(table, place)
+        if source.shows(path)
     )
     return _with_meaning(("", "value"), rows, title or _title(str(place[-1])))
 
@@ -134,9 +180,11 @@ def _side_by_side(
 
 def _with_meaning(head: tuple[str, ...], rows: tuple[tuple[Cell, ...], ...], title: str) -> Table:
     """A table whose last column, the meaning of its keys, is left out if no key has one."""
-    if any(row[-1].text for row in rows):
-        return Table((*head, "meaning"), rows, title)
-    return Table(head, tuple(row[:-1] for row in rows), title)
+    if not any(row[-1].text for row in rows):
+        return Table(head, tuple(row[:-1] for row in rows), title)
+    values = len(head) - 1
+    widths = (WORDS, *(VALUES // values for _ in range(values)), 100 - WORDS - VALUES)
+    return Table((*head, "meaning"), rows, title, widths=widths)
 
 
 def _changed_losses(title: str, losses: Mapping[str, Any]) -> list[Table]:

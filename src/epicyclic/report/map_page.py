@@ -27,12 +27,13 @@ from epicyclic.report.page import (
     gallery,
     number,
 )
+from epicyclic.report.result_page import versions_line
 from epicyclic.report.shown import MISSING
 from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.status import Status
 from epicyclic.units import unit_text
 
-__all__ = ["map_key_figures", "map_sections", "validity_items", "versions_table"]
+__all__ = ["map_key_figures", "map_sections", "validity_items", "versions_of"]
 
 _WHITE = "White: no power is passed on, or the point failed."
 _FOUND = re.compile(r"(Out of range: .*?) -?\d[^;]*;")
@@ -81,7 +82,7 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
         Section("methods", "Methods", _methods(data)),
         Section("conventions", "Conventions", _conventions(data)),
         Section("inputs", "Inputs", tuple(input_tables(map_inputs(data), map_inputs(data)))),
-        Section("versions", "Versions", versions_table(data)),
+        Section("versions", "Versions", (versions_of(data),)),
     ]
     return [section for section in sections if section.items]
 
@@ -178,9 +179,6 @@ def _conventions(data: xr.Dataset) -> tuple[Table, ...]:
     return (Table(("", "statement"), rows),)
 
 
-def versions_table(data: xr.Dataset) -> tuple[Table, ...]:
-    rows = tuple(
-        (Cell(name), Cell(str(version)))
-        for name, version in json.loads(data.attrs["versions"]).items()
-    )
-    return (Table(("", "version"), rows),)
+def versions_of(data: xr.Dataset) -> Listing:
+    """The program, and the libraries that it computed with."""
+    return versions_line(json.loads(data.attrs["versions"]))

@@ -28,7 +28,7 @@ __all__ = [
 ]
 
 
-SHORT = 16
+SHORT = 6
 """Rows of a table that is not divided between pages."""
 
 
@@ -66,13 +66,14 @@ def aligned(text: str) -> Cell:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows of cells under a head; rows named in `strong` are sums."""
+    """Rows of cells under a head; rows in `strong` are sums; `widths` of the columns in percent."""
 
     head: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
     title: str = ""
     strong: frozenset[int] = frozenset()
     note: str = ""
+    widths: tuple[int, ...] = ()
     kind: str = "table"
 
     @property

@@ -46,7 +46,7 @@ from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.results.result import in_words
 from epicyclic.units import format_number, unit_text
 
-__all__ = ["result_sections"]
+__all__ = ["result_sections", "versions_line"]
 
 
 def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
@@ -96,8 +96,13 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
         ),
         Section("oil", "Oil", tuple(oil_table(result, labels))),
         Section("methods", "Methods and assumptions", _methods(result)),
-        Section("inputs", "Inputs", tuple(input_tables(result.inputs, record.given)), _INPUT_LEAD),
-        Section("versions", "Versions", (_versions(result),)),
+        Section(
+            "inputs",
+            "Inputs",
+            tuple(input_tables(result.inputs, record.given, result.models)),
+            _INPUT_LEAD,
+        ),
+        Section("versions", "Versions", (versions_line(result.versions),)),
     ]
     return [section for section in sections if section.items]
 
@@ -125,7 +130,10 @@ _OTHER_KEYS = {"lubrication": "lubrication.method", "churning": "lubrication.chu
 _OF_PLANETS = (
     "Figures of meshes and bearing are those of the most loaded planet; losses are those of all.",
 )
-_INPUT_LEAD = "Values in italics were not given: they are defaults."
+_INPUT_LEAD = (
+    "Values in italics were not given: they are defaults. Defaults that have no effect here are "
+    "left out."
+)
 
 
 BAND_LEAD = (
@@ -140,8 +148,8 @@ def _uncertainty(record: ResultRecord, drawings: Drawings) -> tuple[Item, ...]:
         item
         for data in record.group("uncertainty").values()
         for item in (
-            *gallery(drawings, "drivers", wide=True),
             *gallery(drawings, "band"),
+            *gallery(drawings, "drivers", wide=True),
             *uncertainty_items(data),
         )
     )
@@ -281,6 +289,6 @@ def _model_key(key: str) -> str:
     return f"sets.{name}.{own}" if dot else own
 
 
-def _versions(result: ResultContents) -> Table:
-    rows = tuple((Cell(name), Cell(version)) for name, version in result.versions.items())
-    return Table(("", "version"), rows)
+def versions_line(versions: Mapping[str, str]) -> Listing:
+    """The program, and the libraries that it computed with."""
+    return Listing((", ".join(f"{name} {version}" for name, version in versions.items()),))

@@ -9,7 +9,7 @@ from epicyclic.maps.tables import map_inputs
 from epicyclic.plots.sweep import shown_results
 from epicyclic.report.explorer import EXPLORER_LEAD, explorer_items
 from epicyclic.report.inputs import input_tables
-from epicyclic.report.map_page import validity_items, versions_table
+from epicyclic.report.map_page import validity_items, versions_of
 from epicyclic.report.page import Cell, Drawings, KeyFigure, Section, Table, gallery, number
 from epicyclic.status import Status
 from epicyclic.units import format_number, unit_text
@@ -51,7 +51,7 @@ def sweep_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
         Section("points", "Least loss", _points(data), _POINTS_LEAD),
         Section("validity", "Validity", validity_items(data)),
         Section("inputs", "Inputs", tuple(input_tables(inputs, inputs)), _INPUT_LEAD),
-        Section("versions", "Versions", versions_table(data)),
+        Section("versions", "Versions", (versions_of(data),)),
     ]
     return [section for section in sections if section.items]
 
