@@ -46,16 +46,23 @@ class Chapters:
         self._tabs = ui.tabs(on_change=self._open).props("dense no-caps align=left outside-arrows")
         self._body = ui.element("div").classes("chapter")
 
+    def clear(self) -> None:
+        """Show nothing: another case is opened."""
+        self._sections, self._study = {}, None
+        self._tabs.clear()
+        self._body.clear()
+        self.sheet = Sheet(self._do)
+
     async def show(self, study: Study, answer: Answer) -> None:
         """Show the chapters of a result, the same one open as before."""
         self._study, self._answer = study, answer
         sections = {section.name: section for section in answer.sections}
         if list(sections) != list(self._sections):
             self._tabs.clear()
-            titles = {name: section.title for name, section in sections.items()}
-            titles |= {name: view.title for name, view in self._views.items()}
+            first, *others = [(name, section.title) for name, section in sections.items()]
+            views = [(name, view.title) for name, view in self._views.items()]
             with self._tabs:
-                for name, title in titles.items():
+                for name, title in (first, *views, *others):
                     ui.tab(name, label=title)
         self._sections = sections
         if self._tabs.value in sections:

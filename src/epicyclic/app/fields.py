@@ -50,7 +50,7 @@ class Form:
             found = self._desk.problems_of(key)
             field.error = f"{found[0].allowed} {found[0].remedy}" if found else None
         for key, group in self._groups.items():
-            wrong = any(problem.key.startswith(f"{key}.") for problem in self._desk.problems)
+            wrong = any(f"{problem.key}.".startswith(f"{key}.") for problem in self._desk.problems)
             group.classes(**{"add" if wrong else "remove": "wrong"})
 
     def _group(self, group: Group) -> None:
@@ -128,7 +128,8 @@ class Form:
 
 
 def _choice(entry: Entry) -> ui.select:
-    options = {"": f"{entry.default} (default)"} | {one: one for one in entry.choices}
+    unset = entry.default if entry.is_required else f"{entry.default} (default)"
+    options = {"": unset} | {one: one for one in entry.choices}
     value = entry.text if entry.text in options else ""
     return ui.select(options, value=value, label=entry.name)
 

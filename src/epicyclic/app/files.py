@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import asyncio
 import tempfile
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from nicegui import events, ui
@@ -68,6 +68,7 @@ def ask_for_case(folder: Path, then: Callable[[Desk], None]) -> None:
             f"Or a file of your own, {', '.join(ENDINGS)}, with the files that it names:"
         ).classes("soft")
         ui.upload(
+            label="Drop files here, or choose them",
             multiple=True,
             max_file_size=LARGEST_BODY,
             max_total_size=LARGEST_BODY,
@@ -102,10 +103,7 @@ def save_menu(desk: Callable[[], Desk], do: Do) -> None:
     with ui.button("Save", icon="save").props("flat no-caps"), ui.menu():
         ui.menu_item("Case file", save_case)
         for ending, title in RESULTS.items():
-            ui.menu_item(
-                f"{title}, {ending}",
-                lambda ending=ending: asyncio.ensure_future(save(ending)),
-            )
+            ui.menu_item(f"{title}, {ending}", partial(save, ending))
 
 
 def _stem(desk: Desk) -> str:

@@ -59,6 +59,12 @@ class Entry:
         What is given, without its unit; empty if nothing is.
     default : str
         What holds if nothing is given.
+    is_required : bool
+        True if something must be given.
+    quantity : Quantity or None
+        Of keys with a unit.
+    is_text : bool
+        True if what is typed is not read as a number or a list.
     """
 
     key: str
@@ -69,6 +75,7 @@ class Entry:
     suggestions: tuple[str, ...]
     text: str
     default: str
+    is_required: bool
     quantity: Quantity | None
     is_text: bool
 
@@ -184,6 +191,7 @@ def _entry(key: str, name: str, field: FieldInfo, value: Any) -> Entry:
         suggestions=_names(field),
         text=_shown(value, quantity),
         default="required" if field.is_required() else _shown(default, quantity),
+        is_required=field.is_required(),
         quantity=quantity,
         is_text=is_text(field.annotation) or bool(choices and choices != _YES_NO),
     )

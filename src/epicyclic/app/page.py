@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
@@ -23,6 +24,8 @@ from epicyclic.errors import EpicyclicError
 
 __all__ = ["Page", "Shelf"]
 
+SLOW_SECONDS = 0.5
+"""Figures that take longer wait until an input stands still."""
 _VERBS = {"run": (), "check": (), "report": ("-o", "report.html")}
 """Commands that do what the page does, and what they need more."""
 
@@ -59,6 +62,7 @@ class Page:
         self._shelf = shelf
         self._wanted = 0
         self._is_moving = self._has_moved = False
+        self._seconds: dict[str, float] = {}
 
     @property
     def desk(self) -> Desk:
@@ -104,6 +108,8 @@ class Page:
 
     def _open(self, desk: Desk) -> None:
         self._shelf.desk = desk
+        self._figures.clear()
+        self._chapters.clear()
         self._build_form()
         with self._results:
             ui.timer(0, self._changed, once=True)
@@ -164,11 +170,20 @@ class Page:
             self._is_moving = False
 
     async def _follow(self) -> None:
+        case = self.desk.case
+        self._show_figures(await self._do(tasks.moved, case))
         place, name = self._chapters.sheet.first or (None, "")
-        figures, svg = await self._do(tasks.moved, self.desk.case, name)
-        self._show_figures(figures)
-        if svg and place is not None and not place.is_deleted:
+        if place is None or (self._has_moved and self._is_slow(name)):
+            return
+        before = time.monotonic()
+        svg = await self._do(tasks.followed, case, name)
+        self._seconds[name] = time.monotonic() - before
+        if svg and not place.is_deleted:
             place.set_content(svg)
+
+    def _is_slow(self, name: str) -> bool:
+        """True for a figure that would hold up the next value."""
+        return self._seconds.get(name, 0.0) > SLOW_SECONDS
 
     def _show_figures(self, figures: Any) -> None:
         self._figures.clear()

@@ -36,6 +36,7 @@ __all__ = [
     "Study",
     "answered",
     "compared",
+    "followed",
     "moved",
     "picture",
     "saved",
@@ -144,13 +145,19 @@ def _turning_titles(found: ResultRecord) -> dict[str, str]:
     return sets | meshes
 
 
-def moved(case: Case, name: str, progress: Progress) -> tuple[list[KeyFigure], str]:
-    """Key figures of a case, and one figure if it follows quickly; nothing is kept."""
-    found = record(case, groups=QUICK)
-    figures = key_figures(found.result)
-    if name not in available(found):
-        return figures, ""
-    return figures, svg_text(figure_of(found, name), name)
+def moved(case: Case, progress: Progress) -> list[KeyFigure]:
+    """Key figures of a case while an input moves; nothing is kept."""
+    return key_figures(record(case, groups=()).result)
+
+
+def followed(case: Case, name: str, progress: Progress) -> str:
+    """A figure while an input moves, if it needs nothing that takes long; else nothing."""
+    result = solve(case)
+    for groups in ((), QUICK):
+        found = record(case, result=result, groups=groups)
+        if name in available(found):
+            return svg_text(figure_of(found, name), name)
+    return ""
 
 
 def compared(first: Case, second: Case, names: tuple[str, str], progress: Progress) -> list[Table]:

@@ -14,7 +14,7 @@ from epicyclic.app.tasks import Answer, Study
 from epicyclic.app.worker import Ended, Worker
 from epicyclic.case.operating import OPERATING, OperatingValue
 from epicyclic.errors import EpicyclicError
-from epicyclic.report.page import Drawing
+from epicyclic.report.page import Drawing, Gallery
 
 __all__ = ["CompareView", "MapView"]
 
@@ -87,8 +87,9 @@ class MapView:
             with ui.element("div").classes("key-figures"):
                 key_figures(answer.key_figures)
             for section in answer.sections:
-                ui.label(section.title).classes("section")
-                sheet.section(section, study)
+                is_open = any(isinstance(item, Gallery) for item in section.items)
+                with ui.expansion(section.title, value=is_open).classes("group"):
+                    sheet.section(section, study)
         await sheet.draw()
 
     async def _do(self, *work: object) -> object:
