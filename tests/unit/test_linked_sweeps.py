@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 
 import epicyclic as ep
+from epicyclic.cli.main import main
 from epicyclic.cli.options import parse_changes
 from epicyclic.sweeps.dataset import to_dataset, to_table
 from epicyclic.sweeps.expression import parse_expression
@@ -288,3 +289,20 @@ def test_braces_stand_for_several_keys():
         "planet.teeth": None,
         "x.y.z": "4 mm",
     }
+
+
+def test_a_failed_point_tells_its_first_problem_only(case):
+    row = make_plan(case, {"planet.teeth": [27]}).solve(0)
+    assert row.status == "failed"
+    assert "too thick for the centre distance" in row.message
+    assert " more: 'epicyclic check' with these values shows all." in row.message
+    assert len(row.message) < 600
+
+
+def test_gross_backlash_is_told_at_the_end(case, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = ["--set", "operation.torque=50 N*m", "--vary", "gear.teeth=24,25", "-o", "s.csv"]
+    monkeypatch.setattr("sys.argv", ["epicyclic", "sweep", "talbot-2012-pair", *words])
+    main()
+    told = capsys.readouterr().err
+    assert "1 of 2 points: the teeth are far too thin for their centre distance." in told

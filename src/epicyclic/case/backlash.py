@@ -18,13 +18,16 @@ from epicyclic.geometry.profile_shifts import (
     thinning,
 )
 
-__all__ = ["ROUNDING", "backlash_notes", "check_backlash"]
+__all__ = ["ROUNDING", "TOO_THIN", "backlash_notes", "check_backlash"]
 
 ROUNDING = 1e-9
 """Clearances count as negative beyond this: drawings may state exactly zero. [m]"""
 
 GROSS = 5.0
 """Backlash over the recommended one from which a result says so; an estimate. [1]"""
+
+TOO_THIN = "its teeth are too thin for their centre distance"
+"""By which a warning of that is known."""
 
 Tables = Mapping[str, GearTable]
 
@@ -60,7 +63,7 @@ def backlash_notes(mesh: Mesh, tables: Tables) -> Iterator[str]:
     yield (
         f"The {mesh.name} has a normal backlash of {millimetres(backlash)}, "
         f"{backlash / usual:.2g} times the {micrometres(usual)} that ISO/TR 10064-2 recommends: "
-        f"its teeth are too thin for their centre distance. With {fits} it has that."
+        f"{TOO_THIN}. With {fits} it has that."
         f"{_other_sign(mesh, tables)}"
     )
 

@@ -303,12 +303,26 @@ def finish(plan: Plan, rows: Rows, write: Write, journal: Journal | None = None)
     """Write the rows of all points, and end with an exit code of its own if some failed."""
     failures = [] if plan.may_fail else rows.failures
     _print_failures(failures)
+    _print_thin_teeth(rows)
     written = write(rows)
     if journal is not None:
         journal.remove()
     click.echo(written)
     if failures:
         sys.exit(EXIT_FAILED_POINTS)
+
+
+def _print_thin_teeth(rows: Rows) -> None:
+    """Say at how many points the gears have gross backlash, which losses do not show."""
+    from epicyclic.case.backlash import TOO_THIN
+
+    thin = sum(TOO_THIN in text for text in rows.warnings)
+    if thin:
+        click.echo(
+            f"{thin} of {len(rows)} points: the teeth are far too thin for their centre distance. "
+            "Leave profile shifts out, and they are found for each point.",
+            err=True,
+        )
 
 
 def points_written(rows: Rows, output: Path | str) -> str:

@@ -386,13 +386,20 @@ def guarded(solve: Callable[[], Row]) -> Row:
     try:
         return solve()
     except InputError as error:
-        return failed_row("; ".join(str(problem) for problem in error.problems))
+        return failed_row(_told(error))
     except EpicyclicError as error:
         return failed_row(str(error))
     except Exception as error:  # whatever it is, the other points do not suffer
         if is_interrupt(error):
             raise KeyboardInterrupt from error
         return failed_row(f"{type(error).__name__}: {error}")
+
+
+def _told(error: InputError) -> str:
+    """The first problem of a point; most of the others follow from it."""
+    first, *others = error.problems
+    more = f" And {len(others)} more: 'epicyclic check' with these values shows all."
+    return f"{first}{more if others else ''}"
 
 
 def failed_row(message: str) -> Row:
