@@ -301,7 +301,7 @@ def test_a_failed_point_tells_its_first_problem_only(case):
 
 def test_gross_backlash_is_told_at_the_end(case, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    words = ["--set", "operation.torque=50 N*m", "--vary", "gear.teeth=24,25", "-o", "s.csv"]
+    words = ["--vary", "gears.center_distance=50,50.9 mm", "-o", "s.csv"]
     monkeypatch.setattr("sys.argv", ["epicyclic", "sweep", "talbot-2012-pair", *words])
     main()
     told = capsys.readouterr().err
