@@ -14,7 +14,7 @@ import epicyclic as ep
 from epicyclic.plots.loss_map import map_at
 from epicyclic.report.drawings import draw
 
-VOID = {"meta", "br", "link", "img"}
+VOID = {"meta", "br", "link", "img", "col"}
 """Tags without an end."""
 
 
@@ -207,3 +207,25 @@ def test_a_report_prints_as_pdf(map_page):
     pdf = report_pdf(map_page)
     assert pdf.startswith(b"%PDF")
     assert pdf.rstrip().endswith(b"%%EOF")
+
+
+def keys_shown(page):
+    """Keys in the tables of the inputs."""
+    inputs = page.partition('<section id="inputs"')[2].partition("</section>")[0]
+    return set(re.findall(r"<tr><td>([^<]+)</td>", inputs))
+
+
+def test_defaults_without_effect_are_left_out(page):
+    shown = keys_shown(page)
+    assert {"oil beyond range", "pocket void pressure", "friction"} <= shown  # of mixed-ehl
+    assert not {"constant friction", "fitted form", "asperity film", "bath share"} & shown
+
+
+def test_given_keys_are_shown_even_without_effect():
+    case = ep.load_case("talbot-2012-pair").updated(
+        {"losses.mesh_pocketing.include": False, "models.friction": "schlenk"}
+    )
+    given = case.updated({"models.fluid_friction": 0.013, "thermal.bath_share": 0.17})
+    left_out = keys_shown(ep.report_html(ep.record(case)))
+    shown = keys_shown(ep.report_html(ep.record(given)))
+    assert shown - left_out == {"fluid friction", "bath share"}

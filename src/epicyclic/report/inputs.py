@@ -25,6 +25,8 @@ MOST_VALUES = 12
 """Of an array that are shown."""
 WORDS, VALUES = 18, 42
 """Widths of the columns of keys and values, beside their meaning. [%]"""
+MOST_EVEN = 3
+"""Columns of values that have room in this."""
 _SCHEMAS = {"planetary": PlanetaryCase, "gear_pair": GearPairCase, "train": TrainCase}
 _SHARED = ("models", "numerics", "lubrication")
 """Tables that the sets of a train take from it."""
@@ -183,7 +185,8 @@ def _with_meaning(head: tuple[str, ...], rows: tuple[tuple[Cell, ...], ...], tit
     if not any(row[-1].text for row in rows):
         return Table(head, tuple(row[:-1] for row in rows), title)
     values = len(head) - 1
-    widths = (WORDS, *(VALUES // values for _ in range(values)), 100 - WORDS - VALUES)
+    even = (WORDS, *(VALUES // values for _ in range(values)), 100 - WORDS - VALUES)
+    widths = even if values <= MOST_EVEN else ()
     return Table((*head, "meaning"), rows, title, widths=widths)
 
 
