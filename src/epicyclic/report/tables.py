@@ -9,7 +9,6 @@ from rich import box
 from rich.columns import Columns
 from rich.console import Console, Group, RenderableType
 from rich.padding import Padding
-from rich.table import Table
 from rich.text import Text
 
 from epicyclic.analysis.compare import FrictionComparison, recommended
@@ -18,6 +17,7 @@ from epicyclic.case.wording import sentence
 from epicyclic.losses.validity import share_text
 from epicyclic.records.contents import ResultContents, contents_of
 from epicyclic.report import page
+from epicyclic.report.fitting import FittedTable
 from epicyclic.report.heat_tables import heat_items
 from epicyclic.report.result_tables import (
     Labels,
@@ -51,10 +51,6 @@ __all__ = [
     "titled",
 ]
 
-FEW_COLUMNS = 5
-"""That leave room for names on one line."""
-SHORT_NAME = 16
-"""That stays on one line beside any number of columns. [characters]"""
 PIPE_WIDTH = 100
 """Width of tables that do not go to a terminal. [characters]"""
 
@@ -129,13 +125,7 @@ def as_on_page(item: page.Table | page.Listing) -> RenderableType:
         return _list(item.title, item.items)
     table = plain_table(item.title)
     for column, head in enumerate(item.head):
-        whole = column == 0 and (len(item.head) <= FEW_COLUMNS or _longest(item) <= SHORT_NAME)
-        table.add_column(
-            head,
-            justify="right" if item.is_numeric(column) else "left",
-            no_wrap=whole,
-            overflow="fold",
-        )
+        table.add_column(head, justify="right" if item.is_numeric(column) else "left")
     for place, row in enumerate(item.rows):
         strong = place in item.strong
         table.add_row(
@@ -154,10 +144,6 @@ def _methods(contents: ResultContents) -> Group:
     return _list("Methods", [f"{users_text(names)}: {how}" for how, names in users.items()])
 
 
-def _longest(item: page.Table) -> int:
-    return max((len(row[0].text) for row in item.rows), default=0)
-
-
 def _list(title: str, items: Sequence[str]) -> Group:
     if not items:
         return Group(Text(f"{title}: none"))
@@ -165,9 +151,9 @@ def _list(title: str, items: Sequence[str]) -> Group:
     return Group(Text(title, style="bold"), *lines)
 
 
-def plain_table(title: str) -> Table:
+def plain_table(title: str) -> FittedTable:
     """An empty table in the style of the package."""
-    return Table(
+    return FittedTable(
         title=title,
         title_justify="left",
         title_style="bold",
@@ -177,12 +163,12 @@ def plain_table(title: str) -> Table:
     )
 
 
-def number_table(title: str, *columns: str) -> Table:
+def number_table(title: str, *columns: str) -> FittedTable:
     """An empty table of names, in its first column, and numbers."""
     table = plain_table(title)
     for number, column in enumerate(columns):
         first = number == 0
-        table.add_column(column, justify="left" if first else "right", no_wrap=first)
+        table.add_column(column, justify="left" if first else "right")
     return table
 
 
