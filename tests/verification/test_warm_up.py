@@ -217,3 +217,26 @@ def test_a_short_time_is_told_though_it_would_run_away():
     assert np.isnan(data["settled_temperature"]).all()
     assert np.isnan(data["time_to_90_percent"]).all()
     assert float(data["energy_lost"][-1]) > 0
+
+
+def test_light_load_of_a_cycle_is_resolved():
+    """Torques far below the largest of the cycle, near where rolling loss rises like a root."""
+    case = ep.load_case("talbot-2012-pair").updated({
+        "numerics.mesh_positions": 8,
+        "numerics.contact_segments": 6,
+        "losses.mesh_pocketing.include": False,
+        "models.temperatures": "network",
+        "thermal.lubrication": "dip",
+        "thermal.oil_volume": "1 l",
+        "thermal.housing": {"area": "0.3 m^2", "mass": "10 kg"},
+    })  # fmt: skip
+    rows = {"time [s]": [0.0, 300.0, 310.0], "speed [rpm]": [1500.0, 1500.0, 1500.0],
+            "torque [N*m]": [3.0, 150.0, 150.0]}  # fmt: skip
+    course = ep.warm_up(case, "310 s", "20 degC", cycle=pd.DataFrame(rows))
+    cold = case.updated({
+        "models.temperatures": "inlet",
+        "operation.torque": "3 N*m",
+        "operation.speed": "1500 rpm",
+        "operation.oil_inlet_temperature": "20 degC",
+    })  # fmt: skip
+    assert float(course["total_loss"][0]) == pytest.approx(ep.solve(cold).total, rel=5e-3)
