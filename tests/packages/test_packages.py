@@ -21,7 +21,14 @@ import epicyclic as ep
 ROOT = Path(__file__).parents[2]
 LARGEST_WHEEL = 3_000_000
 """Of which most is fitted models of oils. [byte]"""
-CORE = ("tests/frozen",)
+CORE = (
+    "tests/frozen",
+    "tests/unit/test_damaged_files.py",
+    "tests/unit/test_records.py",
+    "tests/unit/test_report_html.py",
+    "tests/unit/test_sweep_plots.py",
+)
+"""What passes through all the libraries: results, files, pictures, reports."""
 
 in_ci = pytest.mark.skipif(
     not os.environ.get("CI"), reason="takes minutes and a package index; set CI=true to run it"
@@ -111,7 +118,7 @@ def test_a_package_runs_in_an_environment_of_its_own(package, request, tmp_path,
 def test_the_lowest_declared_versions_do(wheel, tmp_path):
     """Warnings of old libraries about each other are no errors here."""
     tools = ("pytest==8.0.0", "hypothesis==6.100.0", "pytest-xdist==3.6.1", "jsonschema==4.20.0")
-    lowest = ("--resolution", "lowest-direct", "-r", ROOT / "pyproject.toml")
+    lowest = ("--resolution", "lowest-direct", "--extra", "x3p", "-r", ROOT / "pyproject.toml")
     programs = environment_with(tmp_path, *lowest, *tools)
     uv("pip", "install", "--python", "env", "--no-deps", wheel, folder=tmp_path)
     options = ("-n", "0", "-q", "-p", "no:cacheprovider", "-o", "filterwarnings=ignore")

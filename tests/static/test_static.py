@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+import os
 import re
 import subprocess
 import sys
@@ -10,6 +13,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
+IN_CI = bool(os.environ.get("CI"))
+LONGEST_BUILD = 180
+"""Of the documentation with its gallery executed, processor time. [s]"""
 
 
 def run(*command: str) -> subprocess.CompletedProcess[str]:
@@ -21,8 +27,8 @@ def run(*command: str) -> subprocess.CompletedProcess[str]:
     [
         ("lint-imports",),
         ("mypy",),
-        ("ruff", "check", "src", "tests", "benchmarks", "scripts", "docs"),
-        ("ruff", "format", "--check", "src", "tests", "benchmarks", "scripts", "docs"),
+        ("ruff", "check", "src", "tests", "benchmarks", "scripts", "docs", "examples"),
+        ("ruff", "format", "--check", "src", "tests", "benchmarks", "scripts", "docs", "examples"),
     ],
     ids=["layers", "types", "style", "format"],
 )
@@ -70,6 +76,71 @@ def test_architecture_names_every_package():
 
 
 def test_documentation_builds_without_warnings(tmp_path):
+    """With the examples of the gallery executed where ``CI`` is set: that takes a minute."""
     build = Path(sys.executable).with_name("sphinx-build")
-    result = run(str(build), "-W", "-n", "-q", "-b", "html", "docs", str(tmp_path / "html"))
+    gallery = ("sphinx_gallery_conf.run_stale_examples=1",) if IN_CI else ("plot_gallery=0",)
+    before = processor_seconds()
+    result = run(
+        str(build), "-W", "-n", "-q", "-b", "html", "-D", *gallery, "docs", str(tmp_path / "html")
+    )
     assert result.returncode == 0, result.stdout + result.stderr
+    assert processor_seconds() - before < LONGEST_BUILD
+    assert list(fetched_by_pages(tmp_path / "html")) == []
+    links = dict(links_to_code(tmp_path / "html" / "theory"))
+    assert any("geometry.gear.html" in link for link in links)
+    assert [link for link, leads in links.items() if not leads] == []
+
+
+def links_to_code(folder):
+    """Links of the theory manual to the lines of functions, and whether they lead there."""
+    for page in folder.glob("*.html"):
+        links = re.findall(r'href="(\.\./source/[^"]+)"', page.read_text(encoding="utf-8"))
+        for link in links:
+            path, _, line = link.partition("#")
+            yield link, f'id="{line}"' in (folder / path).read_text(encoding="utf-8")
+
+
+def processor_seconds():
+    """Of processes that this one has started and that have ended."""
+    used = os.times()
+    return used.children_user + used.children_system
+
+
+def fetched_by_pages(folder):
+    """What a browser would get from a network to show the pages: scripts, styles, pictures."""
+    tag = re.compile(r"<(?:script|link|img|iframe|source)\b[^>]*")
+    address = re.compile(r"""(?:src|href)=["']((?:https?:)?//[^"']+)""")
+    style = re.compile(r"""(?:url\(|@import)\s*["']?((?:https?:)?//[^"')]+)""")
+    for path in folder.rglob("*.html"):
+        for found in tag.findall(path.read_text(encoding="utf-8")):
+            if 'rel="canonical"' not in found:
+                yield from address.findall(found)
+    for path in folder.rglob("*.css"):
+        yield from style.findall(path.read_text(encoding="utf-8"))
+
+
+def test_pages_that_fetch_from_a_network_are_found(tmp_path):
+    (tmp_path / "page.html").write_text(
+        '<a href="https://example.org/read">x</a><img src="local.png">'
+        '<script async src="https://example.org/a.js"></script><link href="//example.org/b.css">',
+        encoding="utf-8",
+    )
+    (tmp_path / "style.css").write_text(
+        'a{background:url(dot.png)}@font-face{src:url("http://example.org/c.woff")}',
+        encoding="utf-8",
+    )
+    assert sorted(fetched_by_pages(tmp_path)) == [
+        "//example.org/b.css", "http://example.org/c.woff", "https://example.org/a.js",
+    ]  # fmt: skip
+
+
+def test_examples_of_the_gallery_use_every_public_function():
+    import epicyclic as ep
+
+    used = set()
+    for path in (ROOT / "examples").glob("plot_*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+                used |= {node.attr} if node.value.id == "ep" else set()
+    functions = {name for name in ep.__all__ if inspect.isfunction(getattr(ep, name))}
+    assert functions - used == set()
