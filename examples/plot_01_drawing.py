@@ -102,9 +102,10 @@ result.table()[["loss [W]", "share of the total"]].round(3)
 picture = result.plot("losses")
 
 # %%
-# Read the warnings before you quote the number. They are sorted by the watts that they concern.
+# Read the warnings before you quote the number. Where a model is used beyond the range that it was
+# made in, the warning says how many watts that concerns; the largest come first.
 
-for warning in result.warnings[-3:]:
+for warning in [text for text in result.warnings if text.startswith("Out of range")][:3]:
     print("-", warning)
 
 # %%

@@ -49,14 +49,15 @@ for value in comparison.fit.parameters:
 
 # %%
 # Agreement with the points of a fit is no validation. What remains at the points that were held
-# out is.
+# out is. Rings are the residuals before the fit, over the uncertainty of the measurement; squares
+# are the points held out.
 
 figure, axes = plt.subplots(figsize=(7.5, 4), layout="constrained")
 plot_points(comparison, axes)
 
 # %%
-# The calibrated case carries the fitted value together with its uncertainty, and every result
-# that is computed from it says that it was calibrated.
+# The calibrated case carries the fitted value and its uncertainty. Everything that is computed from
+# it takes these in place of what is assumed otherwise.
 
 calibrated = comparison.calibrated_case
 print(ep.solve(calibrated))
