@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import urllib.request
 from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import resources
@@ -503,6 +504,47 @@ def show_contacts() -> None:
              f"{steps} steps" if steps else "")  # fmt: skip
 
 
+def page_seconds() -> float:
+    """From the request to the whole page of the app with its form; results follow later."""
+    command = [sys.executable, "-m", "epicyclic", "app", "talbot-2012", "--no-browser"]
+    opener = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
+        assert server.stdout is not None
+        address = server.stdout.readline().split()[-1]
+        opener.open(address).read()
+        start = time.perf_counter()
+        opener.open(address).read()
+        seconds = time.perf_counter() - start
+        server.terminate()
+    return seconds
+
+
+def show_app(point: float) -> None:
+    """What users of the app wait for; its browser tests time the gears that turn."""
+    heading("App", "measured", "aim", "ratio", "to")
+    if find_spec("nicegui") is None:
+        print("left out: it needs the extra app")
+        return
+    from epicyclic.app import tasks
+
+    moving = itertools.cycle(points())
+
+    def follow() -> None:
+        case = next(moving)
+        tasks.moved(case, print)
+        tasks.followed(case, "losses", print)
+
+    follow()
+    repeats = 4 * REPEATS
+    start = time.process_time()
+    for _ in range(repeats):
+        follow()
+    seconds = (time.process_time() - start) / repeats
+    show("moved input to its losses, processor time", f"{1e3 * seconds:.0f} ms", "300 ms",
+         f"{seconds / point:.0f}", "one operating point, warm")  # fmt: skip
+    show("first page", f"{page_seconds():.2f} s", "3 s")
+
+
 def main() -> None:
     heading("Epicyclic benchmark", "measured", "aim", "ratio", "to")
     point = show_commands()
@@ -513,6 +555,7 @@ def main() -> None:
     show_elastic_teeth()
     show_contacts()
     show_campaign()
+    show_app(point)
     heading("Contacts of both meshes solved (ehl-direct)", "measured", "aim")
     show("talbot-2012", f"{direct_seconds():.0f} s", "300 s")
 

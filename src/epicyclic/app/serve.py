@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import secrets
+import signal
 import socket
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
+from typing import NoReturn
 
 import uvicorn
 from fastapi import FastAPI
@@ -23,7 +25,11 @@ __all__ = ["LOOPBACK", "application", "serve"]
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 """Addresses that only this machine can reach."""
+ANY = ("0.0.0.0", "::")
+"""Stand for every address of this machine."""
 _TOKEN_BYTES = 24
+TERMINATED = 128 + signal.SIGTERM
+"""Exit code after a signal, as shells have it."""
 
 
 def serve(desk: Desk, host: str, port: int, told: Callable[[str], None]) -> None:
@@ -42,9 +48,8 @@ def serve(desk: Desk, host: str, port: int, told: Callable[[str], None]) -> None
     token = secrets.token_urlsafe(_TOKEN_BYTES)
     with closing(_listening(host, port)) as listening:
         found = listening.getsockname()[1]
-        names = {"127.0.0.1", "localhost"} if host in LOOPBACK else {host}
-        shown = f"[{host}]" if ":" in host else host
-        hosts = [f"{name}:{found}" for name in {*names, shown}]
+        shown, *others = _names(host)
+        hosts = [f"{name}:{found}" for name in (shown, *others)]
         with _shelf(desk) as shelf:
             app = Guard(application(shelf), token, hosts)
             told(f"http://{shown}:{found}/?token={token}")
@@ -54,10 +59,23 @@ def serve(desk: Desk, host: str, port: int, told: Callable[[str], None]) -> None
             uvicorn.Server(config).run(sockets=[listening])
 
 
+def _names(host: str) -> list[str]:
+    """What browsers may call the address; the first one is shown."""
+    if host in LOOPBACK:
+        names = [host, *LOOPBACK]
+    elif host in ANY:
+        own = socket.gethostname()
+        names = [own, *(str(found[4][0]) for found in socket.getaddrinfo(own, None)), *LOOPBACK]
+    else:
+        names = [host]
+    return [f"[{name}]" if ":" in name else name for name in dict.fromkeys(names)]
+
+
 @contextmanager
 def _shelf(desk: Desk) -> Iterator[Shelf]:
     """Processes and a folder that last as long as the server."""
     workers = Worker(), Worker()
+    signal.signal(signal.SIGTERM, _leave)  # what is below would be skipped
     with tempfile.TemporaryDirectory(prefix="epicyclic-app-") as folder:
         try:
             yield Shelf(desk, *workers, Path(folder))
@@ -66,12 +84,17 @@ def _shelf(desk: Desk) -> Iterator[Shelf]:
                 worker.end()
 
 
+def _leave(number: int, frame: object) -> NoReturn:
+    raise SystemExit(TERMINATED)
+
+
 def _listening(host: str, port: int) -> socket.socket:
     """A socket that listens at an address, before anything else is started."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     listening = socket.socket(family, socket.SOCK_STREAM)
     try:
         listening.bind((host, port))
+        listening.listen()  # who comes before the server is up waits
     except (OSError, OverflowError) as error:
         listening.close()
         told = getattr(error, "strerror", None) or str(error)
@@ -89,5 +112,11 @@ def application(shelf: Shelf) -> FastAPI:
     async def root() -> None:
         await Page(shelf).build()
 
-    ui.run_with(app, root=root, title="Epicyclic", show_welcome_message=False)
+    ui.run_with(
+        app,
+        root=root,
+        title="Epicyclic",
+        show_welcome_message=False,
+        binding_refresh_interval=None,
+    )
     return app

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
-from nicegui import ui
+from nicegui import events, ui
 
 from epicyclic.app import tasks
 from epicyclic.app.desk import Desk
@@ -47,14 +48,18 @@ class MapView:
         with ui.row().classes("values"):
             for axis, part in OPERATING.items():
                 text = self._texts.get(axis) or _values(axis, part, given.get(part.key, ""))
-                field = ui.input(part.label, value=text).props("dense outlined stack-label")
-                field.bind_value(self._texts, axis).mark(f"map-{axis}")
+                self._texts[axis] = text
+                field = ui.input(part.label, value=text, on_change=partial(self._take, axis))
+                field.props("dense outlined stack-label").mark(f"map-{axis}")
             ui.button("Compute", on_click=self._compute).props("unelevated no-caps")
         ui.label("Values as a,b,c or start:stop:count, with their unit.").classes("soft")
         self._doing = Doing(self._worker.end)
         self._body = ui.element("div")
         if self._known is not None:
             await self._fill(*self._known)
+
+    def _take(self, axis: str, event: events.ValueChangeEventArguments[str]) -> None:
+        self._texts[axis] = event.value or ""
 
     async def _compute(self) -> None:
         case = self._desk().case
@@ -77,11 +82,9 @@ class MapView:
         sheet = Sheet(self._do, answer.wide)
         self._body.clear()
         with self._body:
+            values = {axis: getattr(study, axis) for axis in OPERATING}
             options = [
-                word
-                for axis, text in self._texts.items()
-                if text.strip()
-                for word in (f"--{axis}", text.strip())
+                word for axis, text in values.items() if text for word in (f"--{axis}", text)
             ]
             ui.code(self._desk().command("map", *options, "-o", "map.nc")).classes("wrapped")
             with ui.element("div").classes("key-figures"):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import multiprocessing
+import os
+import signal
 from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
@@ -89,8 +91,6 @@ class Worker:
 
 def _serve(pipe: Connection) -> None:
     """What the process does: tasks until the pipe is closed."""
-    import signal
-
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the app ends this process
     with suppress(EOFError, OSError):
         while True:
@@ -101,3 +101,6 @@ def _serve(pipe: Connection) -> None:
                 pipe.send(("failed", error))
             except Exception as error:
                 pipe.send(("failed", WorkError(f"{type(error).__name__}: {error}")))
+    for child in multiprocessing.active_children():  # of a map; they would be waited for
+        child.kill()
+    os._exit(0)

@@ -1,0 +1,253 @@
+"""The app as a person sees it, in headless Chromium: pytest -m slow. Needs playwright, chromium."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+pytest.importorskip("nicegui", reason="optional")
+playwright = pytest.importorskip("playwright.sync_api", reason="optional")
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium"),
+    pytest.mark.filterwarnings("ignore::ResourceWarning"),
+]
+
+SOLVED = 60_000
+"""Longest time of a solve that may have to compile first. [ms]"""
+PAGE_SECONDS, TURN_MS, SOLVE_MS = 3.0, 100.0, 300.0
+"""What a person is to wait at most for: the page, gears that turn, losses that follow."""
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with playwright.sync_playwright() as play:
+        chromium = play.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def open_app(browser, tmp_path):
+    """Start the app with a case and open its page."""
+    started = []
+
+    def start(case: str):
+        command = [sys.executable, "-m", "epicyclic", "app", case, "--no-browser"]
+        process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True)
+        page = browser.new_page(viewport={"width": 1500, "height": 1000})
+        page.asked, page.wrong = [], []
+        page.on("request", lambda request: page.asked.append(request.url))
+        page.on("websocket", lambda socket: page.asked.append(socket.url))
+        page.on("pageerror", lambda error: page.wrong.append(str(error)))
+        page.on("console", lambda said: said.type == "error" and page.wrong.append(said.text))
+        started.append((process, page))
+        page.address = re.search(r"http\S+", process.stdout.readline())[0]
+        return page
+
+    yield start
+    for process, page in started:
+        page.close()
+        process.send_signal(signal.SIGTERM)
+        process.wait(20)
+        process.stdout.close()
+
+
+def _solved(page) -> None:
+    page.goto(page.address)
+    page.wait_for_selector(".key-figure", timeout=SOLVED)
+
+
+def _tab(page, name: str) -> None:
+    page.get_by_role("tab", name=name, exact=True).click()
+
+
+def _watts(page) -> float:
+    figure = page.locator("main > div > .key-figures .key-figure", has_text="total loss")
+    return float(figure.locator(".value > *").first.inner_text())
+
+
+def _until(holds) -> None:
+    """Wait for what follows from a solve."""
+    end = time.monotonic() + SOLVED / 1000
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def test_nothing_comes_from_elsewhere_and_the_page_is_soon_there(open_app):
+    page = open_app("talbot-2012")
+    _solved(page)
+    before = time.perf_counter()
+    page.goto(page.address)
+    page.wait_for_selector("aside .group")
+    assert time.perf_counter() - before < PAGE_SECONDS
+    page.wait_for_selector("figure svg", timeout=SOLVED)
+    own = page.address.split("//")[1].split("/")[0]
+    assert any(url.startswith("ws://") for url in page.asked)
+    assert {url.split("//")[1].split("/")[0] for url in page.asked if "//" in url} == {own}
+    assert "token" not in page.url
+    assert not page.wrong
+
+
+def test_a_stranger_gets_no_page(open_app, browser):
+    page = open_app("talbot-2012-pair")
+    stranger = browser.new_context().new_page()
+    answer = stranger.goto(page.address.split("?")[0])
+    assert answer.status == 403
+    assert "token" in answer.text()
+    stranger.close()
+
+
+def test_a_wrong_value_has_its_message_beside_it(open_app):
+    page = open_app("talbot-2012")
+    _solved(page)
+    field = page.get_by_label("torque", exact=True)
+    field.fill("3 kg")
+    field.press("Enter")
+    shown = page.locator(".field", has=field).get_by_role("alert")
+    shown.wait_for()
+    assert "measures something else" in shown.inner_text()
+    assert page.locator(".stale").count() == 1
+    before = _watts(page)
+    field.fill("500")
+    field.press("Enter")
+    page.wait_for_function("!document.querySelector('.stale')")
+    _until(lambda: 0 < _watts(page) < before)
+    page.get_by_role("button", name="Command").click()
+    assert "operation.torque=500 N*m" in page.locator(".command").inner_text()
+    assert not page.wrong
+
+
+@pytest.mark.parametrize("case", ["talbot-2012", "train-eaxle"])
+def test_gears_turn_in_mesh_with_a_slider(open_app, case):
+    page = open_app(case)
+    _solved(page)
+    _tab(page, "Gears")
+    page.wait_for_function(
+        "turning.drawings.size > 1 && "
+        "turning.drawings.size == document.querySelectorAll('.turned figure').length",
+        timeout=SOLVED,
+    )
+    drawn = page.evaluate("[...turning.drawings.values()].map((one) => one.layers.length)")
+    assert min(drawn) == 2
+    slider = page.locator(".turner .q-slider").bounding_box()
+    page.mouse.click(slider["x"] + 0.4 * slider["width"], slider["y"] + slider["height"] / 2)
+    turned = page.evaluate(
+        """() => [...turning.drawings.values()].map((one) => [
+            one.layers.map((layer) => layer.element.getAttribute("transform")),
+            one.positions.map((parts) => [...parts].some((part) => part.style.display != "none")),
+        ])"""
+    )
+    for transforms, shown in turned:
+        assert all(re.match(r"rotate\(-?\d", text) for text in transforms)
+        assert sum(shown) == bool(shown)
+    median = page.evaluate(
+        """async () => {
+            const times = [];
+            for (let number = 0; number < 31; number++) {
+                const start = performance.now();
+                turning.turn(0.137 * number);
+                await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+                times.push(performance.now() - start);
+            }
+            return times.sort((one, other) => one - other)[15];
+        }"""
+    )
+    assert median < TURN_MS
+    assert not page.wrong
+
+
+def test_losses_follow_the_slider_of_an_input(open_app):
+    page = open_app("talbot-2012")
+    _solved(page)
+    page.wait_for_selector("figure svg", timeout=SOLVED)
+    before = _watts(page)
+    holder = page.locator(".holder", has=page.get_by_label("torque", exact=True))
+    holder.get_by_role("button").click()
+    box = holder.locator(".q-slider").bounding_box()
+    x, y, width = box["x"], box["y"] + box["height"] / 2, box["width"]
+    page.mouse.move(x + 0.5 * width, y)
+    page.mouse.down()
+    times = []
+    for step in range(12):
+        watts = _watts(page)
+        start = time.perf_counter()
+        page.mouse.move(x + (0.5 + 0.03 * (step + 1)) * width, y)
+        _until(lambda watts=watts: _watts(page) != watts)
+        times.append(1e3 * (time.perf_counter() - start))
+        time.sleep(0.5)
+    page.mouse.up()
+    assert _watts(page) > before
+    busy = max(1.0, os.getloadavg()[0] / os.cpu_count())  # others have their share of the cores
+    assert sorted(times)[len(times) // 2] < SOLVE_MS * busy
+    assert not page.wrong
+
+
+def test_a_map_is_computed_cancelled_and_saved(open_app):
+    page = open_app("talbot-2012")
+    _solved(page)
+    _tab(page, "Map")
+    speed = page.locator(".values").get_by_label("speed")
+    speed.fill("0:8000:200 rpm")
+    page.get_by_role("button", name="Compute").click()
+    page.get_by_text(re.compile(r"points of the map: \d+ of \d\d\d\d")).wait_for(timeout=SOLVED)
+    page.locator("main .chapter").get_by_role("button", name="Cancel").click()
+    page.get_by_text("Ended before it was done.").wait_for()
+    speed.fill("0:8000:3 rpm")
+    page.get_by_role("button", name="Compute").click()
+    page.locator(".chapter figure svg").first.wait_for(timeout=SOLVED)
+    assert "--speed '0:8000:3 rpm'" in page.locator(".chapter code").first.inner_text()
+    with page.expect_download(timeout=SOLVED) as loaded:
+        page.locator(".chapter .formats").first.get_by_text("pdf").click()
+    assert loaded.value.path().read_bytes().startswith(b"%PDF")
+    assert not page.wrong
+
+
+def test_a_case_goes_out_and_comes_back(open_app, tmp_path):
+    page = open_app("talbot-2012")
+    _solved(page)
+    field = page.get_by_label("speed", exact=True)
+    field.fill("3100")
+    field.press("Enter")
+    page.get_by_role("button", name="Save").click()
+    with page.expect_download() as loaded:
+        page.locator(".q-menu").get_by_text("Case file").click()
+    file = tmp_path / "mine.toml"
+    loaded.value.save_as(file)
+    assert 'speed = "3100 rpm"' in file.read_text()
+    page.get_by_role("button", name="Open").click()
+    page.locator("input[type=file]").set_input_files(file)
+    page.wait_for_selector(".q-dialog", state="detached")
+    assert page.get_by_label("speed", exact=True).input_value() == "3100"
+    page.get_by_role("button", name="Command").click()
+    assert "epicyclic run mine.toml" in page.locator(".command").inner_text()
+    assert not page.wrong
+
+
+def test_two_cases_stand_side_by_side(open_app):
+    page = open_app("talbot-2012")
+    _solved(page)
+    _tab(page, "Compare")
+    page.get_by_role("button", name="Keep the case").click()
+    field = page.get_by_label("speed", exact=True)
+    field.fill("5000")
+    field.press("Enter")
+    page.locator("main .state").first.wait_for(state="hidden", timeout=SOLVED)
+    _tab(page, "Losses")
+    _tab(page, "Compare")
+    row = page.locator("tr", has_text="operation.speed")
+    row.wait_for(timeout=SOLVED)
+    assert row.inner_text().split("\t") == ["operation.speed", "4000 rpm", "5000 rpm"]
+    page.wait_for_function(
+        "document.querySelectorAll('.chapter figure svg').length == 4", timeout=SOLVED
+    )
+    assert not page.wrong
