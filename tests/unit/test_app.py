@@ -10,10 +10,15 @@ from click.testing import CliRunner
 
 pytest.importorskip("nicegui", reason="optional")
 
-from epicyclic.app.desk import Desk, opened
+import app_tasks
+from epicyclic.app import tasks
+from epicyclic.app.desk import Desk, built_in, opened, received
 from epicyclic.app.form import form_of
 from epicyclic.app.guard import LARGEST_BODY, Guard
+from epicyclic.app.serve import names_of
+from epicyclic.app.worker import Ended, Worker, WorkError
 from epicyclic.case.fields import all_keys
+from epicyclic.errors import InputError
 
 TOKEN, HOST = "the-token", "127.0.0.1:4711"
 
@@ -137,6 +142,7 @@ def test_the_token_in_the_address_becomes_a_cookie():
     for word in ("HttpOnly", "SameSite=Strict"):
         assert word in headers[b"set-cookie"].decode()
     assert _ask(cookie=COOKIE)[1]["body"] == b"inside"
+    assert _ask(query=f"token={TOKEN}", cookie=COOKIE)[0]["status"] == 303
 
 
 @pytest.mark.parametrize(
@@ -190,7 +196,6 @@ def test_a_port_that_is_taken_and_a_case_that_is_none_are_told():
     import socket
 
     from epicyclic.cli.app import app
-    from epicyclic.errors import InputError
 
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
@@ -206,10 +211,10 @@ def test_a_port_that_is_taken_and_a_case_that_is_none_are_told():
 
 
 class _Here:
-    """In place of the worker: does the work here."""
+    """In place of the worker: does the work here, but for pictures."""
 
     async def do(self, task, *arguments, progress):
-        return task(*arguments, progress)
+        return b"<svg></svg>" if task is tasks.picture else task(*arguments, progress)
 
     def end(self):
         pass
@@ -250,3 +255,125 @@ def test_the_page_shows_form_and_losses_and_the_message_beside_a_wrong_field(sim
         assert desk.case is None
 
     simulate(desk, script)
+
+
+def test_another_case_is_opened_and_a_group_shows_its_fields_when_it_is_opened(simulate):
+    desk = opened("talbot-2012-pair")
+    desk.change("losses.mesh_pocketing.include", False)
+
+    async def script(user):
+        await user.should_see("total loss", retries=200)
+        await user.should_not_see(marker="gears.normal_module")
+        user.find(marker="group-gears").click()
+        (box,) = user.find(marker="group-gears").elements
+        box.set_value(True)
+        await user.should_see(marker="gears.normal_module", retries=50)
+        user.find("Compare").click()
+        await user.should_see("Keep the case, change it", retries=50)
+        user.find("Command").click()
+        await user.should_see("epicyclic run talbot-2012-pair", retries=50)
+
+    simulate(desk, script)
+
+
+# --- files ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("path", ["/etc/passwd", "../secret.json", "C:\\secret.json", ".."])
+def test_no_path_on_the_machine_is_opened(path, tmp_path, talbot):
+    desk = opened("talbot-2012")
+    desk.change("models.oil_model", path)
+    (problem,) = desk.problems_of("models.oil_model")
+    assert "beside the case" in problem.allowed
+    assert desk.case is None
+    tables = talbot.given()
+    text = Desk("x", tables | {"models": {"oil_model": path}}, lambda changes: talbot).text()
+    with pytest.raises(InputError, match="beside the case"):
+        received("mine.toml", {"mine.toml": text.encode()}, tmp_path)
+
+
+def test_an_uploaded_name_cannot_leave_its_folder(tmp_path, talbot):
+    text = Desk("x", talbot.given(), lambda changes: talbot).text()
+    folder = tmp_path / "own"
+    folder.mkdir()
+    desk = received("../mine.toml", {"../mine.toml": text.encode()}, folder)
+    assert desk.source == "mine.toml"
+    assert desk.case == talbot
+    assert [path.name for path in tmp_path.iterdir()] == ["own"]
+
+
+def test_only_built_in_cases_are_opened_by_name(tmp_path):
+    file = tmp_path / "case.toml"
+    file.write_text('kind = "planetary"')
+    with pytest.raises(InputError, match="no built-in case"):
+        built_in(str(file))
+
+
+def test_a_broken_case_is_opened_with_its_problems(tmp_path):
+    file = tmp_path / "broken.toml"
+    file.write_text('kind = "gear_pair"\n[operation]\ntorque = "3 kg"\n')
+    desk = opened(str(file))
+    assert desk.case is None
+    assert "unit" in desk.problems_of("operation.torque")[0].allowed
+    assert "missing" in desk.problems_of("operation.speed")[0].allowed
+    file.write_text("kind = 3")
+    with pytest.raises(InputError):
+        opened(str(file))
+
+
+@pytest.mark.parametrize("name", ["talbot-2012-pair", "train-8hp70"])
+def test_a_saved_case_is_the_same_case(name, tmp_path):
+    desk = opened(name)
+    desk.change("operation.speed", "1234 rpm")
+    file = tmp_path / "saved.toml"
+    file.write_text(desk.text(), encoding="utf-8")
+    assert opened(str(file)).case == desk.case
+
+
+# --- the worker -----------------------------------------------------------------------------------
+
+
+def test_the_worker_tells_progress_and_errors_and_can_be_ended():
+    told = []
+
+    async def use(worker):
+        assert await worker.do(app_tasks.doubled, 21, progress=lambda *at: told.append(at)) == 42
+        assert told == [(1, 3)]
+        with pytest.raises(InputError, match="too few"):
+            await worker.do(app_tasks.refused, progress=print)
+        with pytest.raises(WorkError, match="ZeroDivisionError: no number"):
+            await worker.do(app_tasks.broken, progress=print)
+        with pytest.raises(Ended):
+            await worker.do(app_tasks.endless, progress=lambda *at: worker.end())
+        assert await worker.do(app_tasks.doubled, 4, progress=lambda *at: None) == 8
+
+    async def run():
+        worker = Worker()
+        try:
+            await use(worker)
+        finally:
+            worker.end()
+
+    asyncio.run(run())
+
+
+# --- where it listens -----------------------------------------------------------------------------
+
+
+def test_names_of_the_address():
+    assert names_of("127.0.0.1") == ["127.0.0.1", "localhost", "[::1]"]
+    assert names_of("192.0.2.7") == ["192.0.2.7"]
+    assert names_of("2001:db8::7") == ["[2001:db8::7]"]
+    assert {"127.0.0.1", "localhost"} < set(names_of("0.0.0.0"))
+
+
+def test_another_host_is_told_what_it_means(monkeypatch):
+    from epicyclic.app import serve
+    from epicyclic.cli.app import app
+
+    asked = []
+    monkeypatch.setattr(serve, "serve", lambda desk, *where: asked.append(where[:2]))
+    found = CliRunner().invoke(app, ["talbot-2012", "--host", "192.0.2.7", "--port", "8080"])
+    assert asked == [("192.0.2.7", 8080)]
+    assert "not encrypted" in found.stderr
+    assert not CliRunner().invoke(app, ["talbot-2012"]).stderr

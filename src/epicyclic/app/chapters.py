@@ -25,6 +25,9 @@ class View(Protocol):
     async def show(self) -> None:
         """Make its elements."""
 
+    async def follow(self) -> None:
+        """After a change of the case, while it is shown."""
+
 
 class Chapters:
     """Tabs, one for each chapter and view.
@@ -67,7 +70,9 @@ class Chapters:
         self._sections = sections
         if self._tabs.value in sections:
             await self._open()
-        elif self._tabs.value not in self._views:
+        elif self._tabs.value in self._views:
+            await self._views[str(self._tabs.value)].follow()
+        else:
             self._tabs.set_value(next(iter(sections)))
 
     async def _open(self) -> None:

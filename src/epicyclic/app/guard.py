@@ -53,10 +53,10 @@ class Guard:
         }
         if not self._is_own(headers):
             await _refuse(scope, receive, send, _FORBIDDEN, "This address is not that of the app.")
-        elif self._has_cookie(headers):
-            await self._hand_on(scope, receive, send, headers)
         elif scope["type"] == "http" and self._has_token(scope):
             await _answer(send, _SEE_OTHER, "", {"location": "/", "set-cookie": self._cookie()})
+        elif self._has_cookie(headers):
+            await self._hand_on(scope, receive, send, headers)
         else:
             text = "Open the address with its token, as the command has printed it."
             await _refuse(scope, receive, send, _FORBIDDEN, text)

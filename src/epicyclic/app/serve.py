@@ -21,7 +21,7 @@ from epicyclic.app.page import Page, Shelf
 from epicyclic.app.worker import Worker
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["LOOPBACK", "application", "serve"]
+__all__ = ["LOOPBACK", "application", "names_of", "serve"]
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 """Addresses that only this machine can reach."""
@@ -48,7 +48,7 @@ def serve(desk: Desk, host: str, port: int, told: Callable[[str], None]) -> None
     token = secrets.token_urlsafe(_TOKEN_BYTES)
     with closing(_listening(host, port)) as listening:
         found = listening.getsockname()[1]
-        shown, *others = _names(host)
+        shown, *others = names_of(host)
         hosts = [f"{name}:{found}" for name in (shown, *others)]
         with _shelf(desk) as shelf:
             app = Guard(application(shelf), token, hosts)
@@ -59,7 +59,7 @@ def serve(desk: Desk, host: str, port: int, told: Callable[[str], None]) -> None
             uvicorn.Server(config).run(sockets=[listening])
 
 
-def _names(host: str) -> list[str]:
+def names_of(host: str) -> list[str]:
     """What browsers may call the address; the first one is shown."""
     if host in LOOPBACK:
         names = [host, *LOOPBACK]

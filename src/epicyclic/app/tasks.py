@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -92,6 +93,8 @@ class Answer:
     turning: dict[str, str]
 
 
+_solved = lru_cache(maxsize=1)(solve)
+"""While an input moves: first the key figures follow, then a figure of the same result."""
 _kept: dict[Study, Stored] = {}
 """Of the last studies, so that their figures are drawn without computing them again."""
 
@@ -147,14 +150,13 @@ def _turning_titles(found: ResultRecord) -> dict[str, str]:
 
 def moved(case: Case, progress: Progress) -> list[KeyFigure]:
     """Key figures of a case while an input moves; nothing is kept."""
-    return key_figures(record(case, groups=()).result)
+    return key_figures(record(case, result=_solved(case), groups=()).result)
 
 
 def followed(case: Case, name: str, progress: Progress) -> str:
     """A figure while an input moves, if it needs nothing that takes long; else nothing."""
-    result = solve(case)
     for groups in ((), QUICK):
-        found = record(case, result=result, groups=groups)
+        found = record(case, result=_solved(case), groups=groups)
         if name in available(found):
             return svg_text(figure_of(found, name), name)
     return ""

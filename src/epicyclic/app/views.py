@@ -58,6 +58,9 @@ class MapView:
         if self._known is not None:
             await self._fill(*self._known)
 
+    async def follow(self) -> None:
+        """A map stays as it was computed."""
+
     def _take(self, axis: str, event: events.ValueChangeEventArguments[str]) -> None:
         self._texts[axis] = event.value or ""
 
@@ -141,7 +144,7 @@ class CompareView:
                 "outline no-caps dense"
             )
         self._body = ui.element("div")
-        await self._fill()
+        await self.follow()
 
     async def _keep(self) -> None:
         now = self._desk()
@@ -150,9 +153,10 @@ class CompareView:
     def _set(self, other: Desk) -> None:
         self._other = other
         with self._body:
-            ui.timer(0, self._fill, once=True)
+            ui.timer(0, self.follow, once=True)
 
-    async def _fill(self) -> None:
+    async def follow(self) -> None:
+        """Both cases as they are now."""
         now, other = self._desk(), self._other
         self._body.clear()
         with self._body:
