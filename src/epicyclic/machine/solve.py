@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -197,6 +197,9 @@ def solve_machine(
         tried.append(drives)
         last = _converged(machine, operation, speeds, drives, fluids)
         drives = drives_first(last.balance.powers, drives)
+    turning = frozenset(key for key, first in drives.items() if first != last.drives[key])
+    if turning:  # next to no power passes there, and no direction agrees with itself
+        last = _converged(machine, operation, speeds, last.drives, fluids, turning)
     if last.efficiencies != efficiencies and not directions.jammed:
         directions = find_directions(machine, operation, speeds, lossless, last.efficiencies)
     return Solution(
@@ -233,8 +236,12 @@ def _converged(
     speeds: Mapping[str, float],
     drives: Mapping[str, bool],
     fluids: Fluids | None,
+    braking: Collection[str] = (),
 ) -> _Pass:
-    """Torques and losses that agree, with these directions of the rolling powers."""
+    """Torques and losses that agree, with these directions of the rolling powers.
+
+    Losses of the meshes `braking` are friction, whichever gear drives.
+    """
     rows = {row.key: row.efficiency for row in machine.rows}
     found = balance(machine, operation, speeds, drives, rows)
     answers: dict[str, Answer] = {}
@@ -268,7 +275,7 @@ def _converged(
                 answers[key] = last.followed_by(loads, told) if last else Answer(loads, told)
             results[key], seen[key] = told, loads
             changed = True
-        efficiencies, frictions = effects_of(machine, found.powers, results.values())
+        efficiencies, frictions = effects_of(machine, found.powers, results.values(), braking)
         if not changed and efficiencies == rows:  # friction alone: the balance has all of it
             return _Pass(found, drives, efficiencies, state, results)
         new = balance(machine, operation, speeds, drives, efficiencies, frictions)
@@ -295,7 +302,10 @@ def _agrees(old: Mapping[str, float], new: Mapping[str, float]) -> bool:
 
 
 def effects_of(
-    machine: Machine, powers: Mapping[str, float], results: Iterable[ElementResult]
+    machine: Machine,
+    powers: Mapping[str, float],
+    results: Iterable[ElementResult],
+    braking: Collection[str] = (),
 ) -> tuple[dict[str, float], list[Friction]]:
     """Efficiencies of the meshes, and friction between bodies, that the losses stand for.
 
@@ -305,12 +315,14 @@ def effects_of(
     powers : mapping of str to float
         Rolling power of each mesh. [W]
     results : iterable of ElementResult
+    braking : collection of str
+        Meshes whose losses are friction in any case.
     """
     efficiencies = {row.key: row.efficiency for row in machine.rows}
     frictions = []
     for result in results:
         for loss in result.losses.values():
-            power = abs(powers.get(loss.mesh, 0.0))
+            power = 0.0 if loss.mesh in braking else abs(powers.get(loss.mesh, 0.0))
             if loss.mesh and loss.watts < MOST_OF_A_MESH * power:
                 efficiencies[loss.mesh] -= loss.watts / power
             elif loss.watts:
