@@ -32,6 +32,14 @@ EASE = 0.125
 """How long an opening beside a new pocket has next to no inertia. [periods]"""
 NEW_INERTIA = 0.1
 """Inertia in that time, as that of a step of ten periods over that of a step."""
+SMALLEST = 4**6
+PARTS = ((4, 4), (16, SMALLEST))
+"""Into how many a time step is cut at first and at most where it has no solution otherwise."""
+EULER_MOST = 4000
+"""Newton iterations for one time step that is cut, at most."""
+ITERATIONS_MOST = 30
+"""The same for all steps of a flow, in the mean over its steps in as many periods as there may be:
+usual are 8 in 8 periods."""
 
 
 @kernel
@@ -55,46 +63,74 @@ def _euler_steps(
     fluid: Fluid,
     fresh: Fresh,
     step: float,
-    parts: int,
+    parts: tuple[int, int],
     totals: Floats,
 ) -> int:
-    """One time step by `parts` implicit Euler steps, the geometry linear in between.
+    """One time step by implicit Euler steps, the geometry linear in between.
 
-    The way out where the larger step has no solution that Newton's method finds.
+    The way out where the larger step has no solution that Newton's method finds. `parts` says into
+    how many equal ones the step is cut at first and at most: what has no solution is cut into four.
+
+    Returns the Newton iterations; negative if no solution was found.
+    """
+    kept = (fields[0].copy(), fields[1].copy(), fields[2].copy())
+    rates = np.zeros(3)
+    work = np.zeros(3)
+    largest, smallest = SMALLEST // parts[0], SMALLEST // parts[1]
+    iterations, done, part = 0, 0, largest
+    while done < SMALLEST:
+        found = _euler_step(
+            start, end, fields, numbers, live, fluid, fresh, step, (done, part), rates
+        )
+        iterations += abs(found)
+        if found > 0:
+            work += step * part / SMALLEST * rates
+            kept[0][:], kept[1][:], kept[2][:] = fields
+            done += part
+            while part < largest and done % (4 * part) == 0:
+                part *= 4
+        else:
+            fields[0][:], fields[1][:], fields[2][:] = kept
+            part //= 4
+        if part < smallest or iterations > EULER_MOST:
+            return -iterations
+    totals[:3] += work
+    return iterations
+
+
+@kernel
+def _euler_step(
+    start: Shape,
+    end: Shape,
+    fields: Fields,
+    numbers: Numbers,
+    live: Flags,
+    fluid: Fluid,
+    fresh: Fresh,
+    step: float,
+    place: tuple[int, int],
+    rates: Floats,
+) -> int:
+    """One implicit Euler step over a part of a time step; iterations as from `solve_stage`.
+
+    `place`: where the part begins and how long it is, both over the step divided by `SMALLEST`.
     """
     q, axial, cross = fields
+    left, right = place[0] / SMALLEST, (place[0] + place[1]) / SMALLEST
+    share = right - left
+    now = (
+        start[0] + right * (end[0] - start[0]),
+        (end[0] - start[0]) * share,
+        start[2] + right * (end[2] - start[2]),
+        start[3] + right * (end[3] - start[3]),
+        start[4] + right * (end[4] - start[4]),
+        start[5] + right * (end[5] - start[5]),
+    )
     excess = np.zeros_like(q)
-    rates = np.zeros(3)
-    iterations = 0
-    for part in range(parts):
-        left, right = part / parts, (part + 1) / parts
-        volume0 = start[0] + left * (end[0] - start[0])
-        now = (
-            start[0] + right * (end[0] - start[0]),
-            (end[0] - start[0]) / parts,
-            start[2] + right * (end[2] - start[2]),
-            start[3] + right * (end[3] - start[3]),
-            start[4] + right * (end[4] - start[4]),
-            start[5] + right * (end[5] - start[5]),
-        )
-        _excess(q, volume0, live, fluid[0], excess)
-        shares = kinetic_shares(axial, now, numbers[0], fluid, fresh)
-        done = solve_stage(
-            now,
-            (excess, axial.copy(), cross.copy()),
-            fields,
-            numbers,
-            fluid,
-            fresh,
-            shares,
-            step / parts,
-            rates,
-        )
-        if done < 0:
-            return -1
-        iterations += done
-        totals[:3] += step / parts * rates
-    return iterations
+    _excess(q, start[0] + left * (end[0] - start[0]), live, fluid[0], excess)
+    shares = kinetic_shares(axial, now, numbers[0], fluid, fresh)
+    before = (excess, axial.copy(), cross.copy())
+    return int(solve_stage(now, before, fields, numbers, fluid, fresh, shares, step * share, rates))
 
 
 @kernel
@@ -159,16 +195,14 @@ def _advance(
             totals[:3] += step * ((1 - SDIRK) * rates[0] + SDIRK * rates[1])
             return done + second
     moves[0][:], moves[1][:] = 0.0, 0.0
-    parts = 4
-    while parts <= 256:
+    used = 0
+    for parts in PARTS:
         q[:], axial[:], cross[:] = q0, axial0, cross0
-        trial = np.zeros(3)
-        done = _euler_steps(start, end, fields, numbers, live, fluid, fresh, step, parts, trial)
+        done = _euler_steps(start, end, fields, numbers, live, fluid, fresh, step, parts, totals)
+        used += abs(done)
         if done > 0:
-            totals[:3] += trial
-            return done
-        parts *= 4
-    return -1
+            return used
+    return -used
 
 
 @kernel
@@ -216,7 +250,7 @@ def periodic_flow(
     -------
     int
         Periods; negative if the flow did not repeat, and both works are then means of the last
-        half of the periods; zero if a step has no solution.
+        half of the periods; zero if a step has no solution, or all take too many iterations.
     """
     steps, pockets, slices = live.shape
     xi = fluid[0]
@@ -237,6 +271,7 @@ def periodic_flow(
     moves_q = np.zeros((steps, 2, pockets, slices))
     moves_axial = np.zeros((steps, 2, pockets, slices + 1))
     last_work = math.nan
+    iterations = 0
     mean = np.zeros(2)
     for period in range(1, limits[0] + 1):
         totals = np.zeros(6)
@@ -274,7 +309,8 @@ def periodic_flow(
                 (moves_q[n], moves_axial[n]),
                 totals,
             )
-            if done < 0:
+            iterations += abs(done)
+            if done < 0 or iterations > ITERATIONS_MOST * limits[0] * steps:
                 return 0
             works[n] = totals[0] - work_before
             history[0][n] = q

@@ -44,6 +44,11 @@ NEWTON_MOST = 40
 """Newton iterations of one stage before it is given up."""
 NEWTON_TOLERANCE = 1e-9
 """Last Newton step over the largest value in the field. [1]"""
+VACUUM = 1e-9 - 1
+"""Pressure next to none, as q."""
+DRIVEN = 4.0
+"""Kinetic energy over what pressures and velocities can drive beyond which a root is none: exact
+flows have 1 at most, and differences across the face miss that by less than this. [1]"""
 
 
 @kernel
@@ -476,5 +481,17 @@ def solve_stage(
         if not np.isfinite(right).all():
             return -iteration
         if _move(right, fields, numbers):
-            return iteration
+            return iteration if _speeds_can_be(before, fields, fluid) else -iteration
     return -NEWTON_MOST
+
+
+@kernel
+def _speeds_can_be(before: Fields, fields: Fields, fluid: Fluid) -> bool:
+    """Whether no flow is faster than its pressures and its velocities before can drive it.
+
+    Newton's method also finds roots of the equations that no flow comes to.
+    """
+    total = mixture(fields[0].max(), fluid[0])[3] - mixture(VACUUM, fluid[0])[3]
+    before2 = max(np.abs(before[1]).max(), np.abs(before[2]).max()) ** 2
+    now2 = max(np.abs(fields[1]).max(), np.abs(fields[2]).max()) ** 2
+    return bool(now2 <= DRIVEN * (2 * fluid[1] * total + before2))

@@ -55,6 +55,8 @@ LEAST_OIL = 0.005
 LEAST_AIR = 1e-4
 """Air in a compressible mixture, at least: with it pure oil cavitates near zero pressure. The loss
 is that without a lower bound within a percent. [1]"""
+FINER = (1, 2, 4)
+"""A flow with a time step that has no solution is tried with more steps, by these factors."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -166,7 +168,7 @@ def pocket_flow(
     Raises
     ------
     ConvergenceError
-        If a time step has no solution.
+        If a time step has no solution, not even as one of four times as many.
     """
     if model == "talbot-2012":
         return _scaled_up(study_flow(geometry), geometry, abs(speed), mixture.density)
@@ -174,6 +176,26 @@ def pocket_flow(
         number = abs(speed) * math.sqrt(mixture.density / pressure)
         flow = bounded_flow(geometry, number, slices, steps, end_length)
         return _scaled_up(flow, geometry, abs(speed), mixture.density)
+    for finer in FINER:
+        found = _compressible_flow(
+            geometry, speed, mixture, pressure, model, slices, finer * steps, end_length
+        )
+        if found is not None:
+            return found
+    raise _no_solution(geometry)
+
+
+def _compressible_flow(
+    geometry: PocketGeometry,
+    speed: float,
+    mixture: MixtureState,
+    pressure: float,
+    model: PocketModel,
+    slices: int,
+    steps: int,
+    end_length: float,
+) -> PocketFlow | None:
+    """`pocket_flow` of the models with sound waves; None if a time step has no solution."""
     cells = pocket_cells(
         geometry, slices, steps, end_length * geometry.mesh.gear1.rack.normal_module
     )
@@ -199,7 +221,7 @@ def pocket_flow(
         figures,
     )
     if periods == 0:
-        raise _no_solution(geometry)
+        return None
     for array in (*history, work):
         array.flags.writeable = False
     work_done, lost, come, out, gone, stored = map(float, figures[:6])
@@ -220,8 +242,8 @@ def pocket_flow(
 
 def _no_solution(geometry: PocketGeometry) -> ConvergenceError:
     return ConvergenceError(
-        f"pocketing of the {geometry.mesh.name}: a time step has no solution; raise "
-        "numerics.pocket_steps, or leave the term out (losses)."
+        f"pocketing of the {geometry.mesh.name}: the flow does not converge, not even in shorter "
+        "time steps; take another models.pocketing, or leave the term out (losses)."
     )
 
 
