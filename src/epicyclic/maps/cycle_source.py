@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from epicyclic.case.wording import one_line, sentence
 from epicyclic.errors import InputError, Problem
+from epicyclic.maps.parquet_pages import largest_page
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -20,6 +21,8 @@ __all__ = ["Source", "open_source"]
 SUFFIXES = (".csv", ".parquet")
 _BLOCK_BYTES = 1 << 22
 _BATCH_ROWS, _PAGE_BYTES = 1 << 16, 1 << 20
+LARGEST_PAGE = 16 * 10**6
+"""Of a Parquet file, unpacked: a page of each column is in memory as a whole. [bytes]"""
 _LONGEST_HEAD = 1 << 18
 """Bytes within which the header of a CSV file must end."""
 
@@ -118,10 +121,21 @@ def _from_parquet(path: Path) -> Source:
             _readable(str(path)),
             pq.ParquetFile(path, pre_buffer=False, buffer_size=_PAGE_BYTES) as file,
         ):
+            largest = largest_page(path, file, chosen, LARGEST_PAGE)
+            if largest > LARGEST_PAGE:
+                raise _unreadable(str(path), *_too_large(largest))
             for batch in file.iter_batches(_BATCH_ROWS, columns=list(chosen)):
                 yield {header: batch.column(header) for header in chosen}
 
     return Source(str(path), headers, batches)
+
+
+def _too_large(page: int) -> tuple[str, str]:
+    """What is allowed, and what to change."""
+    allowed = (
+        f"has a page of {page / 1e6:.0f} MB; pages of up to {LARGEST_PAGE / 1e6:.0f} MB are read."
+    )
+    return allowed, "Write it anew with pages of 1 MB, as most programs do by default."
 
 
 def _from_csv(path: Path) -> Source:
