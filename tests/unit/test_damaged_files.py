@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import re
 import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +30,7 @@ from epicyclic.oilmodel.model import read_oil_model
 from epicyclic.pocketing.stored import read_stored
 from epicyclic.records.files import open_map
 from epicyclic.sweeps.dataset import write_dataset
+from limits import MOST_MEMORY, MOST_SECONDS, peak_memory
 
 QUICK, ALL = 40, 1000
 COARSE = {"numerics.pocket_slices": 4, "numerics.pocket_steps": 12}
@@ -203,13 +205,20 @@ def test_damaged_files_end_in_an_input_error_or_are_read(tmp_path, binary_files,
     path.write_bytes(data)
     READERS[name](path)
     rng = np.random.default_rng(2012)
-    messages = []
+    messages, seconds, before = [], [], peak_memory()
     for _ in range(copies):
         path.write_bytes(damaged(data, rng))
+        start = time.process_time()
         try:
             READERS[name](path)
         except ep.InputError as error:
             messages.append(str(error))
+        seconds.append(time.process_time() - start)
     assert messages
     assert max(map(len, messages)) < LONGEST_MESSAGE
-    print(f"{name}: {len(messages)} of {copies} damaged files refused, the others read")
+    assert max(seconds) < MOST_SECONDS
+    assert peak_memory() - before < MOST_MEMORY
+    print(
+        f"{name}: {len(messages)} of {copies} damaged files refused, the others read, "
+        f"{max(seconds):.2f} s at most"
+    )

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import resource
-import sys
 import time
 import zipfile
 
@@ -23,10 +21,7 @@ from epicyclic.measurement.table import parse_measurements
 from epicyclic.oilmodel.model import read_oil_model
 from epicyclic.pocketing.stored import read_stored
 from epicyclic.sweeps.journal import Journal
-
-MOST_SECONDS = 5.0
-MOST_MEMORY = 500e6
-"""Bytes beyond what was in use before."""
+from limits import MOST_MEMORY, MOST_SECONDS, peak_memory
 
 
 def read_measurements(path):
@@ -63,12 +58,6 @@ READERS = {
     "campaign.json": read_campaign,
     "sweep.nc.0123456789ab.partial": read_journal,
 }
-
-
-def peak_memory():
-    """Largest memory of this process so far. [bytes]"""
-    unit = 1 if sys.platform == "darwin" else 1024
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
 
 
 def refusal(read, path):
