@@ -1,0 +1,53 @@
+"""The campaign of random valid cases: a quick share by default, a longer one marked slow."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+
+from campaign.outcomes import FAULTS
+from campaign.run import CampaignPlan, counted
+
+TABLE = Path(__file__).parents[2] / "docs" / "development" / "campaign.csv"
+
+
+def solved(numbers):
+    plan = CampaignPlan(max(numbers) + 1)
+    counts = counted((number, plan.solve(number)) for number in numbers)
+    for row in counts.rows():
+        print(",".join(row))
+    return counts
+
+
+def check(counts):
+    names = {name for name, _, _ in counts.outcomes}
+    assert not names & set(FAULTS), counts.faults
+    assert sum(number for (name, *_), number in counts.outcomes.items() if name == "solved") > 0
+
+
+def test_a_quick_share_ends_in_results_or_outcomes():
+    check(solved(range(100_000, 100_010)))  # beyond those that the documentation counts
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", [200_000, 201_000])
+def test_a_longer_share_ends_in_results_or_outcomes(first):
+    check(solved(range(first, first + 1000)))
+
+
+def test_a_case_follows_from_its_number_alone():
+    plan = CampaignPlan(8)
+    one, two = plan.solve(3), plan.solve(3)
+    assert one.message == two.message
+    assert one.numbers["energy"] == two.numbers["energy"]
+
+
+def test_the_published_counts_have_no_faults_and_add_up():
+    with TABLE.open(newline="", encoding="utf-8") as file:
+        rows = {row[0]: row[1:] for row in csv.reader(file)}
+    assert all(rows[name][0] == "0" for name in FAULTS)
+    outcomes = [row for name, row in rows.items() if row[-1].isdigit() and name != "all"]
+    for column, total in enumerate(rows["all"]):
+        assert sum(int(row[column]) for row in outcomes) == int(total)
