@@ -43,7 +43,8 @@ class Doing:
             self._row.set_visibility(self._count > 0)
 
     def progress(self, done: int, total: int) -> None:
-        """Tell how far it is."""
+        """Tell how far it is; without a total, functions that a first run has compiled."""
         self._bar.set_visibility(total > 0)
         self._bar.set_value(done / total if total else 0)
-        self._label.set_text(f"{self._noun}: {done} of {total}")
+        first = f"first run of this version, compiling the numerics: {done} functions so far"
+        self._label.set_text(f"{self._noun}: {done} of {total}" if total else first)

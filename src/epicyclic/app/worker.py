@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import itertools
 import multiprocessing
 import os
 import signal
@@ -12,11 +13,12 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from epicyclic.errors import EpicyclicError
+from epicyclic.kernels.compiling import listeners
 
 __all__ = ["Ended", "WorkError", "Worker"]
 
 Progress = Callable[[int, int], None]
-"""Called with what is done and what there is to do."""
+"""Called with what is done and what there is to do, and with 0 for this while code is compiled."""
 
 
 class Ended(Exception):  # noqa: N818  no error: the user has asked for it
@@ -92,6 +94,8 @@ class Worker:
 def _serve(pipe: Connection) -> None:
     """What the process does: tasks until the pipe is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the app ends this process
+    compiled = itertools.count(1)
+    listeners.append(lambda: pipe.send(("progress", (next(compiled), 0))))
     with suppress(EOFError, OSError):
         while True:
             task, arguments = pipe.recv()
