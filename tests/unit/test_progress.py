@@ -36,6 +36,18 @@ def test_a_line_now_and_then(clock, capsys):
     ]
 
 
+def test_the_time_left_does_not_count_compilation_before_the_first_point(clock, capsys):
+    with progress.progress_bar("points") as update:
+        for done, seconds in ((0, 50), (1, 110), (11, 130)):
+            clock.now = 100.0 + seconds
+            update(done, 80)
+    assert capsys.readouterr().err.splitlines() == [
+        "points: 0 of 80 after 0:00:50",
+        "points: 1 of 80 after 0:01:50",
+        "points: 11 of 80 after 0:02:10, about 0:02:18 left",
+    ]
+
+
 def test_what_is_quick_says_nothing(clock, capsys):
     with progress.progress_bar("points") as update:
         clock.now += progress.EVERY / 2

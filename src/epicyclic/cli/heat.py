@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.options import case_argument, json_option, load_with, plot_option, set_option
+from epicyclic.cli.options import (
+    case_argument,
+    json_option,
+    load_with,
+    plot_option,
+    point_of,
+    set_option,
+)
 from epicyclic.cli.output import check_ending, draw, show
 from epicyclic.errors import InputError, Problem
 
@@ -80,7 +87,7 @@ def heat(
         from epicyclic.plots.heat_network import heat_figure
 
         assert result.heat is not None
-        draw(heat_figure(result.heat, result.title), plot)
+        draw(heat_figure(result.heat, result.title), plot, point_of(solved))
 
 
 def _check_target(quantity: str, target: str | None) -> None:

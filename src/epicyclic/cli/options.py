@@ -96,6 +96,13 @@ def plot_option(text: str) -> Callable[[Any], Any]:
     return click.option("--plot", metavar="FILE", type=click.Path(path_type=Path), help=text)
 
 
+def point_of(case: Any) -> str:
+    """The operating point of a case, for the captions of its pictures."""
+    from epicyclic.case.operating import operating_line
+
+    return operating_line(case.inputs()["operation"])
+
+
 def load_with(case: str, changes: Sequence[str]) -> Any:
     from epicyclic.exchange.load import load_case
     from epicyclic.exchange.rexs.file import is_rexs

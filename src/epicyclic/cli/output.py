@@ -87,7 +87,12 @@ def parse_size(text: str) -> tuple[float, float]:
     raise InputError([problem], "the command")
 
 
-def draw(figure: Figure, path: Path) -> None:
+def draw(figure: Figure, path: Path, caption: str = "") -> None:
+    """Write a picture, with its operating point below if it has none yet."""
+    if caption:
+        from epicyclic.plots.style import caption_below
+
+        caption_below(figure, caption)
     write_file(path, picture_bytes(figure, path))
     click.echo(f"Wrote {path}.")
 

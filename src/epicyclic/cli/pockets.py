@@ -12,6 +12,7 @@ from epicyclic.cli.options import (
     case_argument,
     load_with,
     plot_option,
+    point_of,
     runner_options,
     set_option,
     shard_option,
@@ -61,8 +62,8 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
             from epicyclic.plots.pocket_section import section_figure
             from epicyclic.plots.pockets import pocket_figure
 
-            draw(pocket_figure(mesh), beside(plot, key))
-            draw(section_figure(mesh), beside(plot, f"{key}-section"))
+            draw(pocket_figure(mesh), beside(plot, key), point_of(loaded))
+            draw(section_figure(mesh), beside(plot, f"{key}-section"), point_of(loaded))
         if animate is not None:
             from epicyclic.cli.progress import progress_bar
             from epicyclic.plots.pocket_animation import pocket_animation

@@ -80,16 +80,20 @@ def _bar(noun: str, console: Console) -> Iterator[Update]:
 @contextmanager
 def _lines(noun: str) -> Iterator[Update]:
     start = told = time.monotonic()
+    first: tuple[float, int] | None = None  # of what is done; before it kernels are compiled
 
     def update(done: int, total: int, failed: int = 0) -> None:
-        nonlocal told
+        nonlocal told, first
         now = time.monotonic()
+        if done and first is None:
+            first = now, done
         if now - told < EVERY or _is_off():
             return
         told = now
         parts = [f"{noun}: {done} of {total} after {_seconds(now - start)}"]
-        if done:
-            parts.append(f"about {_seconds((now - start) * (total - done) / done)} left")
+        if first is not None and done > first[1]:
+            left = (now - first[0]) * (total - done) / (done - first[1])
+            parts.append(f"about {_seconds(left)} left")
         if failed:
             parts.append(_failures(failed))
         click.echo(", ".join(parts), err=True)

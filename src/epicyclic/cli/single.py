@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING
 import click
 
 from epicyclic.cli.exit_codes import EXIT_NO_SOLUTION
-from epicyclic.cli.options import case_argument, json_option, load_with, plot_option, set_option
+from epicyclic.cli.options import (
+    case_argument,
+    json_option,
+    load_with,
+    plot_option,
+    point_of,
+    set_option,
+)
 from epicyclic.cli.output import beside, check_ending, draw, show
 from epicyclic.status import Status
 
@@ -121,7 +128,7 @@ def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     if plot is not None:
         from epicyclic.plots.friction import friction_figure
 
-        draw(friction_figure(rows, loaded.title), plot)
+        draw(friction_figure(rows, loaded.title), plot, point_of(loaded))
 
 
 @click.command()
@@ -136,10 +143,11 @@ def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
 
     if plot is not None:
         check_ending("--plot", plot)
-    meshes = mesh_details(load_with(case, changes))
+    loaded = load_with(case, changes)
+    meshes = mesh_details(loaded)
     terminal().print(mesh_tables(meshes))
     if plot is not None:
         from epicyclic.plots.mesh import mesh_figure
 
         for key, details in meshes.items():
-            draw(mesh_figure(details), beside(plot, key))
+            draw(mesh_figure(details), beside(plot, key), point_of(loaded))

@@ -195,16 +195,17 @@ def _cycle_study(
 
 
 def _draw(data: xr.Dataset, plot: Path) -> None:
-    from epicyclic.plots.catalogue import figure_of
+    from epicyclic.plots.catalogue import about, figure_of
     from epicyclic.plots.uncertainty import band_figure, drivers_figure, shares_figure
 
+    _, point = about(data)
     if "explained" in data:
-        draw(shares_figure(data), beside(plot, "drivers"))
+        draw(shares_figure(data), beside(plot, "drivers"), point)
         draw(figure_of(data, "loss-band"), beside(plot, "band"))
         draw(figure_of(data, "loss-band-lines"), beside(plot, "lines"))
         return
-    draw(drivers_figure(data), beside(plot, "drivers"))
-    draw(band_figure(data), beside(plot, "band"))
+    draw(drivers_figure(data), beside(plot, "drivers"), point)
+    draw(band_figure(data), beside(plot, "band"), point)
 
 
 def _computed(study: Study, output: Path | None, runner: Runner) -> xr.Dataset:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.options import case_argument, load_with, plot_option, set_option
+from epicyclic.cli.options import case_argument, load_with, plot_option, point_of, set_option
 from epicyclic.cli.output import check_ending, draw
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def warm_up(
     if plot is not None:
         from epicyclic.plots.warm_up import warm_up_figure
 
-        draw(warm_up_figure(data), plot)
+        draw(warm_up_figure(data), plot, f"cycle {cycle}" if cycle else point_of(loaded))
 
 
 def _write(data: xr.Dataset, output: Path) -> None:

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from epicyclic.analysis.shapes import gear_shapes
 from epicyclic.case.operating import operating_line
 from epicyclic.errors import InputError, Problem
-from epicyclic.maps.tables import map_case
+from epicyclic.maps.tables import map_case, map_inputs
 from epicyclic.plots.bearing import plot_roller_loads, plot_roller_profile
 from epicyclic.plots.drawing import plot_gear_set, plot_teeth
 from epicyclic.plots.heat_network import plot_heat_network
@@ -39,7 +39,7 @@ from epicyclic.plots.mesh import (
 )
 from epicyclic.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.plots.power_flow import SLIDE, plot_power_flow
-from epicyclic.plots.style import PANEL, styled_figure
+from epicyclic.plots.style import PANEL, room_of, styled_figure
 from epicyclic.plots.sweep import (
     fields_of,
     plot_sweep_field,
@@ -55,12 +55,14 @@ from epicyclic.records.files import is_sweep
 from epicyclic.records.record import ResultRecord, sets_of
 from epicyclic.results.result import in_words
 
-__all__ = ["PLOTS", "Panel", "Plot", "available", "figure_of", "panels_of"]
+__all__ = ["PLOTS", "Panel", "Plot", "about", "available", "figure_of", "panels_of"]
 
 Stored = ResultRecord | xr.Dataset
 MM_PER_INCH = 25.4
 SLIDE_WIDTHS = (6.4, 9.6, 12.8)
 """Of figures with one, two, three and more panels side by side: letters stay readable. [inch]"""
+TITLE_CHARACTERS = 13
+"""That fit into an inch of the title of Axes."""
 FLATTEST = 0.75
 """Height of a figure over that of a slide of its width, at least."""
 
@@ -402,7 +404,7 @@ def figure_of(
     panels = panels_of(stored, name)
     columns = 3 if len(panels) == 3 else math.ceil(math.sqrt(len(panels)))
     rows = math.ceil(len(panels) / columns)
-    title, point = _about(stored)
+    title, point = about(stored)
     plot = PLOTS[name]
     inches = _slide(rows, columns)
     if plot.is_wide:
@@ -416,20 +418,30 @@ def figure_of(
         for panel, ax in zip(panels, axes.ravel(), strict=False):
             panel.draw(ax)
             if panel.subject:
-                ax.set_title(f"{ax.get_title(loc='left')}, {panel.subject}")
+                ax.set_title(_with_subject(ax, panel.subject))
         for ax in spare:
             ax.remove()
     return figure
 
 
-def _about(stored: Stored) -> tuple[str, str]:
-    """Title and operating point."""
+def _with_subject(ax: Axes, subject: str) -> str:
+    """The title of Axes and what they are of, on two lines where one has no room."""
+    title = ax.get_title(loc="left")
+    whole = f"{title}, {subject}"
+    return whole if len(whole) < TITLE_CHARACTERS * room_of(ax) else f"{title},\n{subject}"
+
+
+def about(stored: Stored) -> tuple[str, str]:
+    """Title and operating point, or the points of a map, sweep or cycle."""
     if isinstance(stored, ResultRecord):
         return stored.title, operating_line(stored.result.inputs["operation"])
     title = str(stored.attrs.get("title", ""))
     if is_sweep(stored):
         return title, sweep_line(stored)
-    return title, map_line(stored) if "torque_loss" in stored else ""
+    if "torque_loss" in stored:
+        return title, map_line(stored)
+    cycle = str(stored.attrs.get("cycle", ""))
+    return title, cycle or operating_line(map_inputs(stored)["operation"])
 
 
 def _slide(rows: int, columns: int) -> tuple[float, float]:

@@ -39,6 +39,8 @@ LEAST_EFFICIENCY, BEST_EFFICIENCY = 50.0, 99.95
 """Between which colours of an efficiency differ, evenly in the logarithm of the loss. [%]"""
 LABELS = 4
 """Of lines of equal value, at most: more collide where lines are close."""
+EDGE = 0.04
+"""Of the width and height of Axes, in which no such label begins."""
 HATCHES = ("", "///", "...", "\\\\\\", "xxx")
 ROOM = 1.03
 """Height of an axis over the greatest value that it has to show. [1]"""
@@ -124,9 +126,9 @@ def plot_map(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Ax
         levels = [one for one in EFFICIENCIES if low <= one <= high]
         bar.set_ticks(levels, labels=[f"{one:g}" for one in levels])
         bar.ax.minorticks_off()
-    draw_lines(ax, (speed, torque, values.to_numpy()), levels)
     if of_efficiency and torque.min() <= 0 <= torque.max():
         _stretch_zero(ax, torque)
+    draw_lines(ax, (speed, torque, values.to_numpy()), levels)
     ax.grid(visible=False)
     ax.set(
         title=title_of(values),
@@ -154,7 +156,11 @@ def draw_lines(ax: Axes, field: tuple[Any, Any, Any], levels: Sequence[float] | 
         return
     lines = ax.contour(*field, levels=drawn, colors="white", linewidths=0.7)
     labelled = drawn[:: -(-len(drawn) // LABELS)] if even else drawn[-LABELS:]
-    ax.clabel(lines, labelled, fontsize="x-small", fmt="%g")
+    to_axes = ax.transData - ax.transAxes
+    for text in ax.clabel(lines, labelled, fontsize="x-small", fmt="%g"):
+        place = to_axes.transform(text.get_position())
+        if np.abs(place - 0.5).max() > 0.5 - EDGE:  # a part of it would be cut off
+            text.remove()
 
 
 def _efficiency_norm(low: float, high: float) -> FuncNorm:
@@ -183,7 +189,7 @@ def _stretch_zero(ax: Axes, torque: FloatArray) -> None:
     ticks = full * np.array([STRETCHED, 0.1, 0.3, 1.0])
     ticks = np.concatenate([-ticks[::-1], [0.0], ticks])
     ax.set_yticks(ticks[(ticks >= torque.min()) & (ticks <= torque.max())])
-    ax.yaxis.set_major_formatter("{x:.3g}")
+    ax.yaxis.set_major_formatter(lambda value, _: format_number(value, 3))
     ax.yaxis.set_minor_locator(NullLocator())
 
 
@@ -264,8 +270,11 @@ def plot_half_width(data: xr.Dataset, ax: Axes) -> Axes:
     """
     total = data.sel(result="total", drop=True)
     share = 50 * (total["high"] - total["low"]) / total["nominal"].where(total["nominal"] > 0)
-    about = {"long_name": "half width of the 95 % band of the total loss", "units": "%"}
-    return plot_map(data.assign(half_width=share.assign_attrs(about)), "half_width", ax)
+    about = {"long_name": "half width of the 95 % band of the loss", "units": "%"}
+    known = data.assign(half_width=share.assign_attrs(about)).sel(
+        speed=share.notnull().any([dim for dim in share.dims if dim != "speed"])
+    )  # at rest nothing is lost
+    return plot_map(known, "half_width", ax)
 
 
 def plot_band_lines(data: xr.Dataset, over: str, ax: Axes) -> Axes:

@@ -14,6 +14,7 @@ from matplotlib.tri import Triangulation
 from numpy.typing import NDArray
 
 from epicyclic.plots.style import COLOUR_MAP, closed_period, label_of, legend_below, styled_figure
+from epicyclic.units import format_number
 
 __all__ = [
     "mesh_figure",
@@ -35,6 +36,8 @@ SAME = 1e-9
 NO_PEAK, PEAKED = 0.95, 1.15
 """A scale of colours ends at this quantile where the highest value is more than so many times it:
 peaks at corners would take the scale from all the rest."""
+MARGIN = 0.06
+"""Above a curve, of the height of the Axes."""
 PATH_PLACES = 40
 """Places on the path of contact at which values are taken together."""
 
@@ -93,7 +96,7 @@ def _draw_map(ax: Axes, path: FloatArray, face: FloatArray, values: FloatArray, 
     figure = ax.get_figure()
     assert figure is not None
     if peaked:
-        label = f"{label}; highest {highest:.3g}"
+        label = f"{label}; highest {format_number(highest, 3)}"
     figure.colorbar(drawn, ax=ax, label=label, extend="max" if peaked else "neither")
 
 
@@ -167,7 +170,9 @@ def plot_along_path(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
             ax.plot(middle, mean, label="mean across the face")
         ax.axvline(0.0, color="black", lw=0.8, ls="--", label="pitch point")
         legend_below(ax, ncols=3)
-        ax.set_ylim(bottom=min(0.0, float(low.min())))
+        bottom, top = min(0.0, float(low.min())), max(0.0, float(high.max()))
+        margin = MARGIN * (top - bottom)
+        ax.set_ylim(bottom and bottom - margin, top + margin)
     else:
         _say(ax, "no motion")
     ax.set(

@@ -57,7 +57,7 @@ def section_figure(mesh: xr.Dataset, end: str = "first") -> Figure:
             ax.set_title(f"roll angle {section.roll[0, step]:.1f}°")
         _name_members(mesh, axes[0, 0])
         figure.legend(
-            handles=_legend(mesh), loc="outside lower center", ncols=COLUMNS, frameon=False
+            handles=_legend(mesh), loc="outside lower right", ncols=COLUMNS, frameon=False
         )
         row = PANEL_WIDTH * section.aspect + 0.3
         figure.set_size_inches(COLUMNS * PANEL_WIDTH, len(axes) * row + 0.9)

@@ -25,11 +25,13 @@ __all__ = [
     "COLOUR_MAP",
     "LINE_STYLES",
     "PANEL",
+    "caption_below",
     "closed_period",
     "decimals_of",
     "figure_bytes",
     "label_of",
     "legend_below",
+    "room_of",
     "styled_figure",
     "title_of",
 ]
@@ -47,8 +49,12 @@ BELOW = 0.42
 """Room for the ticks and the label of an x axis. [inch]"""
 PIXELS = 1920
 """Width of a picture, if nothing else is asked for: that of a slide."""
-CHARACTERS = 16
-"""That fit into an inch of a caption."""
+SMALL_CHARACTERS, CHARACTERS, MEDIUM = 19, 16, 13
+"""That fit into an inch of a legend, of a caption, and of one of larger letters."""
+ENTRY = 0.45
+"""Room in a legend, beside the text of an entry. [inch]"""
+WIDE = 9.0
+"""Width of a figure from which on its caption has larger letters. [inch]"""
 
 _STYLE: Any = {
     "axes.prop_cycle": rcsetup.cycler("color", COLOURS),
@@ -100,17 +106,32 @@ def styled_figure(
         if title:
             figure.suptitle(title, x=0.01, ha="left", fontweight="bold", parse_math=False)
         if caption:
-            lines = textwrap.fill(caption, max(1, int(size[0] * CHARACTERS)))
-            figure.supxlabel(
-                lines, x=0.01, ha="left", fontsize="small", color="0.3", parse_math=False
-            )
+            caption_below(figure, caption)
         yield figure, axes
 
 
+def caption_below(figure: Figure, caption: str) -> None:
+    """What a figure is of, as the operating point, in small letters below all."""
+    width = float(figure.get_size_inches()[0])
+    characters, letters = (MEDIUM, "medium") if width > WIDE else (CHARACTERS, "small")
+    figure.supxlabel(
+        textwrap.fill(caption, max(1, int(width * characters))),
+        x=0.01,
+        ha="left",
+        fontsize=letters,
+        color="0.3",
+        parse_math=False,
+    )
+
+
 def legend_below(ax: Axes, **options: Any) -> None:
-    """A legend under the label of the x axis, where it hides nothing."""
+    """A legend under the label of the x axis, where it hides nothing, as wide as there is room."""
     figure = ax.get_figure()
-    assert figure is not None
+    assert isinstance(figure, Figure)
+    handles = options.get("handles") or ax.get_legend_handles_labels()[0]
+    longest = max((len(str(handle.get_label())) for handle in handles), default=0)
+    columns = int(room_of(ax) / (ENTRY + longest / SMALL_CHARACTERS))
+    options["ncols"] = max(1, min(columns, options.get("ncols", 1)))
     below = ScaledTranslation(0, -BELOW, figure.dpi_scale_trans)
     ax.legend(
         loc="upper center",
@@ -120,6 +141,13 @@ def legend_below(ax: Axes, **options: Any) -> None:
         frameon=False,
         **options,
     )
+
+
+def room_of(ax: Axes) -> float:
+    """Width of the figure that is left to Axes and what belongs to them. [inch]"""
+    figure, place = ax.get_figure(), ax.get_subplotspec()
+    assert isinstance(figure, Figure)
+    return float(figure.get_size_inches()[0]) / (place.get_gridspec().ncols if place else 1)
 
 
 def closed_period(

@@ -8,7 +8,7 @@ import re
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from epicyclic.plots.catalogue import PLOTS, Stored, panels_of
+from epicyclic.plots.catalogue import PLOTS, Stored, about, panels_of
 from epicyclic.plots.style import styled_figure
 from epicyclic.report.explore import explorable
 from epicyclic.report.page import Drawing
@@ -31,6 +31,7 @@ def draw(stored: Stored, name: str) -> list[Drawing]:
     """Each panel of a plot as a figure of its own."""
     drawings = []
     plot = PLOTS[name]
+    point = ", ".join(filter(None, about(stored)))
     for number, panel in enumerate(panels_of(stored, name)):
         key = f"{name}-{number + 1}"
         size = plot.size if plot.is_wide else PANEL
@@ -40,7 +41,7 @@ def draw(stored: Stored, name: str) -> list[Drawing]:
             caption = f"{title}, {panel.subject}" if panel.subject else title
             ax.set_title("", loc="left")
             ax.set_title("")
-            drawings.append(Drawing(key, caption, svg_text(figure, key), explorable(ax)))
+            drawings.append(Drawing(key, caption, svg_text(figure, key), explorable(ax), point))
     return drawings
 
 

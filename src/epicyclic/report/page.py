@@ -97,12 +97,13 @@ class Listing:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """A figure: a still one, and the data of one to explore if there is such."""
+    """A figure: a still one, the data of one to explore if there is such, and what it is of."""
 
     name: str
     title: str
     svg: str
     plot: dict[str, Any] | None = None
+    point: str = ""
 
 
 @dataclass(frozen=True, slots=True)
