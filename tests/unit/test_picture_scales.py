@@ -13,6 +13,7 @@ from epicyclic.plots.loss_map import limits_of
 from epicyclic.plots.mesh import plot_along_path, plot_plane_of_action, plot_transmission_error
 from epicyclic.plots.pockets import plot_power
 from epicyclic.plots.style import decimals_of
+from epicyclic.units import format_number
 
 
 def axes():
@@ -82,7 +83,7 @@ def test_a_peak_at_a_corner_does_not_take_the_scale(talbot_record):
     ax = plot_plane_of_action(mesh, "line_load", axes())
     assert ax.collections[0].norm.vmax == pytest.approx(most, rel=1e-3)
     labels = [one.get_ylabel() for one in ax.figure.axes]
-    assert any(f"highest {7 * most:.3g}" in label for label in labels)
+    assert any(f"highest {format_number(7 * most, 3)}" in label for label in labels)
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from epicyclic.analysis.contact import FRAMES, ContactResult
+from epicyclic.case.fields import to_inputs
 from epicyclic.ehl.rough import Frame
 from epicyclic.plots.style import COLOURS, styled_figure
+from epicyclic.units import unit_text
 
 __all__ = [
     "contact_animation",
@@ -49,13 +51,23 @@ def contact_figure(result: ContactResult) -> Figure:
     if result.smooth.temperature_rise.any():
         panels.append(plot_temperature)
     title = result.case.title or "Line contact"
-    with styled_figure(len(panels), 1, title, panel=PANEL) as (figure, axes):
+    with styled_figure(len(panels), 1, title, panel=PANEL, caption=_point(result)) as (
+        figure,
+        axes,
+    ):
         for plot, ax in zip(panels, axes[:, 0], strict=True):
             plot(result, ax)
             ax.label_outer()
         if _frames(result):
             axes[0, 0].set_title("rough: the last moment solved", loc="left")
     return figure
+
+
+def _point(result: ContactResult) -> str:
+    """Load, speeds and temperature of the contact."""
+    inputs = to_inputs(result.case)
+    stated = [f"{key.replace('_', ' ')} {value}" for key, value in inputs["contact"].items()]
+    return unit_text(", ".join([*stated, f"oil at {inputs['lubricant']['temperature']}"]))
 
 
 def plot_pressure(result: ContactResult, ax: Axes) -> Axes:
@@ -149,7 +161,7 @@ def _plot_both(
     result: ContactResult, ax: Axes, smooth: FloatArray, rough: Sequence[FloatArray]
 ) -> None:
     """The smooth contact, and the last moment of the rough one."""
-    ax.plot(result.smooth.x / MILLIMETRE, smooth, label="smooth")
+    ax.plot(result.smooth.x / MILLIMETRE, smooth, ls="--" if rough else "-", label="smooth")
     if rough:
         ax.plot(_rough_x(result), rough[-1], label="rough")
 

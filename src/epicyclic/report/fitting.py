@@ -59,6 +59,7 @@ class FittedTable(Table):
             header_style=self.header_style,
             box=self.box,
             pad_edge=self.pad_edge,
+            show_header=self.show_header,
         )
         chosen = [self.columns[place] for place in block]
         for column, width in zip(chosen, widths, strict=True):
