@@ -24,10 +24,10 @@ for gear, result in results.items():
 # to pass on between them. Losses follow it, not the ratio of the gear.
 
 figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
-axes.bar(results, [100 * (1 - result.efficiency) for result in results.values()])
+axes.bar(list(results), [100 * (1 - result.efficiency) for result in results.values()])
 axes.set(xlabel="gear", ylabel="bars: loss [% of the input power]", title=case.title)
 right = axes.twinx()
-right.plot(list(results), [one.train.power_ratio for one in results.values()], "ko--")
+right.plot(list(results), [one.train.power_ratio for one in results.values()], "ko")
 right.set_ylabel("dots: power ratio")
 right.set_ylim(0)
 
