@@ -75,7 +75,7 @@ class Worker:
     def end(self) -> None:
         """End what is being done; the next thing starts a new process."""
         if self._process is not None:
-            self._process.terminate()
+            _end_group(self._process)
             self._process = None
         if self._ours is not None:
             self._ours = None
@@ -91,8 +91,17 @@ class Worker:
         return self._ours
 
 
+def _end_group(process: Any) -> None:
+    """End a process and those that it has started for a map."""
+    with suppress(OSError, AttributeError):  # it has no group yet, or the system has none
+        os.killpg(process.pid, signal.SIGTERM)
+    process.terminate()
+
+
 def _serve(pipe: Connection) -> None:
     """What the process does: tasks until the pipe is closed."""
+    if hasattr(os, "setsid"):
+        os.setsid()  # a group of its own, see `_end_group`
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the app ends this process
     compiled = itertools.count(1)
     listeners.append(lambda: pipe.send(("progress", (next(compiled), 0))))
@@ -105,6 +114,6 @@ def _serve(pipe: Connection) -> None:
                 pipe.send(("failed", error))
             except Exception as error:
                 pipe.send(("failed", WorkError(f"{type(error).__name__}: {error}")))
-    for child in multiprocessing.active_children():  # of a map; they would be waited for
-        child.kill()
+    if hasattr(os, "killpg"):  # workers of a map would be waited for
+        os.killpg(0, signal.SIGTERM)
     os._exit(0)
