@@ -13,17 +13,17 @@ MEAN = 0.03
 
 
 def series(rng, blocks, correlation=0.95, scatter=0.3):
-    """Blocks on both grids; the coarse one has another mean and shares with the block before."""
-    noise = rng.standard_normal(blocks + 1)
-    coarse = (noise[1:] + 0.3 * noise[:-1]) / math.hypot(1, 0.3)
+    """Blocks on both grids; the coarse one has another mean and shares with two blocks before."""
+    noise = rng.standard_normal(blocks + 2)
+    coarse = (noise[2:] + 0.7 * noise[1:-1] + 0.3 * noise[:-2]) / math.sqrt(1.58)
     own = math.sqrt(1 - correlation**2) * rng.standard_normal(blocks)
     return MEAN * (1 + scatter * (correlation * coarse + own)), 0.04 + 0.011 * coarse
 
 
 def simulated(rng, tolerance, correlation=0.95, scatter=0.3):
     """An estimate by as many blocks as it takes, and what they cost."""
-    fine, coarse = series(rng, 3000, correlation, scatter)
-    plan, before = Plan(6, 6), None
+    fine, coarse = series(rng, 6000, correlation, scatter)
+    plan, before = Plan(8, 8), None
     while plan != before:
         estimate = aided_mean(fine[: plan.blocks], coarse[: plan.aid_blocks])
         if estimate.within(tolerance):
@@ -46,8 +46,23 @@ def test_the_error_is_the_one_stated(tolerance, scatter):
 def test_the_coarse_grid_saves_most_of_the_blocks():
     rng = np.random.default_rng(5)
     aided = np.mean([simulated(rng, 0.02).blocks for _ in range(50)])
-    alone = (0.3 / 0.02) ** 2
-    assert aided < alone / 3
+    alone = (0.3 / 0.02) ** 2 * (1 + 0.7 + 0.3) ** 2 / 1.58
+    assert aided < alone / 4
+
+
+def test_a_slope_from_a_few_blocks_widens_the_error_where_it_reaches_far():
+    fine, coarse = series(np.random.default_rng(8), 8, correlation=0.8)
+    near = aided_mean(fine, np.append(coarse, np.full(40, coarse.mean())))
+    far = aided_mean(fine, np.append(coarse, np.full(40, coarse.mean() + 3 * coarse.std())))
+    reach = 40 / 48 * 3  # of the long mean, in standard deviations of the eight blocks
+    assert far.own / near.own == pytest.approx(1 + reach**2)
+
+
+def test_many_blocks_tell_of_neighbours_that_make_up_for_one_another():
+    noise = np.random.default_rng(9).standard_normal(4001)
+    alike, opposed = noise[1:] + 0.5 * noise[:-1], noise[1:] - 0.5 * noise[:-1]
+    for blocks, expected in ((alike, 1.5**2), (opposed, 0.5**2)):
+        assert aided_mean(3 + blocks, np.empty(0)).own == pytest.approx(expected, rel=0.25)
 
 
 def test_a_coarse_grid_that_tells_nothing_or_broke_down_is_left_out():

@@ -222,9 +222,12 @@ def test_two_level_solver_solves_the_full_equations():
     ehl_linear.factor_dense(coarse, order)
     right = np.append(np.where(active, rng.standard_normal(n), 0.0), 0.3)
     found = np.empty(n + 1)
+    space, bend, bent = ehl_linear.space_for(n), np.empty(n), np.empty(n)
     steps = ehl_linear.solve_linear(
-        right, row, coarse, order, grouped, local, by_film, band, active, 0.1, found
+        right, row, coarse, order, grouped, local, by_film, band, active, 0.1, space, found, bend
     )
+    ehl_linear.deflect(row, found[:n], bent)
+    np.testing.assert_allclose(bend, bent + found[n], rtol=1e-9, atol=1e-12)
 
     full = np.zeros((n + 1, n + 1))
     influence = row[n - 1 + np.subtract.outer(np.arange(n), np.arange(n))]

@@ -22,6 +22,10 @@ FloatArray = NDArray[np.float64]
 GROWTH = 1.5
 """Of the number of blocks on the fine grid between looks at the error, at most: an early look tells
 little of how many it takes. [1]"""
+LAGS = 2
+"""Blocks that follow one another and are alike: a ridge stays for that long. [1]"""
+RUN, FEWEST_RUNS = 8, 16
+"""Blocks of a run, which shares little with the next, and runs from which a variance is found."""
 STUDENT = 0.6
 """Student's t at one standard error is 1 + 0.6/nu of the normal one with nu degrees of freedom,
 within 2 % from two of them on. [1]"""
@@ -98,24 +102,35 @@ def aided_mean(fine: FloatArray, coarse: FloatArray) -> Estimate:
     if steady:
         return Estimate(value, _variance(fine, 1) * _widening(count - 1), 0.0, count, 0)
     slope = float(fine @ same) / power
-    value += slope * float(coarse.mean() - coarse[:count].mean())
-    own = _variance(fine - slope * same, 2) * _widening(count - 2)
+    away = float(coarse.mean() - coarse[:count].mean())
+    value += slope * away
+    by_slope = 1 + count * away**2 / power
+    own = _variance(fine - slope * same, 2) * _widening(count - 2) * by_slope
     return Estimate(value, own, slope**2 * _variance(coarse, 1), count, aid_count)
 
 
 def _variance(blocks: FloatArray, fitted: int) -> float:
-    """Of a block, with what it shares with the next: a ridge crosses the contact in two blocks.
+    """Of a block, with what it shares with the next ones: a ridge crosses the contact in four.
 
-    `fitted` numbers were found from the blocks.
+    `fitted` numbers were found from the blocks. Many of them tell what neighbours share also where
+    it is less than nothing, which a few would only seem to tell.
     """
-    rest = blocks - blocks.mean()
-    following = max(0.0, float(rest[1:] @ rest[:-1]))
-    return (float(rest @ rest) + 2 * following) / max(1, blocks.size - fitted)
+    if blocks.size < FEWEST_RUNS * RUN:
+        rest = blocks - blocks.mean()
+        shared = sum(max(0.0, float(rest[lag:] @ rest[:-lag])) for lag in range(1, LAGS + 1))
+        return float(rest @ rest + 2 * shared) / max(1, blocks.size - fitted)
+    runs = blocks[blocks.size % RUN :].reshape(-1, RUN).mean(axis=1)
+    rest = runs - runs.mean()
+    own, next_ = float(rest @ rest), float(rest[1:] @ rest[:-1])
+    return RUN * (own + 2 * max(next_, -own / 8)) / (runs.size - fitted)
 
 
 def _widening(freedom: int) -> float:
-    """Of the variance of a mean, because the scatter itself is known from a few blocks only."""
-    return (1 + STUDENT / max(freedom, 1)) ** 2
+    """Of the variance of a mean, because the scatter itself is known from a few blocks only.
+
+    Neighbours are alike: two blocks tell of it as much as one.
+    """
+    return (1 + STUDENT / max(freedom / 2, 1)) ** 2
 
 
 def next_plan(estimate: Estimate, tolerance: float, cost: float, most: int) -> Plan:
@@ -146,7 +161,8 @@ def next_plan(estimate: Estimate, tolerance: float, cost: float, most: int) -> P
     if aid == 0:
         return Plan(more, 0)
     left = wanted - own / more
-    needed = aid / left if left > 0 else math.inf
+    # towards numbers not reached yet both grow in the cheapest proportion
+    needed = more * math.sqrt(aid / (cost * own)) if more < cheapest else aid / left
     highest = MOST_AID * more
     aided = math.ceil(min(max(needed, more, aid_blocks), highest))
     if more == blocks and aided == aid_blocks:  # the scatter of a small sample stands in the way

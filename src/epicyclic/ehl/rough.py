@@ -35,8 +35,8 @@ MAX_ITERATIONS = 40
 STILL, GROWTH, SETTLING = 2.0, 1.0, 2.0
 """Times b/u_r in which the smooth contact settles on the grid, in which the roughness grows, and
 until averages begin. [1]"""
-BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 1.0, 6, 1024
-"""Time b/u_r of a block, and numbers of blocks that an average takes."""
+BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 0.5, 8, 1024
+"""Time of a block in b/u_r, fewest blocks of an average, most times b/u_r of one."""
 FEWEST_COARSE_NODES, COARSE_SPACING = 96, 0.3
 """Of the grid that aids the averages: fewest nodes, and their distance over the correlation length
 of the roughness; at most half of the nodes. [1]"""
@@ -338,7 +338,8 @@ def solve_rough(
     coarse = _coarse_nodes(run, surfaces)
     aid = _Simulation(smooth, surfaces, coarse, asperities, None, heating, frozen)
     series = _Series(run), _Series(aid)
-    plan = Plan(fewest := min(FEWEST_BLOCKS, most_blocks), fewest)
+    most = math.ceil(most_blocks / BLOCK)
+    plan = Plan(fewest := min(FEWEST_BLOCKS, most), fewest)
     while True:
         for blocks, wanted in zip(series, plan, strict=True):
             while len(blocks.means) < wanted:
@@ -349,7 +350,7 @@ def solve_rough(
         judged = means.friction if contact.sliding_speed else means.rolling
         if not math.isfinite(judged.value) or judged.within(tolerance):
             break
-        before, plan = plan, next_plan(judged, tolerance, aid.work / run.work, most_blocks)
+        before, plan = plan, next_plan(judged, tolerance, aid.work / run.work, most)
         if plan == before:
             break
     return _solution(run, series[0], means, _failure(run, judged, tolerance))

@@ -16,7 +16,7 @@ FloatArray = NDArray[np.float64]
 
 POINTS_PER_CORRELATION = 8
 """Points of a generated profile within one correlation length."""
-PERIOD = 1000.0
+PERIOD = 4000.0
 """Length of a generated profile over its correlation length: that of 200 has a friction of its own,
 up to 10 % from that of other seeds. [1]"""
 FEWEST_SAMPLES = 4

@@ -7,6 +7,7 @@ matrix for sums of nodes.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from epicyclic.kernels._jit import kernel
 __all__ = [
     "BAND",
     "GROUP",
+    "Space",
     "apply_rows",
     "coarse_matrix",
     "deflect",
@@ -23,6 +25,7 @@ __all__ = [
     "factor_dense",
     "near_coefficients",
     "solve_linear",
+    "space_for",
     "update_groups",
 ]
 
@@ -39,6 +42,27 @@ LINEAR_TOLERANCE = 0.1
 """Residual at which a linear solution stops, over that at its start. [1]"""
 LEAST_DIAGONAL = 0.1
 """Least diagonal by which a residual is divided, over the compliance of a node. [1]"""
+
+
+class Space(NamedTuple):
+    """Arrays that `solve_linear` overwrites, made once for many systems by `space_for`."""
+
+    bends: FloatArray
+    work: FloatArray
+    scale: FloatArray
+    unscaled: FloatArray
+    basis: FloatArray
+    ahead: FloatArray
+    hessenberg: FloatArray
+
+
+@kernel
+def space_for(n: int) -> Space:
+    """Arrays for systems of n nodes."""
+    return Space(
+        np.empty((KRYLOV, n)), np.empty(n), np.ones(n + 1), np.empty(n + 1),
+        np.empty((KRYLOV + 1, n + 1)), np.empty((KRYLOV, n + 1)), np.zeros((KRYLOV + 1, KRYLOV)),
+    )  # fmt: skip
 
 
 @kernel
@@ -123,17 +147,24 @@ def factor_band(
 @kernel
 def solve_band(band: FloatArray, x: FloatArray) -> None:
     """Solve with the factors of `factor_band`; `x` holds the right side and then the solution."""
-    n, width = band.shape[0], band.shape[1] // 2
-    for i in range(n):
-        value = x[i]
-        for k in range(1, min(width, i) + 1):
-            value -= band[i, width - k] * x[i - k]
-        x[i] = value
-    for i in range(n - 1, -1, -1):
-        value = x[i]
-        for k in range(1, min(width, n - 1 - i) + 1):
-            value -= band[i, width + k] * x[i + k]
-        x[i] = value / band[i, width]
+    n = band.shape[0]
+    for i in range(BAND):
+        for k in range(1, i + 1):
+            x[i] -= band[i, BAND - k] * x[i - k]
+    for i in range(BAND, n):  # written out, the node known last at the end
+        x[i] = (
+            x[i] - band[i, 0] * x[i - 4] - band[i, 1] * x[i - 3] - band[i, 2] * x[i - 2]
+            - band[i, 3] * x[i - 1]
+        )  # fmt: skip
+    for i in range(n - 1, n - 1 - BAND, -1):
+        for k in range(1, n - i):
+            x[i] -= band[i, BAND + k] * x[i + k]
+        x[i] /= band[i, BAND]
+    for i in range(n - 1 - BAND, -1, -1):
+        x[i] = (
+            x[i] - band[i, 8] * x[i + 4] - band[i, 7] * x[i + 3] - band[i, 6] * x[i + 2]
+            - band[i, 5] * x[i + 1]
+        ) / band[i, 4]  # fmt: skip
 
 
 @kernel
@@ -162,14 +193,15 @@ def coarse_matrix(
     """Matrix of the coarse level: groups, then the approach and the load."""
     n, groups = active.size, grouped.shape[0]
     matrix = np.zeros((groups + 1, groups + 1))
+    flow = np.zeros(groups * GROUP)
     for g in range(groups):
         film = grouped[g]
-        for i in range(1, n - 1):
-            if active[i]:
-                matrix[i // GROUP, g] += (
-                    by_film[i, 0] * film[i - 1] + by_film[i, 1] * film[i]
-                    + by_film[i, 2] * film[i + 1]
-                )  # fmt: skip
+        for i in range(1, n - 1):  # all nodes at once, and then their sums, is vectorised
+            flow[i] = (
+                by_film[i, 0] * film[i - 1] + by_film[i, 1] * film[i] + by_film[i, 2] * film[i + 1]
+            )  # fmt: skip
+        for row in range(groups):
+            matrix[row, g] = flow[row * GROUP : (row + 1) * GROUP].sum()
     for i in range(1, n - 1):
         row = i // GROUP
         if active[i]:
@@ -264,26 +296,26 @@ def precondition(
 def solve_linear(
     right: FloatArray, kernel_row: FloatArray, coarse: FloatArray, rows: NDArray[np.int64],
     grouped: FloatArray, local: FloatArray, by_film: FloatArray, band: FloatArray,
-    active: BoolArray, weight: float, solution: FloatArray,
+    active: BoolArray, weight: float, space: Space, solution: FloatArray,
+    bend: FloatArray,
 ) -> int:  # fmt: skip
     """GMRES with `precondition` on the right; returns its steps.
+
+    The change of the film that goes with `solution` is put into `bend`.
 
     Residuals are measured over the diagonal, as pressures, lest a few stiff nodes hide the others.
     """
     n = active.size
-    scale, unscaled = np.ones(n + 1), np.empty(n + 1)
+    bends, work, scale, unscaled, basis, ahead, hessenberg = space
+    scale[:] = 1.0
     here, beside = kernel_row[n - 1], kernel_row[n]
     for i in range(1, n - 1):
         if active[i]:
             diagonal = local[i, 1] + by_film[i, 1] * here + (by_film[i, 0] + by_film[i, 2]) * beside
             scale[i] = 1.0 / max(abs(diagonal), LEAST_DIAGONAL * here)
-    basis = np.empty((KRYLOV + 1, n + 1))
-    ahead = np.empty((KRYLOV, n + 1))
-    hessenberg = np.zeros((KRYLOV + 1, KRYLOV))
     cosine, sine = np.zeros(KRYLOV), np.zeros(KRYLOV)
     rest = np.zeros(KRYLOV + 1)
-    film, work = np.zeros(n), np.zeros(n)
-    solution[:] = 0.0
+    solution[:] = bend[:] = 0.0
     basis[0] = right * scale
     norm = math.sqrt((basis[0] * basis[0]).sum())
     if norm == 0.0:
@@ -293,6 +325,7 @@ def solve_linear(
     steps = 0
     for k in range(KRYLOV):
         unscaled[:] = basis[k] / scale
+        film = bends[k]
         precondition(
             unscaled, coarse, rows, grouped, local, by_film, band, active, film, work, ahead[k]
         )
@@ -335,6 +368,7 @@ def solve_linear(
         rest[k] /= hessenberg[k, k]
     for k in range(steps):
         solution += rest[k] * ahead[k]
+        bend += rest[k] * bends[k]
     return steps
 
 

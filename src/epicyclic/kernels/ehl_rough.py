@@ -25,12 +25,14 @@ from epicyclic.kernels.ehl_fluid import (
 )
 from epicyclic.kernels.ehl_linear import (
     BAND,
+    Space,
     coarse_matrix,
     deflect,
     factor_band,
     factor_dense,
     near_coefficients,
     solve_linear,
+    space_for,
     update_groups,
 )
 
@@ -173,10 +175,10 @@ def hold_back(
 
 @kernel
 def solve_step(
-    pressure: FloatArray, film: FloatArray, approach: float, gap: FloatArray,
+    pressure: FloatArray, film: FloatArray, approach: float,
     kernel_row: FloatArray, order: FloatArray, history: FloatArray, fluid: ScaledFluid, dx: float,
     load: float, active: BoolArray, grouped: FloatArray, included: BoolArray, held: float,
-    tolerance: float, max_iterations: int,
+    tolerance: float, max_iterations: int, space: Space,
 ) -> tuple[float, int, float]:  # fmt: skip
     """Pressure and film after one time step, in place.
 
@@ -188,8 +190,6 @@ def solve_step(
         Started from, and changed to the solution; the first and last pressure stay.
     approach : float
         H_0 to start from.
-    gap : ndarray, shape (n,)
-        Undeformed gap with the roughness, and the deflection by the pressure outside.
     kernel_row : ndarray, shape (2 n - 1,)
         Of `deflect`.
     order, history : ndarray, shape (n,)
@@ -204,6 +204,8 @@ def solve_step(
         Largest change of a pressure in the last step, over the largest or p_h, and largest
         relative lack of load.
     max_iterations : int
+    space : Space
+        Of `solve_linear`.
 
     Returns
     -------
@@ -216,7 +218,8 @@ def solve_step(
     rho, d_rho = np.empty(n), np.empty(n)
     conductance, terms = np.empty(n - 1), np.empty((n - 1, 4))
     local, by_film = np.empty((n, 3)), np.empty((n, 3))
-    lack, change, bent = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n)
+    lack, change = np.zeros(n + 1), np.zeros(n + 1)
+    bend, kept, back = np.empty(n), np.zeros(n), np.zeros(n)
     band = np.empty((n, 2 * BAND + 1))
     groups = grouped.shape[0]
     coarse, rows = np.empty((groups + 1, groups + 1)), np.empty(groups + 1, dtype=np.int64)
@@ -236,26 +239,41 @@ def solve_step(
             coarse = coarse_matrix(local, by_film, grouped, active, dx)
             factor_dense(coarse, rows)
         linear = solve_linear(
-            lack, kernel_row, coarse, rows, grouped, local, by_film, band, active, dx, change
+            lack,
+            kernel_row,
+            coarse,
+            rows,
+            grouped,
+            local,
+            by_film,
+            band,
+            active,
+            dx,
+            space,
+            change,
+            bend,
         )
         if not np.isfinite(change).all():
             return approach, iteration, np.nan
         # asperities may carry many times p_h
         peak = max(1.0, pressure.max())
         length = min(1.0, LARGEST_STEP * peak / np.abs(change[:n]).max())
-        error = 0.0
+        error, any_kept = 0.0, False
         for i in range(1, n - 1):
             new = pressure[i] + length * change[i]
+            kept[i] = max(0.0, -new)  # no pressure falls below zero
             if new < 0.0:
                 new = 0.0
                 active[i] = False
+                any_kept = True
             error = max(error, abs(new - pressure[i]) / peak)
             pressure[i] = new
         error = max(error, abs(load - dx * (pressure.sum() - 0.5 * pressure[0])) / load)
         approach += length * change[n]
-        deflect(kernel_row, pressure, bent)
+        if any_kept:
+            deflect(kernel_row, kept, back)
         for i in range(n):
-            film[i] = gap[i] + approach + bent[i]
+            film[i] += length * bend[i] + (back[i] if any_kept else 0.0)
     return approach, iteration, error
 
 
@@ -400,7 +418,7 @@ def march(
     n = pressure.size
     gap, bent = np.empty(n), np.empty(n)
     order, history = np.empty(n), np.empty(n)
-    tried = np.empty(n)
+    tried, space = np.empty(n), space_for(n)
     for t in range(records.shape[0]):
         step = first + t + 1
         amplitude = min(1.0, max(0.0, step / growth))
@@ -423,8 +441,8 @@ def march(
                 film[i] = gap[i] + approach + bent[i]
             tries = max_iterations * (1 + attempt)
             result = solve_step(
-                pressure, film, approach, gap, kernel_row, order, history, fluid, dx, load,
-                active, grouped, included, HELD[attempt], tolerance, tries,
+                pressure, film, approach, kernel_row, order, history, fluid, dx, load,
+                active, grouped, included, HELD[attempt], tolerance, tries, space,
             )  # fmt: skip
             iterations += result[1]
             if result[2] < tolerance or attempt == 1:
