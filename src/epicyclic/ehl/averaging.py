@@ -118,8 +118,8 @@ def _variance(blocks: FloatArray, fitted: int) -> float:
     if blocks.size < FEWEST_RUNS * RUN:
         rest = blocks - blocks.mean()
         shared = sum(max(0.0, float(rest[lag:] @ rest[:-lag])) for lag in range(1, LAGS + 1))
-        return float(rest @ rest + 2 * shared) / max(1, blocks.size - fitted)
-    runs = blocks[blocks.size % RUN :].reshape(-1, RUN).mean(axis=1)
+        return (float(rest @ rest) + 2 * shared) / max(1, blocks.size - fitted)
+    runs: FloatArray = blocks[blocks.size % RUN :].reshape(-1, RUN).mean(axis=1)
     rest = runs - runs.mean()
     own, next_ = float(rest @ rest), float(rest[1:] @ rest[:-1])
     return RUN * (own + 2 * max(next_, -own / 8)) / (runs.size - fitted)
