@@ -14,7 +14,7 @@ from epicyclic.app.tasks import IN_PAGE, Study
 from epicyclic.app.worker import Ended
 from epicyclic.errors import EpicyclicError
 from epicyclic.report.html import items_html
-from epicyclic.report.page import Drawing, Gallery, Item, KeyFigure, Row, Section
+from epicyclic.report.page import Drawing, Gallery, Item, KeyFigure, Listing, Row, Section, Table
 
 __all__ = ["FORMATS", "Do", "Sheet", "key_figures", "save_buttons"]
 
@@ -83,7 +83,7 @@ class Sheet:
             with ui.element("div").classes("gallery" + " wide" * item.is_wide):
                 for drawing in item.drawings:
                     self.figure(drawing, study)
-        else:
+        elif isinstance(item, Table | Listing):  # others need the script of a report
             ui.html(items_html(item), sanitize=False)
 
     def figure(self, drawing: Drawing, study: Study) -> None:
@@ -108,13 +108,11 @@ class Sheet:
                     svg = await self._do(tasks.picture, study, name, IN_PAGE)
                     content = svg.decode()
                 except EpicyclicError as error:
-                    content = items_html_of(error)
+                    content = error_html(error)
                 if not place.is_deleted:
                     place.set_content(content)
 
 
-def items_html_of(error: EpicyclicError) -> str:
+def error_html(error: EpicyclicError) -> str:
     """An error in place of a figure."""
-    from epicyclic.report.page import Listing
-
     return items_html(Listing((str(error),)))
