@@ -200,6 +200,15 @@ def test_progress_is_told(told):
     assert told == [(number, 7) for number in range(7)]
 
 
+def test_figures_have_the_size_that_is_asked_for(pair_map, map_page):
+    wide = ep.report_html(pair_map, size=(150, 50))
+    boxes = [re.findall(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', page) for page in (map_page, wide)]
+    assert len(boxes[0]) == len(boxes[1]) > 3
+    proportions = {round(float(width) / float(height), 2) for width, height in boxes[1]}
+    assert max(proportions) > 2.5
+    assert all(float(w) / float(h) < 2 for w, h in boxes[0])
+
+
 def test_a_report_prints_as_pdf(map_page):
     pytest.importorskip("weasyprint", reason="optional")
     from epicyclic.report.pdf import report_pdf

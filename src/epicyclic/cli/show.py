@@ -26,7 +26,8 @@ stored_argument = click.argument("source", metavar="CASE|FILE.nc")
 @click.option(
     "-o", "--output", required=True, type=click.Path(path_type=Path), help=".html, or .pdf."
 )
-def report(source: str, changes: tuple[str, ...], output: Path) -> None:
+@click.option("--size", metavar="SIZE", help='Of every figure, as in "160x90 mm".')
+def report(source: str, changes: tuple[str, ...], output: Path, size: str | None) -> None:
     """Write a report as one file that needs nothing else: a page, or print.
 
     FILE.nc is what run --save, map, sweep or uncertainty wrote; a CASE is solved first.
@@ -34,11 +35,12 @@ def report(source: str, changes: tuple[str, ...], output: Path) -> None:
     from epicyclic.cli.progress import progress_bar
 
     check_page(output)
+    millimetres = None if size is None else parse_size(size)
     stored = _stored(source, changes)
     from epicyclic.report.html import report_html
 
     with progress_bar("figures") as progress:
-        page = report_html(stored, progress)
+        page = report_html(stored, progress, size=millimetres)
     write_page(output, page)
 
 

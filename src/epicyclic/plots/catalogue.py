@@ -55,7 +55,7 @@ from epicyclic.records.files import is_sweep
 from epicyclic.records.record import ResultRecord, sets_of
 from epicyclic.results.result import in_words
 
-__all__ = ["PLOTS", "Panel", "Plot", "about", "available", "figure_of", "panels_of"]
+__all__ = ["PLOTS", "Panel", "Plot", "about", "available", "figure_of", "in_inches", "panels_of"]
 
 Stored = ResultRecord | xr.Dataset
 MM_PER_INCH = 25.4
@@ -381,6 +381,11 @@ def panels_of(stored: Stored, name: str) -> list[Panel]:
     raise InputError([problem], "the command")
 
 
+def in_inches(size: tuple[float, float]) -> tuple[float, float]:
+    """Width and height in millimetres as Matplotlib has them."""
+    return size[0] / MM_PER_INCH, size[1] / MM_PER_INCH
+
+
 def figure_of(
     stored: Stored,
     name: str,
@@ -410,7 +415,7 @@ def figure_of(
     if plot.is_wide:
         inches = (plot.size[0] * columns, plot.size[1] * rows)
     if size is not None:
-        inches = (size[0] / MM_PER_INCH, size[1] / MM_PER_INCH)
+        inches = in_inches(size)
     with styled_figure(
         rows, columns, title, projection=plot.projection, size=inches, dpi=dpi, caption=point
     ) as (figure, axes):

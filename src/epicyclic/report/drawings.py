@@ -8,7 +8,7 @@ import re
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from epicyclic.plots.catalogue import PLOTS, Stored, about, panels_of
+from epicyclic.plots.catalogue import PLOTS, Stored, about, in_inches, panels_of
 from epicyclic.plots.style import styled_figure
 from epicyclic.report.explore import explorable
 from epicyclic.report.page import Drawing
@@ -27,15 +27,16 @@ _LONG_NUMBER = re.compile(r"(\.\d\d)\d+")
 _OWN_ID = re.compile(r'(?<=\sid=")|(?<=url\(#)|(?<=href="#)')
 
 
-def draw(stored: Stored, name: str) -> list[Drawing]:
-    """Each panel of a plot as a figure of its own."""
+def draw(stored: Stored, name: str, size: tuple[float, float] | None = None) -> list[Drawing]:
+    """Each panel of a plot as a figure of its own, of a size in millimetres or that which suits."""
     drawings = []
     plot = PLOTS[name]
     point = ", ".join(filter(None, about(stored)))
     for number, panel in enumerate(panels_of(stored, name)):
         key = f"{name}-{number + 1}"
-        size = plot.size if plot.is_wide else PANEL
-        with styled_figure(1, 1, "", panel=size, projection=plot.projection) as (figure, axes):
+        suiting = plot.size if plot.is_wide else PANEL
+        inches = suiting if size is None else in_inches(size)
+        with styled_figure(1, 1, "", panel=inches, projection=plot.projection) as (figure, axes):
             ax = panel.draw(axes[0, 0])
             title = ax.get_title(loc="left") or ax.get_title()
             caption = f"{title}, {panel.subject}" if panel.subject else title

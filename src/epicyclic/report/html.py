@@ -39,7 +39,12 @@ KINDS = {
 }
 
 
-def report_html(stored: Stored, progress: Callable[[int, int], None] | None = None) -> str:
+def report_html(
+    stored: Stored,
+    progress: Callable[[int, int], None] | None = None,
+    *,
+    size: tuple[float, float] | None = None,
+) -> str:
     """The report of a result, of a loss map or a sweep, or of how well one is known.
 
     Parameters
@@ -49,13 +54,16 @@ def report_html(stored: Stored, progress: Callable[[int, int], None] | None = No
         `epicyclic.open_result`.
     progress : callable, optional
         Called with the numbers of plots drawn and to draw.
+    size : tuple of float, optional
+        Width and height of every figure, on which the size of its letters depends: a figure takes
+        the width that the page has. Default: what suits it. [mm]
 
     Returns
     -------
     str
         HTML. The same for the same content, whether computed or read from a file.
     """
-    drawings = _drawings(stored, progress or (lambda done, total: None))
+    drawings = _drawings(stored, progress or (lambda done, total: None), size)
     if isinstance(stored, ResultRecord):
         content = _result_content(stored, drawings)
     elif is_sweep(stored):
@@ -142,12 +150,14 @@ def _time(created: str) -> str:
     return f"{datetime.fromisoformat(created):%Y-%m-%d %H:%M} UTC"
 
 
-def _drawings(stored: Stored, progress: Callable[[int, int], None]) -> Drawings:
+def _drawings(
+    stored: Stored, progress: Callable[[int, int], None], size: tuple[float, float] | None
+) -> Drawings:
     drawings = {}
     names = list(available(stored))
     for done, name in enumerate(names):
         progress(done, len(names))
-        drawings[name] = draw(stored, name)
+        drawings[name] = draw(stored, name, size)
     return drawings
 
 
