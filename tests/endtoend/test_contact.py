@@ -59,6 +59,7 @@ def test_contact_by_file_gives_json_and_a_figure(epicyclic, tmp_path):
     assert figure.read_bytes()[:4] == b"\x89PNG"
 
 
+@pytest.mark.slow
 def test_rough_contact_moves_in_a_gif(epicyclic, tmp_path):
     figure = tmp_path / "contact.gif"
     done = epicyclic(

@@ -223,6 +223,7 @@ fi
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a shell")
+@pytest.mark.slow
 def test_the_scripts_for_slurm_do_what_they_say(call, tmp_path):
     page = (DOCS / "how-to" / "run-on-a-cluster.md").read_text(encoding="utf-8")
     for name in ("losses.sh", "submit.sh"):

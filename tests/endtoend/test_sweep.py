@@ -332,7 +332,7 @@ def test_interrupted_command_resumes(tmp_path, coarse_options):
             command(*vary), capture_output=True, text=True, check=False, env=QUIET
         )
 
-    vary = ("operation.speed=1000:4000:10 rpm", "operation.torque=1:1000:90 N*m")
+    vary = ("operation.speed=1000:4000:10 rpm", "operation.torque=1:1000:30 N*m")
     running = subprocess.Popen(
         command(*vary), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=QUIET
     )
@@ -346,12 +346,12 @@ def test_interrupted_command_resumes(tmp_path, coarse_options):
     assert running.returncode == 130
     assert output == ""
     said = re.fullmatch(
-        r"(\d+) of 900 points kept in (.*); give the same command again to go on.\n"
+        r"(\d+) of 300 points kept in (.*); give the same command again to go on.\n"
         r"\n*Interrupted.\n",
         errors,
     )
     assert said is not None, errors
-    assert 50 <= int(said[1]) < 900
+    assert 50 <= int(said[1]) < 300
     (left,) = names_in(tmp_path)
     assert said[2] == str(tmp_path / left)
 
@@ -363,6 +363,6 @@ def test_interrupted_command_resumes(tmp_path, coarse_options):
 
     again = call(*vary)
     assert again.returncode == 0, again.stderr
-    assert again.stderr == f"Going on from {said[1]} of 900 points in {said[2]}.\n"
+    assert again.stderr == f"Going on from {said[1]} of 300 points in {said[2]}.\n"
     assert names_in(tmp_path) == ["s.csv"]
-    assert len(pd.read_csv(tmp_path / "s.csv")) == 900
+    assert len(pd.read_csv(tmp_path / "s.csv")) == 300

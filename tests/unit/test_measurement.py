@@ -198,6 +198,7 @@ def test_intervals_of_the_model_cover_the_inputs(case, tests):
     assert 25 <= hits <= 39
 
 
+@pytest.mark.slow
 def test_a_fit_of_physical_inputs_of_a_planetary_set(talbot):
     keys = ["surroundings.oil_air_ratio", "lubricant.pressure_viscosity_factor", "planet.roughness"]
     values = [0.08, 1.1, "0.3 um"]

@@ -42,7 +42,7 @@ def test_a_stored_sweep_has_its_own_plots(data, tmp_path):
     assert list(available(stored)) == ["lines", "contours", "parallel"]
     figure = figure_of(stored, "lines")
     assert [ax.get_ylabel() for ax in figure.axes] == ["total loss, W", "efficiency, %"]
-    caption = figure.get_supxlabel()
+    caption = " ".join(figure.get_supxlabel().split())
     assert "operation.speed 2000 to 7000 rpm" in caption
     assert "models.friction schlenk, constant" in caption
     assert "varied speed, varied torque" in caption

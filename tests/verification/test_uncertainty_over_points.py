@@ -98,6 +98,7 @@ def test_the_torque_loss_has_a_band_at_rest_where_no_power_is_lost(over_map):
     )
 
 
+@pytest.mark.slow
 def test_drivers_over_a_map_are_those_of_the_indices_at_a_point(case, over_map):
     alone = ep.uncertainty(at(case, 2700, 190), samples=512, jobs=1)
     point = over_map.sel(speed=2700, torque=190, temperature=55)
@@ -162,6 +163,7 @@ def test_energies_are_sums_of_the_same_samples_at_all_points(case, over_cycle):
     assert str(total["unit"].values) == "kJ"
 
 
+@pytest.mark.slow
 def test_some_points_stand_for_a_long_cycle(case):
     number = np.arange(40)
     cycle = {

@@ -140,6 +140,7 @@ def test_it_starts_cold_with_the_losses_of_the_cold_gearbox(warmed):
     assert float(data["total_loss"][0]) == pytest.approx(ep.solve(cold).total, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_cycle_that_never_changes_is_a_constant_operating_point():
     case = ep.load_case("talbot-2012").updated(CASES["talbot-2012"])
     operation = case.inputs()["operation"]

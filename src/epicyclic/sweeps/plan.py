@@ -277,7 +277,8 @@ def make_plan(
     ]
     sizes = [*map(len, single.values()), *(max(map(len, it.values()), default=0) for it in groups)]
     if not sizes:
-        problem = Problem("vary", "", "is empty.", "Give at least one key and its values.")
+        remedy = "Give at least one key and its values; --vary KEY=VALUES on the command line."
+        problem = Problem("vary", "", "is empty.", remedy)
         raise InputError([problem], "the sweep")
     if math.prod(sizes) > MOST_POINTS:  # not worth reading them
         raise InputError([too_many("vary", math.prod(sizes))], "the sweep")
