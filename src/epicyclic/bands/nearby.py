@@ -94,10 +94,13 @@ def look_nearby(case: Case, result: Result) -> Nearby:
     values, outputs = known_values(case, result), outputs_of(case, result)
     plain = without_table(case)
     flows = flows_around(plain, SAME_FLOW)
-    stepped = [_losses(plain, changes, outputs, flows) for changes in steps(values)]
     losses = np.array([result.losses[name] for name in outputs.losses])
     if outputs.tested:
         losses = _losses(plain, {}, outputs, flows)
+    stepped = [
+        losses if _without_effect(plain, changes) else _losses(plain, changes, outputs, flows)
+        for changes in steps(values)
+    ]
     return nearby_of(values, outputs, losses, result.input_power, np.array(stepped))
 
 
@@ -123,6 +126,13 @@ def nearby_of(
     ends = np.tile(losses, (len(values), 2, 1))
     ends[inputs] = stepped.reshape(-1, 2, losses.size)
     return Nearby(values, outputs, losses, input_power, ends)
+
+
+def _without_effect(case: Case, changes: Mapping[str, Any]) -> bool:
+    """Where all oil has the temperature of its inlet, no loss sees how heat goes."""
+    return case.models.temperatures == "inlet" and all(
+        key.startswith("thermal.") for key in changes
+    )
 
 
 def _losses(
