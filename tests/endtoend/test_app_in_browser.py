@@ -123,7 +123,7 @@ def test_a_wrong_value_has_its_message_beside_it(open_app):
     page.wait_for_function("!document.querySelector('.stale')")
     _until(lambda: 0 < _watts(page) < before)
     page.get_by_role("button", name="Command").click()
-    assert "operation.torque=500 N*m" in page.locator(".command").inner_text()
+    page.locator(".command", has_text="operation.torque=500 N*m").wait_for()
     assert not page.wrong
 
 
