@@ -211,6 +211,10 @@ def test_a_map_is_computed_cancelled_and_saved(open_app):
     with page.expect_download(timeout=SOLVED) as loaded:
         page.locator(".chapter .formats").first.get_by_text("pdf").click()
     assert loaded.value.path().read_bytes().startswith(b"%PDF")
+    temperature = page.get_by_label("oil_inlet_temperature", exact=True)
+    temperature.fill("60")
+    temperature.press("Enter")  # the map follows the case
+    page.locator(".chapter code", has_text="oil_inlet_temperature").wait_for(timeout=SOLVED)
     assert not page.wrong
 
 

@@ -40,6 +40,7 @@ class MapView:
         self._desk, self._worker = desk, worker
         self._texts: dict[str, str] = {}
         self._known: tuple[Study, Answer] | None = None
+        self._is_following = False
 
     async def show(self) -> None:
         """Fields for the values, and the map that was computed last."""
@@ -57,9 +58,20 @@ class MapView:
         self._body = ui.element("div")
         if self._known is not None:
             await self._fill(*self._known)
+            await self.follow()
 
     async def follow(self) -> None:
-        """A map stays as it was computed."""
+        """Compute a map again that was computed for another case; the last change counts."""
+        if self._known is None or self._is_following:
+            return
+        self._is_following = True
+        try:
+            case = None
+            while self._desk().case not in (None, self._known[0].case, case):
+                case = self._desk().case
+                await self._compute()
+        finally:
+            self._is_following = False
 
     def _take(self, axis: str, event: events.ValueChangeEventArguments[str]) -> None:
         self._texts[axis] = event.value or ""
