@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from nicegui import events, ui
 
@@ -110,8 +111,8 @@ class MapView:
                     sheet.section(section, study)
         await sheet.draw()
 
-    async def _do(self, *work: object) -> object:
-        return await self._worker.do(*work, progress=lambda done, total: None)  # type: ignore[arg-type]
+    async def _do(self, *work: Any) -> Any:
+        return await self._worker.do(*work, progress=lambda done, total: None)
 
 
 def _values(axis: str, part: OperatingValue, text: str) -> str:
