@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from epicyclic.analysis.sets_of import build_computed
 from epicyclic.analysis.solve import solve
+from epicyclic.builders.gearing import SetCase
 from epicyclic.builders.models import (
-    SetCase,
     fitted_oil_model,
     friction_of,
     friction_settings,

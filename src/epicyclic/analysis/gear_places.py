@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from epicyclic.builders.models import SetCase
+from epicyclic.builders.gearing import SetCase
 from epicyclic.case import build
 from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable

@@ -6,11 +6,10 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from epicyclic.builders.gearing import SetCase, gearing_of
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
-from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.lubrication import oil_share
-from epicyclic.case.model_tables import LossOption
 from epicyclic.case.oil_laws import oil_laws
 from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.ehl.assumptions import PRESETS
@@ -35,14 +34,12 @@ from epicyclic.pocketing.memory import FlowMemory
 from epicyclic.pocketing.table import FlowTables
 
 __all__ = [
-    "SetCase",
     "bearing_model",
     "fitted_oil_model",
     "fitted_rolling",
     "fluids_of",
     "friction_of",
     "friction_settings",
-    "gear_tables",
     "loss_choices",
     "mesh_models",
     "pocketing_of",
@@ -50,10 +47,6 @@ __all__ = [
     "rolling_of",
     "standing_of",
 ]
-
-
-SetCase = PlanetaryCase | GearPairCase | ListedCase
-"""A set or pair with its oil and surroundings."""
 
 
 def resolve_models(case: SetCase) -> dict[str, str]:
@@ -70,9 +63,9 @@ def resolve_models(case: SetCase) -> dict[str, str]:
         found["lubrication"] = case.lubrication.method
         if case.lubrication.method == "dip":
             found["churning"] = case.lubrication.churning
-    if isinstance(case, GearPairCase):
+    if isinstance(case, GearPairCase):  # its models have none for bearings
         return found
-    bearings = case.planet_bearings if isinstance(case, ListedCase) else (case.planet_bearing,)
+    bearings = gearing_of(case).bearings
     if bearings:
         models = dict.fromkeys(bearing_model(case, bearing) for bearing in bearings)
         found["bearing"] = ", ".join(models)
@@ -111,15 +104,6 @@ def standing_of(case: SetCase) -> dict[str, str]:
     }
 
 
-def gear_tables(case: SetCase) -> tuple[GearTable, ...]:
-    """The tables of all gears of a set."""
-    if isinstance(case, ListedCase):
-        return tuple(case.table.members.values())
-    if isinstance(case, PlanetaryCase):
-        return case.sun, case.planet, case.ring
-    return case.pinion, case.gear
-
-
 def friction_settings(case: SetCase) -> FrictionSettings:
     """The numbers that friction models take from the case."""
     table, boundary = case.friction_table, case.models.boundary_friction
@@ -150,7 +134,7 @@ def _direct_settings(case: SetCase) -> DirectSettings:
     carried = None
     if solver.heating != "isothermal":
         given = solver.solid_conductivity, solver.solid_heat_capacity
-        solids = [gear.material.solid_with(*given) for gear in gear_tables(case)]
+        solids = [gear.material.solid_with(*given) for gear in gearing_of(case).tables.values()]
         carried = float(np.mean([solid.effusivity for solid in solids]))
     return DirectSettings(
         laws=oil_laws(solver),
@@ -211,12 +195,8 @@ def fluids_of(case: Case) -> Fluids:
 
 def loss_choices(case: SetCase) -> dict[str, LossChoice]:
     """What becomes of each loss of a case, in the order in which they are shown."""
-    found: dict[str, LossOption]
-    if isinstance(case, ListedCase):
-        found = case.loss_options
-    else:
-        found = {name: getattr(case.losses, name) for name in type(case.losses).model_fields}
-    return {name: LossChoice(option.include, option.factor) for name, option in found.items()}
+    options = gearing_of(case).losses.items()
+    return {name: LossChoice(option.include, option.factor) for name, option in options}
 
 
 def pocketing_of(case: SetCase) -> PocketModel:
@@ -232,7 +212,7 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
     file = case.models.pocketing_table
     memory = None if case.models.temperatures == "inlet" else FlowMemory()
     meshes = tuple(_before("_pocketing", choices))
-    fed = _fed(case) / (len(meshes) * _planets(case))
+    fed = _fed(case) / (len(meshes) * (gearing_of(case).planets or 1))
     return {
         key: MeshModels(
             friction=friction,
@@ -266,13 +246,6 @@ def _fed(case: SetCase) -> float:
         return 0.0
     into = table.method == "flow" or (table.method == "jet" and table.nozzle_side == "in-mesh")
     return table.oil_flow if into else 0.0
-
-
-def _planets(case: SetCase) -> int:
-    """Number of planets of each kind; 1 without."""
-    if isinstance(case, PlanetaryCase):
-        return case.planet.count
-    return (case.table.planets or 1) if isinstance(case, ListedCase) else 1
 
 
 def _before(ending: str, names: Iterable[str]) -> Iterator[str]:

@@ -7,26 +7,17 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import numpy as np
 
-from epicyclic.builders.models import (
-    SetCase,
-    fitted_oil_model,
-    friction_of,
-    gear_tables,
-    resolve_models,
-    rolling_of,
-)
+from epicyclic.builders.gearing import Gearing, SetCase, gearing_of
+from epicyclic.builders.models import fitted_oil_model, friction_of, resolve_models, rolling_of
 from epicyclic.case import build, flanks
 from epicyclic.case.backlash import backlash_notes
-from epicyclic.case.case import GearPairCase, PlanetaryCase
-from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.listed_set import ListedCase, arrangement_of, gear_of, meshes_of
+from epicyclic.case.case import PlanetaryCase
+from epicyclic.case.listed_set import ListedCase, arrangement_of
 from epicyclic.case.lubrication import SHARE_KEY
 from epicyclic.case.model_tables import LoadSharing
 from epicyclic.elements.figures import BearingFigures, MeshFigures
 from epicyclic.elements.gear_set import GearSetResult
 from epicyclic.geometry.assembly import are_evenly_spaced
-from epicyclic.geometry.gear import Gear
-from epicyclic.geometry.mesh import Mesh
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.losses.standing import STANDING
@@ -69,19 +60,24 @@ def case_notes(case: SetCase, found: GearSetResult, turning: Collection[str]) ->
         *pressure_notes(found.figures),
         *found.notes,
     )
-    if not isinstance(case, ListedCase):
-        notes = (*notes, *map(str, case.found))
-    if isinstance(case, PlanetaryCase):
-        return (
-            *notes,
-            *_planet_notes(case),
-            *_share_notes(case.load_sharing, found.shares),
-            *_ring_notes(case, turning),
-        )
+    gearing = gearing_of(case)
+    sharing = gearing.sharing if found.shares else None
+    return (
+        *notes,
+        *_own_notes(case),
+        *(() if sharing is None else _share_notes(sharing, found.shares)),
+        *_ring_notes(gearing, turning),
+    )
+
+
+def _own_notes(case: SetCase) -> Iterator[str]:
+    """What only a set of its kind has to tell."""
     if isinstance(case, ListedCase):
-        sharing = _share_notes(case.table.load_sharing, found.shares) if found.shares else ()
-        return (*notes, *_arrangement_notes(case), *sharing, *_ring_notes(case, turning))
-    return notes
+        yield from _arrangement_notes(case)
+        return
+    yield from map(str, case.found)
+    if isinstance(case, PlanetaryCase):
+        yield from _planet_notes(case)
 
 
 def fluid_notes(case: SetCase) -> tuple[str, ...]:
@@ -121,8 +117,9 @@ def lubrication_notes(case: SetCase) -> Iterator[str]:
             "oil_share states a known one."
         )
     if table.method == "dip":
-        left_out = [] if isinstance(case, GearPairCase) else ["of planets"]
-        left_out += ["inside rings"] if list(_rings(case)) else []
+        gearing = gearing_of(case)
+        left_out = ["of planets"] if gearing.planets else []
+        left_out += ["inside rings"] if list(gearing.rings()) else []
         if left_out:
             yield f"Churning {' and '.join(left_out)} is not modelled."
 
@@ -144,22 +141,9 @@ def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:
 
 def thin_teeth_notes(case: SetCase) -> Iterator[str]:
     """A note on every mesh with gross backlash."""
-    for mesh, tables in _meshes(case):
-        yield from backlash_notes(mesh, tables)
-
-
-def _meshes(case: SetCase) -> Iterator[tuple[Mesh, Mapping[str, GearTable]]]:
-    """Every mesh of a set, with the tables of its gears by their names."""
-    if isinstance(case, ListedCase):
-        for _, mesh, _ in meshes_of(case.table, case.shape):
-            yield mesh, case.table.members
-    elif isinstance(case, PlanetaryCase):
-        tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
-        for mesh in build.planetary_meshes(case.gears, case.sun, case.planet, case.ring):
-            yield mesh, tables
-    else:
-        tables = {"pinion": case.pinion, "gear": case.gear}
-        yield build.pair_mesh(case.gears, case.pinion, case.gear), tables
+    gearing = gearing_of(case)
+    for mesh in gearing.meshes():
+        yield from backlash_notes(mesh, gearing.tables)
 
 
 def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:
@@ -211,18 +195,18 @@ def _idle_part(bearing: BearingFigures) -> float:
 def load_notes(case: SetCase) -> tuple[str, ...]:
     """Notes on deviations that the load distribution ignores, and on the rim of a ring gear."""
     notes = []
-    model = case.models.load_distribution
-    if _states_deviations(case) and not LOAD_DISTRIBUTIONS[model].takes_deviations:
+    model, gearing = case.models.load_distribution, gearing_of(case)
+    if _states_deviations(gearing) and not LOAD_DISTRIBUTIONS[model].takes_deviations:
         notes.append(
             f"models.load_distribution = {model} ignores micro-geometry and misalignment; "
             "compliance takes them into account."
         )
-    return (*notes, *_rim_notes(case))
+    return (*notes, *_rim_notes(gearing))
 
 
-def _rim_notes(case: SetCase) -> Iterator[str]:
+def _rim_notes(gearing: Gearing) -> Iterator[str]:
     """Where a rim leaves the assumptions of its formula."""
-    for name, table, ring in _rings(case):
+    for name, table, ring in gearing.rings():
         thickness = build.rim_thickness(table)
         if thickness is None:
             continue
@@ -233,45 +217,16 @@ def _rim_notes(case: SetCase) -> Iterator[str]:
                 f"{1e3 * height:.4g} mm: the deflection of so thin a rim is outside what the "
                 "compliance is made for."
             )
-        angles, sharing = _planets(case)
-        even = are_evenly_spaced(angles)
-        if not even or sharing != "equal":
+        even = are_evenly_spaced(gearing.planet_angles() or (0.0,))
+        if not even or (gearing.sharing is not None and gearing.sharing.method != "equal"):
             yield (
                 f"{name}.rim_thickness: the rim bends as under evenly spaced and equally loaded "
                 f"planets, but these are {'not equally loaded' if even else 'not evenly spaced'}."
             )
 
 
-def _rings(case: SetCase) -> Iterator[tuple[str, GearTable, Gear]]:
-    """Key, table and geometry of every ring gear."""
-    if isinstance(case, ListedCase):
-        for name, table in case.table.members.items():
-            if table.internal:
-                yield f"gears.{name}", table, gear_of(case.table, name)
-    elif isinstance(case, PlanetaryCase):
-        yield "ring", case.ring, build.gear("ring", case.ring, case.gears)
-    elif case.gear.internal:
-        yield "gear", case.gear, build.gear("gear", case.gear, case.gears)
-
-
-def _planets(case: SetCase) -> tuple[tuple[float, ...], str]:
-    """Where the planets stand, and how they share the load; one place without planets."""
-    if isinstance(case, PlanetaryCase):
-        angles = build.planet_angles(case.sun, case.planet, case.ring)
-        return angles, case.load_sharing.method
-    if isinstance(case, ListedCase) and case.table.planets is not None:
-        return arrangement_of(case.shape, case.table.planets).angles, case.table.load_sharing.method
-    return (0.0,), "equal"
-
-
-def _states_deviations(case: SetCase) -> bool:
-    if isinstance(case, PlanetaryCase):
-        misaligned = case.sun_mesh.misalignment or case.ring_mesh.misalignment
-    elif isinstance(case, ListedCase):
-        misaligned = any(mesh.misalignment for mesh in case.table.mesh.values())
-    else:
-        misaligned = case.mesh.misalignment
-    return bool(misaligned) or any(map(flanks.micro_geometries, gear_tables(case)))
+def _states_deviations(gearing: Gearing) -> bool:
+    return any(gearing.misalignments) or any(map(flanks.micro_geometries, gearing.tables.values()))
 
 
 def general_notes(
@@ -344,8 +299,8 @@ def _arrangement_notes(case: ListedCase) -> Iterator[str]:
         )
 
 
-def _ring_notes(case: SetCase, turning: Collection[str]) -> Iterator[str]:
-    for name, table, _ in _rings(case):
+def _ring_notes(gearing: Gearing, turning: Collection[str]) -> Iterator[str]:
+    for name, table, _ in gearing.rings():
         if name.removeprefix("gears.") in turning and build.rim_thickness(table) is None:
             yield (
                 f"{name}.rim_thickness is not given: the drag of the turning ring is that of a "

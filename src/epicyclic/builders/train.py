@@ -8,8 +8,9 @@ from dataclasses import replace
 from typing import Any
 
 from epicyclic.builders.built import Built
+from epicyclic.builders.gearing import SetCase
 from epicyclic.builders.listed_set import listed_element
-from epicyclic.builders.models import SetCase, fluids_of
+from epicyclic.builders.models import fluids_of
 from epicyclic.builders.pair import PAIR_MEMBERS, pair_element
 from epicyclic.builders.planetary import MEMBERS, planetary_element
 from epicyclic.builders.shafts import shaft_layouts

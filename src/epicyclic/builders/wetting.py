@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from epicyclic.builders.models import SetCase
+from epicyclic.builders.gearing import SetCase
 from epicyclic.case import build
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.lubrication import oil_share
