@@ -106,9 +106,9 @@ def _losses(solution: Solution) -> list[Loss]:
 def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settled:
     """Temperatures and losses that agree. Theory (W27).
 
-    Broyden's first method on the temperatures (C. G. Broyden, Math. Comp. 19 (1965) 577, method 1),
-    which starts as the plain repetition of losses and temperatures. For so few unknowns the matrix
-    is at hand; SciPy's method, the same to rounding, takes longer to import than a case to settle.
+    Broyden's method on the temperatures (Math. Comp. 19 (1965) 577, general knowledge), which
+    starts as the plain repetition of losses and temperatures. For so few unknowns the matrix is at
+    hand; SciPy's method, the same to rounding, takes longer to import than a case to settle.
 
     Raises
     ------
