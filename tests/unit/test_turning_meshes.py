@@ -58,6 +58,15 @@ E_AXLE = {
 """An invented set of an electric axle."""
 
 
+def floats(result):
+    return [note for note in result.notes if "float in their backlash" in note]
+
+
+@pytest.mark.parametrize("torque", ["0.05 N*m", "0.2 N*m"])
+def test_teeth_that_lie_on_a_flank_do_not_float(torque):
+    assert not floats(ep.solve(ep.load_case(E_AXLE).updated({"operation.torque": torque})))
+
+
 def test_energy_balances_where_no_direction_agrees_with_itself(monkeypatch):
     braking = []
     converged = machine_solve._converged
@@ -70,5 +79,7 @@ def test_energy_balances_where_no_direction_agrees_with_itself(monkeypatch):
     result = ep.solve(ep.load_case(E_AXLE))
     assert str(result.status) == "converged"
     assert braking == [frozenset({".sun_mesh"})]
+    (note,) = floats(result)
+    assert note.startswith("sun mesh:")
     brought = sum(member.power for member in result.flow.members.values())
     assert brought == pytest.approx(result.total, rel=1e-9)

@@ -27,7 +27,7 @@ from epicyclic.machine.settle import Answer, Settled, heat_of
 from epicyclic.machine.solve import Solution
 from epicyclic.results.heat import HeatBalance, HeatWay
 from epicyclic.results.lubrication import OilSupply
-from epicyclic.results.result import LossTerm, MemberState, PowerFlow, Result, Train
+from epicyclic.results.result import LossTerm, MemberState, PowerFlow, Result, Train, in_words
 
 __all__ = ["assemble"]
 
@@ -73,6 +73,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         notes=(
             *general_notes(terms, flow.input_power, flow.efficiency),
             *_train_notes(case, solution),
+            *_floating_notes(solution),
             *_set_notes(case, built, solution),
         ),
         load_methods={key: title for key, (title, _) in methods.items()},
@@ -231,6 +232,16 @@ def _train_notes(case: Case, solution: Solution) -> Iterator[str]:
         yield (
             "Some members share their load in more than one possible way (brakes, clutches or "
             "meshes in parallel): of all torques in balance, the smallest are shown."
+        )
+
+
+def _floating_notes(solution: Solution) -> Iterator[str]:
+    for key in sorted(solution.floating):
+        yield (
+            f"{in_words(key.removeprefix('.'))}: next to no torque passes, and the teeth float in "
+            "their backlash: with the losses on either flank they would be pressed to the other "
+            "one. The losses are those on one flank; on the other the flow through the pockets "
+            "loses another amount, so that the loss jumps over a small range of torque."
         )
 
 

@@ -62,6 +62,9 @@ class Solution:
         True if the machine stands still, whatever the torque on the output.
     unique : bool
         False if meshes or clutches share a load in more than one possible way.
+    floating : frozenset of str
+        Meshes that next to no power passes: with the losses of either direction of the power it
+        has the other one, so that the teeth lie on neither flank.
     state : State
         That the elements saw.
     """
@@ -78,6 +81,7 @@ class Solution:
     self_locking: bool
     jammed: bool
     unique: bool
+    floating: frozenset[str]
     state: State
 
     @property
@@ -197,9 +201,9 @@ def solve_machine(
         tried.append(drives)
         last = _converged(machine, operation, speeds, drives, fluids)
         drives = drives_first(last.balance.powers, drives)
-    turning = frozenset(key for key, first in drives.items() if first != last.drives[key])
-    if turning:  # next to no power passes there, and no direction agrees with itself
-        last = _converged(machine, operation, speeds, last.drives, fluids, turning)
+    floating = frozenset(key for key, first in drives.items() if first != last.drives[key])
+    if floating:
+        last = _converged(machine, operation, speeds, last.drives, fluids, floating)
     if last.efficiencies != efficiencies and not directions.jammed:
         directions = find_directions(machine, operation, speeds, lossless, last.efficiencies)
     return Solution(
@@ -215,6 +219,7 @@ def solve_machine(
         self_locking=directions.locking,
         jammed=directions.jammed,
         unique=last.balance.unique,
+        floating=floating,
         state=last.state,
     )
 
