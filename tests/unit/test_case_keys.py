@@ -7,6 +7,7 @@ import pytest
 import epicyclic as ep
 from epicyclic.case.fields import is_text
 from epicyclic.case.keys import field_at, known_keys, value_of
+from problems import only, problems_of
 from trains import stepped
 
 
@@ -58,3 +59,18 @@ def test_values_of_keys(gearbox, axle):
 def test_names_are_text(gearbox, key, wanted):
     annotation, _ = field_at(gearbox, key)
     assert is_text(annotation) is wanted
+
+
+@pytest.mark.parametrize(
+    ("written", "advice"),
+    [
+        ('"planet.roughnes"', "Did you mean 'planet.roughness'?"),
+        ("nosuch", "See 'epicyclic init' for keys."),
+    ],
+)
+def test_an_unknown_name_in_uncertainty_does_not_propose_itself(talbot, written, advice):
+    known = {'uncertainty."sun.roughness".normal': "0.03 um"}
+    changes = known | {f"uncertainty.{written}.normal": "0.05 um"}
+    problem = only(problems_of(talbot.updated, changes))
+    assert problem.key == f"uncertainty.{written}"
+    assert problem.remedy == advice

@@ -14,6 +14,7 @@ from epicyclic.case.wording import dotted, key_parts
 
 __all__ = ["field_at", "known_keys", "value_of"]
 
+_UNCERTAINTY = "uncertainty."
 _GEARS, _MEMBERS = "gears", "members"
 """Key of the gears of a listed set in a file, and in its table, which has the shared keys apart."""
 
@@ -34,8 +35,11 @@ def field_at(case: CaseTable, key: str) -> tuple[Any, tuple[Any, ...]] | None:
 
 
 def known_keys(case: CaseTable) -> list[str]:
-    """Every dotted key that may hold a value, to suggest one for a key that is none."""
-    return list(_keys(case, ""))
+    """Every dotted key that may hold a value of the case, to suggest one for a key that is none.
+
+    Not those of [uncertainty], whose names are such keys themselves.
+    """
+    return [key for key in _keys(case, "") if not key.startswith(_UNCERTAINTY)]
 
 
 def value_of(case: CaseTable, key: str) -> Any:
