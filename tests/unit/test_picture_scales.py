@@ -8,11 +8,13 @@ from matplotlib.figure import Figure
 
 import epicyclic as ep
 from epicyclic.cli.output import parse_size
+from epicyclic.plots.bearing import plot_roller_loads
 from epicyclic.plots.catalogue import figure_of
 from epicyclic.plots.loss_map import limits_of
+from epicyclic.plots.losses import plot_loss_sum, plot_losses
 from epicyclic.plots.mesh import plot_along_path, plot_plane_of_action, plot_transmission_error
 from epicyclic.plots.pockets import plot_power
-from epicyclic.plots.style import decimals_of
+from epicyclic.plots.style import decimals_of, styled_figure
 from epicyclic.units import format_number
 
 
@@ -105,3 +107,72 @@ def test_sizes_of_pictures(text, size):
 def test_sizes_that_are_none_are_refused(text):
     with pytest.raises(ep.InputError, match="must be a width and a height of 30 to 2000 mm"):
         parse_size(text)
+
+
+def test_a_single_set_of_a_train_shows_its_components(talbot_record):
+    contents = talbot_record.result
+    inside = contents.model_copy(
+        update={
+            "kind": "train",
+            "losses": {f"S.{name}": watts for name, watts in contents.losses.items()},
+            "groups": {f"S.{name}": group for name, group in contents.groups.items()},
+            "not_included": {f"S.{name}": why for name, why in contents.not_included.items()},
+        }
+    )
+    alone, within = (plot_losses(one, axes()) for one in (contents, inside))
+    names = [[text.get_text() for text in ax.get_yticklabels()] for ax in (alone, within)]
+    assert names[0] == names[1]
+    assert len(names[0]) > 5
+
+
+def test_too_many_losses_are_summed_by_what_loses_them(talbot_record, monkeypatch):
+    contents = talbot_record.result
+    monkeypatch.setattr("epicyclic.plots.losses.MOST_BARS", 5)
+    ax = plot_losses(contents, axes())
+    names = [text.get_text() for text in ax.get_yticklabels()]
+    assert {"sun mesh", "ring mesh", "planet bearing"} <= set(names)
+    sum_of_mesh = sum(
+        watts for name, watts in contents.losses.items() if name.startswith("sun_mesh")
+    )
+    row = names.index("sun mesh")
+    bars = [bar for bar in ax.patches if round(bar.get_y() + bar.get_height() / 2) == row]
+    assert sum(bar.get_width() for bar in bars) == pytest.approx(sum_of_mesh, rel=1e-12)
+
+
+@pytest.mark.parametrize(("factor", "unit", "scale"), [(1.0, "W", 1.0), (7.3, "kW", 1e3)])
+def test_large_losses_are_in_kilowatts(talbot_record, factor, unit, scale):
+    contents = talbot_record.result
+    larger = contents.model_copy(
+        update={
+            "total": factor * contents.total,
+            "losses": {name: factor * watts for name, watts in contents.losses.items()},
+        }
+    )
+    ax = plot_loss_sum(larger, axes())
+    assert ax.get_xlabel() == f"power loss, {unit}"
+    total = ax.patches[-1].get_width()
+    assert total == pytest.approx(factor * contents.total / scale)
+    digits = ax.texts[-1].get_text().replace(".", "")
+    assert len(digits) <= 4
+
+
+def test_the_scale_of_roller_loads_is_apart_from_the_bars(talbot_record):
+    bearing = next(iter(talbot_record.group("bearings").values()))
+    ax = Figure().subplots(subplot_kw={"projection": "polar"})
+    for turned in (0.0, 97.0):
+        moved = bearing.assign(azimuth=(bearing["azimuth"] + turned) % 360)
+        plot_roller_loads(moved, ax)
+        load = moved["load"].max("row").to_numpy()
+        carrying = moved["azimuth"].to_numpy()[load > 0.05 * load.max()]
+        apart = (ax.get_rlabel_position() - carrying + 180) % 360 - 180
+        assert abs(apart).min() >= 0.4 * 360 / moved.sizes["roller"]
+
+
+def test_long_labels_beside_low_axes_are_broken():
+    with styled_figure(3, 1, "", size=(6.0, 5.4)) as (figure, panels):
+        panels[0, 0].set_ylabel("mesh stiffness per face width, N/(mm·µm)")
+        panels[1, 0].set_ylabel("power, W")
+    labels = [ax.get_ylabel() for ax in figure.axes]
+    assert labels[1:] == ["power, W", ""]
+    assert "\n" in labels[0]
+    assert labels[0].replace("\n", " ") == "mesh stiffness per face width, N/(mm·µm)"

@@ -9,13 +9,22 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
 from epicyclic.plots.style import COLOURS, LINE_STYLES, label_of, legend_below
 
 __all__ = ["plot_roller_loads", "plot_roller_profile"]
 
+Floats = NDArray[np.float64]
+
 CIRCLES = 4
 """Of the scale of loads, at most."""
+SEEN = 0.02
+"""Share of the highest load from which on a bar is seen. [1]"""
+STEP = 7.5
+"""Between the directions that are tried for the scale of loads. [deg]"""
+DOWN = 0.1
+"""How much farther from all bars the scale must be for turning it away from straight down. [1]"""
 HATCHES = ("", "///", "...", "xxx", "\\\\\\", "+++")
 
 
@@ -39,13 +48,30 @@ def plot_roller_loads(bearing: xr.Dataset, ax: Axes) -> Axes:
             label=f"row {bearing['row'].values[number]}",
         )
     ax.set_theta_zero_location("N")
-    ax.set_rlabel_position(180.0)
+    ax.set_rlabel_position(_emptiest(azimuth, bearing["load"].to_numpy()))
     ax.yaxis.set_major_locator(MaxNLocator(CIRCLES))
     ax.set_title(f"Load of each roller, {label_of(bearing['load']).rpartition(', ')[2]}")
     ax.set_xlabel("azimuth from the load on the planet, degrees")
     if rows > 1:
         ax.legend(loc="upper left", bbox_to_anchor=(1.05, 1.0), fontsize="small")
     return ax
+
+
+def _emptiest(azimuth: Floats, load: Floats) -> float:
+    """The direction that is farthest from all rollers that carry, in doubt downwards. [deg]
+
+    Parameters
+    ----------
+    azimuth : ndarray, shape (rollers,)
+        [rad]
+    load : ndarray, shape (rows, rollers)
+        [N]
+    """
+    carrying = azimuth[(load > SEEN * load.max()).any(axis=0)]
+    places = np.radians(np.arange(0.0, 360.0, STEP))
+    apart = np.abs(np.angle(np.exp(1j * (places[:, None] - carrying))))
+    free = apart.min(axis=1, initial=math.pi) - DOWN * np.abs(np.angle(-np.exp(1j * places)))
+    return float(np.degrees(places[np.argmax(free)]))
 
 
 def plot_roller_profile(bearing: xr.Dataset, ax: Axes) -> Axes:

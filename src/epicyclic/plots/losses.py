@@ -7,8 +7,10 @@ from collections.abc import Iterable
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
-from epicyclic.plots.style import COLOURS, decimals_of, legend_below
+from epicyclic.plots.style import COLOURS, KILOWATTS, decimals_of, legend_below
 from epicyclic.records.contents import ResultContents
+from epicyclic.results.result import in_words
+from epicyclic.units import percent
 
 __all__ = ["plot_loss_sum", "plot_losses"]
 
@@ -16,11 +18,13 @@ GROUP_COLOURS = {"load-dependent": COLOURS[0], "load-independent": COLOURS[4]}
 SUM_COLOUR = "0.45"
 ROOM = 1.32
 """Length of the axis over that of the longest bar, for the numbers beside the bars. [1]"""
+MOST_BARS = 16
 
 
 def plot_losses(result: ResultContents, ax: Axes) -> Axes:
-    """Every component of the loss, its power and share; of a train every set and part."""
-    rows = _rows(result)
+    """Every component of the loss, its power and share; of several sets every set and part."""
+    unit, scale = _unit(result)
+    total, rows = result.total / scale, _rows(result, scale)
     sums = dict.fromkeys((label for label, *_ in rows), 0.0)
     starts = []
     for label, _, watts in rows:
@@ -35,9 +39,9 @@ def plot_losses(result: ResultContents, ax: Axes) -> Axes:
         linewidth=0.5,
     )
     for row, value in enumerate(sums.values()):
-        share = f" ({value / result.total:.1%})" if result.total else ""
+        share = f" ({percent(value / total)})" if total else ""
         ax.annotate(
-            f"{value:.{decimals_of(result.total)}f}{share}",
+            f"{value:.{decimals_of(total)}f}{share}",
             (value, row),
             xytext=(3, 0),
             textcoords="offset points",
@@ -45,7 +49,7 @@ def plot_losses(result: ResultContents, ax: Axes) -> Axes:
             fontsize="small",
         )
     _finish(ax, sums.values())
-    ax.set(title="Losses by component", xlabel="power loss, W")
+    ax.set(title="Losses by component", xlabel=f"power loss, {unit}")
     return ax
 
 
@@ -53,29 +57,45 @@ def plot_loss_sum(result: ResultContents, ax: Axes) -> Axes:
     """How the components add up to the total loss, the largest of each group first."""
     start = 0.0
     labels: list[str] = []
-    rows, digits = _rows(result), decimals_of(result.total)
+    unit, scale = _unit(result)
+    total, rows = result.total / scale, _rows(result, scale)
+    digits = decimals_of(total)
     for group, colour in GROUP_COLOURS.items():
         terms = [(watts, label) for label, own, watts in rows if own == group and watts]
         for watts, label in sorted(terms, reverse=True):
             _step(ax, len(labels), start, watts, colour, digits)
             labels.append(label)
             start += watts
-    _step(ax, len(labels), 0.0, result.total, SUM_COLOUR, digits)
+    _step(ax, len(labels), 0.0, total, SUM_COLOUR, digits)
     ax.set_yticks(range(len(labels) + 1), [*labels, "total"])
-    _finish(ax, [result.total])
-    ax.set(title="How the losses add up", xlabel="power loss, W")
+    _finish(ax, [total])
+    ax.set(title="How the losses add up", xlabel=f"power loss, {unit}")
     return ax
 
 
-def _rows(result: ResultContents) -> list[tuple[str, str, float]]:
-    """Label, group and watts of every bar; a train would have too many, so its sets are summed."""
+def _unit(result: ResultContents) -> tuple[str, float]:
+    """The unit of the losses, and its size. [W]"""
+    return ("kW", 1e3) if result.total >= KILOWATTS else ("W", 1.0)
+
+
+def _rows(result: ResultContents, scale: float) -> list[tuple[str, str, float]]:
+    """Label, group and power of every bar: of every set, or what a single one loses by component.
+
+    Where these are too many, all losses of a mesh, bearing or body are one.
+    """
+    shown = [name for name in result.losses if name not in result.not_included]
+    labels = {name: name for name in shown}
+    if result.kind == "train":
+        labels = {name: name.partition(".")[0] for name in shown}
+        if len(set(labels.values())) == 1:
+            labels = {name: name.rpartition(".")[2] for name in shown}
+    if len(set(labels.values())) > MOST_BARS:
+        labels = {name: label.rpartition("_")[0] for name, label in labels.items()}
     sums: dict[tuple[str, str], float] = {}
-    for name, watts in result.losses.items():
-        if name not in result.not_included:
-            what = name.partition(".")[0] if result.kind == "train" else name
-            key = what.replace("_", " "), result.groups[name]
-            sums[key] = sums.get(key, 0.0) + watts
-    return [(label, group, watts) for (label, group), watts in sums.items()]
+    for name, label in labels.items():
+        key = in_words(label), result.groups[name]
+        sums[key] = sums.get(key, 0.0) + result.losses[name] / scale
+    return [(label, group, power) for (label, group), power in sums.items()]
 
 
 def _step(ax: Axes, row: int, start: float, watts: float, colour: str, digits: int) -> None:

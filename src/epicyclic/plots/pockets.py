@@ -26,6 +26,7 @@ from epicyclic.plots.style import (
     legend_below,
     styled_figure,
 )
+from epicyclic.results.result import in_words
 
 __all__ = [
     "plot_areas",
@@ -98,7 +99,7 @@ def plot_gaps(mesh: xr.Dataset, ax: Axes) -> Axes:
     first = mesh.isel(station=0)
     for kind in (0, 1):
         for side, style in (("contact", "-"), ("backlash", "--")):
-            label = f"{side}, {mesh['tooth'].to_numpy()[kind]}"
+            label = f"{side}, {in_words(mesh['tooth'].to_numpy()[kind])}"
             values = first[f"{side}_gap"][kind]
             ax.plot(mesh["roll_angle"][kind], values, style, color=COLOURS[kind], label=label)
     gap = first["backlash_gap"]
@@ -150,7 +151,7 @@ def plot_power(mesh: xr.Dataset, ax: Axes) -> Axes:
     ax.axhline(mean, color="black", ls="--", lw=0.8, label=f"mean {mean:.3g} W")
     legend_below(ax)
     ax.set(
-        title="Power over one mesh period",
+        title="Power of the pockets over one mesh period",
         xlabel=label_of(mesh["period_angle"]),
         ylabel=label_of(mesh["instant_power"]),
     )
@@ -158,7 +159,7 @@ def plot_power(mesh: xr.Dataset, ax: Axes) -> Axes:
 
 
 def _name(mesh: xr.Dataset, kind: int) -> str:
-    return f"tooth of the {mesh['tooth'].to_numpy()[kind]}"
+    return f"tooth of the {in_words(mesh['tooth'].to_numpy()[kind])}"
 
 
 def _over_roll(mesh: xr.Dataset, ax: Axes, title: str, label: str) -> Axes:

@@ -23,6 +23,7 @@ from epicyclic.units import unit_text
 __all__ = [
     "COLOURS",
     "COLOUR_MAP",
+    "KILOWATTS",
     "LINE_STYLES",
     "PANEL",
     "caption_below",
@@ -47,10 +48,16 @@ PANEL = (4.8, 3.4)
 """Width and height of one of the Axes of a figure. [inch]"""
 BELOW = 0.42
 """Room for the ticks and the label of an x axis. [inch]"""
+KILOWATTS = 10_000.0
+"""Losses from which on they are shown in kW: no more digits than are known. [W]"""
 PIXELS = 1920
 """Width of a picture, if nothing else is asked for: that of a slide."""
+AROUND = 0.95
+"""Height that title, ticks and label of the x axis take from a row of Axes. [inch]"""
 SMALL_CHARACTERS, CHARACTERS, MEDIUM = 19, 16, 13
 """That fit into an inch of a legend, of a caption, and of one of larger letters."""
+SHORTEST = 12
+"""Characters of a line of a label, at least."""
 ENTRY = 0.45
 """Room in a legend, beside the text of an entry. [inch]"""
 WIDE = 9.0
@@ -108,6 +115,17 @@ def styled_figure(
         if caption:
             caption_below(figure, caption)
         yield figure, axes
+        _break_labels(figure, rows)
+        if any(ax.get_aspect() != "auto" for ax in figure.axes):
+            figure.draw_without_rendering()  # their ticks, and the room these need, follow from it
+
+
+def _break_labels(figure: Figure, rows: int) -> None:
+    """Break labels beside Axes, and beside their scales of colours, that are longer than these."""
+    room = float(figure.get_size_inches()[1]) / rows - AROUND
+    for ax in figure.axes:
+        label = ax.yaxis.label
+        label.set_text(textwrap.fill(label.get_text(), max(SHORTEST, int(room * CHARACTERS))))
 
 
 def caption_below(figure: Figure, caption: str) -> None:
@@ -172,7 +190,7 @@ def decimals_of(total: float) -> int:
 def label_of(variable: xr.DataArray) -> str:
     """Name and unit of a variable, ``"line load, N/mm"``."""
     unit = unit_text(str(variable.attrs["units"]))
-    name = str(variable.attrs["long_name"])
+    name = str(variable.attrs["long_name"]).replace("_", " ")  # of gears
     return f"{name}, {unit}" if unit else name
 
 

@@ -8,9 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from epicyclic.case.uncertain_values import MODEL_FORM
-from epicyclic.plots.style import COLOURS, legend_below, styled_figure
+from epicyclic.plots.style import COLOURS, KILOWATTS, legend_below, styled_figure
 from epicyclic.units import format_number
 
 if TYPE_CHECKING:
@@ -28,6 +29,8 @@ __all__ = [
 ]
 
 MOST_DRIVERS = 12
+TICKS = 6
+"""Of a distribution, at most: its values have many digits."""
 WIDE = (7.2, 4.2)
 """Width and height of a picture with long names beside its bars. [inch]"""
 
@@ -139,6 +142,8 @@ def plot_band(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     unit = _unit(data, name)
     percent = unit == "1"
     scale = 100.0 if percent else 1.0
+    if unit == "W" and float(one["high"]) >= KILOWATTS:
+        unit, scale = "kW", 1e-3
     values = one["value"].values * scale
     low, high, nominal = (float(one[key]) * scale for key in ("low", "high", "nominal"))
     ax.axvspan(low, high, color=COLOURS[5], alpha=0.25, label="95 % interval")
@@ -146,12 +151,13 @@ def plot_band(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     ax.stairs(counts, edges, fill=True, color=COLOURS[0])
     ax.axvline(nominal, color=COLOURS[1], lw=1.6, label="case")
     ax.axvline(float(one["mean"]) * scale, color="black", lw=1.2, ls="--", label="mean")
-    low_text, high_text = (f"{it:.2f}" if percent else format_number(it, 4) for it in (low, high))
-    what = "total loss" if unit == "W" else "energy lost"
+    low_text, high_text = (f"{it:.2f}" if percent else format_number(it, 3) for it in (low, high))
+    what = "total loss" if unit in {"W", "kW"} else "energy lost"
     ax.set(
-        title=f"{low_text} to {high_text} {'%' if percent else unit}",
+        title=f"95 %: {low_text} to {high_text} {'%' if percent else unit}",
         xlabel="efficiency, %" if percent else f"{what}, {unit}",
         ylabel="samples",
     )
+    ax.xaxis.set_major_locator(MaxNLocator(TICKS))
     legend_below(ax, ncols=3)
     return ax
