@@ -76,6 +76,7 @@ __all__ = [
     "from_pint",
     "in_unit",
     "one_of",
+    "percent",
     "pure_number",
     "range_remedy",
     "registry",
@@ -131,6 +132,11 @@ def format_number(value: float, digits: int = 6) -> str:
     """
     text = f"{value:.{digits}g}"
     return f"{float(text):.0f}" if "e+" in text and abs(value) < PLAIN_NUMBERS else text
+
+
+def percent(share: float, decimals: int = 1, *, signed: bool = False) -> str:
+    """A share of one as tables and sentences have it, ``"7.3 %"``."""
+    return f"{100 * share:{'+' if signed else ''}z.{decimals}f} %"
 
 
 def describe_range(

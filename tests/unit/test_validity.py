@@ -84,7 +84,7 @@ def test_sentence_names_every_model():
     two = check_ranges(other, (PRESSURE,), {"pressure": np.array([4e9])}, 1.0)
     (sentence,) = describe_flags(one + two)
     for part in (
-        "friction mixed-ehl (sun mesh) 50%", "rolling goksem-hargreaves (mesh) 100%",
+        "friction mixed-ehl (sun mesh) 50 %", "rolling goksem-hargreaves (mesh) 100 %",
         "0.1 to 4 GPa", "range 0.5 to 2.5 GPa", "a table",
     ):  # fmt: skip
         assert part in sentence
@@ -275,7 +275,7 @@ def test_warnings_are_ranked_by_watts_and_small_ones_share_a_sentence():
         "Out of range: middle 2.5 to 3.5 mm",
         "Out of range, each for 4 W at most: small 2.5 to 3.5 mm",
     ]
-    assert "30%; 210 W in all." in told[0]
+    assert "30 %; 210 W in all." in told[0]
     assert "tiny 2.5 to 3.5 mm" in told[2]
 
 

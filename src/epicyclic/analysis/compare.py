@@ -23,6 +23,7 @@ from epicyclic.losses.fitted_or_formula import FittedOrSchlenk
 from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.losses.validity import ValidityFlag, range_left, share_text
 from epicyclic.results.result import Result, in_words
+from epicyclic.units import percent
 
 __all__ = ["FrictionComparison", "compare_friction", "recommended"]
 
@@ -152,7 +153,8 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
     general = min((by_name[name] for name in _OF_ALL_OILS), key=lambda row: row.outside)
     why = "it was fitted to gear tests with many oils"
     if own:
-        why += f", while {own[0].outside:.0%} of the loss is outside the range of {own[0].name}"
+        outside = percent(own[0].outside, 0)
+        why += f", while {outside} of the loss is outside the range of {own[0].name}"
     else:
         why += ", and no model was made for this oil ('epicyclic oil characterise' makes one)"
     return general, f"{why}; {_inside(general)}"
@@ -166,7 +168,7 @@ def _differ(row: FrictionComparison, paired: FrictionComparison) -> bool:
 def _inside(row: FrictionComparison) -> str:
     if not row.flagged:
         return "all of the loss is within its range"
-    return f"{1 - row.outside:.0%} of the loss is within its range"
+    return f"{percent(1 - row.outside, 0)} of the loss is within its range"
 
 
 def _models_for(owners: Sequence[SetCase]) -> Iterator[str]:

@@ -12,7 +12,7 @@ from epicyclic.ehl.steady import SmoothSolution
 from epicyclic.elements.fluids import oil_flags
 from epicyclic.losses.direct import EhlDirect, solver_range
 from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
-from epicyclic.units import MICROMETRE, MILLIMETRE, NUMBER, Quantity, format_number
+from epicyclic.units import MICROMETRE, MILLIMETRE, NUMBER, Quantity, format_number, percent
 
 __all__ = ["contact_flags", "contact_notes", "film_ratio"]
 
@@ -102,8 +102,8 @@ def _profile_notes(
     left = surface.kept(spacing)
     if left < FEWEST_KEPT:
         yield (
-            f"The nodes, {shown['spacing']} um apart, resolve {left:.0%} of the Rq of {name}: "
-            "shorter waves are lost. Raise numerics.nodes."
+            f"The nodes, {shown['spacing']} um apart, resolve {percent(left, 0)} of the Rq of "
+            f"{name}: shorter waves are lost. Raise numerics.nodes."
         )
     if FEWEST_POINTS * surface.spacing > 2 * model.contact.half_width:
         yield (

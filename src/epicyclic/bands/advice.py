@@ -17,6 +17,7 @@ from epicyclic.case.uncertain_values import MODEL_FORM
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.validity import range_text
 from epicyclic.results.result import Result
+from epicyclic.units import percent
 
 __all__ = ["Limit", "Measurement", "limits_of", "measurements_of", "model_remarks"]
 
@@ -85,7 +86,7 @@ def measurements_of(known: Known) -> list[Measurement]:
     ]
     for entry in library.uncertainty_table()["measurements"]:
         left = _left(known, entry["result"], entry["uncertainty"])
-        name = f"{entry['name']} (u {entry['uncertainty']:.0%})".replace("%", " %")
+        name = f"{entry['name']} (u {percent(entry['uncertainty'], 0)})"
         found.append(Measurement(name, False, known.width * sqrt(left)))
     return sorted(found, key=lambda it: it.width)
 
@@ -127,7 +128,7 @@ def _warnings(result: Result) -> Iterator[str]:
     if told:
         yield f"Warnings that matter, with the loss that they concern: {'; '.join(told)}."
     elif flags:
-        yield f"No warning concerns more than {CONCERNED:.0%} of the loss.".replace("%", " %")
+        yield f"No warning concerns more than {percent(CONCERNED, 0)} of the loss."
 
 
 def _friction(case: Case, brief: bool) -> Iterator[str]:

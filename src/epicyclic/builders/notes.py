@@ -23,7 +23,7 @@ from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.losses.standing import STANDING
 from epicyclic.oilmodel.builtin import changed_properties
 from epicyclic.results.result import LossTerm
-from epicyclic.units import GIGAPASCAL
+from epicyclic.units import GIGAPASCAL, percent
 
 __all__ = ["NOT_INCLUDED", "case_notes", "general_notes", "load_notes"]
 
@@ -149,9 +149,9 @@ def thin_teeth_notes(case: SetCase) -> Iterator[str]:
 def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:
     """A note on every mesh of which much does not carry."""
     return tuple(
-        f"Only {mesh.contact_share:.0%} of the contact lines of the {name.replace('_', ' ')} carry "
-        "load: the deviations of the flanks exceed what the teeth bend. Contact that begins or "
-        "ends beyond the path of contact is not modelled."
+        f"Only {percent(mesh.contact_share, 0)} of the contact lines of the "
+        f"{name.replace('_', ' ')} carry load: the deviations of the flanks exceed what the teeth "
+        "bend. Contact that begins or ends beyond the path of contact is not modelled."
         for name, mesh in meshes.items()
         if mesh.contact_share < LEAST_CONTACT
     )
@@ -177,9 +177,9 @@ def pressure_notes(figures: Mapping[str, object]) -> Iterator[str]:
             idle = _idle_part(found)
             if idle > IDLE_PART:
                 yield (
-                    f"{name.capitalize()}: {idle:.0%} of the most loaded roller carries nothing of "
-                    f"its {found.roller_load_max:.3g} N, because the planet is tilted by "
-                    f"{found.moment:.3g} N m."
+                    f"{name.capitalize()}: {percent(idle, 0)} of the most loaded roller carries "
+                    f"nothing of its {found.roller_load_max:.3g} N, because the planet is tilted "
+                    f"by {found.moment:.3g} N m."
                 )
 
 

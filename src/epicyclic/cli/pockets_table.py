@@ -17,6 +17,7 @@ from epicyclic.cli.options import (
     temperature_option,
 )
 from epicyclic.cli.output import check_ending
+from epicyclic.units import percent
 
 if TYPE_CHECKING:
     from epicyclic.sweeps.journal import Rows
@@ -78,6 +79,6 @@ def table_writer(plan: TablePlan, output: Path) -> Write:
         table = table_dataset(plan, rows)
         write_dataset(table, output)
         worst = float(table["interpolation_error"].max())
-        return f"Wrote {output}, interpolated within {worst:.2%} of the loss."
+        return f"Wrote {output}, interpolated within {percent(worst, 2)} of the loss."
 
     return write

@@ -20,6 +20,7 @@ from epicyclic.kernels.ehl_linear import GROUP
 from epicyclic.kernels.ehl_rough import Column, march, masses
 from epicyclic.kernels.ehl_steady import deflection_matrix
 from epicyclic.status import Status
+from epicyclic.units import percent
 
 __all__ = ["AsperityContact", "Frame", "RoughSolution", "solve_rough"]
 
@@ -410,7 +411,7 @@ def _failure(run: _Simulation, judged: Estimate, tolerance: float) -> str:
     if not judged.within(tolerance):
         what = "friction" if run.contact.sliding_speed else "rolling loss"
         share = judged.error / abs(judged.value)
-        return f"{what} is known to {share:.1%} only after {run.steps} time steps"
+        return f"{what} is known to {percent(share)} only after {run.steps} time steps"
     if unsolved > LARGEST_UNSOLVED_SHARE * run.steps:
         return f"{unsolved} of {run.steps} time steps did not converge"
     return ""

@@ -33,6 +33,7 @@ from epicyclic.units import (
     MILLIMETRE,
     WATT,
     format_number,
+    percent,
 )
 
 if TYPE_CHECKING:
@@ -296,9 +297,10 @@ def pocketing_method(model: PocketModel, figures: FlowFigures | None) -> str:
     method = POCKETING_MODELS[model]
     if figures is None or not figures.nodes:
         return method
+    error = percent(figures.error, 2)
     if figures.file:
-        return f"{method}, table {figures.file}, interpolated within {figures.error:.2%}"
-    return f"{method}, interpolated between {figures.nodes} flows within {figures.error:.2%}"
+        return f"{method}, table {figures.file}, interpolated within {error}"
+    return f"{method}, interpolated between {figures.nodes} flows within {error}"
 
 
 def pocket_notes(

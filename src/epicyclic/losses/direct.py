@@ -31,7 +31,7 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.validity import SMALLEST_SHOWN_SHARE, Range, RegressionFluid
 from epicyclic.oilmodel.structured import EYRING_STRESS, eyring_friction
 from epicyclic.status import Status
-from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, MILLIMETRE, NUMBER, Quantity
+from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, MILLIMETRE, NUMBER, Quantity, percent
 
 __all__ = ["DirectSettings", "EhlDirect", "contacts_told", "solver_range"]
 
@@ -182,12 +182,13 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
             "no solution: use another models.friction."
         )
     friction = base * _interpolated(place[solved[found]], ratios[found], place)
-    missed = "" if error <= settings.error else f", more than the {settings.error:.1%} wanted"
+    missed = "" if error <= settings.error else f", more than the {percent(settings.error)} wanted"
     return _Solved(
         friction,
         f"models.friction ehl-direct: {found.size} contacts of the {contact.mesh.name} solved, "
         f"{np.count_nonzero(~found)} of them without convergence and left out; error of "
-        f"interpolated contacts {error:.1%} in the mean{missed}, of their power {bias:+.1%}."
+        f"interpolated contacts {percent(error)} in the mean{missed}, of their power "
+        f"{percent(bias, signed=True)}."
         f"{_limits_left(contact, power)}{_unresolved(kept)}",
     )
 
@@ -210,7 +211,7 @@ def _limits_left(contact: MeshContact, power: FloatArray) -> str:
         # no share of no power
         if power[beyond].sum() > SMALLEST_SHOWN_SHARE * power.sum():
             share = power[beyond].sum() / power.sum()
-            told += f" {share:.0%} of the sliding power is {what}"
+            told += f" {percent(share, 0)} of the sliding power is {what}"
     return told
 
 
@@ -219,8 +220,8 @@ def _unresolved(kept: float) -> str:
     if kept >= FEWEST_KEPT:
         return ""
     return (
-        f" In the widest contact solved the nodes resolve {kept:.0%} of the Rq: shorter waves are "
-        "lost. Raise contact_solver.correlation_length, if the finish allows it."
+        f" In the widest contact solved the nodes resolve {percent(kept, 0)} of the Rq: shorter "
+        "waves are lost. Raise contact_solver.correlation_length, if the finish allows it."
     )
 
 

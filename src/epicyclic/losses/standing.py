@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from epicyclic.oilmodel.model import OilModel
+from epicyclic.units import percent
 
 __all__ = ["STANDING", "standing"]
 
@@ -87,8 +88,8 @@ def standing(role: str, name: str, model: OilModel | None = None, form: str = ""
     fitted = next((item for item in fit.forms if item.form == form), fit.forms[0])
     whole = fitted.errors[0]
     known = (
-        f"median error {whole.median:.0%}, 90 % of contacts within "
-        f"{whole.largest_of_90_percent:.0%}, against {fit.contacts} contacts simulated for "
+        f"median error {percent(whole.median, 0)}, 90 % of contacts within "
+        f"{percent(whole.largest_of_90_percent, 0)}, against {fit.contacts} contacts simulated for "
         f"{model.oil.name}, not against measurements"
     )
     _, beyond, formula = name.partition("-or-")

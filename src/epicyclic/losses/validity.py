@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.units import Quantity, format_number
+from epicyclic.units import Quantity, format_number, percent
 
 __all__ = [
     "OF_THIS_PACKAGE",
@@ -271,7 +271,7 @@ def _limits(flag: ValidityFlag) -> str:
 
 def share_text(share: float) -> str:
     """A share of the loss in whole percent."""
-    return f"{share:.0%}" if share >= SMALLEST_SHOWN_SHARE else "under 1%"
+    return percent(share, 0) if share >= SMALLEST_SHOWN_SHARE else "under 1 %"
 
 
 def check_ranges(

@@ -15,7 +15,7 @@ from epicyclic.case.operating import OPERATING
 from epicyclic.measurement.compare import MeasuredComparison
 from epicyclic.measurement.deviations import AS_GIVEN, CALIBRATED
 from epicyclic.plots.style import COLOURS, styled_figure
-from epicyclic.units import format_number, unit_text
+from epicyclic.units import format_number, percent, unit_text
 
 __all__ = ["measured_figure", "plot_parity", "plot_points", "plot_residuals"]
 
@@ -63,7 +63,7 @@ def plot_parity(comparison: MeasuredComparison, ax: Axes) -> Axes:
     ax.plot(line, line, color="black", lw=0.9)
     for side in (1 - BAND, 1 + BAND):
         ax.plot(line, side * line, color="black", lw=0.8, ls="--")
-    ax.plot([], [], color="black", lw=0.8, ls="--", label=f"±{BAND:.0%}")
+    ax.plot([], [], color="black", lw=0.8, ls="--", label=f"±{percent(BAND, 0)}")
     ax.set(
         title="Computed against measured",
         xlabel="measured loss, W",

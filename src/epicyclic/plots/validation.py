@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from epicyclic.plots.style import COLOURS
-from epicyclic.units import format_number, unit_text
+from epicyclic.units import format_number, percent, unit_text
 from epicyclic.validation.compare import Comparison
 
 __all__ = ["deviations_size", "plot_deviations"]
@@ -45,7 +45,7 @@ def plot_deviations(rows: Sequence[Comparison], ax: Axes) -> Axes:
         value = 100 * min(max(row.difference, -SHOWN), SHOWN)
         ax.plot(value, place, ls="none", ms=6, **_MARKS[row.verdict])
         ax.annotate(
-            f"{_number(row)}, {row.difference:+z.1%}",
+            f"{_number(row)}, {percent(row.difference, signed=True)}",
             (100 * SHOWN, place),
             xytext=(6, 0),
             textcoords="offset points",

@@ -12,7 +12,7 @@ from epicyclic.bands.known import Known
 from epicyclic.case.uncertain_values import MODEL_FORM
 from epicyclic.report.page import Listing
 from epicyclic.results.result import Result, in_words
-from epicyclic.units import format_number
+from epicyclic.units import format_number, percent
 
 __all__ = ["advice_texts", "band_texts", "driver_name", "result_json"]
 
@@ -35,7 +35,7 @@ def band_texts(known: Known | None) -> list[str | Listing]:
     if math.isfinite(low):
         text += f", efficiency {low:.2f} to {high:.2f} %"
     drivers = ", ".join(
-        f"{driver_name(key)} {share:.0%}".replace("%", " %") for key, share in known.drivers[:MOST]
+        f"{driver_name(key)} {percent(share, 0)}" for key, share in known.drivers[:MOST]
     )
     return [
         f"{text}; most of it from {drivers}. Assumed where [uncertainty] of the case says nothing: "

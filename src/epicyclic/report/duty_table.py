@@ -14,6 +14,7 @@ from rich.text import Text
 from epicyclic.case.wording import one_line
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import plain_table
+from epicyclic.units import percent
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -50,12 +51,12 @@ def _tables(data: xr.Dataset, title: str) -> list[RenderableType]:
     whole = float(lost.sum())
     for name in lost["component"].values:
         row = lost.sel(component=name)
-        share = f"{float(row.sum()) / whole:.1%}" if whole else ""
+        share = percent(float(row.sum()) / whole) if whole else ""
         _add_row(table, str(name).replace("_", " "), row, share)
     _add_row(table, "lost", lost.sum("component"), style="bold", end_section=True)
     _add_row(table, "duration s", data["duration"])
     efficiencies = [*data["efficiency"].values, data["total_efficiency"].item()]
-    table.add_row("efficiency", *("" if math.isnan(it) else f"{it:.3%}" for it in efficiencies))
+    table.add_row("efficiency", *("" if math.isnan(it) else percent(it, 3) for it in efficiencies))
     states = [_states_table(data)] if "state" in data.dims else []
     return [table, *states, Text(_error_text(data, whole))]
 
@@ -71,7 +72,7 @@ def _states_table(data: xr.Dataset) -> Table:
         values = [own["state_energy_in"], own["state_energy_out"]]
         values += [own["state_energy_lost"].sum(), own["state_duration"]]
         efficiency = float(own["state_efficiency"])
-        shown_efficiency = "" if math.isnan(efficiency) else f"{efficiency:.3%}"
+        shown_efficiency = "" if math.isnan(efficiency) else percent(efficiency, 3)
         table.add_row(str(name), *(shown(float(it), 6) for it in values), shown_efficiency)
     return table
 
@@ -87,11 +88,11 @@ def _error_text(data: xr.Dataset, lost: float) -> str:
         float(data[name]) for name in ("interpolation_error", "interpolation_standard_error")
     )
     scatter = "" if math.isnan(spread) else f" ± {shown(spread, 2)}"
-    part = f" ({error / lost:+.2%} of the energy lost)" if lost else ""
+    part = f" ({percent(error / lost, 2, signed=True)} of the energy lost)" if lost else ""
     largest = float(data["largest_deviation"])
     return (
         f"Interpolation adds {shown(error, 3)}{scatter} kJ{part}; largest deviation of a point "
-        f"{'-' if math.isnan(largest) else f'{largest:.2%}'}. "
+        f"{'-' if math.isnan(largest) else percent(largest, 2)}. "
         f"By: {data.attrs['interpolation_error_method']}.\n"
         f"Outside of the map: {float(data['share_outside']):.3g} of the duration, "
         f"{data.attrs['points_outside']}."

@@ -20,7 +20,7 @@ from epicyclic.errors import ConvergenceError
 from epicyclic.report.page import Cell, Listing, Table, number
 from epicyclic.results.heat import HeatBalance, HeatWay
 from epicyclic.results.result import Result, in_words
-from epicyclic.units import CELSIUS, format_number, unit_text
+from epicyclic.units import CELSIUS, format_number, percent, unit_text
 
 __all__ = ["found_text", "heat_items", "remarks", "ways_items"]
 
@@ -73,7 +73,7 @@ def _end(way: HeatWay) -> str:
 
 
 def _shared(watts: float, whole: float, key: str) -> tuple[Cell, Cell]:
-    share = f"{watts / whole:z.1%}" if whole else ""
+    share = percent(watts / whole) if whole else ""
     return number(watts, key, text=f"{watts:z.1f}"), Cell(share, math.nan)
 
 
@@ -162,7 +162,7 @@ def _flank_text(result: Result, warm: Result | str) -> str:
 
 
 def _total(watts: float, before: float) -> str:
-    return f"{watts:.0f} W ({watts / before - 1:+z.1%})".replace("%", " %")
+    return f"{watts:.0f} W ({percent(watts / before - 1, signed=True)})"
 
 
 def _beyond_text(beyond: BeyondRange, free: Result | str) -> str:

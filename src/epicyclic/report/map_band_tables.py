@@ -12,7 +12,7 @@ from epicyclic.report.advice import LIMITS, MOST, driver_name
 from epicyclic.report.grids import grid_table
 from epicyclic.report.page import Cell, Listing, Table, aligned
 from epicyclic.report.shown import MISSING
-from epicyclic.units import format_number, unit_text
+from epicyclic.units import format_number, percent, unit_text
 
 __all__ = ["map_band_tables"]
 
@@ -85,15 +85,15 @@ def _drivers(data: xr.Dataset) -> Table:
         rows.append(
             (
                 Cell(name),
-                aligned(f"{max(float(mean.sel(driver=driver)), 0.0):.1%}"),
-                aligned(f"{float(largest):.1%}"),
+                aligned(percent(max(float(mean.sel(driver=driver)), 0.0))),
+                aligned(percent(float(largest))),
                 Cell(_place(data, largest)),
             )
         )
     known = float(data["explained"].min())
     note = (
         "Shares of its variance, alone, by curves through the samples, the mean weighted with the "
-        f"loss; the curves explain {known:.1%} or more of it at every point."
+        f"loss; the curves explain {percent(known)} or more of it at every point."
     )
     head = ("", "mean share", "largest", "at")
     return Table(head, tuple(rows), "What the uncertainty of the total loss is due to", note=note)

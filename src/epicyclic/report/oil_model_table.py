@@ -11,7 +11,7 @@ from epicyclic.losses.fitted import domain_ranges
 from epicyclic.oilmodel.model import FORMS, OilModel, QuantityFit
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import plain_table
-from epicyclic.units import unit_text
+from epicyclic.units import percent, unit_text
 
 __all__ = ["oil_model_tables"]
 
@@ -80,8 +80,8 @@ def _errors(title: str, quantity: str, fit: QuantityFit) -> Table:
                 f"{form.name}{default}: {form.title}" if i == 0 else "",
                 error.regime,
                 str(error.contacts),
-                f"{error.median:.1%}",
-                f"{error.largest_of_90_percent:.1%}",
+                percent(error.median),
+                percent(error.largest_of_90_percent),
             )
     return table
 

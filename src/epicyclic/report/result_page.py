@@ -44,7 +44,7 @@ from epicyclic.report.train_tables import (
 )
 from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.results.result import in_words
-from epicyclic.units import format_number, unit_text
+from epicyclic.units import format_number, percent, unit_text
 
 __all__ = ["result_sections", "versions_line"]
 
@@ -194,7 +194,7 @@ def _validity(result: ResultContents) -> tuple[Table | Listing, ...]:
                 Cell(_limits(flag.low, flag.high), about="nowrap"),
                 Cell(unit_text(flag.unit)),
                 Cell(str(ModelUse(**flag.use.model_dump()))),
-                aligned("under 1%" if flag.share < 0.01 else f"{flag.share:.0%}"),
+                aligned("under 1 %" if flag.share < 0.01 else percent(flag.share, 0)),
                 Cell(flag.source),
             )
             for flag in sorted(result.validity, key=lambda flag: -flag.share)

@@ -8,7 +8,7 @@ from epicyclic.records.contents import Measure, ResultContents, set_of
 from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number
 from epicyclic.report.shown import MISSING
 from epicyclic.results.result import in_words
-from epicyclic.units import unit_text
+from epicyclic.units import percent, unit_text
 
 __all__ = [
     "Labels",
@@ -65,8 +65,8 @@ def _watts(value: float, key: str, digits: int = 1) -> Cell:
 
 def share_row(result: ResultContents, watts: float, key: str) -> tuple[Cell, Cell, Cell]:
     """Power, share of the total loss, share of the input power."""
-    of_total = f"{watts / result.total:z.1%}" if result.total else ""
-    of_input = f"{watts / result.input_power:z.3%}" if result.input_power else ""
+    of_total = percent(watts / result.total) if result.total else ""
+    of_input = percent(watts / result.input_power, 3) if result.input_power else ""
     return _watts(watts, key), aligned(of_total), aligned(of_input)
 
 
@@ -122,7 +122,7 @@ def planets_table(result: ResultContents) -> tuple[Table, ...]:
         (
             Cell(f"{place + 1}"),
             number(angle, f"planet_angles.{place}", 7),
-            number(share, f"planet_shares.{place}", 4, f"{share:.2%}"),
+            number(share, f"planet_shares.{place}", 4, percent(share, 2)),
         )
         for place, (angle, share) in enumerate(
             zip(result.planet_angles.value, result.planet_shares.value, strict=True)

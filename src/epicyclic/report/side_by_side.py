@@ -10,6 +10,7 @@ from epicyclic.records.contents import ResultContents
 from epicyclic.report.page import Cell, Table, aligned, number
 from epicyclic.report.result_tables import key_figures
 from epicyclic.report.shown import MISSING
+from epicyclic.units import percent
 
 __all__ = ["side_by_side"]
 
@@ -55,7 +56,7 @@ def _difference(name: str, first: float | None, second: float | None) -> tuple[C
     values = (_watts(first), _watts(second))
     if first is None or second is None:
         return (Cell(label), *values, Cell(MISSING), Cell(MISSING))
-    share = f"{(second - first) / first:+.1%}" if first else ""
+    share = percent((second - first) / first, signed=True) if first else ""
     return (
         Cell(label),
         *values,

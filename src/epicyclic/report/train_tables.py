@@ -11,7 +11,7 @@ from epicyclic.report.page import Cell, Table, aligned, number
 from epicyclic.report.result_tables import Labels, label_of, share_row
 from epicyclic.report.shown import shown
 from epicyclic.results.result import in_words
-from epicyclic.units import unit_text
+from epicyclic.units import percent, unit_text
 
 __all__ = [
     "clutches_table",
@@ -115,7 +115,7 @@ def rolling_table(result: ResultContents) -> Table:
     losses = result.losses.keys() & result.rolling_power.keys()
     rows = []
     for key, power in result.rolling_power.items():
-        share = f"{abs(power) / entering:z.1%}" if entering else ""
+        share = percent(abs(power) / entering) if entering else ""
         cells = [
             Cell(in_words(key)),
             number(abs(power), f"rolling_power.{key}", text=f"{abs(power):z.1f}"),

@@ -16,7 +16,7 @@ from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, numb
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import as_on_page, titled
 from epicyclic.results.result import in_words
-from epicyclic.units import unit_text
+from epicyclic.units import percent, unit_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -63,7 +63,7 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
             _shown(float(one[key]), unit)
             for key in ("first", "second", "difference", "standard_uncertainty", "low", "high")
         )
-        chance = aligned(f"{float(one['probability']):.1%}")
+        chance = aligned(percent(float(one["probability"])))
         rows.append((Cell(in_words(name) + (", %" if unit == "1" else "")), *cells, chance))
     strong = frozenset({names.index("total"), names.index("efficiency")})
     head = ("", "first", "second", "mean difference", "u", "95 % from", "to", "second smaller")
@@ -139,7 +139,7 @@ def _budget(data: xr.Dataset) -> Table:
         if not total["contribution"].sel(input=keys).any():
             continue
         one = total.sel(driver=driver)
-        shares = [f"{max(float(one[name]), 0.0):.1%}" for name in orders]
+        shares = [percent(max(float(one[name]), 0.0)) for name in orders]
         for place, key in enumerate(keys):
             own = total.sel(input=key)
             rows.append(
@@ -188,7 +188,8 @@ def _notes(data: xr.Dataset) -> Iterator[str]:
     for key in map(str, data["input"].values):
         share = float(data["cut_off"].sel(input=key))
         if share > CUT_OFF:
-            yield f"{key}: {share:.1%} of its distribution is beyond what it can be, and cut off."
+            beyond = percent(share)
+            yield f"{key}: {beyond} of its distribution is beyond what it can be, and cut off."
     idle = [str(key) for key in data["input"].values if not _moves(data, str(key))]
     if idle:
         yield f"Without effect here: {', '.join(idle)}."
@@ -222,9 +223,9 @@ def _of_points(data: xr.Dataset) -> Iterator[str]:
     else:
         yield (
             f"Cycle: {data.attrs['cycle']}; {data.attrs['points']} points stand for it, by which "
-            f"u_c of the total may be off by {error / spread:.0%} (standard error)."
+            f"u_c of the total may be off by {percent(error / spread, 0)} (standard error)."
         )
     yield (
         "Shares by curves through the samples, which explain "
-        f"{float(data['curves_explain']):.1%} of the variance of the total."
+        f"{percent(float(data['curves_explain']))} of the variance of the total."
     )

@@ -17,7 +17,7 @@ from epicyclic.report.validation_table import (
     verdict_text,
 )
 from epicyclic.results.result import versions
-from epicyclic.units import unit_text
+from epicyclic.units import percent, unit_text
 from epicyclic.validation.closures import ClosureFigure
 from epicyclic.validation.compare import Comparison, by_topic, summary
 
@@ -105,7 +105,7 @@ def _table(rows: Sequence[Comparison]) -> Table:
                 Cell(published_text(row), row.low),
                 number(row.computed, ""),
                 Cell(unit_text(row.unit)),
-                Cell(f"{row.difference:+z.1%}", row.difference),
+                Cell(percent(row.difference, signed=True), row.difference),
                 Cell(verdict_text(row), about="nowrap"),
                 Cell(row.cause),
             )

@@ -11,6 +11,7 @@ from epicyclic.bands.published import MeasuredFigure
 from epicyclic.report.page import Cell, Table, aligned
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import plain_table
+from epicyclic.units import percent
 from epicyclic.validation.closures import CLOSURES, STUDY, ClosureFigure
 from epicyclic.validation.compare import Comparison, summary
 from epicyclic.validation.settled import Estimate, SettledFigure
@@ -41,7 +42,7 @@ def validation_table(
             Text.assemble(row.what, ("\n" + "\n".join(remarks(row)), "dim")),
             f"{published_text(row)} {row.unit}".rstrip(),
             f"{shown(row.computed)} {row.unit}".rstrip(),
-            f"{row.difference:+z.1%}",
+            percent(row.difference, signed=True),
             Text(verdict_text(row), style=_STYLES[row.verdict]),
         )
     return Group(table, Text(summary(rows, closures)))
@@ -49,7 +50,7 @@ def validation_table(
 
 def closure_table(rows: Sequence[ClosureFigure]) -> Table:
     """One row for each open figure of the study of pocketing, one column for each closure."""
-    causes = dict.fromkeys(f"{row.tolerance:.0%}: {row.cause}" for row in rows)
+    causes = dict.fromkeys(f"{percent(row.tolerance, 0)}: {row.cause}" for row in rows)
     cells = [
         (
             Cell(f"{row.what}, {row.unit}".rstrip(", ")),

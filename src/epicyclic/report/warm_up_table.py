@@ -13,6 +13,7 @@ from epicyclic.case.wording import one_line
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import plain_table
 from epicyclic.results.result import in_words
+from epicyclic.units import percent
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -67,7 +68,7 @@ def _summary(data: xr.Dataset) -> str:
     lines = [
         f"time constants about the settled state: {texts}",
         f"energy lost: {shown(lost)} kJ; settled from the start it would be {shown(settled)} kJ"
-        + (f" ({lost / settled - 1:+.1%} by warming up)" if settled else ""),
+        + (f" ({percent(lost / settled - 1, signed=True)} by warming up)" if settled else ""),
     ]
     return "\n".join(lines)
 

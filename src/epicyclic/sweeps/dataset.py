@@ -17,6 +17,7 @@ from epicyclic.results.result import number_fields, versions
 from epicyclic.sweeps.axes import ROW, unit_of
 from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.plan import SweepPlan
+from epicyclic.units import percent
 from epicyclic.whole_file import check_place, whole_file
 
 if TYPE_CHECKING:
@@ -139,7 +140,7 @@ def _about_pocketing(rows: Rows) -> str:
         return "flow solved at every point"
     return (
         "flow interpolated over speed * sqrt(density / ambient pressure); largest error of the "
-        f"loss, measured at flows left out: {np.nanmax(errors):.2%}"
+        f"loss, measured at flows left out: {percent(np.nanmax(errors), 2)}"
     )
 
 
