@@ -137,17 +137,17 @@ class LineContacts:
 
     @property
     def temperature(self) -> float:
-        """Of the oil at the contacts. [K]"""
+        """Temperature of the oil at the contacts. [K]"""
         return self.oil.temperature
 
     @property
     def dynamic_viscosity(self) -> Any:
-        """Of the oil at the inlet of the contacts. [Pa s]"""
+        """Dynamic viscosity of the oil at the inlet of the contacts. [Pa s]"""
         return self.oil.dynamic_viscosity
 
     @property
     def pressure_viscosity(self) -> Any:
-        """Of the oil. [1/Pa]"""
+        """Pressure-viscosity coefficient of the oil. [1/Pa]"""
         return self.oil.pressure_viscosity
 
     @property

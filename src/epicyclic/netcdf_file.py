@@ -66,7 +66,7 @@ def _check(path: Path) -> None:
     """Raise `InputError` unless a file can be opened: a pipe would keep the program waiting."""
     try:
         if not path.is_file():
-            refuse("does not exist, or is no file.", "Check the path.")
+            refuse("does not exist, or is not a file.", "Check the path.")
         if path.stat().st_size > LARGEST:
             refuse(f"is larger than {LARGEST // 10**6} MB.", "Name a smaller one.")
         with path.open("rb") as file:

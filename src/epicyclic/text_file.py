@@ -38,7 +38,7 @@ def read_text(path: Path, noun: str, largest: int) -> str:
     Raises
     ------
     InputError
-        If it is no file, too large, or no UTF-8 text.
+        If it is not a file, too large, or not UTF-8 text.
     """
     return decode(read_bytes(path, noun, largest), noun)
 

@@ -27,7 +27,7 @@ UNSOLVED = {
     "do not agree after": "losses grow with the torques that they cause",
     "load distribution of the planet bearing": "the loads of the rollers are not found",
     "was not found at": "the loads of the teeth are not found",
-    "no finite number": "a loss is no finite number",
+    "no finite number": "a loss is not a finite number",
 }
 """What a `ConvergenceError` says, and the outcome that it is counted as."""
 MAY_BE_MISSING = (

@@ -392,9 +392,9 @@ def test_memory_does_not_grow_with_the_rows(tmp_path):
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        ({"time [s]": [0, 1], "speed [rpm]": [1]}, "is no table"),
-        (5, "is no table"),
-        ("missing.csv", "is no file"),
+        ({"time [s]": [0, 1], "speed [rpm]": [1]}, "is not a table"),
+        (5, "is not a table"),
+        ("missing.csv", "is not a file"),
         ("cycle.xlsx", "must end in .csv or .parquet"),
         ({"time [s]": [0, 1], "speed [rpm]": ["1", 2], "torque [N*m]": [1, "x"]}, '"x"'),
     ],
@@ -480,7 +480,7 @@ def test_the_command_on_a_case_keeps_its_map(tmp_path, epicyclic):
         (("missing.nc", "cycle.csv"), "does not exist"),
         (("talbot-2012", "cycle.csv", "--map", "map.mat"), "must end in .nc"),
         (("talbot-2012", "cycle.csv", "-o", "out.txt"), "must end in .nc or .csv"),
-        (("talbot-2012", "missing.csv"), "is no file"),
+        (("talbot-2012", "missing.csv"), "is not a file"),
         (("cycle.csv", "cycle.csv"), "cycle.csv"),
     ],
 )

@@ -195,7 +195,7 @@ def test_table_of_points(case, tmp_path):
     [
         ("sun.teeth\n", "no rows"),
         ("sun.teeth,planet.count\n73,3\n74\n", "planet.count.*no value in row 2"),
-        ("sun.teeth,planet.count\n73,3,4,5\n74,3\n", "is no table"),
+        ("sun.teeth,planet.count\n73,3,4,5\n74,3\n", "is not a table"),
         ("sun.teeth,sun.teeth\n1,2\n", "two columns"),
         ("sun.teeth [1],sun.teeth\n1,2\n", "two columns"),
     ],

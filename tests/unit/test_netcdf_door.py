@@ -80,7 +80,7 @@ def test_a_duty_cycle_refuses_a_damaged_map(file, tmp_path, monkeypatch, capsys,
 @pytest.mark.skipif(sys.platform == "win32", reason="needs named pipes")
 def test_a_pipe_is_refused_at_once(tmp_path, read):
     os.mkfifo(tmp_path / "pipe.nc")
-    with pytest.raises(ep.InputError, match="is no file"):
+    with pytest.raises(ep.InputError, match="is not a file"):
         read(tmp_path / "pipe.nc")
 
 

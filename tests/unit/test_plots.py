@@ -120,7 +120,7 @@ def test_areas_of_a_map_add_up_to_the_total(pair_map):
 
 
 def test_an_unknown_plot_names_those_that_there_are(talbot_record, pair_map):
-    with pytest.raises(InputError, match="is no plot; it has gear-set, teeth, losses"):
+    with pytest.raises(InputError, match="is not a plot; it has gear-set, teeth, losses"):
         figure_of(talbot_record, "wheel")
     with pytest.raises(
         InputError, match="cannot be drawn from this file; it has gear-set, efficiency-map"

@@ -193,7 +193,7 @@ def test_a_file_that_declares_more_than_it_holds_takes_no_memory(file):
 
 def test_what_is_no_file_is_refused(tmp_path):
     for path in (tmp_path, tmp_path / "missing.nc"):
-        with pytest.raises(InputError, match="does not exist, or is no file"):
+        with pytest.raises(InputError, match="does not exist, or is not a file"):
             ep.open_result(path)
 
 

@@ -90,7 +90,7 @@ def test_pictures_of_a_result_have_the_size_that_is_asked_for(result):
     small = result.plot("loss-sum", size=(120, 70), dpi=77)
     assert tuple(small.get_size_inches() * MM_PER_INCH) == pytest.approx((120, 70))
     assert small.dpi == 77
-    with pytest.raises(ep.InputError, match=r"is no plot; it has .*losses"):
+    with pytest.raises(ep.InputError, match=r"is not a plot; it has .*losses"):
         result.plot("colours")
 
 

@@ -270,7 +270,7 @@ def test_positions_are_those_of_gears_on_shafts():
 def test_names_are_not_empty():
     tables = simple(30, 90, "ring", ("sun", "carrier"))
     tables["sets"][" "] = tables["sets"]["S"]
-    assert any("is no name for a set" in allowed for allowed in told(tables).values())
+    assert any("is not a valid name for a set" in allowed for allowed in told(tables).values())
 
 
 @pytest.mark.parametrize(

@@ -308,7 +308,7 @@ def test_the_command_on_a_map(plain_map, over_map, tmp_path):
         (["talbot-2012", "--points", "9"], "--points: goes with a cycle"),
         (["talbot-2012", "--temperature", "50 degC"], "--temperature: goes with"),
         (["map.nc", "--set", "a=1", "--speed", "900 rpm"], "--speed: goes with a case alone"),
-        (["talbot-2012", "none.csv"], "is no file"),
+        (["talbot-2012", "none.csv"], "is not a file"),
     ],
 )
 def test_options_that_do_not_go_together(arguments, message):

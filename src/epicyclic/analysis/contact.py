@@ -62,7 +62,7 @@ class ContactResult:
 
     @property
     def status(self) -> Status:
-        """Of the solution that counts."""
+        """Status of the solution that counts."""
         return self.smooth.status if self.rough is None else self.rough.status
 
     @property
@@ -204,7 +204,7 @@ class ContactResult:
 
 
 def _statistics(surface: Profile) -> dict[str, float]:
-    """Of a profile, lengths in m."""
+    """Statistics of a profile, lengths in m."""
     if surface.rms == 0:
         return {"rms": 0.0}
     return {

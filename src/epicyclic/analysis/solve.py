@@ -60,7 +60,7 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
     Raises
     ------
     ConvergenceError
-        If an iteration ends without a solution, or a loss is no finite number.
+        If an iteration ends without a solution, or a loss is not a finite number.
     """
     built = build(case, flow_tables)
     result = assemble(case, built, built.solve())

@@ -62,7 +62,7 @@ class Desk:
 
     @property
     def title(self) -> str:
-        """Of the case, or its source."""
+        """Title of the case, or its source."""
         return str(self.current.get("title") or self.source)
 
     @property

@@ -82,7 +82,7 @@ class Guard:
 
     @property
     def _name(self) -> str:
-        """Of the cookie: browsers do not tell ports apart."""
+        """Name of the cookie: browsers do not tell ports apart."""
         return f"epicyclic-{min(self.hosts).rpartition(':')[2]}"
 
     def _cookie(self) -> str:

@@ -48,7 +48,7 @@ class Known:
 
     @property
     def width(self) -> float:
-        """Of the band of the total."""
+        """Width of the band of the total."""
         low, high = self.ends["total"]
         return high - low
 

@@ -67,7 +67,7 @@ class SamplePlan(CasePlan):
 
     @property
     def samples(self) -> int:
-        """Of each operating point, those of all sets."""
+        """Samples of each operating point, those of all sets."""
         count: int = self.drawn[0].shape[1]
         return count
 

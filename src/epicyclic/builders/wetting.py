@@ -52,7 +52,7 @@ def carrier_disc(case: SetCase, body: str, outer_diameter: float, width: float, 
 
 
 def _depth(table: LubricationTable | None, name: str, radius: float) -> float:
-    """Of the lowest point of a part below the oil at rest; 0 above it. [m]"""
+    """Depth of the lowest point of a part below the oil at rest; 0 above it. [m]"""
     if table is None or table.method != "dip":
         return 0.0
     if table.oil_level is not None:

@@ -220,7 +220,7 @@ def with_changes(
 
 
 def owner_without_keys(tables: Mapping[str, Any], key: str) -> Problem | None:
-    """Why `tables` have no place for a key: what should hold it is no table, but a name."""
+    """Why `tables` have no place for a key: what should hold it is not a table, but a name."""
     path = key_parts(key)
     for depth in range(1, len(path)):
         owner = value_at(tables, path[:depth])

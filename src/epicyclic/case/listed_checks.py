@@ -88,7 +88,7 @@ def _name_problems(shape: SetShape) -> Iterator[Problem]:
             yield Problem(f"gears.{name}", "", allowed, "Choose another name.")
     for name in shape.bodies:
         if "." in name:
-            allowed = "is no name for a gear: a dot stands between set and gear."
+            allowed = "is not a valid name for a gear: a dot stands between set and gear."
             yield Problem(f'gears."{name}"', "", allowed, "Choose another name.")
     keys = [mesh.key for mesh in shape.meshes]
     for one, two in combinations(shape.meshes, 2):

@@ -87,17 +87,17 @@ class ListedCase:
 
     @property
     def lubrication(self) -> LubricationTable | None:
-        """Of the set."""
+        """Lubrication of the set."""
         return self.table.lubrication
 
     @property
     def models(self) -> PlanetaryModels:
-        """Of the set."""
+        """Models of the set."""
         return self.table.models
 
     @property
     def numerics(self) -> Numerics:
-        """Of the set."""
+        """Numerics of the set."""
         return self.table.numerics
 
     @property

@@ -56,7 +56,7 @@ def read_file(path: Path) -> tuple[dict[str, Any], list[Problem]]:
     Raises
     ------
     InputError
-        If it is no file, no text, or no TOML that can be read around its mistakes.
+        If it is not a file, not text, or not TOML that can be read around its mistakes.
     """
     try:
         tables, bad_lines = _parse(read_text(path, "case", _LARGEST_FILE))

@@ -189,7 +189,7 @@ class Solver:
     # --- profile shifts ---
 
     def _find_shift(self) -> bool:
-        """Of the first gear without one, the thinner of what its mates leave."""
+        """Profile shift of the first gear without one, the thinner of what its mates leave."""
         for name in self.thinned:
             known = [] if name in self.shifts else list(self._known_mates(name))
             if known:

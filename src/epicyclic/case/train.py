@@ -188,7 +188,7 @@ class _TrainTables(CaseTable):
             read = _read_set(raw_sets[name], shared, folder)
             found += [_below(f"sets.{name}", problem) for problem in read.problems]
             if "." in name or not name.strip():
-                allowed = "is no name for a set: letters, and no dot, which parts set and member."
+                allowed = "is not a valid name for a set: use letters, and no dot."
                 found.append(Problem(f"sets.{name}", "", allowed, "Choose another name."))
             sizes += [replace(one, key=f"sets.{name}.{one.key}") for one in read.found]
             if read.table is not None:
@@ -462,7 +462,7 @@ def _element_problems(train: TrainCase) -> list[Problem]:
     for kind, name, table in train.elements:
         key = f"{kind}.{name}"
         if "." in name or not name.strip():
-            allowed = "is no name for a part: letters, and no dot, which parts it from its losses."
+            allowed = "is not a valid name for a part: use letters, and no dot."
             problems.append(Problem(key, "", allowed, "Choose another name."))
         if name in taken:
             allowed = f"has the name of another part, {taken[name]}.{name}."

@@ -119,7 +119,7 @@ def _position_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]
     for gear in train.positions:
         if gear not in known and gear not in members:
             remedy = did_you_mean(gear, known) or f"Known are: {', '.join(known)}."
-            yield Problem(f'positions."{gear}"', "", "is no gear on a shaft.", remedy)
+            yield Problem(f'positions."{gear}"', "", "is not a gear on a shaft.", remedy)
 
 
 def _shaft_problems(key: str, name: str, shape: TrainShape) -> list[Problem]:

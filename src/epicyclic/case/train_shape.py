@@ -289,7 +289,7 @@ def _name_problems(table: ListedSet | GivenListedSet, bodies: Mapping[str, str])
         for gear in dict.fromkeys((one, two)):
             if gear not in bodies:
                 remedy = did_you_mean(gear, bodies) or f"Known are: {', '.join(bodies)}."
-                problems.append(Problem(key, written(gear), "is no gear of this set.", remedy))
+                problems.append(Problem(key, written(gear), "is not a gear of this set.", remedy))
         if one == two:
             problems.append(
                 Problem(key, shown, "is a gear in mesh with itself.", "Name two gears.")
@@ -400,7 +400,7 @@ def shape_of_train(
         key = f"shafts.{shaft}"
         joined[shaft] = []
         if "." in shaft or not shaft.strip():
-            allowed = "is no name for a shaft: letters, and no dot, which parts set and member."
+            allowed = "is not a valid name for a shaft: use letters, and no dot."
             problems.append(Problem(key, "", allowed, "Choose another name."))
         for name in names:
             member = aliases.get(name, name)
@@ -440,4 +440,4 @@ def _no_member(
         allowed = "is a planet: it turns on the carrier and cannot be joined to a shaft."
         return Problem(key, written(name), allowed, f"Join {owner}.{CARRIER}, or another member.")
     remedy = did_you_mean(name, members) or f"Known are: {', '.join(members)}."
-    return Problem(key, written(name), "is no member of a set.", remedy)
+    return Problem(key, written(name), "is not a member of a set.", remedy)

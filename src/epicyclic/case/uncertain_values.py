@@ -81,7 +81,7 @@ class UncertainValue:
 
     @property
     def kind_of_loss(self) -> str:
-        """Of the factor of a model: whose losses it multiplies, ``"sliding"``."""
+        """Losses that the factor of a model multiplies, ``"sliding"``."""
         return self.key.removeprefix(MODEL_FORM)
 
     @property
@@ -341,7 +341,7 @@ def _number(stated: str | float) -> float:
     except ValueError:
         raise PydanticCustomError(
             "number",
-            "{what} is no number; it must be a number, or a percentage of the value",
+            "{what} is not a number; it must be a number, or a percentage of the value",
             {"what": written(stated), "remedy": 'for example "12 %"'},
         ) from None
 
@@ -369,7 +369,7 @@ def _model_form(key: str, table: DistributionTable) -> UncertainValue | Problem 
     kind = key.removeprefix(MODEL_FORM)
     if kind not in kinds:
         remedy = did_you_mean(kind, list(kinds)) or f"There are {', '.join(kinds)}."
-        return Problem(_name(key), "", "is no kind of losses.", remedy)
+        return Problem(_name(key), "", "is not a kind of loss.", remedy)
     if table.exact:
         return None
     if table.lognormal_factor is None:
@@ -386,7 +386,7 @@ def _correlation_problems(own: Mapping[str, DistributionTable]) -> Iterator[Prob
         for other, coefficient in table.correlated.items():
             name = f"{_name(key)}.correlated.{dotted([other])}"
             if other not in own or other == key:
-                allowed = "is no other key of [uncertainty]."
+                allowed = "is not another key of [uncertainty]."
                 yield Problem(name, f"{coefficient:g}", allowed, "Name one that has a table there.")
             elif not -1 < coefficient < 1:
                 allowed = "must be a number > -1 and < 1."

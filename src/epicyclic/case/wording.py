@@ -53,7 +53,7 @@ def key_parts(key: str) -> list[str]:
         If it has more names than any key of a case.
     """
     if key.count(".") > _DEEPEST:
-        allowed = f"is no key: it has more than {_DEEPEST} dots."
+        allowed = f"is not a key: it has more than {_DEEPEST} dots."
         raise InputError([Problem(one_line(key), "", allowed, "Correct it.")])
     if '"' not in key:
         return key.split(".")

@@ -143,7 +143,7 @@ def _study(
     seed: int,
     runner: Runner,
 ) -> Study:
-    """Of a case, or of a map, which is computed first if it is not given."""
+    """The study of a case, or of a map, which is computed first if it is not given."""
     from epicyclic.bands.over_map import map_study
     from epicyclic.bands.plan import check_samples
     from epicyclic.bands.study import uncertainty_study

@@ -110,7 +110,7 @@ def aided_mean(fine: FloatArray, coarse: FloatArray) -> Estimate:
 
 
 def _variance(blocks: FloatArray, fitted: int) -> float:
-    """Of a block, with what it shares with the next ones: a ridge crosses the contact in four.
+    """Variance of a block, with what it shares with the next: a ridge crosses the contact in four.
 
     `fitted` numbers were found from the blocks. Many of them tell what neighbours share also where
     it is less than nothing, which a few would only seem to tell.
@@ -126,7 +126,7 @@ def _variance(blocks: FloatArray, fitted: int) -> float:
 
 
 def _widening(freedom: int) -> float:
-    """Of the variance of a mean, because the scatter itself is known from a few blocks only.
+    """Factor on the variance of a mean, because the scatter is known from a few blocks only.
 
     Neighbours are alike: two blocks tell of it as much as one.
     """

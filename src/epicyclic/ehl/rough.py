@@ -265,7 +265,7 @@ class _Simulation:
 
     @property
     def work(self) -> float:
-        """Of a time b/u_r, in a unit of its own."""
+        """Work of a time b/u_r, in a unit of its own."""
         return math.pow(self.x.size, COST_EXPONENT) / (self.stride * self.dx)
 
     def step_count(self, time: float) -> int:

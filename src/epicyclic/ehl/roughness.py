@@ -42,7 +42,7 @@ class Profile:
 
     @property
     def length(self) -> float:
-        """Of one period. [m]"""
+        """Length of one period. [m]"""
         return self.heights.size * self.spacing
 
     @property
@@ -52,7 +52,7 @@ class Profile:
 
     @property
     def correlation_length(self) -> float:
-        """Of the Gaussian autocorrelation with the same slopes. Theory (H26). [m]"""
+        """Length of the Gaussian autocorrelation with the same slopes. Theory (H26). [m]"""
         slopes = (np.roll(self.heights, -1) - np.roll(self.heights, 1)) / (2 * self.spacing)
         return math.sqrt(2) * self.rms / float(np.sqrt(np.mean(slopes**2)))
 

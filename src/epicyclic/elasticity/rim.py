@@ -104,7 +104,7 @@ class ElasticRing:
         return influence
 
     def _stiffness(self, n: int) -> FloatArray:
-        """Of the waves u = U cos, v = V sin, psi = Psi sin of n theta. [N/m, N, N m]"""
+        """Stiffness of the waves u = U cos, v = V sin, psi = Psi sin of n theta. [N/m, N, N m]"""
         r = self.radius
         stretch = np.array([1.0, n, 0.0]) / r
         shear = np.array([-n / r, -1 / r, 1.0])

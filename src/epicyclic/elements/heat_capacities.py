@@ -28,7 +28,7 @@ BEARING_FILL = 0.7
 
 
 def gear_set_capacities(own: GearSet) -> dict[str, float]:
-    """Of every gear, all planets together, of pins and carrier. Theory (W33), (W34). [J/K]"""
+    """Heat capacities of gears, planets together, pins, carrier. Theory (W33), (W34). [J/K]"""
     bores = {
         planet.nodes[0]: planet.bearing.bearing.outer_diameter / 2
         for planet in own.planets
@@ -53,7 +53,7 @@ def gear_set_capacities(own: GearSet) -> dict[str, float]:
 
 
 def bearing_capacity(own: ShaftBearing) -> float:
-    """Of both rings and the rollers. Theory (W34). [J/K]"""
+    """Heat capacity of both rings and the rollers. Theory (W34). [J/K]"""
     bearing = own.bearing
     area = math.pi / 4 * (bearing.outside_diameter**2 - bearing.bore**2)
     return _stored(STEEL, BEARING_FILL * area * bearing_width(own))
@@ -71,7 +71,7 @@ def _outside(own: GearSet, one: OneGear) -> float:
 
 
 def _carrier_volume(own: GearSet) -> float:
-    """Of the disc of the carrier, or of one that reaches around the pins. [m^3]"""
+    """Volume of the disc of the carrier, or of one that reaches around the pins. [m^3]"""
     discs = [disc for discs in own.discs.values() for disc in discs if disc.where == "carrier"]
     if discs:
         return math.pi * discs[0].radius ** 2 * discs[0].width

@@ -133,7 +133,7 @@ def _gear_to_oil(
 
 
 def _in_bath(gear: Gear, speed: float, inner: float, wetting: Wetting) -> float:
-    """Of the part of faces and flanks that dips; at rest they are splashed as walls are. [W/K]"""
+    """Conductance of faces and flanks that dip; at rest they are splashed like walls. [W/K]"""
     outer = max(gear.tip_radius, gear.root_radius)
     if gear.internal:
         inner = gear.tip_radius

@@ -103,7 +103,7 @@ class PlanetContact:
 
     @property
     def axial_force(self) -> float:
-        """Of the mesh on the planet, along y. [N]"""
+        """Axial force of the mesh on the planet, along y. [N]"""
         mesh = self.duty.mesh
         tangential = abs(self.duty.torque1) / mesh.operating_radius1
         return self.hand * self.sense * tangential * mesh.operating_helix_tangent

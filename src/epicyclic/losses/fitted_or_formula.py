@@ -86,7 +86,7 @@ class _FittedOrFormula(Generic[Fit]):
 
     @property
     def source(self) -> str:
-        """Of both."""
+        """Source of both."""
         return f"{self.fitted.source}; {self.beyond.source}"
 
     @property
@@ -98,7 +98,7 @@ class _FittedOrFormula(Generic[Fit]):
         )
 
     def weight(self, contact: LineContacts) -> FloatArray:
-        """Of the fit, at each contact. [1]"""
+        """Weight of the fit at each contact. [1]"""
         return weight_of_fit(self.fitted.model, self.fitted.quantity, contact)
 
     def beyond_flags(

@@ -157,7 +157,7 @@ class RollerBearing:
 
     @property
     def outer_diameter(self) -> float:
-        """Of the outer race. Theory (B4). [m]"""
+        """Diameter of the outer race. Theory (B4). [m]"""
         return self.inner_diameter + 2 * self.roller_diameter + self.diametral_clearance
 
     @property
@@ -179,7 +179,7 @@ class RollerBearing:
 
     @property
     def composite_roughness(self) -> float:
-        """Of roller and race, rms. [m]"""
+        """Composite roughness of roller and race, rms. [m]"""
         return math.hypot(self.race_roughness, self.roller_roughness)
 
     @property

@@ -126,7 +126,7 @@ class DiscDrag:
 
     @property
     def total(self) -> float:
-        """Of the whole disc. [W]"""
+        """Loss of the whole disc. [W]"""
         return self.rim + self.faces
 
 

@@ -86,7 +86,7 @@ class Solution:
 
     @property
     def loss(self) -> float:
-        """Of all elements and meshes together. [W]"""
+        """Loss of all elements and meshes together. [W]"""
         return sum(loss.watts for loss in self._losses())
 
     @property
@@ -113,7 +113,7 @@ class Solution:
         return sum(map(abs, self.rolling.values())) / entering if entering else None
 
     def _powers(self) -> list[float]:
-        """Of all bodies, without what is rounding. [W]"""
+        """Powers of all bodies, without what is rounding. [W]"""
         powers = [torque * self.speeds[body] for body, torque in self.torques.items()]
         limit = NO_POWER * max(map(abs, powers), default=0.0)
         return [power for power in powers if abs(power) > limit]

@@ -246,7 +246,7 @@ def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[P
 
 
 def _numbers(column: Any) -> Array:
-    """A column of `pyarrow` as numbers, NaN for what is no finite number."""
+    """A column of `pyarrow` as numbers, NaN for what is not a finite number."""
     import pyarrow as pa
     import pyarrow.compute as pc
 

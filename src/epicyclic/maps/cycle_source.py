@@ -60,7 +60,7 @@ def open_source(table: Any) -> Source:
         allowed = f"must end in {' or '.join(SUFFIXES)}."
         raise _unreadable(str(path), allowed, "Choose one of these formats.")
     if not path.is_file():
-        raise _unreadable(str(path), "is no file.", "Check the name.")
+        raise _unreadable(str(path), "is not a file.", "Check the name.")
     with _readable(str(path)):
         return _from_csv(path) if path.suffix.lower() == ".csv" else _from_parquet(path)
 
@@ -89,7 +89,7 @@ def _from_memory(table: Any) -> Source:
     try:
         frame = table if isinstance(table, pd.DataFrame) else pd.DataFrame(table)
     except (TypeError, ValueError) as error:
-        raise _unreadable("", f"is no table: {one_line(str(error))}.", "Give a file.") from None
+        raise _unreadable("", f"is not a table: {one_line(str(error))}.", "Give a file.") from None
     columns = {}
     for position in range(frame.shape[1]):
         values = frame.iloc[:, position]
@@ -145,7 +145,7 @@ def _from_csv(path: Path) -> Source:
         import pyarrow as pa
         from pyarrow import csv as arrow_csv
 
-        # as text, so that what is no number can be told from what is missing
+        # as text, so that what is not a number can be told from what is missing
         convert = arrow_csv.ConvertOptions(
             include_columns=list(chosen), column_types=dict.fromkeys(chosen, pa.string())
         )

@@ -201,6 +201,6 @@ def _conductance(links: Mapping[str, Link], key: str) -> float:
 
 
 def _coefficients(knots: Array, values: Sequence[Sequence[Sequence[float]]]) -> Array:
-    """Of monotone cubic curves over the first axis of `values`; the second one comes last."""
+    """Monotone cubic curves over the first axis of `values`; the second one comes last."""
     found: Array = PchipInterpolator(knots, np.array(values)).c.swapaxes(2, 3)
     return found

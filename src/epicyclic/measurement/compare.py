@@ -274,7 +274,7 @@ def _option_problems(
 ) -> Iterator[Problem]:
     known = ", ".join(table.labels)
     if group not in table.labels:
-        yield Problem("group", group, "is no column.", f"Columns are {known}.")
+        yield Problem("group", group, "is not a column.", f"Columns are {known}.")
     if hold_out is not None and not keys:
         allowed = "keeps points from a fit, and there is none."
         yield Problem("hold_out", str(hold_out), allowed, "Name the keys to fit.")

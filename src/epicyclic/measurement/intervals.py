@@ -44,7 +44,7 @@ class Linearised:
 
     @property
     def sum_of_squares(self) -> float:
-        """Of the deviations."""
+        """Sum of the squared deviations."""
         return float(self.deviations @ self.deviations)
 
     @property
@@ -108,13 +108,13 @@ class Linearised:
         return float(stats.t.ppf(tail, self.freedom)) if self.freedom > 0 else math.nan
 
     def standard_errors(self) -> FloatArray:
-        """Of all parameters, shape (p,); NaN where there is none."""
+        """Standard errors of all parameters, shape (p,); NaN where there is none."""
         errors = np.full(self.solution.size, np.nan)
         errors[self.free] = np.sqrt(np.diag(self.covariance)) * self.spread
         return errors
 
     def correlation(self) -> FloatArray:
-        """Of all parameters, shape (p, p); NaN where there is none."""
+        """Correlation of all parameters, shape (p, p); NaN where there is none."""
         size = self.solution.size
         table = np.full((size, size), np.nan)
         deviation = np.sqrt(np.diag(self.covariance))

@@ -55,7 +55,7 @@ class Residuals:
 
     @property
     def uncertainty(self) -> FloatArray | None:
-        """Of the losses at the points used; None if they have none. [W]"""
+        """Uncertainty of the losses at the points used; None if they have none. [W]"""
         whole = self.points.measured.uncertainty
         return None if whole is None else whole[self.used]
 

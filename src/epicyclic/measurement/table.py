@@ -189,7 +189,7 @@ def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
     for number, header in enumerate(grid.header):
         match = _HEADER.fullmatch(header)
         if match is None:
-            allowed, remedy = "is no name with a unit.", "Write it as: speed [rpm]."
+            allowed, remedy = "is not a name with a unit.", "Write it as: speed [rpm]."
             problems.found.append(
                 Problem(f"column {number + 1}", one_line(header), allowed, remedy)
             )

@@ -70,7 +70,7 @@ def _changed(oil: Oil, file: Path) -> tuple[str, ...]:
 
 @lru_cache(maxsize=64)
 def _read(file: Path) -> OilModel:
-    """Of a file that comes with the package, and does not change."""
+    """The model in a file that comes with the package and does not change."""
     return read_oil_model(file)
 
 

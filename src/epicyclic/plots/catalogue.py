@@ -374,7 +374,7 @@ def panels_of(stored: Stored, name: str) -> list[Panel]:
     found = available(stored)
     if name in found:
         return found[name].panels(stored)
-    allowed = "cannot be drawn from this file" if name in PLOTS else "is no plot"
+    allowed = "cannot be drawn from this file" if name in PLOTS else "is not a plot"
     problem = Problem(
         "WHAT", name, f"{allowed}; it has {', '.join(found)}.", "Choose one of these."
     )

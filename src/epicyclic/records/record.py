@@ -61,7 +61,7 @@ class ResultRecord:
 
     @property
     def title(self) -> str:
-        """Of the case, or what kind of gears it is."""
+        """Title of the case, or what kind of gears it is."""
         return self.result.title or self.result.kind.replace("_", " ")
 
     @property
@@ -140,7 +140,7 @@ def _uncertainty(case: Case, result: Result) -> dict[str, xr.Dataset]:
 
 
 def _pockets(case: Case, contents: ResultContents) -> dict[str, xr.Dataset]:
-    """Of sets in which every mesh turns and has the flow of its pockets solved."""
+    """Pockets of sets in which every mesh turns and has the flow of its pockets solved."""
     lacking = {
         set_of(key)
         for key, mesh in contents.meshes.items()

@@ -116,7 +116,7 @@ def _results(data: xr.Dataset) -> Table:
 
 
 def _unit(data: xr.Dataset) -> str:
-    """Of losses, or of energies lost."""
+    """Unit of losses, or of energies lost."""
     return str(data["unit"].sel(result="total").values)
 
 

@@ -411,7 +411,7 @@ class Result(Views):
         return clean
 
     def _lubrication(self) -> dict[str, Any]:
-        """Of a single set itself, of a train by sets."""
+        """Lubrication of a single set itself, of a train by sets."""
         found = {name: supply.to_dict() for name, supply in self.lubrication.items()}
         return found.get("", found)
 

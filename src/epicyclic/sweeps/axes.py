@@ -241,5 +241,5 @@ def coordinate_of(value: Any, quantity: Quantity | None) -> float | str:
     elif isinstance(value, Real):
         return float(value)
     raise PydanticCustomError(
-        "axis", "is no value of one key", {"remedy": "give numbers, text or names"}
+        "axis", "is not a value of one key", {"remedy": "give numbers, text or names"}
     )

@@ -87,7 +87,7 @@ class Expression:
         result = _evaluate(self.tree, at_point, in_case)
         magnitude: Any = getattr(result, "magnitude", result)
         if isinstance(magnitude, complex) or not math.isfinite(magnitude):
-            raise ValueError("is no finite number")
+            raise ValueError("is not a finite number")
         return result
 
 

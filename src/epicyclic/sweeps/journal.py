@@ -74,7 +74,7 @@ class Rows:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the numbers that any point has."""
+        """Names of the numbers that any point has."""
         return tuple(self._numbers)
 
     @property

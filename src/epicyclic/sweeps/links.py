@@ -187,7 +187,7 @@ def _is_found(case: Case, key: str) -> bool:
 
 def _plain_number(key: str, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError(f"takes {key}, which is no number")
+        raise TypeError(f"takes {key}, which is not a number")
     return float(value)
 
 

@@ -121,12 +121,12 @@ class StudyAxis:
 
     @property
     def field(self) -> str:
-        """Of `PocketVariant`."""
+        """Field of `PocketVariant`."""
         return "teeth" if self.name == "module" else self.dimension
 
     @property
     def dimension(self) -> str:
-        """Of the dataset."""
+        """Dimension of the dataset."""
         return self.name.replace("-", "_")
 
 

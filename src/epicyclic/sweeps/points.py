@@ -60,7 +60,7 @@ def _read(path: Path) -> dict[str, Sequence[Any]]:
             skipinitialspace=True,
         )
     except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
-        refuse(f"is no table: {str(error).strip()}.", "Give every row as many cells.")
+        refuse(f"is not a table: {str(error).strip()}.", "Give every row as many cells.")
     header = [str(name).strip() for name in cells.iloc[0]]
     repeated = {name for name in header if header.count(name) > 1}
     if repeated:

@@ -251,7 +251,7 @@ class Transient:
         return done.x if done.success else None
 
     def time_constants(self, temperatures: FloatArray) -> FloatArray:
-        """Of small changes about some temperatures, from the slowest. Theory (W38). [s]
+        """Time constants of small changes about some temperatures, slowest first. Theory (W38). [s]
 
         Infinite where they grow.
         """

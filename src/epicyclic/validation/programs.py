@@ -96,17 +96,17 @@ def mean_friction(case: str, mesh: str, friction: str) -> float:
 
 
 def closed_loss(case: str, mesh: str, friction: float) -> float:
-    """Of one mesh: power, friction, and loss factor by the closed form. [kW]"""
+    """Loss of one mesh: power, friction, and loss factor by the closed form. [kW]"""
     return friction * _contacts(case)[mesh].input_power * closed_loss_factor(case, mesh) / 1e3
 
 
 def local_loss(case: str, mesh: str, friction: float) -> float:
-    """Of one mesh, along the contact lines. [kW]"""
+    """Loss of one mesh, along the contact lines. [kW]"""
     return _solved(case, friction).losses[f"{mesh}_sliding"] / _planets(case) / 1e3
 
 
 def stage_loss(case: str, **friction: float) -> float:
-    """Of all meshes, along the contact lines, with the friction of each. [kW]"""
+    """Loss of all meshes, along the contact lines, with the friction of each. [kW]"""
     return sum(_planets(case) * local_loss(case, mesh, it) for mesh, it in friction.items())
 
 

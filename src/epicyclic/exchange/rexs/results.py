@@ -135,7 +135,7 @@ def _is_of_shaft(key: str, result: Result) -> bool:
 def _meshes(
     model: Model, chosen: PlanetarySet | Pair, result: Result, place: str
 ) -> Iterator[tuple[Component, Attribute]]:
-    """Of the meshes and planet bearings of a set, whose figures begin with `place`."""
+    """Results of the meshes and planet bearings of a set, whose figures begin with `place`."""
     if isinstance(chosen, Pair):
         yield from _mesh(model, chosen.mesh, result, f"{place}mesh", 1)
         return
@@ -148,7 +148,7 @@ def _meshes(
 def _mesh(
     model: Model, mesh: Mesh, result: Result, name: str, count: int
 ) -> Iterator[tuple[Component, Attribute]]:
-    """Of one of `count` meshes: its loss, the mean of all, and its contact ratios."""
+    """Results of one of `count` meshes: its loss, the mean of all, and its contact ratios."""
     terms = [watts for key, watts in result.losses.items() if key.startswith(f"{name}_")]
     yield mesh.stage, _custom("power_loss", sum(terms) / count, "W")
     figures = result.meshes.get(name)
@@ -165,7 +165,7 @@ def _mesh(
 def _bearings(
     model: Model, chosen: PlanetarySet, result: Result, name: str
 ) -> Iterator[tuple[Component, Attribute]]:
-    """Of each planet bearing: an equal part of the loss of all, and its torque."""
+    """Results of each planet bearing: an equal part of the loss of all, and its torque."""
     bearings, figures = planet_bearings(model, chosen), result.bearings.get(name)
     terms = [term for term in result.terms if term.name.startswith(f"{name}_")]
     if not bearings or figures is None or all(item.left_out for item in terms):

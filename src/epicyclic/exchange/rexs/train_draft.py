@@ -49,7 +49,7 @@ def _hand(draft: Draft, one: PlanetarySet | Pair) -> None:
 
 
 def _temperature(draft: Draft, model: Model, stages: Sequence[Component]) -> None:
-    """Of the oil: of the first stage, if they differ."""
+    """Temperature of the oil: that of the first stage, if they differ."""
     name, key = "temperature_lubricant", "operation.oil_inlet_temperature"
     stated = [found for stage in stages if (found := draft.read(name, [stage], key)) is not None]
     if len({found.text for found in stated}) < 2:

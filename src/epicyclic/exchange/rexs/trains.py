@@ -26,7 +26,7 @@ from epicyclic.exchange.rexs.sets import (
 __all__ = ["Shaft", "Switch", "Train", "chosen_train"]
 
 MOST_STAGES, MOST_BEARINGS = 40, 400
-"""A file with more than this is no gear unit."""
+"""A file with more than this is not a gear unit."""
 
 _LONGEST_NAME = 32
 
