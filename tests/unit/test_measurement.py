@@ -279,7 +279,7 @@ def test_a_parameter_at_its_bound_has_an_interval_on_one_side(case, tests):
         ({"fit": KEYS, "hold_out": "temperature=70"}, "no row"),
         ({"fit": KEYS, "hold_out": "1.5"}, "share"),
         ({"hold_out": 0.3}, "there is none"),
-        ({"group": "rig"}, "no column"),
+        ({"group": "rig"}, "not a column"),
         ({"component": "mesh_slidng"}, "no loss"),
     ],
 )

@@ -122,7 +122,7 @@ nan,500,90,400 W,0,4,total
     [
         ("speed [rpm],torque [N*m]\n1,2\n", "temperature: is missing"),
         (GOOD.replace("run", "loss [W]"), "second column"),
-        (GOOD.replace("run", "run [W"), "no name with a unit"),
+        (GOOD.replace("run", "run [W"), "not a name with a unit"),
         (GOOD.replace("run", "planet.angles"), "a list"),
         (GOOD.replace("run", "planet.count [1/s]"), "no unit in the case"),
         (GOOD.replace(",1\n", "\n"), "has 5 columns, but line 3 has 4"),

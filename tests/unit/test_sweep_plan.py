@@ -75,8 +75,8 @@ def test_unreadable_option(case, options, words):
         ({"planet.angles": [["0 deg", "180 deg"]]}, "is a list"),
         ({"planet.angles": ["0 deg", "180 deg"]}, "is a list"),
         ({"lubricant.oil.density": [1]}, "is a list"),
-        ({"lubricant.oil": [{"kind": "mineral"}]}, "no value of one key"),
-        ({"planet.count": [10**400]}, "no value of one key"),
+        ({"lubricant.oil": [{"kind": "mineral"}]}, "not a value of one key"),
+        ({"planet.count": [10**400]}, "not a value of one key"),
         ({"planet.count": range(1001), "sun.teeth": range(1001)}, "1000000 points or fewer"),
     ],
 )

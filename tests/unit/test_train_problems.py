@@ -35,7 +35,7 @@ def test_many_mistakes_are_told_at_once():
         "sets.P2.meshes[4]",
     }
     assert "<= 1" in found["sets.P1.mesh_efficiency"]
-    assert "no gear" in found["sets.P2.meshes[4]"]
+    assert "not a gear" in found["sets.P2.meshes[4]"]
 
 
 def test_members_of_shafts():
@@ -48,7 +48,7 @@ def test_members_of_shafts():
     }
     found = {(one.key, one.value): one for one in problems_of(ep.load_case, tables)}
     assert "to itself" in found["shafts.input", '"P1.ring"'].allowed
-    assert "no member" in found["shafts.output", '"P2.rung"'].allowed
+    assert "not a member" in found["shafts.output", '"P2.rung"'].allowed
     assert "P2.ring" in found["shafts.output", '"P2.rung"'].remedy
     assert "belongs to the shaft output" in found["shafts.more", '"P2.ring"'].allowed
     assert "is a planet" in found["shafts.planets", '"P2.long_planet"'].allowed

@@ -187,7 +187,7 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
         friction,
         f"models.friction ehl-direct: {found.size} contacts of the {contact.mesh.name} solved, "
         f"{np.count_nonzero(~found)} of them without convergence and left out; error of "
-        f"interpolated contacts {percent(error)} in the mean{missed}, of their power "
+        f"interpolated contacts {percent(error)} on average{missed}, of their power "
         f"{percent(bias, signed=True)}."
         f"{_limits_left(contact, power)}{_unresolved(kept)}",
     )
