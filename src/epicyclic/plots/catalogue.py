@@ -371,9 +371,10 @@ def panels_of(stored: Stored, name: str) -> list[Panel]:
     InputError
         If there is no such plot, or the file lacks what it shows.
     """
+    panels = PLOTS[name].panels(stored) if name in PLOTS else []
+    if panels:
+        return panels
     found = available(stored)
-    if name in found:
-        return found[name].panels(stored)
     allowed = "cannot be drawn from this file" if name in PLOTS else "is not a plot"
     problem = Problem(
         "WHAT", name, f"{allowed}; it has {', '.join(found)}.", "Choose one of these."

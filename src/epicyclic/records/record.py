@@ -23,7 +23,7 @@ from epicyclic.results.result import Result
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["ResultRecord", "record", "sets_of"]
+__all__ = ["ResultRecord", "growing_record", "record", "sets_of"]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -78,6 +78,43 @@ class ResultRecord:
         }
 
 
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class _GrowingRecord(ResultRecord):
+    """A record that computes a group of fields when it is first asked for."""
+
+    fields: dict[str, xr.Dataset]
+    makers: dict[str, Callable[[], Mapping[str, xr.Dataset]]]
+
+    def group(self, name: str) -> dict[str, xr.Dataset]:
+        if name in self.makers:
+            self.fields.update(_under(name, self.makers[name]()))
+            del self.makers[name]
+        return ResultRecord.group(self, name)  # classes with slots are made twice: no super()
+
+
+def growing_record(case: Case) -> ResultRecord:
+    """Solve a case, and compute each group of fields when it is first asked for.
+
+    Parameters
+    ----------
+    case : PlanetaryCase, GearPairCase or TrainCase
+
+    Returns
+    -------
+    ResultRecord
+        Not to be saved: it has the fields that were asked for.
+
+    Raises
+    ------
+    ConvergenceError
+        As for `solve`, and when a group is asked for.
+    """
+    result = solve(case)
+    contents = contents_of(result)
+    makers = _makers(case, result, contents)
+    return _GrowingRecord(**_head(case, result, contents), fields={}, makers=makers)
+
+
 def record(
     case: Case, *, result: Result | None = None, groups: Collection[str] | None = None
 ) -> ResultRecord:
@@ -102,7 +139,18 @@ def record(
     """
     result = solve(case) if result is None else result
     contents = contents_of(result)
-    makers: dict[str, Callable[[], Mapping[str, xr.Dataset]]] = {
+    fields: dict[str, xr.Dataset] = {}
+    for name, make in _makers(case, result, contents).items():
+        if groups is None or name in groups:
+            fields |= _under(name, make())
+    return ResultRecord(**_head(case, result, contents), fields=fields)
+
+
+def _makers(
+    case: Case, result: Result, contents: ResultContents
+) -> dict[str, Callable[[], Mapping[str, xr.Dataset]]]:
+    """What computes each group of fields."""
+    return {
         "gears": lambda: gear_shapes(case),
         "views": lambda: mesh_views(case),
         "bearings": lambda: _bearings(case, result),
@@ -110,16 +158,21 @@ def record(
         "uncertainty": lambda: _uncertainty(case, result),
         "pockets": lambda: _pockets(case, contents),
     }
-    fields = {name: make() for name, make in makers.items() if groups is None or name in groups}
-    return ResultRecord(
-        result=contents,
-        given=json.loads(json.dumps(case.given())),
-        created=datetime.now(UTC).isoformat(timespec="seconds"),
-        numbers=_numbers(result),
-        fields={
-            f"{group}/{name}": data for group, all_ in fields.items() for name, data in all_.items()
-        },
-    )
+
+
+def _head(case: Case, result: Result, contents: ResultContents) -> dict[str, Any]:
+    """What a record has beside its fields."""
+    return {
+        "result": contents,
+        "given": json.loads(json.dumps(case.given())),
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "numbers": _numbers(result),
+    }
+
+
+def _under(group: str, fields: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+    """The fields of a group by their paths."""
+    return {f"{group}/{name}": data for name, data in fields.items()}
 
 
 def _bearings(case: Case, result: Result) -> dict[str, xr.Dataset]:

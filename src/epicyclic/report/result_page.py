@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 import xarray as xr
 
@@ -46,65 +46,18 @@ from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.results.result import in_words
 from epicyclic.units import format_number, percent, unit_text
 
-__all__ = ["result_sections", "versions_line"]
+__all__ = ["result_section", "result_sections", "versions_line"]
 
 
 def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
     """All chapters for which the record has content."""
-    result, labels = record.result, record.labels
-    sections = [
-        Section(
-            "losses",
-            "Losses",
-            (
-                *standing_items(result),
-                *(_train_losses if result.kind == "train" else _losses)(result, drawings),
-            ),
-        ),
-        Section("uncertainty", "How well this is known", _uncertainty(record, drawings), BAND_LEAD),
-        Section("validity", "Validity", _validity(result), _validity_lead(result)),
-        Section("temperatures", "Temperatures", _heat(result, drawings)),
-        Section(
-            "gears",
-            "Gears",
-            (
-                *_gears(record, drawings),
-                *gallery(drawings, "teeth"),
-                *planets_table(result),
-            ),
-        ),
-        Section(
-            "load",
-            "Load on the teeth",
-            (
-                *mesh_tables(result, labels),
-                *gallery(drawings, "line-load", "pressure", "pair-load"),
-                *gallery(drawings, "transmission-error", "stiffness"),
-            ),
-        ),
-        Section(
-            "friction",
-            "Friction in the meshes",
-            gallery(drawings, "friction", "sliding", "film", "friction-power"),
-        ),
-        Section("bearing", *_bearings(record, drawings)),
-        Section(
-            "pockets",
-            "Pockets",
-            gallery(drawings, "pocket-pressure", "pocket-volume", "pocket-power"),
-            _POCKET_LEAD,
-        ),
-        Section("oil", "Oil", tuple(oil_table(result, labels))),
-        Section("methods", "Methods and assumptions", _methods(result)),
-        Section(
-            "inputs",
-            "Inputs",
-            tuple(input_tables(result.inputs, record.given, result.models)),
-            _INPUT_LEAD,
-        ),
-        Section("versions", "Versions", (versions_line(result.versions),)),
-    ]
+    sections = (result_section(record, drawings, name) for name in _CHAPTERS)
     return [section for section in sections if section.items]
+
+
+def result_section(record: ResultRecord, drawings: Drawings, name: str) -> Section:
+    """One chapter, without content if the record has none for it."""
+    return _CHAPTERS[name](record, drawings)
 
 
 _DIAMETERS = ("reference_diameter", "base_diameter", "tip_diameter", "root_diameter")
@@ -292,3 +245,76 @@ def _model_key(key: str) -> str:
 def versions_line(versions: Mapping[str, str]) -> Listing:
     """The program, and the libraries that it computed with."""
     return Listing((", ".join(f"{name} {version}" for name, version in versions.items()),))
+
+
+def _losses_chapter(record: ResultRecord, drawings: Drawings) -> Section:
+    result = record.result
+    losses = _train_losses if result.kind == "train" else _losses
+    return Section("losses", "Losses", (*standing_items(result), *losses(result, drawings)))
+
+
+def _validity_chapter(record: ResultRecord, drawings: Drawings) -> Section:
+    result = record.result
+    return Section("validity", "Validity", _validity(result), _validity_lead(result))
+
+
+def _gears_chapter(record: ResultRecord, drawings: Drawings) -> Section:
+    items: tuple[Item, ...] = (
+        *_gears(record, drawings),
+        *gallery(drawings, "teeth"),
+        *planets_table(record.result),
+    )
+    return Section("gears", "Gears", items)
+
+
+def _load_chapter(record: ResultRecord, drawings: Drawings) -> Section:
+    items: tuple[Item, ...] = (
+        *mesh_tables(record.result, record.labels),
+        *gallery(drawings, "line-load", "pressure", "pair-load"),
+        *gallery(drawings, "transmission-error", "stiffness"),
+    )
+    return Section("load", "Load on the teeth", items)
+
+
+def _friction_chapter(record: ResultRecord, drawings: Drawings) -> Section:
+    items = gallery(drawings, "friction", "sliding", "film", "friction-power")
+    return Section("friction", "Friction in the meshes", items)
+
+
+def _pockets_chapter(record: ResultRecord, drawings: Drawings) -> Section:
+    items = gallery(drawings, "pocket-pressure", "pocket-volume", "pocket-power")
+    return Section("pockets", "Pockets", items, _POCKET_LEAD)
+
+
+def _inputs_chapter(record: ResultRecord, drawings: Drawings) -> Section:
+    result = record.result
+    tables = tuple(input_tables(result.inputs, record.given, result.models))
+    return Section("inputs", "Inputs", tables, _INPUT_LEAD)
+
+
+_CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
+    "losses": _losses_chapter,
+    "uncertainty": lambda record, drawings: Section(
+        "uncertainty", "How well this is known", _uncertainty(record, drawings), BAND_LEAD
+    ),
+    "validity": _validity_chapter,
+    "temperatures": lambda record, drawings: Section(
+        "temperatures", "Temperatures", _heat(record.result, drawings)
+    ),
+    "gears": _gears_chapter,
+    "load": _load_chapter,
+    "friction": _friction_chapter,
+    "bearing": lambda record, drawings: Section("bearing", *_bearings(record, drawings)),
+    "pockets": _pockets_chapter,
+    "oil": lambda record, drawings: Section(
+        "oil", "Oil", tuple(oil_table(record.result, record.labels))
+    ),
+    "methods": lambda record, drawings: Section(
+        "methods", "Methods and assumptions", _methods(record.result)
+    ),
+    "inputs": _inputs_chapter,
+    "versions": lambda record, drawings: Section(
+        "versions", "Versions", (versions_line(record.result.versions),)
+    ),
+}
+"""By name; each computes nothing of a growing record that it does not show."""
