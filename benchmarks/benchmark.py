@@ -505,7 +505,7 @@ def show_contacts() -> None:
 
 
 def page_seconds() -> float:
-    """From the request to the whole page of the app with its form; results follow later."""
+    """From the request to the page of the app; its form and results follow over the websocket."""
     command = [sys.executable, "-m", "epicyclic", "app", "talbot-2012", "--no-browser"]
     opener = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
@@ -529,20 +529,27 @@ def show_app(point: float) -> None:
 
     moving = itertools.cycle(points())
 
-    def follow() -> None:
-        case = next(moving)
-        tasks.moved(case, print)
-        tasks.followed(case, "losses", print)
+    def figures() -> None:
+        tasks.moved(next(moving), print)
 
-    follow()
-    repeats = 4 * REPEATS
-    start = time.process_time()
-    for _ in range(repeats):
-        follow()
-    seconds = (time.process_time() - start) / repeats
-    show("moved input to its losses, processor time", f"{1e3 * seconds:.0f} ms", "300 ms",
-         f"{seconds / point:.0f}", "one operating point, warm")  # fmt: skip
-    show("first page", f"{page_seconds():.2f} s", "3 s")
+    def chapter() -> None:
+        study = tasks.Study(next(moving))
+        tasks.answered(study, "losses", print)
+        tasks.picture(study, "losses", tasks.IN_PAGE, print)
+
+    told = ("one operating point, warm", "chapter of losses, beside it")
+    for work, name, about in zip(
+        (figures, chapter), ("key figures", "first figure"), told, strict=True
+    ):
+        work()
+        repeats = 4 * REPEATS
+        start = time.process_time()
+        for _ in range(repeats):
+            work()
+        seconds = (time.process_time() - start) / repeats
+        show(f"moved input to its {name}, processor time", f"{1e3 * seconds:.0f} ms", "300 ms",
+             f"{seconds / point:.0f}", about)  # fmt: skip
+    show("first page, its form to follow", f"{page_seconds():.2f} s", "3 s")
 
 
 def main() -> None:

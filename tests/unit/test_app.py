@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import shlex
 
 import pytest
@@ -15,15 +16,25 @@ from epicyclic.app import tasks
 from epicyclic.app.desk import Desk, built_in, opened, received
 from epicyclic.app.form import form_of
 from epicyclic.app.guard import LARGEST_BODY, Guard
+from epicyclic.app.latest import Latest
 from epicyclic.app.serve import names_of
+from epicyclic.app.shelves import Shelves
 from epicyclic.app.worker import Ended, Worker, WorkError
+from epicyclic.case.case import build_case
 from epicyclic.case.fields import all_keys
 from epicyclic.errors import InputError
+from listed_trains import ravigneaux
 
 TOKEN, HOST = "the-token", "127.0.0.1:4711"
 
 
 # --- the form -------------------------------------------------------------------------------------
+
+
+def _groups(group):
+    yield group
+    for inner in group.groups:
+        yield from _groups(inner)
 
 
 @pytest.mark.parametrize("name", ["talbot-2012", "talbot-2012-pair"])
@@ -32,7 +43,8 @@ def test_the_form_has_every_key_of_the_schema_that_holds_a_value(name):
     shown = {entry.key for entry in desk.form().walk()}
     presets = (".material.", "lubricant.oil.", "NAME")
     expected = {key for key in all_keys(type(desk.case)) if not any(one in key for one in presets)}
-    assert expected - shown == {"kind"}
+    named = {group.key for group in _groups(desk.form()) if group.sample}
+    assert expected - shown - named == {"kind"}
 
 
 def test_numbers_are_shown_in_the_unit_of_the_field_and_typed_in_it(talbot):
@@ -49,6 +61,45 @@ def test_numbers_are_shown_in_the_unit_of_the_field_and_typed_in_it(talbot):
 def test_fields_of_a_train_are_those_of_its_sets():
     keys = {entry.key for entry in opened("train-eaxle").form().walk()}
     assert {"operation.speed", "sets.planets.sun.teeth", "sets.pair.gears.normal_module"} <= keys
+
+
+def test_tables_of_names_take_new_ones_wherever_the_schema_has_them():
+    found = {group.key: group for group in _groups(opened("train-8hp70").form()) if group.kinds}
+    plain = {"shafts", "positions", "operation.speeds", "operation.torques", "thermal.jet_shares"}
+    tables = {"sets", "states", "bearings", "seals", "drags", "uncertainty", "thermal.conductances"}
+    assert plain | tables <= found.keys()
+    assert all(found[key].sample for key in plain)
+    assert not any(found[key].sample for key in tables)
+    assert found["positions"].sample.unit == "mm"
+    kinds = {kind.about: kind.tables for kind in found["sets"].kinds}
+    assert kinds["A gear pair of given efficiency."] == {"pinion": {}, "gear": {}, "efficiency": ""}
+    assert len(kinds) == 6
+
+
+def test_gears_of_a_listed_set_stand_beside_what_they_share():
+    tables = ravigneaux()
+    desk = Desk("x", tables, lambda changes: build_case(tables, changes, "x"))
+    assert desk.case is not None, desk.problems
+    ((name, table),) = desk.current["sets"].items()
+    gears = desk.form().find(f"sets.{name}.gears")
+    listed = {gear for gear, value in table["gears"].items() if isinstance(value, dict)}
+    assert {group.name for group in gears.groups} == listed
+    assert all(group.is_own for group in gears.groups)
+    assert f"sets.{name}.gears.normal_module" in {entry.key for entry in gears.entries}
+    assert desk.add(gears.key, "further", {}) == ""
+    assert desk.problems_of(f"{gears.key}.further.teeth")
+
+
+def test_each_form_of_a_set_that_is_added_is_the_one_of_its_fields():
+    desk = opened("train-8hp70")
+    sets = desk.form().find("sets")
+    for number, kind in enumerate(sets.kinds):
+        assert desk.add("sets", f"new{number}", kind.tables) == ""
+        group = desk.form().find(f"sets.new{number}")
+        assert group.about == kind.about
+        shown = {entry.key.split(".")[2] for entry in group.walk()}
+        assert {key for key, value in kind.tables.items() if value == ""} <= shown
+    assert {problem.key.split(".")[1] for problem in desk.problems} >= {"new0", "new3"}
 
 
 # --- changes --------------------------------------------------------------------------------------
@@ -84,6 +135,150 @@ def test_the_command_gives_the_same_case():
     words = shlex.split(desk.command())
     assert words[:3] == ["epicyclic", "run", "talbot-2012"]
     assert load_with(words[2], words[4::2]) == desk.case
+
+
+# --- names ----------------------------------------------------------------------------------------
+
+
+def test_a_name_is_added_renamed_and_removed_with_the_checks_of_the_case_file():
+    desk = opened("train-eaxle")
+    before = desk.case
+    assert desk.add("bearings", "N1", {}) == ""
+    missing = {problem.key for problem in desk.problems}
+    assert {"bearings.N1.type", "bearings.N1.shaft"} <= missing
+    assert desk.problems_of("bearings.N1.bore")[0].allowed.startswith("is missing")
+    assert desk.rename("bearings.N1", "N 2") == ""
+    assert desk.problems_of('bearings."N 2".bore')
+    desk.remove('bearings."N 2"')
+    assert desk.changes == {}
+    assert desk.case == before
+
+
+def test_a_dot_in_the_name_of_a_set_is_told_as_in_a_case_file():
+    desk = opened("train-8hp70")
+    (name, *_) = desk.current["sets"]
+    assert desk.rename(f"sets.{name}", "P.1") == ""
+    assert any("is no name for a set" in problem.allowed for problem in desk.problems)
+    assert desk.case is None
+
+
+def test_what_names_a_state_that_is_gone_is_told():
+    desk = opened("train-8hp70")
+    state = desk.current["operation"]["state"]
+    desk.remove(f'states."{state}"' if not str(state).isalnum() else f"states.{state}")
+    assert desk.problems_of("operation.state")
+
+
+def test_values_under_names_are_read_with_their_unit():
+    desk = opened("talbot-2012")
+    assert desk.add("uncertainty", "sun.roughness", {"normal": "12 %"}) == ""
+    assert desk.case is not None
+    assert desk.case.uncertainty["sun.roughness"].normal == "12 %"
+    assert desk.form().find('uncertainty."sun.roughness"').name == "sun.roughness"
+    assert desk.add("uncertainty", "sun.rougness", {"normal": "12 %"}) == ""
+    assert desk.problems
+    desk.remove('uncertainty."sun.rougness"')
+    sample = desk.form().find("lubrication.immersion").sample
+    assert sample.value("17") == "17 mm"
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("  ", "missing"),
+        ('a"b', "quotation"),
+        ("a\\b", "backslashes"),
+        ("a\nb", "control"),
+        ("planets", "already"),
+    ],
+)
+def test_a_name_that_cannot_be_is_refused_at_once(name, told):
+    desk = opened("train-eaxle")
+    assert told in desk.add("sets", name, {})
+    assert told in desk.rename("sets.pair", name)
+    assert desk.changes == {}
+
+
+def test_a_case_with_names_of_the_user_comes_back_from_its_command_and_its_file(tmp_path):
+    from epicyclic.cli.options import load_with
+
+    desk = opened("train-eaxle")
+    assert desk.rename("sets.pair", "last stage") == ""
+    for key, value in _with_other_names(desk.current, "pair", "last stage").items():
+        desk.change(key, value)
+    assert desk.case is not None, desk.problems
+    words = shlex.split(desk.command())
+    assert load_with(words[2], words[4::2]) == desk.case
+    file = tmp_path / "saved.toml"
+    file.write_text(desk.text(), encoding="utf-8")
+    assert opened(str(file)).case == desk.case
+
+
+def _with_other_names(tables, old, new):
+    """Tables that name a set, with its other name."""
+    text = {key: json.dumps(tables[key]) for key in tables if key not in ("sets", "kind", "title")}
+    return {
+        key: json.loads(it.replace(f'"{old}.', f'"{new}.')) for key, it in text.items() if old in it
+    }
+
+
+# --- what follows an input, and what each tab has -------------------------------------------------
+
+
+def test_work_follows_the_last_value_and_never_queues():
+    done, now = [], [0]
+
+    async def work():
+        seen = now[0]
+        await asyncio.sleep(0.01)
+        done.append(seen)
+
+    async def run():
+        latest = Latest(work)
+        wanted = []
+        for value in range(1, 24):
+            now[0] = value
+            wanted.append(asyncio.ensure_future(latest.want()))
+            await asyncio.sleep(0.001)
+        await asyncio.gather(*wanted)
+
+    asyncio.run(run())
+    assert 1 < len(done) < 20
+    assert done == sorted(set(done))
+    assert done[-1] == 23
+
+
+def test_each_tab_has_a_case_of_its_own_that_outlives_its_page(tmp_path):
+    shelves = Shelves(opened("talbot-2012"), tmp_path, most=2)
+    first, second = shelves.take("a", "page 1"), shelves.take("b", "page 2")
+    first.desk.change("operation.torque", "310 N*m")
+    assert second.desk.changes == {}
+    assert first.folder != second.folder
+    assert shelves.take("c", "page 3") is None
+    assert shelves.take("a", "page 4") is first
+    shelves.leave("a", "page 1")  # the page that was loaded again
+    assert not first.quick.is_closed
+    shelves.leave("a", "page 4")
+    assert all(worker.is_closed for worker in first.workers)
+    copied = shelves.take("c", "page 5", before="a")
+    assert copied.desk.changes == first.desk.changes
+    assert copied.desk is not first.desk
+    shelves.leave("c", "page 5")
+    back = shelves.take("a", "page 6")
+    assert back.desk is first.desk
+    assert not any(worker.is_closed for worker in back.workers)
+    shelves.close()
+    assert all(worker.is_closed for shelf in (back, second) for worker in shelf.workers)
+
+
+def test_cases_of_closed_tabs_are_forgotten_with_their_files(tmp_path, monkeypatch):
+    monkeypatch.setattr("epicyclic.app.shelves.MOST_KEPT", 3)
+    shelves = Shelves(opened("talbot-2012"), tmp_path, most=2)
+    folders = []
+    for number in range(5):
+        folders.append(shelves.take(f"tab {number}", "page").folder)
+        shelves.leave(f"tab {number}", "page")
+    assert [folder.exists() for folder in folders] == [False, False, True, True, True]
 
 
 # --- who may talk to it ---------------------------------------------------------------------------
@@ -224,11 +419,13 @@ class _Here:
 def simulate(tmp_path):
     from nicegui.testing import user_simulation
 
-    from epicyclic.app.page import Page, Shelf
+    from epicyclic.app.page import Page, add_assets
+    from epicyclic.app.shelves import Shelf
 
     def run(desk: Desk, script) -> None:
         async def root():
-            await Page(Shelf(desk, _Here(), _Here(), tmp_path)).build()
+            add_assets()
+            Page(Shelf(desk, tmp_path, _Here(), _Here(), _Here())).build()
 
         async def visit():
             async with user_simulation(root=root) as user:
@@ -346,6 +543,13 @@ def test_the_worker_tells_progress_and_errors_and_can_be_ended():
         with pytest.raises(Ended):
             await worker.do(app_tasks.endless, progress=lambda *at: worker.end())
         assert await worker.do(app_tasks.doubled, 4, progress=lambda *at: None) == 8
+        waiting = asyncio.ensure_future(worker.do(app_tasks.endless, progress=lambda *at: None))
+        await asyncio.sleep(0.1)
+        worker.close()
+        with pytest.raises(Ended):
+            await waiting
+        with pytest.raises(Ended):
+            await worker.do(app_tasks.doubled, 3, progress=print)
 
     async def run():
         worker = Worker()

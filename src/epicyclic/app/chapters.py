@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable, Callable
 from typing import Protocol
 
-from nicegui import ui
+from nicegui import background_tasks, ui
 
+from epicyclic.app import tasks
 from epicyclic.app.sheet import Do, Sheet
 from epicyclic.app.tasks import Answer, Study
 from epicyclic.app.turning import TurningView
 from epicyclic.report.page import Section
 
 __all__ = ["Chapters", "View"]
-
-TURNS = "gears"
-"""The chapter in which gears turn."""
 
 
 class View(Protocol):
@@ -24,6 +23,9 @@ class View(Protocol):
 
     async def show(self) -> None:
         """Make its elements."""
+
+    def age(self) -> None:
+        """Mark what is of another case than that of the form."""
 
     async def follow(self) -> None:
         """After a change of the case, while it is shown."""
@@ -37,61 +39,96 @@ class Chapters:
     do : callable
         Has a task done.
     views : dict of str to View
+    want : callable
+        Has the chapter that was opened follow the case.
     """
 
-    def __init__(self, do: Do, views: dict[str, View]) -> None:
-        self._do, self._views = do, views
+    def __init__(self, do: Do, views: dict[str, View], want: Callable[[], Awaitable[None]]) -> None:
+        self._do, self._views, self._want = do, views, want
         self._turning = TurningView(do)
-        self._study: Study | None = None
-        self._answer: Answer
+        self._answer: Answer | None = None
         self._sections: dict[str, Section] = {}
-        self.sheet = Sheet(do)
-        self._tabs = ui.tabs(on_change=self._open).props("dense no-caps align=left outside-arrows")
+        self._sheet: Sheet | None = None
+        self._tabs = ui.tabs(on_change=self._open).props("dense no-caps align=left")
         self._body = ui.element("div").classes("chapter")
 
     def clear(self) -> None:
         """Show nothing: another case is opened."""
-        self._sections, self._study = {}, None
+        self._answer, self._sections, self._sheet = None, {}, None
         self._tabs.clear()
         self._body.clear()
-        self.sheet = Sheet(self._do)
 
-    async def show(self, study: Study, answer: Answer) -> None:
-        """Show the chapters of a result, the same one open as before."""
-        self._study, self._answer = study, answer
+    def age(self, now: Study) -> None:
+        """Mark what is of another study than the one of now."""
+        if self._sheet is not None:
+            self._sheet.age(now)
+            self._turning.age(now)
+        elif self._tabs.value in self._views:
+            self._views[str(self._tabs.value)].age()
+
+    async def follow(self, study: Study, is_wanted: Callable[[], bool]) -> None:
+        """Show a study in the tab that is open, figure by figure while that is wanted."""
+        name = str(self._tabs.value)
+        if name in self._views:
+            background_tasks.create(self._views[name].follow())
+        elif name in self._sections:
+            answer = await self._do(tasks.answered, study, name)
+            if self._tabs.value != name or self._body.is_deleted:
+                return
+            (section,) = answer.sections
+            if not self._update(section, study, answer):
+                self._build(section, study, answer)
+            await self._draw(is_wanted)
+
+    async def complete(self, study: Study) -> None:
+        """Have tabs for all chapters of a study that is shown, the same one open as before."""
+        self._answer = answer = await self._do(tasks.answered, study, "")
+        if self._body.is_deleted:
+            return
         sections = {section.name: section for section in answer.sections}
         if list(sections) != list(self._sections):
-            self._tabs.clear()
             first, *others = [(name, section.title) for name, section in sections.items()]
             views = [(name, view.title) for name, view in self._views.items()]
+            self._tabs.clear()
             with self._tabs:
                 for name, title in (first, *views, *others):
                     ui.tab(name, label=title)
         self._sections = sections
-        if self._tabs.value in sections:
-            await self._open()
-        elif self._tabs.value in self._views:
-            await self._views[str(self._tabs.value)].follow()
-        else:
+        if self._tabs.value not in sections and self._tabs.value not in self._views:
             self._tabs.set_value(next(iter(sections)))
 
     async def _open(self) -> None:
         name = str(self._tabs.value)
-        if name not in self._sections and name not in self._views:
-            return
         self._body.clear()
+        self._sheet = None
         with self._body:
             if name in self._views:
-                self.sheet = Sheet(self._do)
                 await self._views[name].show()
-            elif self._study is not None:
-                await self._show_section(self._sections[name], self._study)
+            elif name in self._sections:
+                ui.spinner(size="2em")
+        await self._want()
 
-    async def _show_section(self, section: Section, study: Study) -> None:
-        self.sheet = sheet = Sheet(self._do, self._answer.wide)
-        if section.name == TURNS:
-            self._turning.build(self._answer.turning)
-        sheet.section(section, study)
-        if section.name == TURNS:
-            await self._turning.draw(study.case)
-        await sheet.draw()
+    def _update(self, section: Section, study: Study, answer: Answer) -> bool:
+        """Show a chapter in the place of the same one; False if it has another form."""
+        if self._sheet is None or self._turning.titles != list(answer.turning):
+            return False
+        return self._sheet.update(study, [section], answer.wide)
+
+    def _build(self, section: Section, study: Study, answer: Answer) -> None:
+        self._sheet = sheet = Sheet(self._do, study, answer.wide)
+        self._body.clear()
+        with self._body:
+            self._turning.build(answer.turning)
+            sheet.section(section)
+
+    async def _draw(self, is_wanted: Callable[[], bool]) -> None:
+        sheet = self._sheet
+        assert sheet is not None
+
+        def is_shown() -> bool:
+            return sheet is self._sheet and is_wanted()
+
+        sheet.age(sheet.study)
+        await self._turning.draw(sheet.study, is_shown)
+        if is_shown():
+            await sheet.draw(is_shown)

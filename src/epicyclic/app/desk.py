@@ -12,15 +12,16 @@ from epicyclic import library
 from epicyclic.app.form import Group, form_of
 from epicyclic.case.base import FILE_KEYS
 from epicyclic.case.case import Case, build_case, changed_tables
+from epicyclic.case.plain import value_at
 from epicyclic.case.reading import read_file
-from epicyclic.case.template import case_text, toml_value
+from epicyclic.case.template import case_text, toml_key, toml_value
 from epicyclic.case.train_text import train_text
 from epicyclic.case.wording import dotted, key_parts, written
 from epicyclic.errors import InputError, Problem
 from epicyclic.exchange.load import load_case
 from epicyclic.exchange.rexs.file import is_rexs
 
-__all__ = ["ENDINGS", "Desk", "built_in", "opened", "received"]
+__all__ = ["ENDINGS", "Desk", "built_in", "opened", "owner_of", "received"]
 
 ENDINGS = (".toml", ".rexs", ".rexsj", ".rexsz")
 """Of files that hold a case."""
@@ -70,6 +71,10 @@ class Desk:
         """The tables with the changes, sound or not."""
         return changed_tables(self.tables, self.changes)
 
+    def copy(self) -> Desk:
+        """Another desk of the same case with the same changes."""
+        return Desk(self.source, self.tables, self.build, self.original, dict(self.changes))
+
     def form(self) -> Group:
         """The form as it is now."""
         return form_of(self.current)
@@ -82,6 +87,48 @@ class Desk:
             changes = changed
         self.changes = changes
         self._check()
+
+    def add(self, table: str, name: str, value: Any) -> str:
+        """Add a name of the user to a table of names; what is wrong with the name, or nothing."""
+        name = name.strip()
+        if told := self._refused(table, name):
+            return told
+        self.change(f"{table}.{toml_key(name)}", value)
+        return ""
+
+    def remove(self, key: str) -> None:
+        """Remove a name or a table with all that it holds."""
+        inside = f"{key}."
+        self.changes = {
+            name: value for name, value in self.changes.items() if not name.startswith(inside)
+        }
+        self.change(key, None)
+
+    def rename(self, key: str, name: str) -> str:
+        """Give what a name of the user stands for another name; what is wrong with it, or nothing.
+
+        What names it elsewhere keeps the old name, as in a case file.
+        """
+        name = name.strip()
+        table = owner_of(key)
+        if name == key_parts(key)[-1]:
+            return ""
+        if told := self._refused(table, name):
+            return told
+        value = value_at(self.current, key_parts(key))
+        self.remove(key)
+        self.change(f"{table}.{toml_key(name)}", value)
+        return ""
+
+    def _refused(self, table: str, name: str) -> str:
+        """Why a table of names cannot take a new name."""
+        if not name:
+            return "A name is missing. Give one."
+        if set(name) & set('"\\') or not name.isprintable():
+            return "Names have no quotation marks, backslashes or control characters."
+        if value_at(self.current, [*key_parts(table), name]) is not None:
+            return f"{table} has {name} already. Choose another name."
+        return ""
 
     def _check(self) -> None:
         typed = list(_elsewhere(self.changes))
@@ -108,6 +155,11 @@ class Desk:
         """The case file of the case as it is now."""
         write = train_text if self.tables["kind"] == "train" else case_text
         return write(self.current, [_HEAD], {})
+
+
+def owner_of(key: str) -> str:
+    """The table that holds a key."""
+    return ".".join(map(toml_key, key_parts(key)[:-1]))
 
 
 def _text(value: Any) -> str:

@@ -8,8 +8,10 @@ from functools import partial
 from nicegui import ui
 from nicegui.element import Element
 
-from epicyclic.app.desk import Desk
+from epicyclic.app.desk import Desk, owner_of
 from epicyclic.app.form import Entry, Group
+from epicyclic.app.names import ask_for_name, ask_for_new
+from epicyclic.case.template import toml_key
 
 __all__ = ["Form"]
 
@@ -38,6 +40,7 @@ class Form:
         self._desk, self._changed, self._moved = desk, changed, moved
         self._fields: dict[str, ui.input | ui.select] = {}
         self._groups: dict[str, ui.expansion] = {}
+        self._open = {_OPEN}
         form = desk.form()
         for entry in form.entries:
             self._field(entry)
@@ -54,28 +57,82 @@ class Form:
             group.classes(**{"add" if wrong else "remove": "wrong"})
 
     def _group(self, group: Group) -> None:
-        name = group.key.rpartition(".")[2]
-        is_open = group.key == _OPEN
-        box = ui.expansion(name, caption=group.about, value=is_open).classes("group")
+        is_open = group.key in self._open
+        box = ui.expansion(group.name, caption=group.about, value=is_open).classes("group")
         box.classes(add="" if group.is_given else "unset").mark(f"group-{group.key}")
         self._groups[group.key] = box
         if is_open:
             self._fill(box, group)
-        else:
-            box.on_value_change(partial(self._fill_once, box, group))
+        box.on_value_change(partial(self._opened, box, group.key))
 
-    def _fill_once(self, box: ui.expansion, group: Group) -> None:
+    def _opened(self, box: ui.expansion, key: str) -> None:
         """Fields are made when they are first looked at: there are hundreds."""
-        if not box.default_slot.children:
+        if not box.value:
+            self._open.discard(key)
+            return
+        self._open.add(key)
+        group = self._desk.form().find(key)
+        if not box.default_slot.children and group is not None:
             self._fill(box, group)
             self.show_problems()
 
     def _fill(self, box: Element, group: Group) -> None:
         with box:
+            if group.is_own or (group.is_optional and group.is_given):
+                with ui.row().classes("own"):
+                    if group.is_own:
+                        _small("Rename", partial(self._ask_rename, group.key, group.name))
+                    _small("Remove", partial(self._remove, group.key))
             for entry in group.entries:
                 self._field(entry)
             for inner in group.groups:
                 self._group(inner)
+            if group.kinds:
+                _small(f"Add to {group.name}", partial(self._ask_new, group))
+
+    async def _renew(self, key: str) -> None:
+        """Make the fields of a group again: it has other names."""
+        group, box = self._desk.form().find(key), self._groups[key]
+        below = f"{key}."
+        for known in (self._fields, self._groups):
+            for inner in [one for one in known if one.startswith(below)]:
+                del known[inner]
+        box.clear()
+        box.classes(**{"remove" if group and group.is_given else "add": "unset"})
+        if group is not None and key in self._open:
+            self._fill(box, group)
+        await self._changed()
+
+    async def _remove(self, key: str) -> None:
+        self._desk.remove(key)
+        await self._renew(self._owner(key))
+
+    def _owner(self, key: str) -> str:
+        """The group that holds a key, or its own if that stands outside of groups."""
+        owner = owner_of(key)
+        return owner if owner in self._groups else key
+
+    def _ask_rename(self, key: str, name: str) -> None:
+        async def rename(new: str) -> str:
+            is_open = key in self._open
+            if told := self._desk.rename(key, new):
+                return told
+            if is_open:
+                self._open.add(f"{owner_of(key)}.{toml_key(new.strip())}")
+            await self._renew(owner_of(key))
+            return ""
+
+        ask_for_name(f"Rename {name}", name, rename)
+
+    def _ask_new(self, group: Group) -> None:
+        async def add(name: str, value: object) -> str:
+            if told := self._desk.add(group.key, name, value):
+                return told
+            self._open.add(f"{group.key}.{toml_key(name.strip())}")
+            await self._renew(group.key)
+            return ""
+
+        ask_for_new(group, add)
 
     def _field(self, entry: Entry) -> None:
         with ui.element("div").classes("holder"):
@@ -87,6 +144,11 @@ class Form:
             with field:
                 ui.tooltip(f"{entry.key}: {entry.about}").props("delay=600 max-width=26rem")
         self._fields[entry.key] = field
+        if entry.is_own:
+            with field.add_slot("append"):
+                _icon("edit", "Rename", partial(self._ask_rename, entry.key, entry.name))
+                _icon("close", "Remove", partial(self._remove, entry.key))
+            return
         if not entry.choices and _number(entry.text) is not None:
             self._movable(entry, field)
 
@@ -142,6 +204,17 @@ def _line(entry: Entry) -> ui.input:
         suffix=entry.unit,
         autocomplete=list(entry.suggestions),
     )
+
+
+def _small(label: str, then: Callable[[], object]) -> None:
+    """A button for names."""
+    ui.button(label, on_click=then).props("flat dense no-caps size=sm")
+
+
+def _icon(icon: str, label: str, then: Callable[[], object]) -> None:
+    """A button in a field."""
+    button = ui.button(icon=icon, on_click=then).props("flat dense round size=sm tabindex=-1")
+    button.tooltip(label)
 
 
 def _number(text: str) -> float | None:

@@ -22,10 +22,12 @@ from epicyclic.case.fields import (
     tables_in,
 )
 from epicyclic.case.template import toml_key, toml_value
+from epicyclic.case.train import form_of_set
+from epicyclic.case.train_tables import PlanetarySet
 from epicyclic.case.values import parse_value
 from epicyclic.units import Quantity, unit_text
 
-__all__ = ["Entry", "Group", "form_of"]
+__all__ = ["Entry", "Group", "Kind", "form_of"]
 
 _KINDS: dict[str, type[BaseModel]] = {
     "planetary": PlanetaryCase,
@@ -35,6 +37,8 @@ _KINDS: dict[str, type[BaseModel]] = {
 _SHORT = 3
 """Tables of no more keys stand among those of the table that holds them."""
 _YES_NO = ("true", "false")
+_MEMBERS, _GEARS = "members", "gears"
+"""Table of the gears of a listed set in the schema, and in a file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +69,8 @@ class Entry:
         Of keys with a unit.
     is_text : bool
         True if what is typed is not read as a number or a list.
+    is_own : bool
+        True if the user chose the name.
     """
 
     key: str
@@ -78,6 +84,7 @@ class Entry:
     is_required: bool
     quantity: Quantity | None
     is_text: bool
+    is_own: bool = False
 
     def value(self, text: str) -> Any:
         """What a case file has for what was typed; None for nothing."""
@@ -93,20 +100,65 @@ class Entry:
 
 
 @dataclass(frozen=True, slots=True)
+class Kind:
+    """What a new name may stand for.
+
+    Attributes
+    ----------
+    about : str
+        First line of its description.
+    tables : dict or None
+        What the name holds at first; None if it is a value, not a table.
+    """
+
+    about: str
+    tables: dict[str, Any] | None
+
+
+@dataclass(frozen=True, slots=True)
 class Group:
-    """One table of a case: its keys, and the tables in it."""
+    """One table of a case: its keys, and the tables in it.
+
+    Attributes
+    ----------
+    key, name : str
+        Dotted, as in ``--set``; its last part.
+    about : str
+    entries : tuple of Entry
+    groups : tuple of Group
+    is_given : bool
+    is_own : bool
+        True if the user chose the name.
+    is_optional : bool
+        True if a case may do without the table.
+    kinds : tuple of Kind
+        What new names in it may stand for; empty if it has none of the user.
+    sample : Entry or None
+        How values of new names are read, if they are no tables.
+    """
 
     key: str
+    name: str
     about: str
     entries: tuple[Entry, ...]
     groups: tuple[Group, ...]
     is_given: bool
+    is_own: bool = False
+    is_optional: bool = False
+    kinds: tuple[Kind, ...] = ()
+    sample: Entry | None = None
 
     def walk(self) -> Iterator[Entry]:
         """All entries, also of the groups within."""
         yield from self.entries
         for group in self.groups:
             yield from group.walk()
+
+    def find(self, key: str) -> Group | None:
+        """The group of a key, here or within."""
+        if self.key == key:
+            return self
+        return next(filter(None, (group.find(key) for group in self.groups)), None)
 
 
 def form_of(tables: Mapping[str, Any]) -> Group:
@@ -117,56 +169,113 @@ def form_of(tables: Mapping[str, Any]) -> Group:
     tables : mapping
         As a case file has them, with the kind.
     """
-    return _group(_KINDS[tables["kind"]], "", tables)
+    return _group(_KINDS[tables["kind"]], "", "", tables)
 
 
-def _group(table: type[BaseModel], key: str, given: Mapping[str, Any]) -> Group:
+def _group(table: type[BaseModel], key: str, name: str, given: Mapping[str, Any]) -> Group:
     entries: list[Entry] = []
     groups: list[Group] = []
-    for name, field in table.model_fields.items():
-        if name == "kind":
+    for own, field in table.model_fields.items():
+        if own in ("kind", _MEMBERS):
             continue
-        full = f"{key}.{name}" if key else name
-        value = given.get(name)
-        inner = _inner(full, field, value)
+        full = f"{key}.{own}" if key else own
+        value = given.get(own)
+        inner = _inner(full, own, field, value)
         if inner is None:
-            entries.append(_entry(full, name, field, value))
-        elif key and not inner.groups and len(inner.entries) <= _SHORT:
-            entries += [_renamed(entry, full, name) for entry in inner.entries]
+            entries.append(_entry(full, own, field, value))
+        elif key and not inner.groups and not inner.kinds and len(inner.entries) <= _SHORT:
+            entries += [_renamed(entry, full, own) for entry in inner.entries]
         else:
             groups.append(inner)
+    if _MEMBERS in table.model_fields:
+        groups = _with_members(table, f"{key}.{_GEARS}", given, groups)
     about = (table.__doc__ or "").strip().partition("\n")[0]
-    return Group(key, about, tuple(entries), tuple(groups), bool(given))
+    return Group(key, name, about, tuple(entries), tuple(groups), bool(given))
+
+
+def _with_members(
+    table: type[BaseModel], key: str, given: Mapping[str, Any], groups: list[Group]
+) -> list[Group]:
+    """Groups of a listed set; a file has its gears beside what they share."""
+    shared = next((group for group in groups if group.key == key), None)
+    others = [group for group in groups if group is not shared]
+    gears = given.get(_GEARS)
+    listed = {
+        name: gear
+        for name, gear in (gears if isinstance(gears, Mapping) else {}).items()
+        if isinstance(gear, Mapping)
+    }
+    named = _names(key, _GEARS, table.model_fields[_MEMBERS], listed)
+    about = "The gears, and what they share." if shared else "The gears."
+    return [replace(named, about=about, entries=shared.entries if shared else ()), *others]
 
 
 def _renamed(entry: Entry, key: str, name: str) -> Entry:
     return replace(entry, name=f"{name}{entry.key.removeprefix(key)}")
 
 
-def _inner(key: str, field: FieldInfo, value: Any) -> Group | None:
+def _inner(key: str, name: str, field: FieldInfo, value: Any) -> Group | None:
     """The group of a key that holds a table, or several by name; None of others."""
-    named = dict_value(field.annotation)
-    tables = list(tables_in(field.annotation if named is None else named))
-    is_array = entry_of(field.annotation) is not None or entry_of(named) is not None
+    if dict_value(field.annotation) is not None:
+        return _names(key, name, field, value if isinstance(value, Mapping) else {})
+    tables = list(tables_in(field.annotation))
+    is_array = entry_of(field.annotation) is not None
     if not tables or is_array or isinstance(value, str | tuple | list):
         return None
-    if named is None:
-        is_preset = value is None and _names(field) != ()
-        return None if is_preset else _group(_likeliest(tables, value or {}), key, value or {})
+    if value is None and _presets(field) != ():
+        return None
+    group = _group(_likeliest(tables, value or {}), key, name, value or {})
+    return replace(group, is_optional=not field.is_required() and field.default is None)
+
+
+def _names(key: str, name: str, field: FieldInfo, given: Mapping[str, Any]) -> Group:
+    """The group of a table of the user's names."""
+    value = dict_value(field.annotation)
+    tables = list(tables_in(value))
+    about = field.description or ""
+    if not tables or entry_of(value) is not None:
+        field_of_value = FieldInfo.from_annotation(value)
+        entries = tuple(
+            replace(_entry(f"{key}.{toml_key(own)}", own, field_of_value, item), is_own=True)
+            for own, item in given.items()
+        )
+        sample = _entry(key, name, field_of_value, None)
+        kind = Kind(sample.about, None)
+        return Group(key, name, about, entries, (), bool(given), kinds=(kind,), sample=sample)
     groups = tuple(
-        _group(_likeliest(tables, item), f"{key}.{toml_key(name)}", item)
-        for name, item in (value or {}).items()
+        replace(_group(_likeliest(tables, item), f"{key}.{toml_key(own)}", own, item), is_own=True)
+        for own, item in given.items()
         if isinstance(item, Mapping)
     )
-    return Group(key, field.description or "", (), groups, bool(value))
+    kinds = tuple(_kind(table, is_one=len(tables) == 1) for table in tables)
+    return Group(key, name, about, (), groups, bool(given), kinds=kinds)
+
+
+def _kind(table: type[BaseModel], *, is_one: bool) -> Kind:
+    """What a table holds at first: what tells it from others."""
+    about = (table.__doc__ or "").strip().partition("\n")[0]
+    if is_one:
+        return Kind(about, {})
+    needed = [name for name, field in table.model_fields.items() if field.is_required()]
+    needed += [group[0] for group in getattr(table, "EXACTLY_ONE", ())]
+    tables = {
+        _GEARS if name == _MEMBERS else name: {} if _has_tables(table, name) else ""
+        for name in needed
+    }
+    return Kind(about, tables)
+
+
+def _has_tables(table: type[BaseModel], name: str) -> bool:
+    return next(tables_in(table.model_fields[name].annotation), None) is not None
 
 
 def _likeliest(tables: list[type[BaseModel]], given: Mapping[str, Any]) -> type[BaseModel]:
-    """The table that knows most of the keys."""
-    return max(tables, key=lambda table: len(given.keys() & table.model_fields.keys()))
+    """The table that knows most of the keys; of a set, the form in which it is read."""
+    found = form_of_set(dict(given))[0] if PlanetarySet in tables else None
+    return found or max(tables, key=lambda table: len(given.keys() & table.model_fields.keys()))
 
 
-def _names(field: FieldInfo) -> tuple[str, ...]:
+def _presets(field: FieldInfo) -> tuple[str, ...]:
     """Names that stand for whole tables."""
     return next((item.names() for item in field.metadata if isinstance(item, Named)), ())
 
@@ -188,7 +297,7 @@ def _entry(key: str, name: str, field: FieldInfo, value: Any) -> Entry:
         about=told,
         unit=unit_text(quantity.display) if quantity is not None else "",
         choices=choices,
-        suggestions=_names(field),
+        suggestions=_presets(field),
         text=_shown(value, quantity),
         default="required" if field.is_required() else _shown(default, quantity),
         is_required=field.is_required(),

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import time
-from dataclasses import dataclass
+import asyncio
 from importlib import resources
-from pathlib import Path
 from typing import Any
 
 from nicegui import ui
@@ -15,39 +13,25 @@ from epicyclic.app.chapters import Chapters, View
 from epicyclic.app.desk import Desk
 from epicyclic.app.fields import Form
 from epicyclic.app.files import ask_for_case, save_menu
-from epicyclic.app.sheet import key_figures
+from epicyclic.app.latest import Latest
+from epicyclic.app.sheet import key_figures, mark_behind
+from epicyclic.app.shelves import Shelf
 from epicyclic.app.state import Doing
 from epicyclic.app.tasks import Study
 from epicyclic.app.views import CompareView, MapView
-from epicyclic.app.worker import Ended, Worker
+from epicyclic.app.worker import Ended
 from epicyclic.errors import EpicyclicError
 
-__all__ = ["Page", "Shelf"]
+__all__ = ["Page", "add_assets"]
 
-SLOW_SECONDS = 0.5
-"""Figures that take longer wait until an input stands still."""
 _VERBS = {"run": (), "check": (), "report": ("-o", "report.html")}
 """Commands that do what the page does, and what they need more."""
 
 
-@dataclass
-class Shelf:
-    """What is kept while pages come and go.
-
-    Attributes
-    ----------
-    desk : Desk
-        The case that is open.
-    worker, studies : Worker
-        Solves and draws; computes maps meanwhile.
-    folder : Path
-        For uploaded files.
-    """
-
-    desk: Desk
-    worker: Worker
-    studies: Worker
-    folder: Path
+def add_assets() -> None:
+    """What the page needs before it is connected."""
+    ui.add_css(_asset("app.css"))
+    ui.add_body_html(f"<script>{_asset('turning.js')}</script>")
 
 
 class Page:
@@ -60,19 +44,17 @@ class Page:
 
     def __init__(self, shelf: Shelf) -> None:
         self._shelf = shelf
-        self._wanted = 0
-        self._is_moving = self._has_moved = False
-        self._seconds: dict[str, float] = {}
+        self._is_moving = False
+        self._quick = Latest(self._follow_figures)
+        self._slow = Latest(self._follow_chapters)
 
     @property
     def desk(self) -> Desk:
         """The open case."""
         return self._shelf.desk
 
-    async def build(self) -> None:
+    def build(self) -> None:
         """Make the page; results follow when they are known."""
-        ui.add_css(_asset("app.css"))
-        ui.add_body_html(f"<script>{_asset('turning.js')}</script>")
         with ui.header().classes("bar"):
             ui.label("Epicyclic").classes("name")
             self._title = ui.label().classes("title")
@@ -84,14 +66,16 @@ class Page:
             self._form_place = ui.element("aside")
             with ui.element("main"):
                 self._problems = ui.element("div").classes("problems")
-                self._doing = Doing(self._shelf.worker.end)
+                self._failed = ui.label().classes("problem")
+                self._failed.set_visibility(False)
                 with ui.element("div") as self._results:
                     self._figures = ui.element("div").classes("key-figures")
+                    self._doing = Doing(self._shelf.slow.end)
                     views: dict[str, View] = {
-                        "map": MapView(lambda: self.desk, self._shelf.studies),
+                        "map": MapView(lambda: self.desk, self._shelf.maps),
                         "compare": CompareView(lambda: self.desk, self._do, self._choose),
                     }
-                    self._chapters = Chapters(self._do, views)
+                    self._chapters = Chapters(self._do, views, self._slow.want)
         self._build_form()
         ui.timer(0, self._changed, once=True)
 
@@ -115,84 +99,78 @@ class Page:
             ui.timer(0, self._changed, once=True)
 
     async def _do(self, *work: Any) -> Any:
-        return await self._shelf.worker.do(*work, progress=_silent)
+        return await self._shelf.slow.do(*work, progress=self._doing.progress)
 
     async def _changed(self) -> None:
         """After a change of the case."""
+        self._is_moving = False
+        await self._follow()
+
+    async def _moved(self) -> None:
+        """While an input moves."""
+        self._is_moving = True
+        await self._follow()
+
+    async def _follow(self) -> None:
         self._tell()
-        await self._solve()
+        if self.desk.case is not None:
+            self._chapters.age(Study(self.desk.case))
+            await asyncio.gather(self._quick.want(), self._slow.want())
 
     def _tell(self) -> None:
         """Title and problems of the case as it is."""
         self._title.set_text(self.desk.title)
         self._form.show_problems()
         self._problems.clear()
-        for problem in self.desk.problems:
-            self._say(str(problem))
-        is_stale = self.desk.case is None
-        self._results.classes(**{"add" if is_stale else "remove": "stale"})
+        with self._problems:
+            for problem in self.desk.problems:
+                ui.label(str(problem)).classes("problem")
+        self._fail("")
+        self._results.classes(**{"add" if self.desk.problems else "remove": "stale"})
+        mark_behind(self._figures, self.desk.case is not None)
 
-    async def _solve(self) -> None:
-        """Solve the case as it is, and show what comes out; the last change counts."""
+    async def _follow_figures(self) -> None:
+        """Key figures of the case as it is."""
         case = self.desk.case
-        self._wanted += 1
-        own = self._wanted
         if case is None:
             return
-        study = Study(case)
         try:
-            with self._doing.shown("solving"):
-                answer = await self._shelf.worker.do(
-                    tasks.answered, study, progress=self._doing.progress
-                )
-        except (Ended, EpicyclicError) as error:
-            self._say(str(error))
+            figures = await self._shelf.quick.do(tasks.moved, case, progress=self._doing.progress)
+        except (Ended, EpicyclicError):
+            return  # what follows the chapters says it
+        if self._figures.is_deleted:
             return
-        if own == self._wanted:
-            self._show_figures(answer.key_figures)
-            await self._chapters.show(study, answer)
-
-    async def _moved(self) -> None:
-        """While an input moves: what follows quickly, for the last of its values."""
-        self._has_moved = True
-        if self._is_moving:
-            return
-        self._is_moving = True
-        try:
-            while self._has_moved:
-                self._has_moved = False
-                self._tell()
-                if self.desk.case is not None:
-                    await self._follow()
-        except (Ended, EpicyclicError) as error:
-            self._say(str(error))
-        finally:
-            self._is_moving = False
-
-    async def _follow(self) -> None:
-        case = self.desk.case
-        self._show_figures(await self._do(tasks.moved, case))
-        place, name = self._chapters.sheet.first or (None, "")
-        if place is None or (self._has_moved and self._is_slow(name)):
-            return
-        before = time.monotonic()
-        svg = await self._do(tasks.followed, case, name)
-        self._seconds[name] = time.monotonic() - before
-        if svg and not place.is_deleted:
-            place.set_content(svg)
-
-    def _is_slow(self, name: str) -> bool:
-        """True for a figure that would hold up the next value."""
-        return self._seconds.get(name, 0.0) > SLOW_SECONDS
-
-    def _show_figures(self, figures: Any) -> None:
         self._figures.clear()
         with self._figures:
             key_figures(figures)
+        mark_behind(self._figures, case is not self.desk.case)
 
-    def _say(self, text: str) -> None:
-        with self._problems:
-            ui.label(text).classes("problem")
+    async def _follow_chapters(self) -> None:
+        """All else of the case as it is."""
+        case = self.desk.case
+        if case is None:
+            return
+        study = Study(case)
+
+        def is_wanted() -> bool:
+            """A picture that lags behind is better than none while an input moves."""
+            return self._is_moving or case is self.desk.case
+
+        try:
+            with self._doing.shown("solving"):
+                await self._chapters.follow(study, is_wanted)
+                if case is self.desk.case and not self._is_moving:
+                    await self._chapters.complete(study)
+        except (Ended, EpicyclicError) as error:
+            self._fail(str(error))
+        if self.desk.case is not None and not self._figures.is_deleted:
+            self._chapters.age(Study(self.desk.case))
+
+    def _fail(self, text: str) -> None:
+        """Say why the case was not solved."""
+        if not self._failed.is_deleted:
+            self._failed.set_text(text)
+            self._failed.set_visibility(bool(text))
 
     def _show_command(self) -> None:
         with ui.dialog() as dialog, ui.card().classes("command"):
@@ -205,7 +183,3 @@ class Page:
 def _asset(name: str) -> str:
     """A file of the package that goes into the page."""
     return (resources.files("epicyclic.app") / name).read_text(encoding="utf-8")
-
-
-def _silent(done: int, total: int) -> None:
-    """Progress that nobody waits for."""

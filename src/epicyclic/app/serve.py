@@ -13,21 +13,24 @@ from typing import NoReturn
 
 import uvicorn
 from fastapi import FastAPI
+from nicegui import app as nicegui_app
 from nicegui import ui
 
 from epicyclic.app.desk import Desk
 from epicyclic.app.guard import Guard
-from epicyclic.app.page import Page, Shelf
-from epicyclic.app.worker import Worker
+from epicyclic.app.page import Page, add_assets
+from epicyclic.app.shelves import Shelves
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["LOOPBACK", "application", "names_of", "serve"]
+__all__ = ["LOOPBACK", "application", "names_of", "serve", "show"]
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 """Addresses that only this machine can reach."""
 ANY = ("0.0.0.0", "::")
 """Stand for every address of this machine."""
 _TOKEN_BYTES = 24
+_OF_TAB = "tab"
+"""Key in the storage of a tab."""
 TERMINATED = 128 + signal.SIGTERM
 """Exit code after a signal, as shells have it."""
 
@@ -50,8 +53,8 @@ def serve(desk: Desk, host: str, port: int, told: Callable[[str], None]) -> None
         found = listening.getsockname()[1]
         shown, *others = names_of(host)
         hosts = [f"{name}:{found}" for name in (shown, *others)]
-        with _shelf(desk) as shelf:
-            app = Guard(application(shelf), token, hosts)
+        with _shelves(desk) as shelves:
+            app = Guard(application(shelves), token, hosts)
             told(f"http://{shown}:{found}/?token={token}")
             config = uvicorn.Config(
                 app, log_level="error", access_log=False, timeout_graceful_shutdown=1
@@ -72,16 +75,15 @@ def names_of(host: str) -> list[str]:
 
 
 @contextmanager
-def _shelf(desk: Desk) -> Iterator[Shelf]:
+def _shelves(desk: Desk) -> Iterator[Shelves]:
     """Processes and a folder that last as long as the server."""
-    workers = Worker(), Worker()
     signal.signal(signal.SIGTERM, _leave)  # what is below would be skipped
     with tempfile.TemporaryDirectory(prefix="epicyclic-app-") as folder:
+        shelves = Shelves(desk, Path(folder))
         try:
-            yield Shelf(desk, *workers, Path(folder))
+            yield shelves
         finally:
-            for worker in workers:
-                worker.end()
+            shelves.close()
 
 
 def _leave(number: int, frame: object) -> NoReturn:
@@ -105,12 +107,12 @@ def _listening(host: str, port: int) -> socket.socket:
     return listening
 
 
-def application(shelf: Shelf) -> FastAPI:
+def application(shelves: Shelves) -> FastAPI:
     """The pages, without anything that keeps others away."""
     app = FastAPI(openapi_url=None)
 
     async def root() -> None:
-        await Page(shelf).build()
+        await show(shelves)
 
     ui.run_with(
         app,
@@ -120,3 +122,24 @@ def application(shelf: Shelf) -> FastAPI:
         binding_refresh_interval=None,
     )
     return app
+
+
+async def show(shelves: Shelves) -> None:
+    """The page of the tab that asks for one, with the case that this tab had before."""
+    add_assets()
+    page = ui.context.client
+    await page.connected()
+    tab = page.tab_id
+    if tab is None:
+        return  # gone again
+    known = nicegui_app.storage.tab
+    shelf = shelves.take(tab, page.id, known.get(_OF_TAB, ""))
+    known[_OF_TAB] = tab  # the storage is copied with a tab that is duplicated
+    if shelf is None:
+        ui.label(
+            f"{shelves.most} tabs with this app are open, and no more can be: each computes by "
+            "itself. Close one, and load this page again."
+        ).classes("problem full")
+        return
+    page.on_delete(lambda: shelves.leave(tab, page.id))
+    Page(shelf).build()

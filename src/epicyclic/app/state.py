@@ -20,12 +20,11 @@ class Doing:
     """
 
     def __init__(self, end: Callable[[], None]) -> None:
-        with ui.row().classes("state") as self._row:
+        with ui.row().classes("state idle") as self._row:
             ui.spinner(size="1.2em")
             self._label = ui.label()
             self._bar = ui.linear_progress(0, show_value=False).classes("progress")
             ui.button("Cancel", on_click=end).props("flat dense no-caps")
-        self._row.set_visibility(False)
         self._count, self._noun = 0, ""
 
     @contextmanager
@@ -35,12 +34,13 @@ class Doing:
         self._count += 1
         self._label.set_text(noun)
         self._bar.set_visibility(False)
-        self._row.set_visibility(True)
+        self._row.classes(remove="idle")
         try:
             yield
         finally:
             self._count -= 1
-            self._row.set_visibility(self._count > 0)
+            if not self._count:
+                self._row.classes("idle")
 
     def progress(self, done: int, total: int) -> None:
         """Tell how far it is; without a total, functions that a first run has compiled."""

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +15,15 @@ from epicyclic.exchange.rexs.exporting import rexs_bytes
 from epicyclic.exchange.rexs.file import is_rexs
 from epicyclic.losses.direct import contacts_told
 from epicyclic.maps.compute import loss_map
-from epicyclic.plots.catalogue import Stored, available, figure_of
+from epicyclic.plots.catalogue import PLOTS, Stored, figure_of
 from epicyclic.plots.style import figure_bytes
 from epicyclic.plots.turning import POSITION, Turning, turning_mesh, turning_set
-from epicyclic.records.contents import set_of
-from epicyclic.records.record import ResultRecord, record, sets_of
+from epicyclic.records.contents import contents_of, set_of
+from epicyclic.records.record import ResultRecord, growing_record, sets_of
 from epicyclic.report.drawings import svg_text
 from epicyclic.report.map_page import map_key_figures, map_sections
-from epicyclic.report.page import Drawing, Drawings, KeyFigure, Section, Table
-from epicyclic.report.result_page import result_sections
+from epicyclic.report.page import Drawing, KeyFigure, Section, Table
+from epicyclic.report.result_page import result_section, result_sections
 from epicyclic.report.result_tables import key_figures
 from epicyclic.report.side_by_side import side_by_side
 from epicyclic.results.result import in_words
@@ -33,11 +32,11 @@ from epicyclic.sweeps.plan import parse_vary
 __all__ = [
     "IN_PAGE",
     "MESH",
+    "TURNS",
     "Answer",
     "Study",
     "answered",
     "compared",
-    "followed",
     "moved",
     "picture",
     "saved",
@@ -49,10 +48,10 @@ STILL = ("gear-set", "teeth")
 """Plots of what turns, where that is shown."""
 MESH = "/"
 """Before the key of a mesh among what turns."""
+TURNS = "gears"
+"""The chapter in which gears turn."""
 IN_PAGE = "svg-page"
 """Format of a figure that becomes a part of the page."""
-QUICK = ("gears", "views", "bearings", "meshes")
-"""Groups of a record that follow an input while it moves; the others take longer."""
 MOST_KEPT = 6
 
 
@@ -93,8 +92,6 @@ class Answer:
     turning: dict[str, str]
 
 
-_solved = lru_cache(maxsize=1)(solve)
-"""While an input moves: first the key figures follow, then a figure of the same result."""
 _kept: dict[Study, Stored] = {}
 """Of the last studies, so that their figures are drawn without computing them again."""
 
@@ -109,7 +106,7 @@ def _stored(study: Study, progress: Progress) -> Stored:
 
 def _recorded(study: Study, progress: Progress) -> ResultRecord:
     with contacts_told(progress):
-        return record(study.case)
+        return growing_record(study.case)
 
 
 def _mapped(study: Study, progress: Progress) -> Stored:
@@ -126,20 +123,43 @@ def _mapped(study: Study, progress: Progress) -> Stored:
     )
 
 
-def answered(study: Study, progress: Progress) -> Answer:
-    """Key figures and chapters of a study."""
+class _Drawings(Mapping[str, Sequence[Drawing]]):
+    """The figures of what is stored, without pictures; each is looked for when it is asked for."""
+
+    def __init__(self, found: Stored) -> None:
+        self._found = found
+        self.wide: set[str] = set()
+
+    def __getitem__(self, name: str) -> Sequence[Drawing]:
+        is_hidden = isinstance(self._found, ResultRecord) and name in STILL
+        panels = [] if is_hidden else PLOTS[name].panels(self._found)
+        if not panels:
+            raise KeyError(name)
+        if len(panels) > 1:
+            self.wide.add(name)
+        return (Drawing(name, PLOTS[name].question, ""),)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(PLOTS)
+
+    def __len__(self) -> int:
+        return len(PLOTS)
+
+
+def answered(study: Study, only: str, progress: Progress) -> Answer:
+    """Key figures and chapters of a study; of a result the chapter `only`, if that is not empty."""
     found = _stored(study, progress)
-    turns = _turning_titles(found) if isinstance(found, ResultRecord) else {}
-    plots = {
-        name: plot for name, plot in available(found).items() if not turns or name not in STILL
-    }
-    drawings: Drawings = {name: (Drawing(name, plot.question, ""),) for name, plot in plots.items()}
-    wide = frozenset(name for name, plot in plots.items() if len(plot.panels(found)) > 1)
-    if isinstance(found, ResultRecord):
-        figures, sections = key_figures(found.result), result_sections(found, drawings)
-    else:
+    drawings = _Drawings(found)
+    if not isinstance(found, ResultRecord):
         figures, sections = map_key_figures(found), map_sections(found, drawings)
-    return Answer(figures, sections, wide, turns)
+        return Answer(figures, sections, frozenset(drawings.wide), {})
+    with contacts_told(progress):
+        if only:
+            sections = [result_section(found, drawings, only)]
+        else:
+            sections = result_sections(found, drawings)
+        turns = _turning_titles(found) if only in ("", TURNS) else {}
+    return Answer(key_figures(found.result), sections, frozenset(drawings.wide), turns)
 
 
 def _turning_titles(found: ResultRecord) -> dict[str, str]:
@@ -149,17 +169,8 @@ def _turning_titles(found: ResultRecord) -> dict[str, str]:
 
 
 def moved(case: Case, progress: Progress) -> list[KeyFigure]:
-    """Key figures of a case while an input moves; nothing is kept."""
-    return key_figures(record(case, result=_solved(case), groups=()).result)
-
-
-def followed(case: Case, name: str, progress: Progress) -> str:
-    """A figure while an input moves, if it needs nothing that takes long; else nothing."""
-    for groups in ((), QUICK):
-        found = record(case, result=_solved(case), groups=groups)
-        if name in available(found):
-            return svg_text(figure_of(found, name), name)
-    return ""
+    """Key figures of a case, and nothing that takes longer; nothing is kept."""
+    return key_figures(contents_of(solve(case)))
 
 
 def compared(first: Case, second: Case, names: tuple[str, str], progress: Progress) -> list[Table]:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import cast
 
 from nicegui import ui
 
 from epicyclic.app import tasks
-from epicyclic.app.sheet import Do, save_buttons
-from epicyclic.app.tasks import IN_PAGE, MESH
-from epicyclic.app.worker import Ended
-from epicyclic.case.case import Case
+from epicyclic.app.sheet import Do, Place
+from epicyclic.app.tasks import IN_PAGE, MESH, Study
 
 __all__ = ["TurningView"]
 
@@ -31,8 +29,7 @@ class TurningView:
 
     def __init__(self, do: Do) -> None:
         self._do = do
-        self._case: Case | None = None
-        self._places: dict[str, ui.html] = {}
+        self._places: dict[str, Place] = {}
         self._slider: ui.slider | None = None
 
     def build(self, titles: Mapping[str, str]) -> None:
@@ -43,39 +40,50 @@ class TurningView:
         with ui.row().classes("turner"):
             play = ui.button(icon="play_arrow").props("flat round dense").tooltip("Turn, or stop")
             play.on("click", js_handler="(event) => turning.play(event.currentTarget)")
-            phase = self._slider.value if self._slider else 0.0
-            self._slider = ui.slider(min=0, max=PERIODS, step=STEP, value=phase).mark("phase")
+            self._slider = ui.slider(min=0, max=PERIODS, step=STEP, value=self._phase).mark("phase")
             self._slider.on("update:model-value", js_handler="(phase) => turning.turn(phase)")
             ui.label("mesh periods").classes("soft")
         with ui.element("div").classes("turned"):
             for what, title in titles.items():
-                self._place(what, title)
+                self._places[what] = self._place(what, title)
 
-    def _place(self, what: str, title: str) -> None:
+    @property
+    def titles(self) -> list[str]:
+        """What turns."""
+        return list(self._places)
+
+    @property
+    def _phase(self) -> float:
+        return float(self._slider.value) if self._slider else 0.0
+
+    def _place(self, what: str, title: str) -> Place:
         async def draw(ending: str) -> bytes:
-            assert self._slider is not None
-            phase = float(self._slider.value)
-            content, _ = await self._do(tasks.turning, self._case, what, ending, phase)
+            assert place.drawn is not None
+            case = place.drawn.case
+            content, _ = await self._do(tasks.turning, case, what, ending, self._phase)
             return cast(bytes, content)
 
-        with ui.element("figure").classes("mesh" if what.startswith(MESH) else ""):
-            self._places[what] = ui.html("", sanitize=False).classes("still")
-            with self._places[what]:
-                ui.spinner(size="2em")
-            with ui.element("figcaption"):
-                ui.label(title)
-                save_buttons("turning", draw)
+        place = Place(title, "turning", "mesh" * what.startswith(MESH), draw)
+        return place
 
-    async def draw(self, case: Case) -> None:
-        """Draw everything for a case."""
-        self._case = case
+    def age(self, now: Study) -> None:
+        """Mark the pictures of other studies than the one of now."""
+        for place in self._places.values():
+            place.age(now)
+
+    async def draw(self, study: Study, is_wanted: Callable[[], bool]) -> None:
+        """Draw what is not of a study, one after the other while that is wanted."""
         for what, place in list(self._places.items()):
-            try:
-                svg, data = await self._do(tasks.turning, case, what, IN_PAGE, 0.0)
-            except Ended:
+            if place.drawn == study:
+                continue
+            svg, data = await self._do(tasks.turning, study.case, what, IN_PAGE, 0.0)
+            if place.is_gone:
                 return
-            if place.is_deleted:
+            place.show(svg.decode(), study)
+            place.age(study)
+            data["phase"] = self._phase
+            key = json.dumps(place.picture.html_id)
+            with place.picture:
+                ui.run_javascript(f"turning.add({key}, {json.dumps(data)})")
+            if not is_wanted():
                 return
-            place.set_content(svg.decode())
-            data["phase"] = self._slider.value if self._slider else 0.0
-            ui.run_javascript(f"turning.add({json.dumps(place.html_id)}, {json.dumps(data)})")

@@ -8,6 +8,7 @@ import multiprocessing
 import os
 import signal
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Any
@@ -33,9 +34,18 @@ class WorkError(EpicyclicError):
 
 
 class Worker:
-    """Does one thing after the other, each in the same process as long as none is ended."""
+    """Does one thing after the other, each in the same process as long as none is ended.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    niceness : int
+        How far its process stands back behind others, on systems that know this.
+    """
+
+    def __init__(self, niceness: int = 0) -> None:
+        self._niceness = niceness
+        self.is_closed = False
+        self._waiting = ThreadPoolExecutor(1)  # threads shared by all workers could run out
         self._process: Any = None
         self._ours: Connection | None = None
         self._lock = asyncio.Lock()
@@ -53,16 +63,19 @@ class Worker:
         Raises
         ------
         Ended
-            If `end` was called meanwhile.
+            If `end` was called meanwhile, or `close` before.
         EpicyclicError
             As the task raises it.
         """
+        loop = asyncio.get_running_loop()
         async with self._lock:
+            if self.is_closed:
+                raise Ended
             pipe = self._pipe()
             try:
                 pipe.send((task, arguments))
                 while True:
-                    what, content = await asyncio.to_thread(pipe.recv)
+                    what, content = await loop.run_in_executor(self._waiting, pipe.recv)
                     if what == "done":
                         return content
                     if what == "failed":
@@ -80,11 +93,17 @@ class Worker:
         if self._ours is not None:
             self._ours = None
 
+    def close(self) -> None:
+        """End what is being done, and begin nothing more."""
+        self.is_closed = True
+        self.end()
+        self._waiting.shutdown(wait=False)
+
     def _pipe(self) -> Connection:
         if self._process is None or not self._process.is_alive():
             context = multiprocessing.get_context("spawn")
             self._ours, theirs = context.Pipe()
-            self._process = context.Process(target=_serve, args=(theirs,))
+            self._process = context.Process(target=_serve, args=(theirs, self._niceness))
             self._process.start()
             theirs.close()
         assert self._ours is not None
@@ -98,10 +117,11 @@ def _end_group(process: Any) -> None:
     process.terminate()
 
 
-def _serve(pipe: Connection) -> None:
+def _serve(pipe: Connection, niceness: int) -> None:
     """What the process does: tasks until the pipe is closed."""
     if hasattr(os, "setsid"):
         os.setsid()  # a group of its own, see `_end_group`
+        os.nice(niceness)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the app ends this process
     compiled = itertools.count(1)
     listeners.append(lambda: pipe.send(("progress", (next(compiled), 0))))

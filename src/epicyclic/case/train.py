@@ -54,7 +54,7 @@ from epicyclic.case.validation import Validation, validate
 from epicyclic.case.wording import written
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["TrainCase", "all_gears_to_members"]
+__all__ = ["TrainCase", "all_gears_to_members", "form_of_set"]
 
 _SHARED = ("models", "numerics", "friction_table", "lubrication")
 """Tables of a train that its computed sets take over where they have none of their own."""
@@ -312,7 +312,7 @@ class _Given:
 
 @lru_cache(maxsize=64)
 def _read_set_cached(given: _Given) -> _ReadSet:
-    form, raw = _form_of(given.raw)
+    form, raw = form_of_set(given.raw)
     if form is None:
         return _ReadSet(None, [_formless(raw)])
     if not any(key in raw for key in _GIVEN):
@@ -343,8 +343,8 @@ def _read_set_cached(given: _Given) -> _ReadSet:
     return _ReadSet(None if problems else read.case, problems, told)
 
 
-def _form_of(raw: dict[str, Any]) -> tuple[type[Table] | None, dict[str, Any]]:
-    """The form of a set and its tables in that form."""
+def form_of_set(raw: dict[str, Any]) -> tuple[type[Table] | None, dict[str, Any]]:
+    """The form of a set, None if it has no gears yet, and its tables in that form."""
     given = any(key in raw for key in _GIVEN)
     gears = raw.get("gears")
     listed = isinstance(gears, dict) and any(isinstance(item, dict) for item in gears.values())
