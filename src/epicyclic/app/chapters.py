@@ -9,6 +9,7 @@ from nicegui import background_tasks, ui
 
 from epicyclic.app import tasks
 from epicyclic.app.sheet import Do, Sheet
+from epicyclic.app.shelves import Shelf
 from epicyclic.app.tasks import Answer, Study
 from epicyclic.app.turning import TurningView
 from epicyclic.report.page import Section
@@ -36,6 +37,8 @@ class Chapters:
 
     Parameters
     ----------
+    shelf : Shelf
+        Knows the chapter that is open, also after the page was loaded again.
     do : callable
         Has a task done.
     views : dict of str to View
@@ -43,10 +46,11 @@ class Chapters:
         Has the chapter that was opened follow the case.
     """
 
-    def __init__(self, do: Do, views: dict[str, View], want: Callable[[], Awaitable[None]]) -> None:
-        self._do, self._views, self._want = do, views, want
+    def __init__(
+        self, shelf: Shelf, do: Do, views: dict[str, View], want: Callable[[], Awaitable[None]]
+    ) -> None:
+        self._shelf, self._do, self._views, self._want = shelf, do, views, want
         self._turning = TurningView(do)
-        self._answer: Answer | None = None
         self._sections: dict[str, Section] = {}
         self._sheet: Sheet | None = None
         self._tabs = ui.tabs(on_change=self._open).props("dense no-caps align=left")
@@ -54,7 +58,7 @@ class Chapters:
 
     def clear(self) -> None:
         """Show nothing: another case is opened."""
-        self._answer, self._sections, self._sheet = None, {}, None
+        self._sections, self._sheet = {}, None
         self._tabs.clear()
         self._body.clear()
 
@@ -80,9 +84,13 @@ class Chapters:
                 self._build(section, study, answer)
             await self._draw(is_wanted)
 
-    async def complete(self, study: Study) -> None:
+    async def complete(self, study: Study, is_wanted: Callable[[], bool]) -> None:
         """Have tabs for all chapters of a study that is shown, the same one open as before."""
-        self._answer = answer = await self._do(tasks.answered, study, "")
+        for name in self._sections:  # each by itself, so that the next value need not wait for all
+            await self._do(tasks.answered, study, name)
+            if not is_wanted():
+                return
+        answer = await self._do(tasks.answered, study, "")
         if self._body.is_deleted:
             return
         sections = {section.name: section for section in answer.sections}
@@ -94,11 +102,15 @@ class Chapters:
                 for name, title in (first, *views, *others):
                     ui.tab(name, label=title)
         self._sections = sections
-        if self._tabs.value not in sections and self._tabs.value not in self._views:
-            self._tabs.set_value(next(iter(sections)))
+        known = (*sections, *self._views)
+        if self._tabs.value not in known:
+            chapter = self._shelf.chapter
+            self._tabs.set_value(chapter if chapter in known else next(iter(sections)))
 
     async def _open(self) -> None:
         name = str(self._tabs.value)
+        if name in self._sections or name in self._views:
+            self._shelf.chapter = name
         self._body.clear()
         self._sheet = None
         with self._body:

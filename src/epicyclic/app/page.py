@@ -55,6 +55,7 @@ class Page:
 
     def build(self) -> None:
         """Make the page; results follow when they are known."""
+        shelf = self._shelf
         with ui.header().classes("bar"):
             ui.label("Epicyclic").classes("name")
             self._title = ui.label().classes("title")
@@ -70,12 +71,12 @@ class Page:
                 self._failed.set_visibility(False)
                 with ui.element("div") as self._results:
                     self._figures = ui.element("div").classes("key-figures")
-                    self._doing = Doing(self._shelf.slow.end)
+                    self._doing = Doing(shelf.slow.end)
                     views: dict[str, View] = {
-                        "map": MapView(lambda: self.desk, self._shelf.maps),
+                        "map": MapView(lambda: self.desk, shelf.maps),
                         "compare": CompareView(lambda: self.desk, self._do, self._choose),
                     }
-                    self._chapters = Chapters(self._do, views, self._slow.want)
+                    self._chapters = Chapters(shelf, self._do, views, self._slow.want)
         self._build_form()
         ui.timer(0, self._changed, once=True)
 
@@ -156,11 +157,14 @@ class Page:
             """A picture that lags behind is better than none while an input moves."""
             return self._is_moving or case is self.desk.case
 
+        def is_at_rest() -> bool:
+            return not self._is_moving and case is self.desk.case
+
         try:
             with self._doing.shown("solving"):
                 await self._chapters.follow(study, is_wanted)
-                if case is self.desk.case and not self._is_moving:
-                    await self._chapters.complete(study)
+                if is_at_rest():
+                    await self._chapters.complete(study, is_at_rest)
         except (Ended, EpicyclicError) as error:
             self._fail(str(error))
         if self.desk.case is not None and not self._figures.is_deleted:

@@ -29,6 +29,8 @@ LOOPBACK = ("127.0.0.1", "localhost", "::1")
 ANY = ("0.0.0.0", "::")
 """Stand for every address of this machine."""
 _TOKEN_BYTES = 24
+RECONNECT = 10.0
+"""For so long a page may be out of reach before its work ends. [s]"""
 _OF_TAB = "tab"
 """Key in the storage of a tab."""
 TERMINATED = 128 + signal.SIGTERM
@@ -120,6 +122,7 @@ def application(shelves: Shelves) -> FastAPI:
         title="Epicyclic",
         show_welcome_message=False,
         binding_refresh_interval=None,
+        reconnect_timeout=RECONNECT,
     )
     return app
 

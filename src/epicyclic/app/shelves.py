@@ -31,12 +31,15 @@ class Shelf:
         The case that is open.
     folder : Path
         For uploaded files.
+    chapter : str
+        That is open.
     quick, slow, maps : Worker
         Follows every value of an input; draws what takes longer; computes maps.
     """
 
     desk: Desk
     folder: Path
+    chapter: str = ""
     quick: Worker = field(default_factory=Worker)
     slow: Worker = field(default_factory=lambda: Worker(BEHIND))
     maps: Worker = field(default_factory=lambda: Worker(BEHIND))
@@ -88,7 +91,7 @@ class Shelves:
             origin = self._kept[before].desk if before in self._kept else self._desk
             shelf = Shelf(origin.copy(), Path(tempfile.mkdtemp(dir=self._folder)))
         elif not is_open:
-            shelf = Shelf(shelf.desk, shelf.folder)
+            shelf = Shelf(shelf.desk, shelf.folder, shelf.chapter)
         self._kept[tab] = shelf
         self._pages[tab] = page
         self._forget()

@@ -23,6 +23,7 @@ __all__ = [
     "plot_pair_loads",
     "plot_plane_of_action",
     "plot_transmission_error",
+    "top_of_scale",
 ]
 
 FloatArray = NDArray[np.float64]
@@ -83,21 +84,26 @@ def _draw_map(ax: Axes, path: FloatArray, face: FloatArray, values: FloatArray, 
     scale = np.ptp(path) / np.ptp(face)
     triangles = Triangulation(path, face * scale).triangles
     corners = Triangulation(path, face, triangles)
-    highest, limit = float(values.max()), float(np.quantile(values, NO_PEAK))
-    peaked = highest > PEAKED * limit > 0
+    top, told = top_of_scale(values)
     drawn = ax.tripcolor(
         corners,
         values,
         shading="gouraud",
         cmap=COLOUR_MAP,
         rasterized=True,
-        vmax=limit if peaked else highest,
+        vmax=top,
     )
     figure = ax.get_figure()
     assert figure is not None
-    if peaked:
-        label = f"{label}; highest {format_number(highest, 3)}"
-    figure.colorbar(drawn, ax=ax, label=label, extend="max" if peaked else "neither")
+    figure.colorbar(drawn, ax=ax, label=f"{label}{told}", extend="max" if told else "neither")
+
+
+def top_of_scale(values: FloatArray) -> tuple[float, str]:
+    """Where a scale of colours ends, and what its label says of a peak beyond it."""
+    highest, limit = float(values.max()), float(np.quantile(values, NO_PEAK))
+    if highest > PEAKED * limit > 0:
+        return limit, f"; highest {format_number(highest, 3)}"
+    return highest, ""
 
 
 def _say(ax: Axes, text: str) -> None:

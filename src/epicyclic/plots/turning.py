@@ -20,6 +20,7 @@ from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from epicyclic.plots.drawing import layer_of, plot_gear_set, plot_teeth
+from epicyclic.plots.mesh import top_of_scale
 from epicyclic.plots.style import COLOUR_MAP, COLOURS, label_of, styled_figure
 
 __all__ = ["POSITION", "Layer", "Turning", "turning_mesh", "turning_set"]
@@ -266,13 +267,22 @@ def _draw_plane(mesh: xr.Dataset, ax: Axes) -> None:
     )
     figure = ax.get_figure()
     assert figure is not None
+    _, told = _top(mesh)
     figure.colorbar(
-        ScalarMappable(_scale(mesh), COLOUR_MAP), ax=ax, label=label_of(mesh["line_load"])
+        ScalarMappable(_scale(mesh), COLOUR_MAP),
+        ax=ax,
+        label=f"{label_of(mesh['line_load'])}{told}",
+        extend="max" if told else "neither",
     )
 
 
 def _scale(mesh: xr.Dataset) -> Normalize:
-    return Normalize(0.0, float(mesh["line_load"].max()) or 1.0)
+    return Normalize(0.0, _top(mesh)[0] or 1.0)
+
+
+def _top(mesh: xr.Dataset) -> tuple[float, str]:
+    loads = mesh["line_load"].to_numpy()
+    return top_of_scale(loads[np.isfinite(loads)])
 
 
 def _draw_lines(mesh: xr.Dataset, number: int, ax: Axes) -> None:
