@@ -31,6 +31,10 @@ _TILT = (
     "The tilt of the planets is found where it was not: at light loads, and in bearings of few "
     "rollers, which hardly resist to tilt in one direction."
 )
+_CONTACT_LOST = (
+    "Where the closed form of load sharing does not hold, because a planet loses contact, the "
+    "loads are those of `direct`, and a note says so; it was an error."
+)
 _GEAR_1_IS_LARGER = """
     pair-033 pair-044 pair-069 pair-105 planetary-013 planetary-037 planetary-043 planetary-054
     planetary-077 planetary-084 planetary-097 planetary-105 planetary-112 planetary-130
@@ -84,6 +88,7 @@ EXCEPTIONS: dict[str, str] = {
     },
     "*/warnings*": _WARNINGS,
     **{f"planetary-{number}/error": _TILT for number in ("066", "141", "175")},
+    **{f"planetary-{number}/error": _CONTACT_LOST for number in ("006", "051", "150")},
     **{
         f"{case}/*{what}*": _ENTERING
         for case in _WITHOUT_POWER

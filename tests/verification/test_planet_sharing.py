@@ -80,6 +80,31 @@ def test_planet_with_a_large_error_carries_all_without_floating_members():
     assert forces == pytest.approx([1e3, 0.0, 0.0, 0.0])
 
 
+@given(
+    data=st.data(),
+    count=st.integers(1, 8),
+    spread=st.floats(-8, -3),
+    load=st.floats(-8, 5),
+    member=st.sampled_from(["sun", "ring", "carrier"]),
+    stiffness=st.sampled_from([1e5, 1e7, 1e9]),
+)
+def test_a_supported_member_never_gives_way(data, count, spread, load, member, stiffness):
+    """Forces, approach and displacement meet (S3) and (S4), whatever the load and the errors."""
+    places = st.lists(st.floats(-1, 1), min_size=count, max_size=count)
+    lead = 10**spread * np.array(data.draw(places))
+    found, force = branches(lead), 10**load
+    directions = branch_directions(found.angles, ALPHA, 0.31)
+    forces = solve_branch_forces(force, found, directions, {member: stiffness})
+    assert forces.sum() == pytest.approx(force, rel=1e-6)
+    assert forces.min() >= 0.0
+    moved = -directions[member].T @ forces / stiffness
+    closing = found.compliance * forces - lead - directions[member] @ moved
+    approach = closing[forces > 0].mean()
+    slack = 1e-5 * max(np.ptp(lead), found.compliance * force)  # of the lightest loads
+    assert np.abs(closing[forces > 0] - approach).max() < slack
+    assert (closing[forces == 0] > approach - slack).all()
+
+
 def test_support_goes_from_floating_to_rigid():
     found = branches([4e-6, 0.0, 0.0, 0.0])
     loads = [direct(2e4, found, {"sun": k})[0] for k in (0.0, 1e7, 1e8, 1e9, 1e14)]
@@ -134,7 +159,8 @@ ONE_LATE = ["10 um", "0 um", "0 um", "0 um", "0 um", "0 um"]
 
 def shares(case, **keys):
     result = ep.solve(case.updated({f"load_sharing.{key}": value for key, value in keys.items()}))
-    assert sum(result.planet_shares) == pytest.approx(1.0, rel=1e-12)
+    decimals = 0.5e-12 * len(result.planet_shares)  # each is rounded to 12
+    assert sum(result.planet_shares) == pytest.approx(1.0, abs=decimals)
     return result
 
 
@@ -237,7 +263,21 @@ def test_closed_form_needs_even_spacing(four):
         shares(four, method="closed-form")
 
 
-def test_closed_form_refuses_lost_contact(six):
-    late = ["60 um", "0 um", "0 um", "0 um", "0 um", "0 um"]
-    with pytest.raises(ep.ConvergenceError, match="direct"):
-        shares(six, method="closed-form", position_errors=late)
+def test_closed_form_goes_on_where_planets_lose_contact(six):
+    late = ["60 um", "1 um", "-3 um", "0 um", "2 um", "5 um"]
+    found = {
+        method: shares(six, method=method, position_errors=late, floating_member="ring")
+        for method in ("closed-form", "direct")
+    }
+    assert found["closed-form"].planet_shares == found["direct"].planet_shares
+    assert 0.0 in found["closed-form"].planet_shares
+    assert any("is replaced by direct" in text for text in found["closed-form"].warnings)
+    assert any("No load reaches planets" in text for text in found["direct"].warnings)
+
+
+@pytest.mark.parametrize("method", ["closed-form", "direct"])
+@pytest.mark.parametrize("torque", ["1e-9 N*m", "-0.002 N*m", "0.7 N*m"])
+def test_the_lightest_loads_are_shared(six, method, torque):
+    late = ["4 um", "1 um", "-3 um", "7 um", "2 um", "5 um"]
+    result = shares(six.updated({"operation.torque": torque}), method=method, position_errors=late)
+    assert min(result.planet_shares) == 0.0

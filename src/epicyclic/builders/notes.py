@@ -267,6 +267,17 @@ def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, 
     if len(set(shares)) > 1:
         most = shares.index(max(shares)) + 1
         notes.append(f"Meshes and bearing are those of planet {most}, the most loaded one.")
+    idle = [str(number) for number, share in enumerate(shares, 1) if share == 0]
+    if idle and sharing.method in ("closed-form", "direct"):
+        beyond = (
+            ", and load_sharing.method = closed-form is replaced by direct"
+            if sharing.method == "closed-form"
+            else ""
+        )
+        notes.append(
+            f"No load reaches {'planet' if len(idle) == 1 else 'planets'} {', '.join(idle)} of "
+            f"{len(shares)}: the others bend less than their positions differ{beyond}."
+        )
     notes += [
         f"load_sharing.{key} has no effect with load_sharing.method = {sharing.method}."
         for key in sharing.idle_keys()

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import null_space
+from scipy.optimize import nnls
 
 from epicyclic.errors import ConvergenceError
 
@@ -28,6 +30,9 @@ FloatArray = NDArray[np.float64]
 
 ROUNDING = 1e-9
 """Share of the mean branch force below which a force or its imbalance is rounding. [1]"""
+LIGHT = 1e-6
+"""Load over what would close all branches below which the shares are those of this load: the
+lighter the load, the less they change. [1]"""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,7 +105,7 @@ def solve_branch_forces(
     Raises
     ------
     ConvergenceError
-        If no forces balance, or the set of loaded branches does not settle.
+        If no forces balance.
     """
     loose = [name for name in directions if name in supports]
     if loose:
@@ -109,18 +114,14 @@ def solve_branch_forces(
         displacement = np.zeros((len(branches.angles), 0))
     stiffness = np.repeat([supports[name] for name in loose], 2)
     loaded = np.ones(len(branches.angles), dtype=bool)
-    for _ in range(2 * len(loaded) ** 2):
-        forces, closing = _balance(force, branches, displacement, stiffness, loaded)
-        slack = ROUNDING * force / len(loaded)
-        if (forces[loaded] < -slack).any():
-            loaded[int(forces.argmin())] = False
-        elif (closing[~loaded] > ROUNDING * branches.compliance * force).any():
-            loaded[int(np.where(loaded, -np.inf, closing).argmax())] = True
-        else:
-            return np.where(np.abs(forces) < slack, 0.0, forces)
-    raise ConvergenceError(
-        "the planets that carry load were not found; use load_sharing.method 'closed-form'."
-    )
+    softest = branches.compliance + max((1 / one for one in stiffness if one), default=0.0)
+    least = max(force, LIGHT * float(np.ptp(branches.lead)) / softest)
+    slack = ROUNDING * least / len(loaded)
+    forces = _balance(least, branches, displacement, stiffness, loaded)
+    if (forces < -slack).any():
+        loaded = _loaded(least, branches, displacement, stiffness)
+        forces = _balance(least, branches, displacement, stiffness, loaded)
+    return np.where(forces < slack, 0.0, forces) * (force / least)
 
 
 def _balance(
@@ -129,28 +130,68 @@ def _balance(
     displacement: FloatArray,
     stiffness: FloatArray,
     loaded: NDArray[np.bool_],
-) -> tuple[FloatArray, FloatArray]:
-    """Forces with the branches `loaded` in contact, and how far every branch is closed.
+) -> FloatArray:
+    """Forces with the branches `loaded` in contact.
 
     Unknowns are the forces, the common approach and the displacements, the latter two over C.
     """
-    give = np.hstack([np.ones((len(loaded), 1)), displacement])
-    active = give[loaded]
+    active = np.hstack([np.ones((loaded.sum(), 1)), displacement[loaded]])
     count = len(active)
     support = np.diag([0.0, *(stiffness * branches.compliance)])
     matrix = np.block([[np.eye(count), -active], [active.T, support]])
+    lead = branches.lead[loaded]
     right = np.zeros(len(matrix))
-    right[:count] = branches.lead[loaded] / branches.compliance
+    right[:count] = (lead - lead.mean()) / branches.compliance  # what is common is an approach
     right[count] = force
     unknowns = np.linalg.lstsq(matrix, right, rcond=None)[0]
-    if np.abs(matrix @ unknowns - right).max() > ROUNDING * force:
-        raise ConvergenceError(
-            "no planet loads balance: with this support of the members the gear set gives way; "
-            "support the floating member, or use more planets."
-        )
+    if np.abs(matrix @ unknowns - right).max() > ROUNDING * np.abs(right).max():
+        raise _gives_way()
     forces = np.zeros(len(loaded))
     forces[loaded] = unknowns[:count]
-    return forces, branches.lead + branches.compliance * (give @ unknowns[count:])
+    return forces
+
+
+def _loaded(
+    force: float, branches: Branches, displacement: FloatArray, stiffness: FloatArray
+) -> NDArray[np.bool_]:
+    """Which branches are in contact.
+
+    Of all forces that balance, those of (S3) and (S4) have the least energy of branches and
+    supports. With the part that (S4) leaves free as unknown, that is a problem of least distance:
+    C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (1974), chapter 23, section 4.
+    """
+    number = len(branches.lead)
+    # in units of the free approach: C F/g - g/g and the root of C times support over g
+    reach = max(float(np.ptp(branches.lead)), branches.compliance * force)
+    lead = (branches.lead - branches.lead.max()) / reach
+    roots = np.sqrt(stiffness * branches.compliance)
+    balance = np.block(
+        [
+            [np.ones((1, number)), np.zeros((1, len(roots)))],
+            [displacement.T, np.diag(roots)],
+        ]
+    )
+    right = np.array([branches.compliance * force / reach, *np.zeros(len(roots))])
+    right -= balance[:, :number] @ lead
+    nearest = np.linalg.pinv(balance) @ right
+    free = null_space(balance)
+    # no force is negative: free @ x >= bounds
+    bounds = -(nearest[:number] + lead)
+    rows = np.vstack([free[:number].T, bounds])
+    target = np.zeros(len(rows))
+    target[-1] = 1.0
+    multipliers, distance = nnls(rows, target)
+    if distance <= ROUNDING:
+        raise _gives_way()
+    found: NDArray[np.bool_] = multipliers <= 0.0
+    return found
+
+
+def _gives_way() -> ConvergenceError:
+    return ConvergenceError(
+        "no planet loads balance: with this support of the members the gear set gives way; "
+        "support the floating member, or use more planets."
+    )
 
 
 def closed_form_branch_forces(force: float, branches: Branches, *, floating: bool) -> FloatArray:

@@ -15,7 +15,6 @@ from epicyclic.elasticity.planet_sharing import (
     solve_branch_forces,
 )
 from epicyclic.elements.gear_mesh import MeshDuty, elastic_loads
-from epicyclic.errors import ConvergenceError
 from epicyclic.losses.planet_bearing import RollerBearing, radial_stiffness
 
 __all__ = ["SHARING_METHODS", "LoadSharing", "planet_shares"]
@@ -78,6 +77,8 @@ def planet_shares(
 ) -> tuple[float, ...]:
     """Share of the load that each planet carries; their sum is 1. Theory (S1).
 
+    The closed form holds while all planets carry; where one does not, (S3) and (S4) are solved.
+
     Parameters
     ----------
     sharing : LoadSharing
@@ -89,24 +90,20 @@ def planet_shares(
     Raises
     ------
     ConvergenceError
-        If no loads of the planets balance, or the closed form does not hold.
+        If no loads of the planets balance.
     """
     count = sharing.count
     if sharing.method == "mesh-load-factor":
         return mesh_load_factor_shares(count, sharing.mesh_load_factor)
-    if sharing.method == "equal" or duties[0].torque1 == 0:
+    idle = not all(duty.torque1 for duty in duties)
+    if sharing.method == "equal" or count == 1 or idle:
         return (1 / count,) * count
     branches = _branches(sharing, duties, bearing)
     floats = sharing.floating_member != "none"
     force = count * duties[0].force
     if sharing.method == "closed-form":
         forces = closed_form_branch_forces(force, branches, floating=floats)
-        if forces.min() < 0:
-            raise ConvergenceError(
-                "a planet loses contact, which the closed form of load sharing cannot show; "
-                "use load_sharing.method 'direct'."
-            )
-    else:
+    if sharing.method == "direct" or forces.min() < 0:
         sun_mesh, ring_mesh = duties
         directions = branch_directions(
             branches.angles,
