@@ -7,13 +7,19 @@ import lzma
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import epicyclic as ep
 from epicyclic.builders.build import build
 from epicyclic.builders.planetary import roller_bearing
 from epicyclic.elements.gear_mesh import elastic_loads
-from epicyclic.elements.planet_load import PlanetContact, planet_load
+from epicyclic.elements.planet_load import (
+    PlanetContact,
+    _tilt_by_newton,
+    _tilt_one_by_one,
+    planet_load,
+)
 from epicyclic.losses.planet_bearing import roller_loads
 
 
@@ -186,3 +192,36 @@ def test_tilt_is_found_in_drawn_sets_down_to_light_loads(number, share):
     scale = load.force * tilted[0].mesh.face_width
     assert load.moment_x == pytest.approx(balanced.moment_x, abs=1e-4 * scale)
     assert load.moment_y == pytest.approx(balanced.moment_y, abs=1e-4 * scale)
+
+
+def resistance(steep, soft, coupling, play):
+    """Excess of moments that rises with the tilt: next to nothing within the play, then steeply."""
+
+    def excess(tilts):
+        beyond = np.sign(tilts) * np.maximum(np.abs(tilts) - play, 0.0)
+        common = tilts[0] + tilts[1]
+        return soft * tilts + steep * beyond * np.abs(beyond) ** 0.11 + coupling * common - (7, -3)
+
+    return excess
+
+
+@pytest.mark.parametrize("coupling", [0.0, 900.0, 2e5])
+def test_newton_and_brackets_find_the_same_tilt(talbot, coupling):
+    excess = resistance(4e4, 31.0, coupling, 0.0)
+    bearing = roller_bearing(talbot.planet_bearing, talbot.numerics)
+    quick, slow = _tilt_by_newton(excess), _tilt_one_by_one(excess, bearing)
+    assert quick == pytest.approx(slow, rel=1e-5, abs=1e-11)
+    assert excess(quick) == pytest.approx(0.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("coupling", [0.0, 900.0, 2e5])
+def test_brackets_find_the_tilt_beyond_a_play(talbot, coupling):
+    """There Newton's method may jump from side to side, and must then say so."""
+    excess = resistance(4e4, 31.0, coupling, 4e-4)
+    bearing = roller_bearing(talbot.planet_bearing, talbot.numerics)
+    assert _tilt_by_newton(excess) is None
+    assert excess(_tilt_one_by_one(excess, bearing)) == pytest.approx(0.0, abs=1e-4)
+
+
+def test_newton_leaves_what_nothing_resists_to_the_brackets():
+    assert _tilt_by_newton(lambda tilts: np.zeros(2) - (0.2, 0.1)) is None

@@ -25,6 +25,10 @@ TILT_TOLERANCE = 1e-6
 """Imbalance over the tilt at which the latter counts as found. [1]"""
 SMALL_TILT = 1e-6
 """A tilt as small as this counts as that size in `TILT_TOLERANCE`: 0.02 um across 20 mm. [rad]"""
+NEWTON_MOST = 20
+HALVINGS_MOST = 8
+SLOPE = 1e-4
+"""Step of differences, over the size of the tilt. [1]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,34 +191,75 @@ def tilt_planet(
     if np.abs(found.fun).max() <= TILT_TOLERANCE:
         tilt = found.x * scale
         return _misaligned(contacts, tilt), _load_at(tilt, contacts, centrifugal)
-    tilt = _tilt_one_by_one(contacts, bearing, centrifugal)
+    axes = np.array(_axes(_radial_force(contacts, centrifugal)))
+    excess = _excess(contacts, bearing, centrifugal)
+    tilts = _tilt_by_newton(excess)
+    if tilts is None:
+        tilts = _tilt_one_by_one(excess, bearing)
+    tilt = tilts @ axes
     return _misaligned(contacts, tilt), _load_at(tilt, contacts, centrifugal)
 
 
-def _tilt_one_by_one(contacts: Contacts, bearing: RollerBearing, centrifugal: float) -> FloatArray:
-    """Tilt in balance, in t and r, each component in a bracket of its own. [rad]
+def _excess(
+    contacts: Contacts, bearing: RollerBearing, centrifugal: float
+) -> Callable[[FloatArray], FloatArray]:
+    """Moments with which the bearing holds a tilt less those of the planet. [N m]
+
+    In the planes of the axis and the radial force, and at right angles to it; both rise with the
+    tilt in that plane.
+    """
+    force = _radial_force(contacts, centrifugal)
+    axes = np.array(_axes(force))
+    size = math.hypot(*force)
+
+    def excess(tilts: FloatArray) -> FloatArray:
+        load = _load_at(tilts @ axes, contacts, centrifugal)
+        holding = tilting_moments(bearing, size, *map(float, tilts))
+        return np.array(holding) - (load.moment_x, load.moment_y)
+
+    return excess
+
+
+def _tilt_by_newton(excess: Callable[[FloatArray], FloatArray]) -> FloatArray | None:
+    """Where both excesses are zero; None if Newton's method does not get there. [rad]"""
+    tilts = np.zeros(2)
+    found = excess(tilts)
+    for _ in range(NEWTON_MOST):
+        size = max(float(np.abs(tilts).max()), SMALL_TILT)
+        slope = np.column_stack(
+            [(excess(tilts + apart) - found) / SLOPE for apart in SLOPE * size * np.eye(2)]
+        )
+        if not abs(np.linalg.det(slope)) > 0:
+            return None  # nothing resists the tilt here
+        step = np.linalg.solve(slope, -found) * size
+        for share in 0.5 ** np.arange(HALVINGS_MOST):
+            ahead = excess(tilts + share * step)
+            if np.hypot(*ahead) <= np.hypot(*found):
+                break
+        else:
+            return None
+        tilts, found = tilts + share * step, ahead
+        if np.abs(step).max() <= TILT_TOLERANCE * size:
+            return tilts
+    return None
+
+
+def _tilt_one_by_one(
+    excess: Callable[[FloatArray], FloatArray], bearing: RollerBearing
+) -> FloatArray:
+    """Where both excesses are zero, each component in a bracket of its own. [rad]
 
     Bearing and meshes resist the more the farther the planet tilts: for any tilt in one plane there
     is one in the other. Slow, but it needs no stiffness where none is: rollers that are not loaded
     let the planet tilt until the next ones touch.
     """
-    force = _radial_force(contacts, centrifugal)
-    along, across = _axes(force)
-    size = math.hypot(*force)
-
-    def excess(tilts: tuple[float, float]) -> tuple[float, float]:
-        load = _load_at(tilts[0] * along + tilts[1] * across, contacts, centrifugal)
-        holding = tilting_moments(bearing, size, *tilts)
-        return holding[0] - load.moment_x, holding[1] - load.moment_y
-
     reach = (bearing.diametral_clearance + bearing.crown_drop) / bearing.half_width + SMALL_TILT
 
     def first(second: float) -> float:
-        return _rising_root(lambda tilt: excess((tilt, second))[0], reach)
+        return _rising_root(lambda tilt: excess(np.array([tilt, second]))[0], reach)
 
-    second = _rising_root(lambda tilt: excess((first(tilt), tilt))[1], reach)
-    tilt: FloatArray = first(second) * along + second * across
-    return tilt
+    second = _rising_root(lambda tilt: excess(np.array([first(tilt), tilt]))[1], reach)
+    return np.array([first(second), second])
 
 
 def _rising_root(rising: Callable[[float], float], reach: float) -> float:
