@@ -14,6 +14,7 @@ from epicyclic.case.plain import plain
 from epicyclic.contact import CONDITIONS, contacts_at
 from epicyclic.errors import InputError
 from epicyclic.kernels import mixed_ehl
+from epicyclic.library import oil_model_file
 from epicyclic.losses.fitted import domain_ranges
 from epicyclic.losses.validity import ModelUse, check_ranges
 from epicyclic.oilmodel import regressions, structured
@@ -335,6 +336,18 @@ def test_a_damaged_file_is_refused(model, tmp_path, damage, told):
     with pytest.raises(InputError, match=told) as caught:
         read_oil_model(file)
     assert str(file) in str(caught.value)
+
+
+@pytest.mark.parametrize("value", [1e300, -1e300, 60.0, -900.0])
+@pytest.mark.parametrize(("quantity", "form"), [(q, form) for q in FORMS for form in FORMS[q]])
+def test_huge_coefficients_of_every_form_are_refused(tmp_path, quantity, form, value):
+    content = json.loads(oil_model_file("atf-talbot-2012").read_text(encoding="utf-8"))
+    (fitted,) = (f for f in content["fits"][quantity]["forms"] if f["form"] == form)
+    fitted["coefficients"][0] = value
+    file = tmp_path / "model.json"
+    file.write_text(resealed(json.dumps(content)))
+    with pytest.raises(InputError, match=f"{quantity}: {form} coefficients"):
+        read_oil_model(file)
 
 
 def test_a_missing_file_is_refused(tmp_path):

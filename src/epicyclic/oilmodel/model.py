@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from functools import cached_property, lru_cache
 from importlib import metadata
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from epicyclic.contact import CONDITIONS, LineContacts
+from epicyclic.contact import CONDITIONS, LineContacts, contacts_at
 from epicyclic.errors import InputError, Problem
 from epicyclic.lubricant.oil import Oil
 from epicyclic.oilmodel.regressions import (
@@ -58,6 +59,8 @@ LARGEST_FILE = 5_000_000
 """A file of coefficients is much smaller. [bytes]"""
 
 
+_OF_THE_FILM = {"rolling_speed": False, "roughness1": True, "roughness2": True}
+"""Conditions that make films thick, and whether they do so by falling."""
 _MAY_BE_ZERO = ("slide_to_roll_ratio", "roughness1", "roughness2")
 
 
@@ -180,7 +183,32 @@ class OilModel(_Data):
                     raise ValueError(f"{quantity}: wrong coefficients of form {fitted.form}")
                 if isinstance(form, Structured) and not form.allows(fitted.coefficients):
                     raise ValueError(f"{quantity}: {fitted.form} coefficients out of bounds")
+                shares = self._resistance(quantity, fitted.form)
+                worst = shares[np.argmax(np.abs(np.nan_to_num(shares, nan=np.inf) - 0.5))]
+                if not 0 < worst <= 1:
+                    raise ValueError(
+                        f"{quantity}: {fitted.form} coefficients give {worst:.3g} times the load "
+                        "as resistance within the domain, which must be above 0 and at most 1"
+                    )
         return self
+
+    def _resistance(self, quantity: str, form: str) -> FloatArray:
+        """Resistance over load in thin, middling and thick films of the domain. [1]
+
+        Coefficients themselves have no natural size, those of products of groups up to 1e10.
+        """
+        domain = self.fits[quantity].domain
+        middle = {name: math.sqrt(low * high) or high / 2 for name, (low, high) in domain.items()}
+        conditions = {name: np.full(3, value) for name, value in middle.items()}
+        for name, falling in _OF_THE_FILM.items():
+            low, high = domain[name][0] or middle[name], domain[name][1]
+            conditions[name][::2] = (high, low) if falling else (low, high)
+        with np.errstate(all="ignore"):  # what is no number is refused
+            states = contacts_at(**conditions, equivalent_modulus=self.equivalent_modulus)
+            found = self.value(quantity, states, form)
+            if quantity != "friction":  # a loss
+                found = found / (states.line_load * states.rolling_speed)
+        return found
 
     @field_validator("version")
     @classmethod
