@@ -6,7 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.contact import CONDITIONS, LineContacts
-from epicyclic.oilmodel.model import FORMS, REGIMES, FitError, FittedForm, Form, QuantityFit
+from epicyclic.oilmodel.model import (
+    FORMS,
+    REGIMES,
+    FitError,
+    FittedForm,
+    Form,
+    QuantityFit,
+    check_resistance,
+)
+from epicyclic.oilmodel.regressions import Regression
 
 __all__ = ["fit_quantity"]
 
@@ -40,9 +49,13 @@ def fit_quantity(
         If no form can be fitted, with the reason.
     """
     fitted, left_out = [], {}
+    domain = {name: _limits(getattr(states, name)) for name in CONDITIONS}
     for name, form in FORMS[quantity].items():
         try:
             coefficients = form.fit(states, target, weight)
+            if isinstance(form, Regression):
+                modulus = states.flanks.equivalent_modulus
+                check_resistance(quantity, form, coefficients, domain, modulus)
             errors = _cross_validated(form, states, target, weight)
         except (ValueError, np.linalg.LinAlgError) as error:
             left_out[name] = str(error)
@@ -59,7 +72,7 @@ def fit_quantity(
     return QuantityFit(
         unit=unit,
         contacts=target.size,
-        domain={name: _limits(getattr(states, name)) for name in CONDITIONS},
+        domain=domain,
         forms=tuple(fitted),
         left_out=left_out,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections.abc import Mapping, Sequence
 from functools import cached_property, lru_cache
 from importlib import metadata
 from pathlib import Path
@@ -34,6 +35,7 @@ __all__ = [
     "FittedForm",
     "OilModel",
     "QuantityFit",
+    "check_resistance",
     "read_oil_model",
 ]
 
@@ -183,32 +185,11 @@ class OilModel(_Data):
                     raise ValueError(f"{quantity}: wrong coefficients of form {fitted.form}")
                 if isinstance(form, Structured) and not form.allows(fitted.coefficients):
                     raise ValueError(f"{quantity}: {fitted.form} coefficients out of bounds")
-                shares = self._resistance(quantity, fitted.form)
-                worst = shares[np.argmax(np.abs(np.nan_to_num(shares, nan=np.inf) - 0.5))]
-                if not 0 < worst <= 1:
-                    raise ValueError(
-                        f"{quantity}: {fitted.form} coefficients give {worst:.3g} times the load "
-                        "as resistance within the domain, which must be above 0 and at most 1"
+                if isinstance(form, Regression):
+                    check_resistance(
+                        quantity, form, fitted.coefficients, fit.domain, self.equivalent_modulus
                     )
         return self
-
-    def _resistance(self, quantity: str, form: str) -> FloatArray:
-        """Resistance over load in thin, middling and thick films of the domain. [1]
-
-        Coefficients themselves have no natural size, those of products of groups up to 1e10.
-        """
-        domain = self.fits[quantity].domain
-        middle = {name: math.sqrt(low * high) or high / 2 for name, (low, high) in domain.items()}
-        conditions = {name: np.full(3, value) for name, value in middle.items()}
-        for name, falling in _OF_THE_FILM.items():
-            low, high = domain[name][0] or middle[name], domain[name][1]
-            conditions[name][::2] = (high, low) if falling else (low, high)
-        with np.errstate(all="ignore"):  # what is no number is refused
-            states = contacts_at(**conditions, equivalent_modulus=self.equivalent_modulus)
-            found = self.value(quantity, states, form)
-            if quantity != "friction":  # a loss
-                found = found / (states.line_load * states.rolling_speed)
-        return found
 
     @field_validator("version")
     @classmethod
@@ -246,6 +227,36 @@ class OilModel(_Data):
             # (O5) goes on to no sliding
             limits["slide_to_roll_ratio"] = (0.0, limits["slide_to_roll_ratio"][1])
         return FORMS[quantity][fitted.form].value(states.held(limits), coefficients)
+
+
+def check_resistance(
+    quantity: str,
+    form: Form,
+    coefficients: Sequence[float],
+    domain: Mapping[str, tuple[float, float]],
+    equivalent_modulus: float,
+) -> None:
+    """Raise `ValueError` unless friction and losses are above zero and below what the load can do.
+
+    In thin, middling and thick films of the domain. Coefficients themselves have no natural size,
+    those of products of groups up to 1e10.
+    """
+    middle = {name: math.sqrt(low * high) or high / 2 for name, (low, high) in domain.items()}
+    conditions = {name: np.full(3, value) for name, value in middle.items()}
+    for name, falling in _OF_THE_FILM.items():
+        low, high = domain[name][0] or middle[name], domain[name][1]
+        conditions[name][::2] = (high, low) if falling else (low, high)
+    with np.errstate(all="ignore"):  # what is no number is refused
+        states = contacts_at(**conditions, equivalent_modulus=equivalent_modulus)
+        shares = form.value(states, np.array(coefficients))
+        if quantity != "friction":  # a loss
+            shares = shares / (states.line_load * states.rolling_speed)
+    worst = shares[np.argmax(np.abs(np.nan_to_num(shares, nan=np.inf) - 0.5))]
+    if not 0 < worst <= 1:
+        raise ValueError(
+            f"{quantity}: {form.name} coefficients give {worst:.3g} times the load as resistance "
+            "within the domain, which must be above 0 and at most 1"
+        )
 
 
 def read_oil_model(path: str | Path) -> OilModel:
