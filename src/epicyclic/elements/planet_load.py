@@ -222,7 +222,7 @@ def _excess(
 
 def _tilt_by_newton(excess: Callable[[FloatArray], FloatArray]) -> FloatArray | None:
     """Where both excesses are zero; None if Newton's method does not get there. [rad]"""
-    tilts = np.zeros(2)
+    tilts: FloatArray = np.zeros(2)
     found = excess(tilts)
     for _ in range(NEWTON_MOST):
         size = max(float(np.abs(tilts).max()), SMALL_TILT)
@@ -231,8 +231,9 @@ def _tilt_by_newton(excess: Callable[[FloatArray], FloatArray]) -> FloatArray | 
         )
         if not abs(np.linalg.det(slope)) > 0:
             return None  # nothing resists the tilt here
-        step = np.linalg.solve(slope, -found) * size
-        for share in 0.5 ** np.arange(HALVINGS_MOST):
+        step = np.asarray(np.linalg.solve(slope, -found) * size, dtype=np.float64)
+        for halvings in range(HALVINGS_MOST):
+            share = 0.5**halvings
             ahead = excess(tilts + share * step)
             if np.hypot(*ahead) <= np.hypot(*found):
                 break

@@ -318,7 +318,7 @@ def pocket_notes(
     if not figures.periodic:
         notes.append(
             f"The flow through the pockets of the {name} does not repeat from one mesh period "
-            f"to the next; its loss is the mean of {(figures.periods + 1) // 2} periods."
+            f"to the next; its loss is the mean of {figures.periods // 2} periods."
         )
     if count * figures.power < least:
         return tuple(notes)

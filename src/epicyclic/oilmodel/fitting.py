@@ -55,7 +55,7 @@ def fit_quantity(
             coefficients = form.fit(states, target, weight)
             if isinstance(form, Regression):
                 modulus = states.flanks.equivalent_modulus
-                check_resistance(quantity, form, coefficients, domain, modulus)
+                check_resistance(quantity, form, coefficients.tolist(), domain, modulus)
             errors = _cross_validated(form, states, target, weight)
         except (ValueError, np.linalg.LinAlgError) as error:
             left_out[name] = str(error)
