@@ -145,3 +145,64 @@ def test_a_folder_of_the_user_must_be_private_too(tmp_path):
     given.chmod(0o777)
     (note,) = outcome(tmp_path, NUMBA_CACHE_DIR=str(given))
     assert note == f"NUMBA_CACHE_DIR is not used: others may write to {given}."
+
+
+TWO = """\
+import os
+import sys
+from epicyclic.kernels._jit import kernel
+from epicyclic.kernels.compiling import listeners
+
+told, copies, fork = [], [], os.fork
+listeners.append(lambda: told.append(os.getpid()))
+__name__ = "epicyclic.two"  # listeners are told of kernels of the package only
+sys.modules[__name__] = sys.modules["__main__"]
+os.fork = lambda: copies.append(os.getpid()) or fork()
+
+@kernel
+def half(x):
+    return x / 2
+
+@kernel
+def and_one(x):
+    return half(x) + 1
+
+@kernel
+def less_three(x):
+    return x - 3
+
+assert (and_one(7.0), less_three(11.0)) == (4.5, 8.0)
+assert set(told) <= {os.getpid()}
+hits = [sum(one.stats.cache_hits.values()) for one in (half, and_one, less_three)]
+print(3.5, len(told), len(copies), hits, sep="\\n")
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere kernels are compiled in place")
+def test_kernels_are_compiled_in_a_copy_of_the_process(tmp_path):
+    """The copy keeps the memory of the compiler; this process reads what it has put on the disk."""
+    program = tmp_path / "program.py"
+    program.write_text(TWO)
+    assert printed(program) == ["3", "2", "[0, 1, 1]"]
+    assert printed(program) == ["0", "0", "[0, 1, 1]"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere kernels are compiled in place")
+def test_a_copy_that_can_keep_nothing_is_made_once(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text(FULL + TWO)
+    told, copies, hits = printed(program)
+    assert copies == "1"
+    assert told == "5"  # two of them compiled in the copy before
+    assert hits == "[0, 0, 0]"
+
+
+def printed(program):
+    """What a program prints with a cache folder beside it, but for its first line."""
+    settings = os.environ | {"XDG_CACHE_HOME": str(program.parent / "cache")}
+    settings.pop("NUMBA_CACHE_DIR", None)
+    done = subprocess.run(
+        [sys.executable, str(program)], env=settings, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()[1:]

@@ -19,6 +19,7 @@ import numba
 from numba.core import caching, event
 
 from epicyclic.cache_folder import is_private, private_folder
+from epicyclic.kernels.apart import done_apart
 from epicyclic.kernels.compiling import listeners
 
 __all__ = ["cache_notes", "kernel"]
@@ -91,13 +92,24 @@ class _CheckedFile(caching.IndexDataCacheFile):  # type: ignore[misc]
 class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
     """The cache of one kernel, without which the kernel runs as well."""
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        super().__init__(function)
+    def __init__(self, compiled: Any) -> None:
+        super().__init__(compiled.py_func)
+        self._compiled = compiled
         self._cache_file = _CheckedFile(
             cache_path=self._cache_path,
             filename_base=self._impl.filename_base,
             source_stamp=self._impl.locator.get_source_stamp(),
         )
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        load = super().load_overload
+
+        def is_kept() -> bool:
+            self._compiled.compile(sig)
+            return load(sig, target_context) is not None
+
+        found = load(sig, target_context)
+        return load(sig, target_context) if found is None and done_apart(is_kept) else found
 
     def save_overload(self, sig: Any, data: Any) -> None:
         try:
@@ -140,7 +152,7 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     previous = config.CACHE_DIR
     config.CACHE_DIR = str(_CACHE_DIR)
     try:
-        compiled._cache = _KernelCache(function)
+        compiled._cache = _KernelCache(compiled)
     except Exception as error:  # numba finds no place that it can write to
         _note_lost(error)
     finally:
