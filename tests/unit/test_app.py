@@ -158,7 +158,7 @@ def test_a_dot_in_the_name_of_a_set_is_told_as_in_a_case_file():
     desk = opened("train-8hp70")
     (name, *_) = desk.current["sets"]
     assert desk.rename(f"sets.{name}", "P.1") == ""
-    assert any("is no name for a set" in problem.allowed for problem in desk.problems)
+    assert any("is not a valid name for a set" in problem.allowed for problem in desk.problems)
     assert desk.case is None
 
 
