@@ -12,6 +12,7 @@ from epicyclic.case.case import Case
 from epicyclic.errors import is_interrupt
 from epicyclic.results.result import Result
 from epicyclic.status import Status
+from limits import is_soon
 
 __all__ = ["FAULTS", "LONGEST", "Outcome", "outcome_of"]
 
@@ -81,7 +82,7 @@ def outcome_of(case: Case) -> Outcome:
             raise
         name, energy, detail = "exception", math.nan, f"{type(error).__name__}: {error}"
     seconds = time.process_time() - start
-    if seconds > LONGEST and name not in FAULTS:
+    if name not in FAULTS and not is_soon(seconds, LONGEST):
         name, detail = "too long", name
     return Outcome(name, seconds, energy, detail)
 

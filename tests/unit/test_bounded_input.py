@@ -17,8 +17,9 @@ from epicyclic.campaigns.campaign import make_campaign
 from epicyclic.cli.main import main
 from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.dataset import write_dataset
+from limits import is_soon
 
-MOST_SECONDS, LONGEST = 5.0, 100_000
+LONGEST = 100_000
 DOTS = ".".join(["a"] * 1000)
 
 
@@ -50,7 +51,7 @@ def test_sizes_and_dots_are_refused(tmp_path, monkeypatch, capsys, arguments):
         main()
     shown = capsys.readouterr()
     assert ended.value.code == 2, shown.err[:2000]
-    assert time.process_time() - start < MOST_SECONDS
+    assert is_soon(time.process_time() - start)
     assert len(shown.err) < LONGEST
     assert list(tmp_path.iterdir()) == []
 
@@ -70,7 +71,7 @@ def test_ten_thousand_unknown_keys_make_a_short_message(tmp_path):
     start = time.process_time()
     with pytest.raises(InputError) as error:
         ep.load_case(path)
-    assert time.process_time() - start < MOST_SECONDS
+    assert is_soon(time.process_time() - start)
     assert len(error.value.problems) > 10_000
     message = str(error.value)
     assert len(message) < LONGEST

@@ -30,7 +30,7 @@ from epicyclic.oilmodel.model import read_oil_model
 from epicyclic.pocketing.stored import read_stored
 from epicyclic.records.files import open_map
 from epicyclic.sweeps.dataset import write_dataset
-from limits import MOST_MEMORY, MOST_SECONDS, peak_memory
+from limits import MOST_MEMORY, is_soon, peak_memory
 
 QUICK, ALL = 40, 1000
 COARSE = {"numerics.pocket_slices": 4, "numerics.pocket_steps": 12}
@@ -217,7 +217,7 @@ def test_damaged_files_end_in_an_input_error_or_are_read(tmp_path, binary_files,
         seconds.append(time.process_time() - start)
     assert messages
     assert max(map(len, messages)) < LONGEST_MESSAGE
-    assert max(seconds) < MOST_SECONDS
+    assert is_soon(max(seconds))
     assert peak_memory() - before < MOST_MEMORY
     print(
         f"{name}: {len(messages)} of {copies} damaged files refused, the others read, "

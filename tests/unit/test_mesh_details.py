@@ -109,7 +109,7 @@ def test_tables_show_extremes_with_their_place(meshes):
 def test_picture_has_labels_with_units(meshes):
     figure = mesh_figure(meshes["sun_mesh"])
     labels = {ax.get_ylabel() for ax in figure.axes} | {ax.get_xlabel() for ax in figure.axes}
-    labels = {label.partition(";")[0].partition(" (")[0] for label in labels}
+    labels = {" ".join(label.partition(";")[0].partition(" (")[0].split()) for label in labels}
     assert labels >= {
         "line load, N/mm",
         "contact pressure, GPa",
