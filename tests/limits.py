@@ -12,7 +12,7 @@ MOST_SECONDS = 5.0
 """Of processor time, on a machine that takes `USUAL`."""
 MOST_MEMORY = 500e6
 """Bytes beyond what was in use before."""
-USUAL = 0.06
+USUAL = 0.03
 """Processor time of a million additions on the machines that limits are stated for. [s]"""
 
 
