@@ -346,7 +346,7 @@ def test_a_case_goes_out_and_comes_back(open_app, tmp_path):
     page.wait_for_selector(".q-dialog", state="detached")
     assert page.get_by_label("speed", exact=True).input_value() == "3100"
     page.get_by_role("button", name="Command").click()
-    assert "epicyclic run mine.toml" in page.locator(".command").inner_text()
+    page.locator(".command", has_text="epicyclic run mine.toml").wait_for()
     assert not page.wrong
 
 
