@@ -13,8 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import null_space
-from scipy.optimize import nnls
 
 from epicyclic.errors import ConvergenceError
 
@@ -160,6 +158,9 @@ def _loaded(
     supports. With the part that (S4) leaves free as unknown, that is a problem of least distance:
     C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (1974), chapter 23, section 4.
     """
+    from scipy.linalg import null_space
+    from scipy.optimize import nnls
+
     number = len(branches.lead)
     # in units of the free approach: C F/g - g/g and the root of C times support over g
     reach = max(float(np.ptp(branches.lead)), branches.compliance * force)

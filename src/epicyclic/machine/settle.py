@@ -106,15 +106,16 @@ def _losses(solution: Solution) -> list[Loss]:
 def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settled:
     """Temperatures and losses that agree. Theory (W27).
 
-    Broyden's method on the temperatures (Math. Comp. 19 (1965) 577, general knowledge), which
-    starts as the plain repetition of losses and temperatures. For so few unknowns the matrix is at
-    hand; SciPy's method, the same to rounding, takes longer to import than a case to settle.
+    Broyden's method on the temperatures, which starts as the plain repetition of losses and
+    temperatures.
 
     Raises
     ------
     ConvergenceError
         If there is no equilibrium, or only one that no gearbox survives.
     """
+    from scipy.optimize import NoConvergence, broyden1
+
     nodes = tuple(model.start)
     unheated = start_of(machine, operation)
     found: list[tuple[Solution, Answer]] = []
@@ -127,29 +128,18 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
         found.append((solution, answer))
         return np.array([answer.temperatures[node] for node in nodes]) - values
 
-    values = np.array([model.start[node] for node in nodes])
-    left = change(values)
-    inverse = np.eye(len(nodes))  # of the derivative of what is left, its sign changed
-    while not np.abs(left).max() <= AGREEMENT:  # also if it is no number
-        if len(found) > MOST_PASSES:
-            raise _runaway(found[-1][1].temperatures, found)
-        step = inverse @ left
-        values = values + step
-        now = change(values)
-        inverse = _corrected(inverse, step, left - now)
-        left = now
+    start = np.array([model.start[node] for node in nodes])
+    try:
+        with np.errstate(invalid="ignore"):  # its first check divides infinity by infinity
+            broyden1(
+                change, start, alpha=1.0, f_tol=AGREEMENT, maxiter=MOST_PASSES, line_search=None
+            )
+    except NoConvergence:
+        raise _runaway(found[-1][1].temperatures, found) from None
     solution, answer = found[-1]
     if max(answer.temperatures.values()) > HOTTEST:
         raise _runaway(answer.temperatures, found)
     return Settled(solution, answer, len(found))
-
-
-def _corrected(inverse: FloatArray, step: FloatArray, drop: FloatArray) -> FloatArray:
-    """The matrix that takes the last `drop` to the last `step`, and else does what it did."""
-    row = step @ inverse
-    with np.errstate(divide="ignore", invalid="ignore"):
-        new: FloatArray = inverse + np.outer(step - inverse @ drop, row) / (row @ drop)
-    return new if np.isfinite(new).all() else np.eye(len(step))
 
 
 def _runaway(
