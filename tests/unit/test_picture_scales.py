@@ -125,6 +125,21 @@ def test_a_single_set_of_a_train_shows_its_components(talbot_record):
     assert len(names[0]) > 5
 
 
+def test_several_sets_are_bars_of_their_own_however_many(talbot_record, monkeypatch):
+    monkeypatch.setattr("epicyclic.plots.losses.MOST_BARS", 1)
+    contents = talbot_record.result
+    both = {
+        field: {f"{own}.{name}": value for own in ("P1", "P2") for name, value in given.items()}
+        for field, given in (
+            ("losses", contents.losses),
+            ("groups", contents.groups),
+            ("not_included", contents.not_included),
+        )
+    }
+    ax = plot_losses(contents.model_copy(update={"kind": "train"} | both), axes())
+    assert [text.get_text() for text in ax.get_yticklabels()] == ["P1", "P2"]
+
+
 def test_too_many_losses_are_summed_by_what_loses_them(talbot_record, monkeypatch):
     contents = talbot_record.result
     monkeypatch.setattr("epicyclic.plots.losses.MOST_BARS", 5)

@@ -83,19 +83,24 @@ def _rows(result: ResultContents, scale: float) -> list[tuple[str, str, float]]:
 
     Where these are too many, all losses of a mesh, bearing or body are one.
     """
-    shown = [name for name in result.losses if name not in result.not_included]
-    labels = {name: name for name in shown}
-    if result.kind == "train":
-        labels = {name: name.partition(".")[0] for name in shown}
-        if len(set(labels.values())) == 1:
-            labels = {name: name.rpartition(".")[2] for name in shown}
-    if len(set(labels.values())) > MOST_BARS:
-        labels = {name: label.rpartition("_")[0] for name, label in labels.items()}
     sums: dict[tuple[str, str], float] = {}
-    for name, label in labels.items():
+    for name, label in _labels(result).items():
         key = in_words(label), result.groups[name]
         sums[key] = sums.get(key, 0.0) + result.losses[name] / scale
     return [(label, group, power) for (label, group), power in sums.items()]
+
+
+def _labels(result: ResultContents) -> dict[str, str]:
+    """The bar to which each loss belongs."""
+    shown = [name for name in result.losses if name not in result.not_included]
+    if result.kind == "train":
+        sets = {name: name.partition(".")[0] for name in shown}
+        if len(set(sets.values())) > 1:
+            return sets
+    components = {name: name.rpartition(".")[2] for name in shown}
+    if len(set(components.values())) <= MOST_BARS:
+        return components
+    return {name: component.rpartition("_")[0] for name, component in components.items()}
 
 
 def _step(ax: Axes, row: int, start: float, watts: float, colour: str, digits: int) -> None:
