@@ -19,6 +19,7 @@ from epicyclic.cli.duty import duty
 from epicyclic.maps import cycle_source
 from epicyclic.maps.interpolation_error import Sample
 from epicyclic.maps.lookup import loss_power, make_lookup
+from limits import is_soon
 
 SPEEDS = (0.0, 500.0, 2000.0, 4000.0)
 TORQUES = (-800.0, -100.0, 0.0, 100.0, 800.0)
@@ -373,7 +374,7 @@ def test_large_bad_files_end_soon_and_in_little_memory(tmp_path, body, count):
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     problems, seconds, megabytes = (float(word) for word in done.stdout.split())
     assert problems == count
-    assert seconds < 5
+    assert is_soon(seconds)
     assert megabytes < 500
 
 

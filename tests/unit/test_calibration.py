@@ -23,6 +23,7 @@ from epicyclic.measurement.fit import fit_parameters
 from epicyclic.measurement.identifiability import combinations, reaches
 from epicyclic.measurement.model import MeasuredPoints
 from epicyclic.measurement.table import Measurements
+from limits import is_soon
 
 TRUTH = {"losses.mesh_sliding.factor": 1.2, "losses.drag.factor": 0.8}
 KEYS = list(TRUTH)
@@ -514,7 +515,7 @@ def test_a_fit_of_an_e_axle_ends_in_time(tmp_path, count, keys, seconds):
     measured = table.assign(**{"loss [W]": exact, "uncertainty [%]": 1.0})
     start = time.process_time()
     fit = ep.compare_measured(case, measured, fit=keys, jobs=1).fit
-    assert time.process_time() - start < seconds
+    assert is_soon(time.process_time() - start, seconds)
     assert all(item.profiled for item in fit.parameters)
     assert fit.chi_squared < 1e-3 or count == 3  # there two inputs keep wrong values
     for item in fit.parameters if count == 20 else ():
