@@ -211,14 +211,19 @@ class LineContacts:
         ratio: FloatArray = self.minimum_film / self.composite_roughness
         return ratio
 
+    def conditions(self) -> dict[str, Any]:
+        """The `CONDITIONS`, with the sign of the slip: which surface is faster."""
+        values = {name: getattr(self, name) for name in CONDITIONS}
+        return values | {"slide_to_roll_ratio": self.sliding_speed / self.rolling_speed}
+
     def changed(self, **conditions: FloatArray) -> LineContacts:
         """The contacts with other values of some of the `CONDITIONS`, the others as they are."""
-        values = self._conditions() | conditions
+        values = self.conditions() | conditions
         return contacts_at(**values, equivalent_modulus=self.flanks.equivalent_modulus)
 
     def taken(self, index: Any) -> LineContacts:
         """Some of the contacts, each of which has a value of every condition."""
-        return self.changed(**{name: value[index] for name, value in self._conditions().items()})
+        return self.changed(**{name: value[index] for name, value in self.conditions().items()})
 
     def held(self, limits: Mapping[str, tuple[float | None, float | None]]) -> LineContacts:
         """With the conditions that have `limits` held within them. Theory (F5), (O2)."""
@@ -228,11 +233,6 @@ class LineContacts:
                 held["slide_to_roll_ratio"], self.sliding_speed
             )
         return self.changed(**held)
-
-    def _conditions(self) -> dict[str, Any]:
-        """The `CONDITIONS`, with the sign of the slip: which surface is faster."""
-        values = {name: getattr(self, name) for name in CONDITIONS}
-        return values | {"slide_to_roll_ratio": self.sliding_speed / self.rolling_speed}
 
 
 def contacts_at(

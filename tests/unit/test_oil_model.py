@@ -294,7 +294,7 @@ def with_coefficient(text):
     ("damage", "told"),
     [
         (lambda text: text[: len(text) // 2], "is not JSON"),
-        (lambda text: resealed(text.replace("oil model 3", "oil model 7")), "format"),
+        (lambda text: resealed(text.replace(FORMAT, "epicyclic oil model 7")), "format"),
         (lambda text: resealed(text.replace('"form": "structured"', '"form": "other"')), "other"),
         (lambda text: resealed(text.replace('"lubricant"', '"fluid"')), "no oil"),
         (lambda text: resealed(text.replace('"radius":', '"size":')), "domain"),

@@ -58,9 +58,12 @@ def pairing_ratio(quantity: str, contact: LineContacts) -> FloatArray:
     array([1.])
     """
     model = _simulated()
-    ratio: FloatArray = model.value(quantity, contact) / model.value(
-        quantity, equally_rough(contact)
+    # without the correction, which may have friction fall where the smoother surface gets rougher
+    one, two = (
+        model.value(quantity, states, corrected=False)
+        for states in (contact, equally_rough(contact))
     )
+    ratio: FloatArray = one / two
     return ratio
 
 

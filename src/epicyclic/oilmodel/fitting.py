@@ -15,7 +15,9 @@ from epicyclic.oilmodel.model import (
     QuantityFit,
     check_resistance,
 )
+from epicyclic.oilmodel.nearby import NearbySimulations
 from epicyclic.oilmodel.regressions import Regression
+from epicyclic.oilmodel.structured import Structured
 
 __all__ = ["fit_quantity"]
 
@@ -56,7 +58,10 @@ def fit_quantity(
             if isinstance(form, Regression):
                 modulus = states.flanks.equivalent_modulus
                 check_resistance(quantity, form, coefficients.tolist(), domain, modulus)
-            errors = _cross_validated(form, states, target, weight)
+            alone, corrected = _cross_validated(form, states, target, weight)
+            nearby = None
+            if corrected.mean() < alone.mean():
+                nearby = _nearby(form, coefficients, states, target, weight)
         except (ValueError, np.linalg.LinAlgError) as error:
             left_out[name] = str(error)
             continue
@@ -64,7 +69,8 @@ def fit_quantity(
             FittedForm(
                 form=name,
                 coefficients=tuple(map(_rounded, coefficients)),
-                errors=_errors_of(errors, states.film_ratio),
+                errors=_errors_of(alone if nearby is None else corrected, states.film_ratio),
+                simulations=nearby,
             )
         )
     if not fitted:
@@ -80,17 +86,35 @@ def fit_quantity(
 
 def _cross_validated(
     form: Form, states: LineContacts, target: FloatArray, weight: FloatArray
-) -> FloatArray:
-    """|computed/simulated - 1| at each contact, fitted without its part, shape (n,)."""
+) -> tuple[FloatArray, FloatArray]:
+    """|computed/simulated - 1| at each contact, fitted without its part: the form, and corrected.
+
+    Regressions are as they are published: nothing corrects them.
+    """
     part = np.random.default_rng(0).permutation(target.size) % FOLDS
-    error = np.empty(target.size)
+    alone, corrected = np.empty(target.size), np.empty(target.size)
     for number in range(FOLDS):
         unseen = part == number
         if not unseen.any():
             continue
-        coefficients = form.fit(states.taken(~unseen), target[~unseen], weight[~unseen])
-        error[unseen] = form.value(states.taken(unseen), coefficients) / target[unseen] - 1
-    return np.abs(error)
+        seen = (states.taken(~unseen), target[~unseen], weight[~unseen])
+        coefficients = form.fit(*seen)
+        there = states.taken(unseen)
+        alone[unseen] = corrected[unseen] = form.value(there, coefficients)
+        if isinstance(form, Structured):
+            corrected[unseen] *= _nearby(form, coefficients, *seen).factor(there)
+    return np.abs(alone / target - 1), np.abs(corrected / target - 1)
+
+
+def _nearby(
+    form: Form,
+    coefficients: FloatArray,
+    states: LineContacts,
+    target: FloatArray,
+    weight: FloatArray,
+) -> NearbySimulations:
+    excess = np.log(target / form.value(states, coefficients))
+    return NearbySimulations.of(states, excess, weight)
 
 
 def _errors_of(error: FloatArray, film_ratio: FloatArray) -> tuple[FitError, ...]:

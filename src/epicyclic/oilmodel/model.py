@@ -18,6 +18,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from epicyclic.contact import CONDITIONS, LineContacts, contacts_at
 from epicyclic.errors import InputError, Problem
 from epicyclic.lubricant.oil import Oil
+from epicyclic.oilmodel.nearby import NearbySimulations
 from epicyclic.oilmodel.regressions import (
     FRICTION_REGRESSION,
     NEEDLE_REGRESSION,
@@ -42,7 +43,7 @@ __all__ = [
 FloatArray = NDArray[np.float64]
 Form = Regression | Structured
 
-FORMAT: Literal["epicyclic oil model 3"] = "epicyclic oil model 3"
+FORMAT: Literal["epicyclic oil model 4"] = "epicyclic oil model 4"
 """Name and version of the file format."""
 FORMS: dict[str, dict[str, Form]] = {
     "friction": {form.name: form for form in (STRUCTURED_FRICTION, FRICTION_REGRESSION)},
@@ -93,11 +94,22 @@ class FitError(_Data):
 
 
 class FittedForm(_Data):
-    """Coefficients of a form and its cross-validated errors."""
+    """Coefficients of a form, its correction, and its cross-validated errors.
+
+    Attributes
+    ----------
+    form : str
+    coefficients : tuple of float
+    errors : tuple of FitError
+        With the correction, if there is one.
+    simulations : NearbySimulations, optional
+        What corrects a structured form.
+    """
 
     form: str
     coefficients: tuple[float, ...]
     errors: tuple[FitError, ...]
+    simulations: NearbySimulations | None = None
 
 
 class QuantityFit(_Data):
@@ -158,7 +170,7 @@ class OilModel(_Data):
         By quantity, the keys of `FORMS`.
     """
 
-    format: Literal["epicyclic oil model 3"]
+    format: Literal["epicyclic oil model 4"]
     version: str
     settings: dict[str, Any]
     designs: tuple[dict[str, Any], ...]
@@ -208,7 +220,9 @@ class OilModel(_Data):
         """The oil that was simulated."""
         return Oil.model_validate(self.settings["lubricant"]["oil"])
 
-    def value(self, quantity: str, states: LineContacts, form: str = "") -> FloatArray:
+    def value(
+        self, quantity: str, states: LineContacts, form: str = "", *, corrected: bool = True
+    ) -> FloatArray:
         """A quantity at every contact, conditions held in the domain. Theory (O2).
 
         Parameters
@@ -218,6 +232,8 @@ class OilModel(_Data):
         states : LineContacts
         form : str
             By default the first one of the file.
+        corrected : bool
+            Whether nearby simulations correct a structured form.
         """
         fit = self.fits[quantity]
         fitted = next((item for item in fit.forms if item.form == form), fit.forms[0])
@@ -226,7 +242,11 @@ class OilModel(_Data):
         if fitted.form == STRUCTURED_FRICTION.name and quantity == "friction":
             # (O5) goes on to no sliding
             limits["slide_to_roll_ratio"] = (0.0, limits["slide_to_roll_ratio"][1])
-        return FORMS[quantity][fitted.form].value(states.held(limits), coefficients)
+        held = states.held(limits)
+        value = FORMS[quantity][fitted.form].value(held, coefficients)
+        if corrected and fitted.simulations is not None:
+            value = value * fitted.simulations.factor(held)
+        return value
 
 
 def check_resistance(
