@@ -18,7 +18,7 @@ from epicyclic.case.case import Case
 from epicyclic.elements.base import joined_key
 from epicyclic.elements.fluids import Fluids
 from epicyclic.elements.gear_mesh import MeshDuty
-from epicyclic.elements.pocket_flow import oil_in_mesh, pocket_notes, solve_pockets
+from epicyclic.elements.pocket_flow import flow_family, oil_in_mesh, pocket_notes, solve_pockets
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.outline import tooth_outline
@@ -28,10 +28,9 @@ from epicyclic.pocketing.geometry import (
     PocketGeometry,
     contact_clearances,
     gap_feet,
-    pocket_geometry,
     pocket_outlines,
 )
-from epicyclic.pocketing.similarity import FLOW_NUMBERS, flow_figures
+from epicyclic.pocketing.similarity import FLOW_NUMBERS, FlowFamily, flow_figures
 from epicyclic.units import (
     BAR,
     CUBIC_MILLIMETRE,
@@ -213,9 +212,9 @@ def _dataset(
 ) -> xr.Dataset:
     import xarray as xr
 
-    mesh = duty.mesh
-    geometry = pocket_geometry(mesh, duty.tools, duty.drives1)
-    life = _Life(geometry, flow, duty.drives1)
+    family = flow_family(duty)
+    mesh = family.mesh
+    life = _Life(family.geometry, flow, family.drives1)
     width = mesh.face_width
     stations = flow.face
     coordinates = {
@@ -236,14 +235,14 @@ def _dataset(
     variables = {
         **_shapes(life, width),
         **_flows(life),
-        **_pictures(duty, life),
+        **_pictures(family, life),
         **_numbers(duty, flow, fluids),
     }
     attributes = {
         "title": f"Pockets of {_words(key)} of {title or 'the case'}",
         "notes": "\n".join(pocket_notes(duty, flow_figures(flow), fluids, meshes)),
         "model": POCKETING_MODELS[duty.models.pockets.model],
-        "drives": mesh.gear1.name if duty.drives1 else mesh.gear2.name,
+        "drives": mesh.gear1.name if family.drives1 else mesh.gear2.name,
         "members": f"{mesh.gear1.name} {mesh.gear2.name}",
         "internal": int(mesh.internal),
         "teeth": [mesh.gear1.teeth, mesh.gear2.teeth],
@@ -320,10 +319,10 @@ def _flows(life: _Life) -> dict[str, Variable]:
     }
 
 
-def _pictures(duty: MeshDuty, life: _Life) -> dict[str, Variable]:
+def _pictures(family: FlowFamily, life: _Life) -> dict[str, Variable]:
     """What a picture of the transverse section at both ends of the face needs."""
-    mesh = duty.mesh
-    section = (mesh, duty.tools, duty.drives1)
+    mesh = family.mesh
+    section = (mesh, family.tools, family.drives1)
     ends = [0, -1]
     living = life.living[..., ends]
 
@@ -336,10 +335,10 @@ def _pictures(duty: MeshDuty, life: _Life) -> dict[str, Variable]:
     )
     contact, backlash = (
         points(gap_feet(*section, leading, life.beside(leading)[..., ends].ravel()))
-        for leading in (duty.drives1, not duty.drives1)
+        for leading in (family.drives1, not family.drives1)
     )
     at_end = (*_LIFE, "end")
-    leading, trailing = contact_clearances(mesh, duty.drives1)
+    leading, trailing = contact_clearances(mesh, family.drives1)
     return {
         "outline": variable(
             (*at_end, "point", _AXIS),
@@ -361,12 +360,12 @@ def _pictures(duty: MeshDuty, life: _Life) -> dict[str, Variable]:
             DEGREE,
         ),
         "twist": variable((), life.flow.station[-1], "turn of the helix over the face", DEGREE),
-        "tooth1": _tooth(mesh.gear1, duty.tools[0], "tooth1_point"),
-        "tooth2": _tooth(mesh.gear2, duty.tools[1], "tooth2_point"),
+        "tooth1": _tooth(mesh.gear1, family.tools[0], "tooth1_point"),
+        "tooth2": _tooth(mesh.gear2, family.tools[1], "tooth2_point"),
     }
 
 
-def _tooth(gear: Gear, tool: Tool, dimension: str) -> Variable:
+def _tooth(gear: Gear, tool: Tool | None, dimension: str) -> Variable:
     points = tooth_outline(gear, tool).points(teeth=1) @ np.array([[0.0, -1.0], [1.0, 0.0]])
     label = f"outline of a tooth of the {gear.name}, along x"
     return variable((dimension, _AXIS), points, label, MILLIMETRE)

@@ -212,7 +212,8 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
     file = case.models.pocketing_table
     memory = None if case.models.temperatures == "inlet" else FlowMemory()
     meshes = tuple(_before("_pocketing", choices))
-    fed = _fed(case) / (len(meshes) * (gearing_of(case).planets or 1))
+    planets = gearing_of(case).planets
+    fed = _fed(case) / (len(meshes) * (planets or 1))
     return {
         key: MeshModels(
             friction=friction,
@@ -233,6 +234,7 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
                 tables=flow_tables,
                 memory=memory,
                 fed=fed,
+                any_order=not planets,
             ),
         )
         for key in meshes

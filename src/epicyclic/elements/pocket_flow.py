@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -102,6 +102,8 @@ class PocketSettings:
         Flows of this very case at other temperatures, while they settle.
     fed : float
         Oil that is fed into the mesh of one planet as the teeth mesh. [m^3/s]
+    any_order : bool
+        Whether the gears may be named in any order: the smaller one is then gear 1 of the pockets.
     """
 
     include: bool
@@ -115,6 +117,7 @@ class PocketSettings:
     tables: FlowTables = field(default_factory=dict, hash=False, compare=False)
     memory: FlowMemory | None = field(default=None, hash=False, compare=False)
     fed: float = 0.0
+    any_order: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,17 +157,29 @@ def _spaces(gear: Gear) -> float:
 
 def flow_family(duty: MeshDuty) -> FlowFamily:
     """The flows that that of a mesh belongs to."""
-    settings = duty.models.pockets
+    settings, mesh, tools, drives1 = duty.models.pockets, duty.mesh, duty.tools, duty.drives1
+    if _exchanged(duty):
+        mesh = replace(mesh, gear1=mesh.gear2, gear2=mesh.gear1)
+        tools, drives1 = tools[::-1], not drives1
     return FlowFamily(
-        mesh=duty.mesh,
-        tools=duty.tools,
-        drives1=duty.drives1,
+        mesh=mesh,
+        tools=tools,
+        drives1=drives1,
         oil_fraction=1.0 if settings.model in NETWORK_MODELS else oil_in_mesh(duty),
         model=settings.model,
         slices=settings.slices,
         steps=settings.steps,
         end_length=settings.end_length,
     )
+
+
+def _exchanged(duty: MeshDuty) -> bool:
+    """Whether gear 2 is gear 1 of the pockets, whose time steps follow a tooth of that gear."""
+    one, two = (
+        (gear.teeth, gear.tip_radius, gear.root_radius)
+        for gear in (duty.mesh.gear1, duty.mesh.gear2)
+    )
+    return duty.models.pockets.any_order and not duty.mesh.internal and one > two
 
 
 def solve_pockets(duty: MeshDuty, fluids: Fluids) -> PocketFlow | None:
@@ -247,7 +262,8 @@ def flow_request(duty: MeshDuty, fluids: Fluids) -> FlowRequest:
     settings = duty.models.pockets
     lowest = settings.void_pressure if settings.model == "incompressible" else 0.0
     mixture = fluids.mixed(oil_in_mesh(duty))
-    return flow_family(duty), abs(duty.speed1), mixture, fluids.pressure - lowest
+    speed = abs(duty.speed1) / (duty.mesh.ratio if _exchanged(duty) else 1.0)
+    return flow_family(duty), speed, mixture, fluids.pressure - lowest
 
 
 def _scales(request: FlowRequest) -> bool:
