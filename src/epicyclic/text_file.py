@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import re
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -91,11 +92,16 @@ def check_archive(content: bytes, noun: str, largest: int, remedy: str) -> None:
         refuse(f"unpacks to more than {largest / _MEGABYTE:g} MB.", remedy)
 
 
+_COLUMN = re.compile(r"\[\n\s*([-+.,eE\d\s]+)\]")
+"""A list of numbers with each on a line of its own: they share one line."""
+
+
 def sealed(content: Mapping[str, Any], indent: int | None = None) -> str:
     """JSON with a fingerprint of its content, so that `unsealed` sees whether it was altered."""
     separators = (",", ":") if indent is None else (",", ": ")
     whole = {**content, _SEAL: _fingerprint(content)}
-    return json.dumps(whole, indent=indent, separators=separators) + "\n"
+    text = json.dumps(whole, indent=indent, separators=separators)
+    return _COLUMN.sub(lambda found: "[" + " ".join(found[1].split()) + "]", text) + "\n"
 
 
 def unsealed(text: str) -> dict[str, Any]:

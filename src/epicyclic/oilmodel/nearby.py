@@ -30,7 +30,7 @@ SMALLEST_SLIP = 0.01
 """Added to the slide-to-roll ratio, whose logarithm is taken. [1]"""
 LARGEST_EXCESS = 3.0
 """Of ln of simulated over computed: a form that is off by a factor of 20 is none. [1]"""
-DIGITS = 6
+DIGITS = 5
 
 
 class NearbySimulations(BaseModel):
