@@ -58,12 +58,9 @@ def pairing_ratio(quantity: str, contact: LineContacts) -> FloatArray:
     array([1.])
     """
     model = _simulated()
-    # without the correction, which may have friction fall where the smoother surface gets rougher
-    one, two = (
-        model.value(quantity, states, corrected=False)
-        for states in (contact, equally_rough(contact))
+    ratio: FloatArray = model.value(quantity, contact) / model.value(
+        quantity, equally_rough(contact)
     )
-    ratio: FloatArray = one / two
     return ratio
 
 

@@ -220,9 +220,7 @@ class OilModel(_Data):
         """The oil that was simulated."""
         return Oil.model_validate(self.settings["lubricant"]["oil"])
 
-    def value(
-        self, quantity: str, states: LineContacts, form: str = "", *, corrected: bool = True
-    ) -> FloatArray:
+    def value(self, quantity: str, states: LineContacts, form: str = "") -> FloatArray:
         """A quantity at every contact, conditions held in the domain. Theory (O2).
 
         Parameters
@@ -232,8 +230,6 @@ class OilModel(_Data):
         states : LineContacts
         form : str
             By default the first one of the file.
-        corrected : bool
-            Whether nearby simulations correct a structured form.
         """
         fit = self.fits[quantity]
         fitted = next((item for item in fit.forms if item.form == form), fit.forms[0])
@@ -244,7 +240,7 @@ class OilModel(_Data):
             limits["slide_to_roll_ratio"] = (0.0, limits["slide_to_roll_ratio"][1])
         held = states.held(limits)
         value = FORMS[quantity][fitted.form].value(held, coefficients)
-        if corrected and fitted.simulations is not None:
+        if fitted.simulations is not None:
             value = value * fitted.simulations.factor(held)
         return value
 

@@ -137,18 +137,18 @@ class NearbySimulations(BaseModel):
 
 
 def _coordinates(states: LineContacts) -> FloatArray:
-    """Where contacts lie among others, shape (n, 8)."""
+    """Where contacts lie among others, shape (n, 8), by oil and surfaces first."""
     one, two = (np.log(np.maximum(roughness, SMOOTH)) for roughness in states.roughness)
     faster = np.where(states.sliding_speed < 0, two - one, one - two)
     columns = (
-        np.log(states.hertz_pressure),
-        np.log(states.radius),
-        np.log(states.rolling_speed),
-        np.log(states.slide_to_roll_ratio + SMALLEST_SLIP),
         np.log(states.dynamic_viscosity),
         np.maximum(one, two),
         np.abs(one - two),
         faster,
+        np.log(states.hertz_pressure),
+        np.log(states.radius),
+        np.log(states.rolling_speed),
+        np.log(states.slide_to_roll_ratio + SMALLEST_SLIP),
     )
     return np.column_stack(np.broadcast_arrays(*columns))
 
