@@ -23,6 +23,7 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.losses.load_distribution import LineLoads
 from epicyclic.losses.mesh import loss_factor_notes
 from epicyclic.losses.mesh_warmth import flash_temperatures
+from epicyclic.results.result import of_gear
 from epicyclic.units import (
     DEGREE,
     GIGAPASCAL,
@@ -115,7 +116,7 @@ def _details(
         "roll_angle": variable(
             _DIMENSIONS[:1],
             lines.position * pitch_angle,
-            f"roll angle of the {mesh.gear1.name}",
+            f"roll angle {of_gear(mesh.gear1.name)}",
             DEGREE,
         ),
         "contact_line": np.arange(lines.length.shape[1]),

@@ -31,6 +31,7 @@ from epicyclic.pocketing.geometry import (
     pocket_outlines,
 )
 from epicyclic.pocketing.similarity import FLOW_NUMBERS, FlowFamily, flow_figures
+from epicyclic.results.result import of_gear
 from epicyclic.units import (
     BAR,
     CUBIC_MILLIMETRE,
@@ -227,7 +228,7 @@ def _dataset(
             ("station",), stations, "position across the face", MILLIMETRE
         ),
         "period_angle": variable(
-            ("mesh_position",), flow.angle, f"roll angle of the {mesh.gear1.name}", DEGREE
+            ("mesh_position",), flow.angle, f"roll angle {of_gear(mesh.gear1.name)}", DEGREE
         ),
         "end": ["first", "last"],
         "axis": ["x", "y"],
@@ -367,7 +368,7 @@ def _pictures(family: FlowFamily, life: _Life) -> dict[str, Variable]:
 
 def _tooth(gear: Gear, tool: Tool | None, dimension: str) -> Variable:
     points = tooth_outline(gear, tool).points(teeth=1) @ np.array([[0.0, -1.0], [1.0, 0.0]])
-    label = f"outline of a tooth of the {gear.name}, along x"
+    label = f"outline of a tooth {of_gear(gear.name)}, along x"
     return variable((dimension, _AXIS), points, label, MILLIMETRE)
 
 
@@ -403,7 +404,7 @@ def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Vari
         "ambient_pressure": (fluids.pressure, "ambient pressure", BAR),
         "speed": (
             abs(duty.speed1),
-            f"speed of the {duty.mesh.gear1.name} against the line of centres",
+            f"speed {of_gear(duty.mesh.gear1.name)} against the line of centres",
             RPM,
         ),
         "oil_fraction": (

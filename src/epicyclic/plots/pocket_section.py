@@ -19,6 +19,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from epicyclic.plots.style import COLOURS, styled_figure
+from epicyclic.results.result import of_gear
 
 __all__ = ["Section", "roll_angles", "section_figure"]
 
@@ -72,11 +73,11 @@ def _name_members(mesh: xr.Dataset, ax: Axes) -> None:
 
 
 def _legend(mesh: xr.Dataset) -> list[Patch | Line2D]:
-    one, two = mesh["tooth"].to_numpy()
+    one, two = map(of_gear, mesh["tooth"].to_numpy())
     return [
         Patch(color=FOLLOWED, label="pocket that is followed"),
-        Patch(color=KINDS[0], label=f"tooth of the {one} in a space of the {two}"),
-        Patch(color=KINDS[1], label=f"tooth of the {two} in a space of the {one}"),
+        Patch(color=KINDS[0], label=f"tooth {one} in a space {two}"),
+        Patch(color=KINDS[1], label=f"tooth {two} in a space {one}"),
         Line2D([], [], color=CONTACT, marker=".", label="gap, contact side"),
         Line2D([], [], color=BACKLASH, marker=".", label="gap, backlash side"),
     ]

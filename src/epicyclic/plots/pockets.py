@@ -26,7 +26,7 @@ from epicyclic.plots.style import (
     legend_below,
     styled_figure,
 )
-from epicyclic.results.result import in_words
+from epicyclic.results.result import in_words, of_gear
 
 __all__ = [
     "plot_areas",
@@ -159,7 +159,7 @@ def plot_power(mesh: xr.Dataset, ax: Axes) -> Axes:
 
 
 def _name(mesh: xr.Dataset, kind: int) -> str:
-    return f"tooth of the {in_words(mesh['tooth'].to_numpy()[kind])}"
+    return f"tooth {of_gear(mesh['tooth'].to_numpy()[kind])}"
 
 
 def _over_roll(mesh: xr.Dataset, ax: Axes, title: str, label: str) -> Axes:

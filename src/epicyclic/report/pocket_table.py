@@ -15,6 +15,7 @@ from rich.text import Text
 
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import plain_table
+from epicyclic.results.result import of_gear
 from epicyclic.units import unit_text
 
 __all__ = ["pocket_tables"]
@@ -90,7 +91,7 @@ def _at(mesh: xr.Dataset, name: str, index: tuple[int, ...]) -> Iterator[str]:
     position = f"{mesh[name].dims[-1]}_position"
     yield shown(float(mesh[name].to_numpy()[index]))
     yield _unit(mesh, name)
-    yield f"tooth of the {mesh['tooth'].to_numpy()[kind]}"
+    yield f"tooth {of_gear(mesh['tooth'].to_numpy()[kind])}"
     yield f"{shown(float(mesh['roll_angle'][kind, step]), 3)} {_unit(mesh, 'roll_angle')}"
     yield f"{shown(float(mesh[position][place]), 3)} {_unit(mesh, position)}"
 

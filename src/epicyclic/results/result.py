@@ -41,6 +41,7 @@ __all__ = [
     "Train",
     "in_words",
     "number_fields",
+    "of_gear",
     "versions",
 ]
 
@@ -51,6 +52,7 @@ LOSSES_OF_ROLES = {
     "bearing_viscous": "viscous",
 }
 """Last word of the loss for which a model is chosen by a key."""
+_KINDS_OF_GEARS = ("sun", "planet", "ring", "pinion", "gear")
 _POWERS = ("losses", "load_dependent", "load_independent", "total", "input_power")
 
 
@@ -592,6 +594,12 @@ def _train_fields(layout: Layout) -> Iterator[NumberField]:
 def in_words(name: str) -> str:
     """A key of a train in words: ``"P1: sun mesh"``."""
     return name.replace("_", " ").replace(".", ": ")
+
+
+def of_gear(name: str) -> str:
+    """What a label says something is of: ``"of the sun"``, but ``"of gear A"``."""
+    words = in_words(name)
+    return f"of the {words}" if words.endswith(_KINDS_OF_GEARS) else f"of gear {words}"
 
 
 def _part_fields(
