@@ -71,18 +71,22 @@ __all__ = [
     "Volume",
     "VolumeFlow",
     "as_stated",
+    "decimals_of",
     "describe_range",
     "format_number",
     "from_pint",
     "in_unit",
     "one_of",
     "percent",
+    "power_unit",
     "pure_number",
     "range_remedy",
     "registry",
     "with_unit",
 ]
 
+KILOWATTS = 10_000.0
+"""Powers from which on they are shown in kW: no more digits than are known. [W]"""
 PLAIN_NUMBERS = 1e7
 """Numbers from here on are shown with a power of ten."""
 
@@ -137,6 +141,16 @@ def format_number(value: float, digits: int = 6) -> str:
 def percent(share: float, decimals: int = 1, *, signed: bool = False) -> str:
     """A share of one as tables and sentences have it, ``"7.3 %"``."""
     return f"{100 * share:{'+' if signed else ''}z.{decimals}f} %"
+
+
+def decimals_of(total: float) -> int:
+    """Decimals of powers beside their `total`: models are not known to more than three digits."""
+    return min(3, max(0, 2 - math.floor(math.log10(total)))) if total > 0 else 0
+
+
+def power_unit(power: float) -> tuple[str, float]:
+    """The unit in which a `power` is shown, and its size. [W]"""
+    return ("kW", 1e3) if abs(power) >= KILOWATTS else ("W", 1.0)
 
 
 def describe_range(

@@ -39,7 +39,7 @@ from epicyclic.plots.mesh import (
 )
 from epicyclic.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.plots.power_flow import SLIDE, plot_power_flow
-from epicyclic.plots.style import PANEL, room_of, styled_figure
+from epicyclic.plots.style import PANEL, TITLE_CHARACTERS, room_of, styled_figure
 from epicyclic.plots.sweep import (
     fields_of,
     plot_sweep_field,
@@ -61,8 +61,6 @@ Stored = ResultRecord | xr.Dataset
 MM_PER_INCH = 25.4
 SLIDE_WIDTHS = (6.4, 9.6, 12.8)
 """Of figures with one, two, three and more panels side by side: letters stay readable. [inch]"""
-TITLE_CHARACTERS = 13
-"""That fit into an inch of the title of Axes."""
 FLATTEST = 0.75
 """Height of a figure over that of a slide of its width, at least."""
 

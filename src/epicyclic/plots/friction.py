@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from epicyclic.analysis.compare import FrictionComparison, recommended
-from epicyclic.plots.style import COLOURS, decimals_of, legend_below, styled_figure
+from epicyclic.plots.style import COLOURS, legend_below, styled_figure
+from epicyclic.units import decimals_of
 
 __all__ = ["friction_figure", "plot_friction_models"]
 

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
-from epicyclic.plots.style import COLOURS, KILOWATTS, decimals_of, legend_below
+from epicyclic.plots.style import COLOURS, legend_below
 from epicyclic.records.contents import ResultContents
 from epicyclic.results.result import in_words
-from epicyclic.units import percent
+from epicyclic.units import decimals_of, percent, power_unit
 
 __all__ = ["plot_loss_sum", "plot_losses"]
 
@@ -23,7 +23,7 @@ MOST_BARS = 16
 
 def plot_losses(result: ResultContents, ax: Axes) -> Axes:
     """Every component of the loss, its power and share; of several sets every set and part."""
-    unit, scale = _unit(result)
+    unit, scale = power_unit(result.total)
     total, rows = result.total / scale, _rows(result, scale)
     sums = dict.fromkeys((label for label, *_ in rows), 0.0)
     starts = []
@@ -57,7 +57,7 @@ def plot_loss_sum(result: ResultContents, ax: Axes) -> Axes:
     """How the components add up to the total loss, the largest of each group first."""
     start = 0.0
     labels: list[str] = []
-    unit, scale = _unit(result)
+    unit, scale = power_unit(result.total)
     total, rows = result.total / scale, _rows(result, scale)
     digits = decimals_of(total)
     for group, colour in GROUP_COLOURS.items():
@@ -71,11 +71,6 @@ def plot_loss_sum(result: ResultContents, ax: Axes) -> Axes:
     _finish(ax, [total])
     ax.set(title="How the losses add up", xlabel=f"power loss, {unit}")
     return ax
-
-
-def _unit(result: ResultContents) -> tuple[str, float]:
-    """The unit of the losses, and its size. [W]"""
-    return ("kW", 1e3) if result.total >= KILOWATTS else ("W", 1.0)
 
 
 def _rows(result: ResultContents, scale: float) -> list[tuple[str, str, float]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import math
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -13,6 +13,7 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib import rcsetup
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.transforms import ScaledTranslation
@@ -23,15 +24,16 @@ from epicyclic.units import unit_text
 __all__ = [
     "COLOURS",
     "COLOUR_MAP",
-    "KILOWATTS",
     "LINE_STYLES",
     "PANEL",
+    "STYLE",
+    "TITLE_CHARACTERS",
     "caption_below",
     "closed_period",
-    "decimals_of",
     "figure_bytes",
     "label_of",
     "legend_below",
+    "legend_of_figure",
     "room_of",
     "styled_figure",
     "title_of",
@@ -48,22 +50,30 @@ PANEL = (4.8, 3.4)
 """Width and height of one of the Axes of a figure. [inch]"""
 BELOW = 0.42
 """Room for the ticks and the label of an x axis. [inch]"""
-KILOWATTS = 10_000.0
-"""Losses from which on they are shown in kW: no more digits than are known. [W]"""
 PIXELS = 1920
 """Width of a picture, if nothing else is asked for: that of a slide."""
 AROUND = 0.95
 """Height that title, ticks and label of the x axis take from a row of Axes. [inch]"""
-SMALL_CHARACTERS, CHARACTERS, MEDIUM = 19, 16, 13
-"""That fit into an inch of a legend, of a caption, and of one of larger letters."""
+SMALL_CHARACTERS, CHARACTERS = 19, 16
+"""That fit into an inch of a legend, and of a label."""
+CHARACTER_POINTS = 120
+"""Characters in an inch of a line, times the size of its letters in points."""
+SMALL_POINTS, MEDIUM_POINTS, TITLE_POINTS = 7.5, 9.0, 10.8
+"""Sizes of letters."""
+TITLE_SHARE, CAPTION_SHARE = 1.1, 0.85
+"""Points of title and caption for an inch of a wide figure: it is made smaller on a slide."""
+TITLE_CHARACTERS = 13
+"""That fit into an inch of the title of Axes."""
 SHORTEST = 12
 """Characters of a line of a label, at least."""
 ENTRY = 0.45
 """Room in a legend, beside the text of an entry. [inch]"""
 WIDE = 9.0
 """Width of a figure from which on its caption has larger letters. [inch]"""
+LEGEND_ROW, LEGEND_REST = 0.2, 0.45
+"""Height of a line of the legend of a figure, and of what is above it. [inch]"""
 
-_STYLE: Any = {
+STYLE: Any = {
     "axes.prop_cycle": rcsetup.cycler("color", COLOURS),
     "axes.grid": True,
     "grid.alpha": 0.3,
@@ -106,12 +116,19 @@ def styled_figure(
     caption : str
         Below all, as the operating point; none if empty.
     """
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         size = size or (panel[0] * columns, panel[1] * rows)
         figure = Figure(figsize=size, dpi=dpi or PIXELS / size[0], layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False, subplot_kw={"projection": projection})
         if title:
-            figure.suptitle(title, x=0.01, ha="left", fontweight="bold", parse_math=False)
+            figure.suptitle(
+                title,
+                x=0.01,
+                ha="left",
+                fontsize=max(TITLE_POINTS, TITLE_SHARE * size[0]),
+                fontweight="bold",
+                parse_math=False,
+            )
         if caption:
             caption_below(figure, caption)
         yield figure, axes
@@ -131,12 +148,12 @@ def _break_labels(figure: Figure, rows: int) -> None:
 def caption_below(figure: Figure, caption: str) -> None:
     """What a figure is of, as the operating point, in small letters below all."""
     width = float(figure.get_size_inches()[0])
-    characters, letters = (MEDIUM, "medium") if width > WIDE else (CHARACTERS, "small")
+    points = SMALL_POINTS if width <= WIDE else max(MEDIUM_POINTS, CAPTION_SHARE * width)
     figure.supxlabel(
-        textwrap.fill(caption, max(1, int(width * characters))),
+        textwrap.fill(caption, max(1, int(width * CHARACTER_POINTS / points))),
         x=0.01,
         ha="left",
-        fontsize=letters,
+        fontsize=points,
         color="0.3",
         parse_math=False,
     )
@@ -161,6 +178,28 @@ def legend_below(ax: Axes, **options: Any) -> None:
     )
 
 
+def legend_of_figure(figure: Figure, panels: Sequence[Axes], title: str) -> None:
+    """One legend for all panels, below them; the figure grows by its height."""
+    found: dict[str, Artist] = {}
+    for ax in panels:
+        handles, labels = ax.get_legend_handles_labels()
+        found |= dict(zip(labels, handles, strict=True))
+    width, height = figure.get_size_inches()
+    entry = ENTRY + max(map(len, found)) / SMALL_CHARACTERS
+    columns = max(1, min(len(found), int(width / entry)))
+    lines = math.ceil(len(found) / columns)
+    figure.set_size_inches(width, height + LEGEND_REST + LEGEND_ROW * lines)
+    figure.legend(
+        handles=list(found.values()),
+        labels=list(found),
+        title=title,
+        loc="outside lower center",
+        ncols=columns,
+        fontsize="small",
+        frameon=False,
+    )
+
+
 def room_of(ax: Axes) -> float:
     """Width of the figure that is left to Axes and what belongs to them. [inch]"""
     figure, place = ax.get_figure(), ax.get_subplotspec()
@@ -180,11 +219,6 @@ def figure_bytes(figure: Figure, ending: str) -> bytes:
     picture = io.BytesIO()
     figure.savefig(picture, format=ending)
     return picture.getvalue()
-
-
-def decimals_of(total: float) -> int:
-    """Decimals of powers beside their `total`: models are not known to more than three digits."""
-    return min(3, max(0, 2 - math.floor(math.log10(total)))) if total > 0 else 0
 
 
 def label_of(variable: xr.DataArray) -> str:

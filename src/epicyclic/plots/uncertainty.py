@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from epicyclic.case.uncertain_values import MODEL_FORM
-from epicyclic.plots.style import COLOURS, KILOWATTS, legend_below, styled_figure
-from epicyclic.units import format_number
+from epicyclic.plots.style import COLOURS, legend_below, styled_figure
+from epicyclic.units import format_number, power_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -142,8 +142,9 @@ def plot_band(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     unit = _unit(data, name)
     percent = unit == "1"
     scale = 100.0 if percent else 1.0
-    if unit == "W" and float(one["high"]) >= KILOWATTS:
-        unit, scale = "kW", 1e-3
+    if unit == "W":
+        unit, size = power_unit(float(one["high"]))
+        scale = 1 / size
     values = one["value"].values * scale
     low, high, nominal = (float(one[key]) * scale for key in ("low", "high", "nominal"))
     ax.axvspan(low, high, color=COLOURS[5], alpha=0.25, label="95 % interval")

@@ -9,7 +9,7 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from epicyclic.plots.catalogue import PLOTS, Stored, about, in_inches, panels_of
-from epicyclic.plots.style import styled_figure
+from epicyclic.plots.style import STYLE, styled_figure
 from epicyclic.report.explore import explorable
 from epicyclic.report.page import Drawing
 
@@ -42,14 +42,14 @@ def draw(stored: Stored, name: str, size: tuple[float, float] | None = None) -> 
             caption = f"{title}, {panel.subject}" if panel.subject else title
             ax.set_title("", loc="left")
             ax.set_title("")
-            drawings.append(Drawing(key, caption, svg_text(figure, key), explorable(ax), point))
+        drawings.append(Drawing(key, caption, svg_text(figure, key), explorable(ax), point))
     return drawings
 
 
 def svg_text(figure: Figure, key: str) -> str:
     """A figure as an ``svg`` element that fits any width, its ids beginning with `key`."""
     file = io.StringIO()
-    with mpl.rc_context({"svg.hashsalt": key}):
+    with mpl.rc_context({**STYLE, "svg.hashsalt": key}):
         figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
     text = _METADATA.sub("", _PROLOGUE.sub("", file.getvalue(), count=1))
     text = _HEIGHT.sub(r"\1", _SIZE.sub(r"\1", text, count=1), count=1)

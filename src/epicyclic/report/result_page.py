@@ -96,16 +96,16 @@ BAND_LEAD = (
 
 
 def _uncertainty(record: ResultRecord, drawings: Drawings) -> tuple[Item, ...]:
-    """Bands, budget and tornado."""
-    return tuple(
-        item
-        for data in record.group("uncertainty").values()
-        for item in (
-            *gallery(drawings, "band"),
-            *gallery(drawings, "drivers", wide=True),
-            *uncertainty_items(data),
-        )
-    )
+    """Bands, budget and tornado.
+
+    Tables stand between the figures: they break, and fill a page that has no room for the next one.
+    """
+    items: list[Item] = []
+    for data in record.group("uncertainty").values():
+        results, *more = uncertainty_items(data)
+        tornado = gallery(drawings, "drivers", wide=True)
+        items += [*gallery(drawings, "band"), results, *tornado, *more]
+    return tuple(items)
 
 
 def _losses(result: ResultContents, drawings: Drawings) -> tuple[Item, ...]:
@@ -145,7 +145,7 @@ def _validity(result: ResultContents) -> tuple[Table | Listing, ...]:
                 Cell(flag.quantity),
                 Cell(f"{_number(flag.found_low)} to {_number(flag.found_high)}", about="nowrap"),
                 Cell(_limits(flag.low, flag.high), about="nowrap"),
-                Cell(unit_text(flag.unit)),
+                Cell(unit_text(flag.unit), about="nowrap"),
                 Cell(str(ModelUse(**flag.use.model_dump()))),
                 aligned("under 1 %" if flag.share < 0.01 else percent(flag.share, 0)),
                 Cell(flag.source),

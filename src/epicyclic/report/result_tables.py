@@ -8,7 +8,7 @@ from epicyclic.records.contents import Measure, ResultContents, set_of
 from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number
 from epicyclic.report.shown import MISSING
 from epicyclic.results.result import in_words
-from epicyclic.units import percent, unit_text
+from epicyclic.units import decimals_of, percent, power_unit, unit_text
 
 __all__ = [
     "Labels",
@@ -51,16 +51,24 @@ def key_figures(result: ResultContents) -> list[KeyFigure]:
     return [
         *(ratio if result.kind == "train" else ()),
         KeyFigure("efficiency", number(efficiency, "efficiency", text=text), "%" if text else ""),
-        KeyFigure("total loss", _watts(result.total, "total"), "W"),
-        KeyFigure("load-dependent", _watts(result.load_dependent, "load_dependent"), "W"),
-        KeyFigure("load-independent", _watts(result.load_independent, "load_independent"), "W"),
-        KeyFigure("input power", _watts(result.input_power / 1e3, "", 2), "kW"),
+        _power("total loss", result.total, "total"),
+        _power("load-dependent", result.load_dependent, "load_dependent"),
+        _power("load-independent", result.load_independent, "load_independent"),
+        _power("input power", result.input_power, ""),
         *(() if result.power_ratio is None else (rolling,)),
     ]
 
 
-def _watts(value: float, key: str, digits: int = 1) -> Cell:
-    return number(value, key, text=f"{value:z.{digits}f}")
+def _power(label: str, watts: float, key: str) -> KeyFigure:
+    """With three significant digits, four of watts: no more are known."""
+    unit, scale = power_unit(watts)
+    shown_power = watts / scale
+    text = f"{shown_power:z.{decimals_of(abs(shown_power))}f}"
+    return KeyFigure(label, number(watts, key, text=text), unit)
+
+
+def _watts(value: float, key: str) -> Cell:
+    return number(value, key, text=f"{value:z.1f}")
 
 
 def share_row(result: ResultContents, watts: float, key: str) -> tuple[Cell, Cell, Cell]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from epicyclic.case.template import toml_value
 from epicyclic.records.contents import ResultContents
-from epicyclic.report.page import Cell, Table, aligned, number
+from epicyclic.report.page import Cell, KeyFigure, Table, aligned, number
 from epicyclic.report.result_tables import key_figures
 from epicyclic.report.shown import MISSING
 from epicyclic.units import percent
@@ -27,20 +28,24 @@ def side_by_side(
         What they are called.
     """
     figures = [
-        {figure.label: (figure.cell, figure.unit) for figure in key_figures(result)}
+        {figure.label: _with_unit(figure) for figure in key_figures(result)}
         for result in (first, second)
     ]
     rows = tuple(
-        (Cell(label), *(one.get(label, (Cell(MISSING), ""))[0] for one in figures), Cell(unit))
-        for label, (_, unit) in (figures[0] | figures[1]).items()
+        (Cell(label), *(one.get(label, Cell(MISSING)) for one in figures))
+        for label in figures[0] | figures[1]
     )
-    yield Table(("", *names, "unit"), rows, "Key figures")
+    yield Table(("", *names), rows, "Key figures")
     yield _losses(first, second, names)
     inputs = [dict(_flat(result.inputs)) for result in (first, second)]
     changed = [key for key in inputs[0] | inputs[1] if inputs[0].get(key) != inputs[1].get(key)]
     rows = tuple((Cell(key), *(Cell(one.get(key, MISSING)) for one in inputs)) for key in changed)
     if rows:
         yield Table(("key", *names), rows, "Inputs that differ")
+
+
+def _with_unit(figure: KeyFigure) -> Cell:
+    return replace(figure.cell, text=f"{figure.cell.text} {figure.unit}".rstrip())
 
 
 def _losses(first: ResultContents, second: ResultContents, names: tuple[str, str]) -> Table:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 
 from epicyclic.plots.style import styled_figure
@@ -23,6 +24,8 @@ from epicyclic.validation.compare import Comparison, by_topic, summary
 
 __all__ = ["comparison_sections", "validation_html"]
 
+MOST_ROWS = 8
+"""Of one picture."""
 _HEAD = (
     "figure",
     "published",
@@ -75,7 +78,7 @@ def comparison_sections(
     for done, (topic, own) in enumerate(topics.items()):
         progress(done, len(topics))
         key = topic.lower().replace(" ", "-").replace(",", "")
-        yield Section(key, topic, (Gallery((_drawing(key, own),), is_wide=True), _table(own)))
+        yield Section(key, topic, (Gallery(tuple(_drawings(key, own)), is_wide=True), _table(own)))
     text = (
         "* The tolerance was settled with the computed figure in view. Without a star it is the "
         "rounding of what is printed.",
@@ -90,10 +93,19 @@ def _closure_section(rows: Sequence[ClosureFigure]) -> Iterator[Section]:
         yield Section("closures", "Pocketing by every closure", (closure_table(rows),))
 
 
+def _drawings(key: str, rows: Sequence[Comparison]) -> Iterator[Drawing]:
+    """Pictures of like height, so that each can be read where a page is printed."""
+    count = math.ceil(len(rows) / MOST_ROWS)
+    height = math.ceil(len(rows) / count)
+    for place in range(count):
+        part = rows[place * height : (place + 1) * height]
+        yield _drawing(f"{key}-{place + 1}" if count > 1 else key, part)
+
+
 def _drawing(key: str, rows: Sequence[Comparison]) -> Drawing:
     with styled_figure(1, 1, "", panel=deviations_size(rows)) as (figure, axes):
         ax = plot_deviations(rows, axes[0, 0])
-        return Drawing(key, "Computed over published", svg_text(figure, key), explorable(ax))
+    return Drawing(key, "Computed over published", svg_text(figure, key), explorable(ax))
 
 
 def _table(rows: Sequence[Comparison]) -> Table:
@@ -104,7 +116,7 @@ def _table(rows: Sequence[Comparison]) -> Table:
                 Cell(f"{row.what}. {' '.join(remarks(row))}"),
                 Cell(published_text(row), row.low),
                 number(row.computed, ""),
-                Cell(unit_text(row.unit)),
+                Cell(unit_text(row.unit), about="nowrap"),
                 Cell(percent(row.difference, signed=True), row.difference),
                 Cell(verdict_text(row), about="nowrap"),
                 Cell(row.cause),
