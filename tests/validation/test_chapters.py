@@ -39,9 +39,9 @@ def test_planet_bearing_over_temperature(warm):
 def test_printed_losses_are_marked_where_they_belong(warm):
     marks = [(mark.panel, mark.value, mark.label) for mark in warm.marks]
     assert marks == [
-        (4000, 236.0, "printed, 40 degC"),
-        (4000, 195.0, "printed, 60 degC"),
-        (4000, 181.0, "printed, 90 degC"),
+        (4000, 236.0, "printed, 40 °C"),
+        (4000, 195.0, "printed, 60 °C"),
+        (4000, 181.0, "printed, 90 °C"),
     ]
     figure = family_figure(warm)
     slow, fast = figure.axes
@@ -79,7 +79,7 @@ def test_helix_changes_the_moment_and_not_the_force():
 def test_roller_loads_are_those_of_the_rollers():
     cases = chapters.roller_loads_over("3.3")
     assert [label for label, _ in cases] == [
-        f"torque on the branch {torque} N m" for torque in (42, 100, 333)
+        f"torque on the branch {torque} N·m" for torque in (42, 100, 333)
     ]
     forces = [float(data["load"].max()) for _, data in cases]
     assert np.all(np.diff(forces) > 0)

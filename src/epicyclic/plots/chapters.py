@@ -6,15 +6,21 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of, styled_figure
+from epicyclic.plots.style import (
+    COLOUR_MAP,
+    COLOURS,
+    LINE_STYLES,
+    label_of,
+    legend_of_figure,
+    styled_figure,
+)
 from epicyclic.units import format_number, unit_text
 from epicyclic.validation.chapters import Family, Mark
 
-__all__ = ["branch_figure", "family_figure", "roller_figure"]
+__all__ = ["SOURCE", "branch_figure", "family_figure", "roller_figure"]
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 STARS = ("*", "P", "X")
@@ -23,10 +29,6 @@ SOURCE = "Talbot (2012)"
 MOST_COLUMNS = 3
 PANEL, ALONE = (4.3, 3.1), (6.4, 4.2)
 """Width and height of one of several panels, and of a single one. [inch]"""
-LEGEND_ROW, LEGEND_REST = 0.2, 0.45
-"""Height of a line of the legend below the panels, and of what is above it. [inch]"""
-LABEL_WIDTH = 2.6
-"""Of one column of the legend. [inch]"""
 SAME = 0.5
 """Values of panels that differ less are the same, in their unit."""
 
@@ -36,7 +38,7 @@ def family_figure(family: Family) -> Figure:
     data = family.data[family.variable]
     panels, curves, over = map(str, data.dims)
     count = data.sizes[panels]
-    columns = count if count <= MOST_COLUMNS else 2
+    columns = _columns(count)
     rows = -(-count // columns)
     panel = PANEL if count > 1 else ALONE
     with styled_figure(rows, columns, _title(family), panel=panel) as (figure, axes):
@@ -63,7 +65,8 @@ def family_figure(family: Family) -> Figure:
             ax.margins(0.06)
             ax.set_xlim(left=0)
             ax.set_ylim(bottom=0)
-        _legend(figure, str(data[curves].attrs.get("long_name", curves)))
+        title = str(data[curves].attrs.get("long_name", curves))
+        legend_of_figure(figure, figure.axes, title)
     return figure
 
 
@@ -104,16 +107,18 @@ def roller_figure(figure_name: str, cases: Sequence[tuple[str, xr.Dataset]]) -> 
     """Line load along every roller of both rows, a panel for each case."""
     highest = max(float(data["line_load"].max()) for _, data in cases)
     title = f"{SOURCE}, Fig. {figure_name}: loads on the rollers"
-    with styled_figure(1, len(cases), title, panel=(3.6, 3.2)) as (figure, axes):
+    columns = _columns(len(cases))
+    rows = len(cases) // columns
+    with styled_figure(rows, columns, title, panel=(3.6, 3.2)) as (figure, axes):
         for ax, (label, data) in zip(axes.ravel(), cases, strict=True):
-            rows, rollers, slices = data["line_load"].shape
+            races, rollers, slices = data["line_load"].shape
             turned = (data["azimuth"].values + 180.0) % 360.0 - 180.0
             order = np.argsort(turned)
             load = data["line_load"].values[:, order].transpose(0, 2, 1)
             drawn = ax.pcolormesh(
                 turned[order],
-                data["axial_position"].values.reshape(rows * slices),
-                load.reshape(rows * slices, rollers),
+                data["axial_position"].values.reshape(races * slices),
+                load.reshape(races * slices, rollers),
                 cmap=COLOUR_MAP,
                 vmin=0,
                 vmax=highest,
@@ -123,6 +128,10 @@ def roller_figure(figure_name: str, cases: Sequence[tuple[str, xr.Dataset]]) -> 
             ax.grid(visible=False)
         figure.colorbar(drawn, ax=axes.ravel().tolist(), label=label_of(cases[0][1]["line_load"]))
     return figure
+
+
+def _columns(panels: int) -> int:
+    return panels if panels <= MOST_COLUMNS else 2
 
 
 def _title(family: Family) -> str:
@@ -153,27 +162,6 @@ def _is_same(value: float | str, panel: xr.DataArray) -> bool:
     return bool(abs(found - value) < SAME)
 
 
-def _legend(figure: Figure, title: str) -> None:
-    """One legend for all panels."""
-    found: dict[str, Artist] = {}
-    for ax in figure.axes:
-        handles, labels = ax.get_legend_handles_labels()
-        found |= dict(zip(labels, handles, strict=True))
-    width, height = figure.get_size_inches()
-    columns = max(1, min(len(found), int(width / LABEL_WIDTH)))
-    lines = -(-len(found) // columns)
-    figure.set_size_inches(width, height + LEGEND_REST + LEGEND_ROW * lines)
-    figure.legend(
-        handles=list(found.values()),
-        labels=list(found),
-        title=title,
-        loc="outside lower center",
-        ncols=columns,
-        fontsize="small",
-        frameon=False,
-    )
-
-
 def _value(coordinate: xr.DataArray) -> str:
     """``"5000 rpm"``"""
     value = coordinate.item()
@@ -184,5 +172,6 @@ def _value(coordinate: xr.DataArray) -> str:
 
 
 def _described(coordinate: xr.DataArray) -> str:
-    name = str(coordinate.attrs.get("long_name", ""))
-    return f"{name} {_value(coordinate)}".strip()
+    """``"speed of the sun 4000 rpm"``, ``"3 shaved planets"``"""
+    words = [str(coordinate.attrs.get("long_name", "")), _value(coordinate)]
+    return " ".join(reversed(words) if isinstance(coordinate.item(), str) else words).strip()

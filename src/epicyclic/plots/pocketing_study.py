@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from epicyclic.plots.style import COLOURS, label_of, styled_figure
+from epicyclic.plots.style import COLOURS, label_of, legend_of_figure, styled_figure
 from epicyclic.units import format_number, unit_text
 from epicyclic.validation.pocketing import PublishedStudy
 
@@ -20,8 +19,6 @@ __all__ = ["study_figure"]
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 PUBLISHED = "Talbot (2012)"
 MOST_COLUMNS = 3
-LEGEND_HEIGHT = 0.6
-"""Below the panels. [inches]"""
 SAME = 1e-6
 """Values that differ less than this are the same. [1]"""
 
@@ -50,26 +47,9 @@ def study_figure(study: xr.Dataset, published: PublishedStudy | None = None) -> 
             _plot_exponents(study, flat[1], published)
         for ax in flat[count:]:
             ax.remove()
-        _explain(study, figure, flat[: len(places)])
-        width, height = figure.get_size_inches()
-        figure.set_size_inches(width, height + LEGEND_HEIGHT)
+        curves = study[study["pocketing_loss"].dims[-2]]
+        legend_of_figure(figure, flat[: len(places)], str(curves.attrs["long_name"]))
     return figure
-
-
-def _explain(study: xr.Dataset, figure: Figure, panels: Sequence[Axes]) -> None:
-    """One legend for all panels, below them."""
-    found: dict[str, Artist] = {}
-    for ax in panels:
-        handles, labels = ax.get_legend_handles_labels()
-        found |= dict(zip(labels, handles, strict=True))
-    curves = study[study["pocketing_loss"].dims[-2]]
-    figure.legend(
-        handles=list(found.values()),
-        labels=list(found),
-        title=curves.attrs["long_name"],
-        loc="outside lower center",
-        ncols=len(found),
-    )
 
 
 def _plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) -> None:

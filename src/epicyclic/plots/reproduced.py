@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from epicyclic.plots.chapters import branch_figure, family_figure, roller_figure
+from epicyclic.plots.chapters import SOURCE, branch_figure, family_figure, roller_figure
 from epicyclic.plots.pocketing_study import study_figure
 from epicyclic.sweeps.runner import HERE, Runner
 from epicyclic.validation import chapters
@@ -53,7 +53,9 @@ def reproduce(figures: Sequence[str], runner: Runner = HERE) -> Iterator[Reprodu
         yield Reproduced(family.figure, family.data, family_figure(family))
     case, studies = study_again(figures, runner)
     for name, data in studies.items():
-        yield Reproduced(name, data, study_figure(data, published_study(case)))
+        title = f"{SOURCE}, Fig. {name}: pocketing loss of the mesh of Table 4.1"
+        picture = study_figure(data.assign_attrs(title=title), published_study(case))
+        yield Reproduced(name, data, picture)
     for family in chapters.set_families(figures, runner):
         draw = branch_figure if "branch_power" in family.data else family_figure
         yield Reproduced(family.figure, family.data, draw(family))

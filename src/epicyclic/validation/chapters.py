@@ -22,7 +22,7 @@ from epicyclic.builders.planetary import roller_bearing
 from epicyclic.errors import ConvergenceError
 from epicyclic.sweeps.plan import PointList
 from epicyclic.sweeps.runner import HERE, Runner
-from epicyclic.units import NUMBER, WATT
+from epicyclic.units import CELSIUS, NUMBER, WATT, unit_text
 from epicyclic.validation.compare import published_figures
 from epicyclic.validation.compute import source_case
 from epicyclic.validation.pocketing import FIGURES_AGAIN
@@ -125,7 +125,7 @@ def _speed(values: Sequence[float] = (1000, 2000, 3000, 4000)) -> Lever:
 
 
 _BRANCH = Lever(
-    "branch_torque", "torque on the branch", "N m",
+    "branch_torque", "torque on the branch", "N*m",
     (41.7, 83.3, 125.0, 166.7, 208.3, 250.0, 291.7, 333.3),
     lambda value: {"operation.torque": f"{PLANETS * value} N*m"},
 )  # fmt: skip
@@ -209,13 +209,20 @@ def bearing_families(figures: Sequence[str], runner: Runner = HERE) -> list[Fami
     families = []
     for figure in wanted:
         about, curves, panels = _BEARING_STUDIES[figure]
+        held = "" if curves is _TEMPERATURE else f", {_oil()}"
         shape = tuple(len(lever.values) for lever in (panels, curves, _BRANCH))
         values = np.array(list(itertools.islice(losses, math.prod(shape)))).reshape(shape)
         data = _dataset({"bearing_loss": values}, (panels, curves, _BRANCH))
         data["bearing_loss"].attrs = {"long_name": "loss of one planet bearing", "units": "W"}
         marks = tuple(_bearing_marks(figure))
-        families.append(Family(figure, f"loss of a planet bearing, {about}", data, marks))
+        families.append(Family(figure, f"loss of a planet bearing, {about}{held}", data, marks))
     return families
+
+
+def _oil() -> str:
+    """What the example says of its oil where nothing else is studied."""
+    temperature = CELSIUS.text(source_case().operation.oil_inlet_temperature, 3)
+    return f"oil at {unit_text(temperature)}"
 
 
 def _bearing_marks(figure: str) -> Iterator[Mark]:
@@ -227,11 +234,11 @@ def _bearing_marks(figure: str) -> Iterator[Mark]:
         warm = given["composite_roughness"] > 0.14
         if (figure, warm) in (("3.4", True), ("3.5", False)):
             label = given["temperature"] if warm else f"{given['composite_roughness']:g} um"
-            yield Mark(f"printed, {label}", FULL_BRANCH, row["value"], 4000)
+            yield Mark(f"printed, {unit_text(label)}", FULL_BRANCH, row["value"], 4000)
     if figure == "3.5":
         smooth, ratio = _published("planet_bearing_loss", 0.063), _published("planet_bearing_ratio")
         value = smooth["value"] * ratio["value"]
-        yield Mark("inferred, 0.18 um", FULL_BRANCH, value, 4000)
+        yield Mark("inferred, 0.18 µm", FULL_BRANCH, value, 4000)
 
 
 def roller_loads_over(figure: str) -> list[tuple[str, xr.Dataset]]:
@@ -257,7 +264,7 @@ def roller_loads_over(figure: str) -> list[tuple[str, xr.Dataset]]:
         details = bearing_details(
             roller_bearing(case.planet_bearing, case.numerics), result.bearing.loads
         )
-        found.append((f"{lever.label} {value:g} {lever.unit}", details))
+        found.append((f"{lever.label} {value:g} {unit_text(lever.unit)}", details))
     return found
 
 
@@ -283,7 +290,7 @@ _SET = Lever(
     "set", "planets", "", tuple(_SETS),
     lambda name: {"planet.count": _SETS[name][0], "planet.roughness": _SETS[name][1]},
 )  # fmt: skip
-_TORQUE = Lever("torque", "torque on the sun", "N m", _TORQUES, _key("operation.torque", "N*m"))
+_TORQUE = Lever("torque", "torque on the sun", "N*m", _TORQUES, _key("operation.torque", "N*m"))
 _SPIN = ("sun_mesh_pocketing", "ring_mesh_pocketing", "planet_bearing_viscous")
 """Load-independent losses of a planet branch. Eq. 5.14."""
 
@@ -346,7 +353,7 @@ def _loaded(figure: str, data: xr.Dataset) -> Family:
     loss = _kilowatts(data["load_dependent"], "load-dependent loss")
     family = loss.sel(temperature=temperature, set=list(_SETS)[:4], torque=list(_TORQUES[1:]))
     marks = tuple(_loaded_marks()) if temperature == 90 else ()
-    title = f"load-dependent loss, shaved, {temperature} degC"
+    title = f"load-dependent loss, shaved, {temperature} °C"
     family = family.drop_vars("temperature").transpose("set", "torque", "speed")
     return Family(figure, title, family.to_dataset(name="loss"), marks)
 
@@ -355,7 +362,7 @@ def _loaded_marks() -> Iterator[Mark]:
     for row in published_figures():
         if row["compute"] == "load_dependent_loss":
             how = "measured" if "measured" in row["what"] else "predicted there"
-            yield Mark(f"{how}, 1000 N m (inferred)", 4000, row["value"], "3 shaved")
+            yield Mark(f"{how}, 1000 N·m (inferred)", 4000, row["value"], "3 shaved")
 
 
 def _polished(figure: str, data: xr.Dataset) -> Family:
@@ -393,7 +400,7 @@ def _branches(figure: str, data: xr.Dataset) -> Family:
         if row["compute"] == "branch_slope"
         and (row["with"]["temperature"], row["with"]["finish"]) == (f"{temperature} degC", finish)
     )
-    title = f"loss of a branch, {finish}, {temperature} degC"
+    title = f"loss of a branch, {finish}, {temperature} °C"
     return Family(figure, title, found, marks)
 
 
