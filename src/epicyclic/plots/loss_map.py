@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import FuncNorm, Normalize
+from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import MaxNLocator, NullLocator
 from numpy.typing import NDArray
 
@@ -37,6 +38,8 @@ EFFICIENCIES = (50, 70, 80, 90, 95, 97, 98, 98.5, 99, 99.3, 99.5, 99.7, 99.9)
 """Of lines and ticks. [%]"""
 LEAST_EFFICIENCY, BEST_EFFICIENCY = 50.0, 99.95
 """Between which colours of an efficiency differ, evenly in the logarithm of the loss. [%]"""
+LEAST_LINE = 90
+"""Lines of lower efficiencies run into one another where the torque is zero. [%]"""
 LABELS = 4
 """Of lines of equal value, at most: more collide where lines are close."""
 EDGE = 0.04
@@ -126,6 +129,7 @@ def plot_map(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Ax
         levels = [one for one in EFFICIENCIES if low <= one <= high]
         bar.set_ticks(levels, labels=[f"{one:g}" for one in levels])
         bar.ax.minorticks_off()
+        levels = [one for one in levels if one >= LEAST_LINE] or levels
     if of_efficiency and torque.min() <= 0 <= torque.max():
         _stretch_zero(ax, torque)
     draw_lines(ax, (speed, torque, values.to_numpy()), levels)
@@ -155,9 +159,11 @@ def draw_lines(ax: Axes, field: tuple[Any, Any, Any], levels: Sequence[float] | 
     if not drawn:
         return
     lines = ax.contour(*field, levels=drawn, colors="white", linewidths=0.7)
+    edge: list[AbstractPathEffect] = [withStroke(linewidth=2.0, foreground="0.25")]
     labelled = drawn[:: -(-len(drawn) // LABELS)] if even else drawn[-LABELS:]
     to_axes = ax.transData - ax.transAxes
-    for text in ax.clabel(lines, labelled, fontsize="x-small", fmt="%g"):
+    for text in ax.clabel(lines, labelled, fontsize="x-small", fmt="%g", inline=False):
+        text.set_path_effects(edge)
         place = to_axes.transform(text.get_position())
         if np.abs(place - 0.5).max() > 0.5 - EDGE:  # a part of it would be cut off
             text.remove()

@@ -12,11 +12,21 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from epicyclic.case.operating import operating_line
 from epicyclic.plots.loss_map import draw_lines
-from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of, legend_below, title_of
+from epicyclic.plots.style import (
+    COLOUR_MAP,
+    COLOURS,
+    LINE_STYLES,
+    TITLE_CHARACTERS,
+    label_of,
+    legend_below,
+    room_of,
+    title_of,
+)
 from epicyclic.records.files import is_sweep
 from epicyclic.units import format_number, unit_text
 
@@ -38,6 +48,8 @@ MOST_LINES = len(COLOURS)
 LEVELS = 8
 LABEL_WIDTH = 14
 """Of the labels of parallel axes. [characters]"""
+MOST_TICKS = 4
+"""Of a parallel axis with a tick at each of its values."""
 MOST_POINTS = 5000
 """Drawn point by point."""
 
@@ -97,7 +109,9 @@ def plot_sweep_lines(data: xr.Dataset, name: str, ax: Axes) -> Axes:
         )
     if between:
         legend_below(ax, title=_axis_label(data, between[0]), title_fontsize="small", ncols=4)
-    ax.set(title=_titled(values, part), xlabel=_axis_label(data, over), ylabel=label_of(values))
+    ax.set(title=_titled(values, part, ax), xlabel=_axis_label(data, over), ylabel=label_of(values))
+    if _is_count(values[over]):
+        ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     return ax
 
 
@@ -113,10 +127,14 @@ def plot_sweep_field(data: xr.Dataset, name: str, ax: Axes) -> Axes:
         assert figure is not None
         figure.colorbar(field, ax=ax, label=label_of(values))
         draw_lines(ax, (x, y, z), LEVELS)
-    ax.plot(*(grid.ravel() for grid in np.meshgrid(x, y)), ls="", marker=".", ms=2, color="black")
+    points = [grid.ravel() for grid in np.meshgrid(x, y)]
+    ax.plot(*points, ls="", marker=".", ms=4, color="black", clip_on=False)
+    for axis, dim in ((ax.xaxis, across), (ax.yaxis, up)):
+        if _is_count(values[dim]):
+            axis.set_major_locator(MaxNLocator(integer=True))
     ax.grid(visible=False)
     ax.set(
-        title=_titled(values, part),
+        title=_titled(values, part, ax),
         xlabel=_axis_label(data, across),
         ylabel=_axis_label(data, up),
     )
@@ -182,7 +200,8 @@ def _column(values: xr.DataArray) -> tuple[FloatArray, list[tuple[float, str]]]:
     heights = values.to_numpy().astype(np.float64)
     low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
     span = high - low if high > low else 1.0
-    shown = (low,) if high == low else (low, (low + high) / 2, high)
+    different = np.unique(heights[np.isfinite(heights)]).tolist()
+    shown = different if len(different) <= MOST_TICKS else [low, (low + high) / 2, high]
     ticks = [((one - low) / span, format_number(one, 3)) for one in shown]
     return np.subtract(heights, low) / span, ticks
 
@@ -201,10 +220,11 @@ def _at_first(data: xr.Dataset, kept: list[str]) -> xr.Dataset:
     return data.isel({dim: 0 for dim in data["total"].dims if dim not in kept})
 
 
-def _titled(values: xr.DataArray, part: xr.Dataset) -> str:
+def _titled(values: xr.DataArray, part: xr.Dataset, ax: Axes) -> str:
     """What is shown, and the values of the dimensions that are not."""
     held = [f"{key} {_value(part[key])}" for key in _held(part)]
-    return ", ".join([title_of(values), *held])
+    width = int(TITLE_CHARACTERS * room_of(ax))
+    return textwrap.fill(", ".join([title_of(values), *held]), width, break_long_words=False)
 
 
 def _held(part: xr.Dataset) -> list[str]:
@@ -214,6 +234,10 @@ def _held(part: xr.Dataset) -> list[str]:
 
 def _is_number(values: xr.DataArray) -> bool:
     return values.dtype.kind in "fiu"
+
+
+def _is_count(values: xr.DataArray) -> bool:
+    return values.dtype.kind in "iu"
 
 
 def _in_percent(values: xr.DataArray) -> xr.DataArray:
