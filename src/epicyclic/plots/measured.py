@@ -22,6 +22,10 @@ __all__ = ["measured_figure", "plot_parity", "plot_points", "plot_residuals"]
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
+PANEL = (3.8, 3.1)
+"""Width and height of one of the Axes. [inch]"""
+COLUMNS = 4
+"""Of the legend."""
 BAND = 0.10
 """Lines beside those of equal losses. [1]"""
 SERIES_GAP = 0.012
@@ -37,16 +41,16 @@ _FADED = {"color": "0.6", "mfc": "none", "ls": "none", "ms": 5, "zorder": 1}
 
 def measured_figure(comparison: MeasuredComparison) -> Figure:
     """Parity, residuals over speed, torque and temperature, and residuals point by point."""
-    with styled_figure(3, 2, _title(comparison)) as (figure, axes):
+    with styled_figure(2, 3, _title(comparison), panel=PANEL) as (figure, axes):
         plot_parity(comparison, axes[0, 0])
-        plot_points(comparison, _joined(figure, axes[2]))
+        plot_points(comparison, _joined(figure, axes[1, 1:]))
         for name, ax in zip(OPERATING, axes.flat[1:4], strict=True):
             if name in comparison.measured.conditions:
                 plot_residuals(comparison, name, ax)
             else:
                 ax.set_axis_off()
         handles, labels = axes[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
+        figure.legend(handles, labels, loc="outside lower center", ncols=COLUMNS, frameon=False)
     return figure
 
 
@@ -75,11 +79,11 @@ def plot_parity(comparison: MeasuredComparison, ax: Axes) -> Axes:
 
 
 def _joined(figure: Figure, row: NDArray[Any]) -> Axes:
-    """One Axes in place of a row of them."""
+    """One Axes in place of the last ones of a figure."""
     grid = row[0].get_gridspec()
     for ax in row:
         ax.remove()
-    joined: Axes = figure.add_subplot(grid[-1, :])
+    joined: Axes = figure.add_subplot(grid[-1, -len(row) :])
     return joined
 
 
@@ -114,13 +118,13 @@ def plot_points(comparison: MeasuredComparison, ax: Axes) -> Axes:
 def plot_residuals(comparison: MeasuredComparison, over: str, ax: Axes) -> Axes:
     """Computed less measured loss over ``"speed"``, ``"torque"`` or ``"temperature"``.
 
-    Series stand a little beside each other, so that none hides another.
+    Series stand a little beside each other, so that none hides another, unless they differ in it.
     """
     measured = comparison.measured
     where = measured.conditions[over]
     series = list(_series(comparison))
     values = np.unique(where)
-    gap = SERIES_GAP * float(np.ptp(where) or 1.0)
+    gap = 0.0 if over == comparison.group else SERIES_GAP * float(np.ptp(where) or 1.0)
     for number, (members, style) in enumerate(series):
         error = (style.pop("computed") - measured.loss)[members]
         x = where[members] + gap * (number - (len(series) - 1) / 2)

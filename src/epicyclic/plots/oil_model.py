@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 
 import numpy as np
@@ -12,7 +13,8 @@ from numpy.typing import NDArray
 
 from epicyclic.contact import LineContacts, contacts_at
 from epicyclic.oilmodel.model import REGIMES, OilModel
-from epicyclic.plots.style import COLOURS, LINE_STYLES, styled_figure
+from epicyclic.plots.style import COLOURS, LINE_STYLES, legend_below, styled_figure
+from epicyclic.units import percent
 
 __all__ = ["oil_model_figure", "plot_against_simulations", "plot_over_film_ratio"]
 
@@ -27,19 +29,25 @@ LABELS = {
 }
 BAND = 0.25
 """Half-width of the lines beside equality. [1]"""
+CAPTION = f"Lines: fitted as simulated, and {percent(BAND, 0)} more or less"
+PANEL = (4.0, 3.4)
+"""Width and height of one of the Axes. [inch]"""
 SLIPS = (0.05, 0.2, 0.8)
 POINTS = 80
 
 
 def oil_model_figure(model: OilModel, simulated: Simulated) -> Figure:
     """Every quantity computed against simulated, and friction over the film ratio."""
-    with styled_figure(2, 2, model.oil.title, panel=(4.6, 3.6)) as (figure, axes):
+    count = len(model.fits) + ("friction" in model.fits)
+    rows, columns = (2, 2) if count > 3 else (1, count)
+    with styled_figure(rows, columns, model.oil.title, panel=PANEL, caption=CAPTION) as (
+        figure,
+        axes,
+    ):
         for ax, quantity in zip(axes.flat, model.fits, strict=False):
             plot_against_simulations(model, quantity, *simulated[quantity], ax)
         if "friction" in model.fits:
             plot_over_film_ratio(model, axes.flat[len(model.fits)])
-        for ax in axes.flat:
-            ax.set_visible(ax.has_data())
     return figure
 
 
@@ -59,9 +67,13 @@ def plot_against_simulations(
     if quantity != "friction":
         ax.set_xscale("log")
         ax.set_yscale("log")
-    ax.set_xlabel(f"simulated {LABELS[quantity]}")
-    ax.set_ylabel("fitted")
-    ax.legend(fontsize="small")
+    name, _, unit = LABELS[quantity].partition(", ")
+    ax.set(
+        title=f"{name[:1].upper()}{name[1:]}",
+        xlabel=f"simulated, {unit}" if unit else "simulated",
+        ylabel=f"fitted, {unit}" if unit else "fitted",
+    )
+    legend_below(ax, ncols=2)
     return ax
 
 
@@ -69,20 +81,22 @@ def plot_over_film_ratio(model: OilModel, ax: Axes) -> Axes:
     """Friction at middle conditions as the roughness changes, each form with a line of its own."""
     fit = model.fits["friction"]
     middle = _middle(fit.domain, model.equivalent_modulus)
+    styles = itertools.cycle(LINE_STYLES)
     for slip, colour in zip(SLIPS, COLOURS, strict=False):
         states = middle.changed(slide_to_roll_ratio=np.full(POINTS, slip))
-        for fitted, style in zip(fit.forms, LINE_STYLES, strict=False):
+        for fitted in fit.forms:
             values = model.value("friction", states, fitted.form)
-            label = f"{slip:g} {fitted.form}"
+            form = f", {fitted.form}" if len(fit.forms) > 1 else ""
+            style, label = next(styles), f"slip {slip:g}{form}"
             ax.plot(states.film_ratio, values, linestyle=style, color=colour, label=label)
     ax.set_xscale("log", subs=(2, 5))
     ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     ax.xaxis.set_minor_formatter(StrMethodFormatter("{x:g}"))
     ax.set_ylim(bottom=0)
     ax.set_xlabel("film ratio, by roughness")
-    ax.set_title("by slip and form")
+    ax.set_title("At the middle of the simulated conditions")
     ax.set_ylabel(LABELS["friction"])
-    ax.legend(fontsize="small", ncols=len(SLIPS), loc="lower left")
+    legend_below(ax, ncols=3)
     return ax
 
 
