@@ -7,15 +7,24 @@ import pytest
 from matplotlib.figure import Figure
 
 import epicyclic as ep
+import listed_trains
+from epicyclic.analysis.shapes import gear_shapes
 from epicyclic.cli.output import parse_size
 from epicyclic.plots.bearing import plot_roller_loads
 from epicyclic.plots.catalogue import figure_of
+from epicyclic.plots.drawing import plot_gear_set
 from epicyclic.plots.loss_map import limits_of
 from epicyclic.plots.losses import plot_loss_sum, plot_losses
 from epicyclic.plots.mesh import plot_along_path, plot_plane_of_action, plot_transmission_error
 from epicyclic.plots.pockets import plot_power
-from epicyclic.plots.style import decimals_of, styled_figure
-from epicyclic.units import format_number
+from epicyclic.plots.style import styled_figure
+from epicyclic.records.record import sets_of
+from epicyclic.report.drawings import draw
+from epicyclic.report.result_tables import key_figures
+from epicyclic.report.validation_page import MOST_ROWS, _drawings
+from epicyclic.results.result import of_gear
+from epicyclic.units import decimals_of, format_number, power_unit
+from epicyclic.validation.compare import compare_published
 
 
 def axes():
@@ -191,3 +200,49 @@ def test_long_labels_beside_low_axes_are_broken():
     assert labels[1:] == ["power, W", ""]
     assert "\n" in labels[0]
     assert labels[0].replace("\n", " ") == "mesh stiffness per face width, N/(mm·µm)"
+
+
+@pytest.mark.parametrize(("power", "unit"), [(0.0, "W"), (9999.0, "W"), (10_007.0, "kW")])
+def test_large_powers_are_in_kilowatts(power, unit):
+    assert power_unit(power)[0] == power_unit(-power)[0] == unit
+
+
+def test_key_figures_have_no_false_digits(talbot_record):
+    result = talbot_record.result.model_copy(
+        update={"total": 22025.1, "load_dependent": 2568.4, "load_independent": 96.23}
+    )
+    found = {one.label: one for one in key_figures(result)}
+    texts = {name: (one.cell.text, one.unit) for name, one in found.items()}
+    assert texts["total loss"] == ("22.0", "kW")
+    assert texts["load-dependent"] == ("2568", "W")
+    assert texts["load-independent"] == ("96.2", "W")
+    assert found["total loss"].cell.value == 22025.1  # in watts, as in the JSON form
+
+
+def test_gears_that_hide_others_are_named():
+    gears = sets_of(gear_shapes(ep.load_case(listed_trains.plus())))["S"]
+    labels = [text.get_text() for text in plot_gear_set(gears, axes()).get_legend().get_texts()]
+    assert sorted(labels) == [
+        "A, 40 teeth", "B, 41 teeth, behind A", "narrow, 41 teeth", "wide, 42 teeth, behind narrow",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("large_sun", "of the large sun"), ("planet", "of the planet"), ("A", "of gear A")],
+)
+def test_what_a_label_says_of_gears(name, words):
+    assert of_gear(name) == words
+
+
+def test_labels_of_figures_in_pages_are_broken_where_they_are_longer_than_the_axes(talbot_record):
+    svg = draw(talbot_record, "pair-load", size=(100.0, 45.0))[0].svg
+    assert "normal force" in svg
+    assert "normal force on the tooth pair" not in svg
+
+
+def test_pictures_of_published_figures_have_few_rows():
+    row = compare_published()[0]
+    drawn = list(_drawings("trains", [row] * (2 * MOST_ROWS + 1)))
+    assert [one.name for one in drawn] == ["trains-1", "trains-2", "trains-3"]
+    assert [one.name for one in _drawings("trains", [row])] == ["trains"]

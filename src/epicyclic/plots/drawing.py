@@ -46,8 +46,11 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
     """
     low, high = np.full(2, math.inf), np.full(2, -math.inf)
     fills = _fills(gears)
-    for name, gear in sorted(gears.items(), key=_is_behind):
+    order = sorted(gears.items(), key=_is_behind)
+    for row, (name, gear) in enumerate(order):
         label = f"{in_words(name)}, {int(gear.attrs['teeth'])} teeth"
+        if hider := next((one for one, front in order[row + 1 :] if _hides(front, gear)), ""):
+            label += f", behind {in_words(hider)}"
         outline = _whole_outline(gear, SKIPPED_POINTS)
         inside = bool(gear.attrs["internal"])
         for number in range(gear.sizes["place"]):
@@ -70,6 +73,7 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
             radius = _scalar(gear, "outside_diameter") / 2
             low, high = np.minimum(low, center - radius), np.maximum(high, center + radius)
     _frame(ax, (low + high) / 2, MARGIN * (high - low) / 2)
+    ax.set_adjustable("box")
     legend_below(ax, ncols=3)
     ax.set_title("Gear pair to scale" if "pinion" in gears else "Gear set to scale")
     return ax
@@ -122,6 +126,13 @@ def _is_behind(item: tuple[str, xr.Dataset]) -> tuple[bool, float]:
     return not gear.attrs["internal"], -_scalar(gear, "tip_diameter")
 
 
+def _hides(front: xr.Dataset, gear: xr.Dataset) -> bool:
+    """True if a gear in front of another one leaves at most the teeth of this to be seen."""
+    seen = _scalar(gear, "tip_diameter") - _scalar(front, "tip_diameter")
+    height = _scalar(gear, "tip_diameter") - _scalar(gear, "root_diameter")
+    return not gear.attrs["internal"] and seen < height and _centers(front) == _centers(gear)
+
+
 def _fills(gears: Mapping[str, xr.Dataset]) -> dict[str, str]:
     """Colour of each gear: one for each kind, in several shades."""
     kinds: dict[str, list[str]] = {}
@@ -147,6 +158,11 @@ def _frame(ax: Axes, middle: Floats, half: Floats) -> None:
 
 def _scalar(gear: xr.Dataset, name: str) -> float:
     return float(gear[name])
+
+
+def _centers(gear: xr.Dataset) -> list[list[float]]:
+    centers: list[list[float]] = np.column_stack([gear["center_x"], gear["center_y"]]).tolist()
+    return centers
 
 
 def _place(gear: xr.Dataset, number: int) -> tuple[Floats, float]:
