@@ -19,9 +19,11 @@ from epicyclic.app.guard import LARGEST_BODY, Guard
 from epicyclic.app.latest import Latest
 from epicyclic.app.serve import names_of
 from epicyclic.app.shelves import Shelves
+from epicyclic.app.views import _values
 from epicyclic.app.worker import Ended, Worker, WorkError
 from epicyclic.case.case import build_case
 from epicyclic.case.fields import all_keys
+from epicyclic.case.operating import OPERATING
 from epicyclic.errors import InputError
 from listed_trains import ravigneaux
 
@@ -581,3 +583,16 @@ def test_another_host_is_told_what_it_means(monkeypatch):
     assert asked == [("192.0.2.7", 8080)]
     assert "not encrypted" in found.stderr
     assert not CliRunner().invoke(app, ["talbot-2012"]).stderr
+
+
+@pytest.mark.parametrize(
+    ("axis", "given", "values"),
+    [
+        ("torque", "137", "0:274:7 N*m"),
+        ("torque", "0", "0 N*m"),
+        ("temperature", "83", "83 degC"),
+        ("temperature", "", ""),
+    ],
+)
+def test_values_of_a_map_lie_around_those_of_the_case(axis, given, values):
+    assert _values(axis, OPERATING[axis], given) == values

@@ -45,7 +45,8 @@ def ask_for_case(folder: Path, then: Callable[[Desk], None]) -> None:
             try:
                 desk = make()
             except InputError as error:
-                told.set_text(str(error))
+                # where a received file lies is of no use to who sent it
+                told.set_text(str(InputError(error.problems, Path(error.source).name)))
                 return
             dialog.close()
             then(desk)

@@ -137,12 +137,12 @@ class MapView:
 
 
 def _values(axis: str, part: OperatingValue, text: str) -> str:
-    """Values around those of the case: from zero to twice them; its own temperature."""
+    """Values around those of the case: from zero to twice them; its own zero or temperature."""
     try:
         now = float(text)
     except ValueError:
         return ""
-    if axis not in MAP_STEPS:
+    if axis not in MAP_STEPS or not now:
         return f"{now:g} {part.unit}"
     return f"0:{2 * now:g}:{MAP_STEPS[axis]} {part.unit}"
 
