@@ -21,6 +21,7 @@ from epicyclic.plots.style import styled_figure
 from epicyclic.records.record import sets_of
 from epicyclic.report.drawings import draw
 from epicyclic.report.result_tables import key_figures
+from epicyclic.report.uncertainty_tables import _shown
 from epicyclic.report.validation_page import MOST_ROWS, _drawings
 from epicyclic.results.result import of_gear
 from epicyclic.units import decimals_of, format_number, power_unit
@@ -246,3 +247,8 @@ def test_pictures_of_published_figures_have_few_rows():
     drawn = list(_drawings("trains", [row] * (2 * MOST_ROWS + 1)))
     assert [one.name for one in drawn] == ["trains-1", "trains-2", "trains-3"]
     assert [one.name for one in _drawings("trains", [row])] == ["trains"]
+
+
+def test_a_result_without_a_value_shows_none_in_the_table_of_bands():
+    assert [_shown(float("nan"), unit).text for unit in ("1", "W", "kJ")] == ["-"] * 3
+    assert _shown(0.98765, "1").text == "98.765"

@@ -74,6 +74,7 @@ def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
             low, high = np.minimum(low, center - radius), np.maximum(high, center + radius)
     _frame(ax, (low + high) / 2, MARGIN * (high - low) / 2)
     ax.set_adjustable("box")
+    ax.set_anchor("N")
     legend_below(ax, ncols=3)
     ax.set_title("Gear pair to scale" if "pinion" in gears else "Gear set to scale")
     return ax

@@ -122,6 +122,8 @@ def _unit(data: xr.Dataset) -> str:
 
 def _shown(value: float, unit: str) -> Cell:
     """A number as precise as such numbers are."""
+    if math.isnan(value):
+        return number(None, "")
     if unit == "W":
         return number(value, "", text=f"{value:z.1f}")
     return number(value, "", text=f"{100 * value:z.3f}" if unit == "1" else shown(value, 5))
