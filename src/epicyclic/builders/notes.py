@@ -23,7 +23,7 @@ from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.losses.standing import STANDING
 from epicyclic.oilmodel.builtin import changed_properties
 from epicyclic.results.result import LossTerm
-from epicyclic.units import GIGAPASCAL, percent
+from epicyclic.units import GIGAPASCAL, NEWTON, format_number, percent
 
 __all__ = ["NOT_INCLUDED", "case_notes", "general_notes", "load_notes"]
 
@@ -178,8 +178,8 @@ def pressure_notes(figures: Mapping[str, object]) -> Iterator[str]:
             if idle > IDLE_PART:
                 yield (
                     f"{name.capitalize()}: {percent(idle, 0)} of the most loaded roller carries "
-                    f"nothing of its {found.roller_load_max:.3g} N, because the planet is tilted "
-                    f"by {found.moment:.3g} N m."
+                    f"nothing of its {NEWTON.text(found.roller_load_max, 3)}, because the planet "
+                    f"is tilted by {format_number(found.moment, 3)} N m."
                 )
 
 

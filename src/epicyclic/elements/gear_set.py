@@ -24,6 +24,7 @@ from epicyclic.elements.planet_bearing import PlanetBearing, missing_bearing, so
 from epicyclic.elements.planet_load import PlanetContact, PlanetLoad, planet_load, tilt_planet
 from epicyclic.elements.pocket_flow import MeshFlow, mesh_flows
 from epicyclic.losses.validity import Flags, ModelUse, SomeFlags, ValidityFlag
+from epicyclic.units import NEWTON, format_number
 
 __all__ = ["GearSet", "GearSetResult", "LossChoice", "Planet", "PlanetMesh", "Reference"]
 
@@ -146,8 +147,8 @@ class Planet:
         where = self.key.replace("_", " ")
         return (
             f"{where}: the mass of a planet is not given. From its sizes it is "
-            f"{self.mass:.3g} kg and pulls outward with {force:.3g} N, of {load.force:.3g} N on "
-            "the bearing.",
+            f"{format_number(self.mass, 3)} kg and pulls outward with {NEWTON.text(force, 3)}, "
+            f"of {NEWTON.text(load.force, 3)} on the bearing.",
         )
 
     def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.losses.shaft_bearing import BearingLoad
+from epicyclic.units import NEWTON, format_number
 
 __all__ = [
     "AxialSense",
@@ -151,7 +152,7 @@ def _check_single(
     left = float(np.abs(about.sum(axis=0)).max())
     if left > NEGLIGIBLE * largest:
         raise ValueError(
-            f"a moment of {left:.4g} N m is left on the only bearing of the shaft; "
+            f"a moment of {format_number(left, 4)} N m is left on the only bearing of the shaft; "
             "add a second bearing, or give radial_force yourself"
         )
 
@@ -165,8 +166,8 @@ def _axial_bearing(supports: Sequence[Support], thrust: float) -> int:
     able = [number for number, axial in enumerate(marked) if axial in ("both", sense)]
     if not able and thrust != 0:
         raise ValueError(
-            f"no bearing of the shaft takes its axial force of {abs(thrust):.4g} N in the "
-            f"{sense} sense"
+            f"no bearing of the shaft takes its axial force of {NEWTON.text(abs(thrust), 4)} in "
+            f"the {sense} sense"
         )
     return able[0] if able else 0
 

@@ -45,6 +45,8 @@ from epicyclic.units import (
     METRE_PER_SECOND,
     MICROMETRE,
     MILLIMETRE,
+    NEWTON,
+    format_number,
 )
 
 __all__ = [
@@ -286,7 +288,8 @@ def roller_loads(
     if iterations < 0:
         raise ConvergenceError(
             "the load distribution of the planet bearing was not found under "
-            f"{math.hypot(force_x, force_y):.4g} N and {math.hypot(moment_x, moment_y):.4g} N m; "
+            f"{NEWTON.text(math.hypot(force_x, force_y), 4)} and "
+            f"{format_number(math.hypot(moment_x, moment_y), 4)} N m; "
             "check roller length and clearance, or use the bearing model 'palmgren'."
         )
     state[2:] /= half_width
@@ -333,8 +336,9 @@ def tilting_moments(
     )
     if iterations < 0:
         raise ConvergenceError(
-            f"the load distribution of the planet bearing was not found under {force:.4g} N with "
-            f"tilts of {tilt_x:.4g} and {tilt_y:.4g} rad; check roller length and clearance."
+            "the load distribution of the planet bearing was not found under "
+            f"{NEWTON.text(force, 4)} with tilts of {tilt_x:.4g} and {tilt_y:.4g} rad; "
+            "check roller length and clearance."
         )
     turning = (intensity * bearing.slice_width * positions[:, None, :]).sum(axis=(0, 2))
     return float(turning @ np.cos(azimuth)), float(turning @ np.sin(azimuth))

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.units import Quantity, format_number, percent
+from epicyclic.units import WATT, Quantity, format_number, percent
 
 __all__ = [
     "OF_THIS_PACKAGE",
@@ -211,7 +211,7 @@ def describe_flags(
     elif small:
         ranges = "; ".join(range_text(group) for _, group in small)
         watts = max(watts for watts, _ in small)
-        told.append(f"{OUT_OF_RANGE}, each for {watts:.2g} W at most: {ranges}.")
+        told.append(f"{OUT_OF_RANGE}, each for {WATT.text(watts, 2)} at most: {ranges}.")
     return tuple(told)
 
 
@@ -238,7 +238,7 @@ def _unknown_first(pair: tuple[float, object]) -> float:
 
 def _sentence(watts: float, group: list[ValidityFlag]) -> str:
     models = ", ".join(f"{flag.use} {share_text(flag.share)}" for flag in group)
-    size = "" if math.isnan(watts) else f"; {watts:.3g} W in all"
+    size = "" if math.isnan(watts) else f"; {WATT.text(watts, 3)} in all"
     return f"{range_left(group)} Share of the loss: {models}{size}."
 
 
