@@ -13,4 +13,5 @@ class Status(StrEnum):
     CONVERGED = "converged"
     FAILED = "failed"
     UNPHYSICAL = "unphysical"
-    """There are numbers, but they cannot be: a loss below zero, or energy that does not balance."""
+    """There are numbers, but they cannot be: a loss below zero, energy that does not balance, or
+    contacts that carry or resist with more than any can."""

@@ -43,7 +43,9 @@ FIGURES = {
     "planet_bearing_": "planet_bearing_mechanical",
 }
 """Parts of the names of figures, and the loss without which there are none."""
-FAULTS = ("exception", "unphysical", "not finite", "negative", "energy", "too long")
+BEYOND = "unphysical: contacts carry or resist with more than any can"
+"""What is left of the status where no loss is below zero and energy balances."""
+FAULTS = ("exception", "not finite", "negative", "energy", "too long")
 """Outcomes that may not be."""
 
 
@@ -103,12 +105,12 @@ def _judged(result: Result) -> tuple[str, float, str]:
     if strange:
         return "not finite", energy, ", ".join(strange)
     below = [f"{key} {watts}" for key, watts in result.losses.items() if watts < 0]
-    if result.status is not Status.CONVERGED:
-        return "unphysical", energy, result.warnings[0]
     if below:
         return "negative", energy, ", ".join(below)
     if energy > ENERGY:
         return "energy", energy, f"{energy:.1e}"
+    if result.status is not Status.CONVERGED:
+        return BEYOND, energy, ""
     if any("Self-locking" in warning for warning in result.warnings):
         return "solved, self-locking", energy, ""
     return "solved", energy, ""

@@ -51,6 +51,52 @@ def test_errors_of_the_numerics_are_no_reason(result):
     assert judged(replace(one, flow=replace(result.flow, members=members))).status == "converged"
 
 
+COLD = {
+    "models.friction": "mixed-ehl",
+    "models.rolling": "mixed-ehl",
+    "models.oil_beyond_range": "extrapolated",
+    "lubricant.oil": "iso-vg-320-pao",
+    "operation.oil_inlet_temperature": "-21 degC",
+    "losses.sun_mesh_pocketing.include": False,
+    "losses.ring_mesh_pocketing.include": False,
+}
+"""The rolling regression runs away with the viscosity: megawatts at any torque."""
+
+
+def test_rolling_that_exceeds_what_the_load_resists_with_is_told(coarse_talbot):
+    found = ep.solve(coarse_talbot.updated({**COLD, "models.mesh_loads": "without-losses"}))
+    assert found.status == "unphysical"
+    assert "times what their load can resist with" in found.warnings[0]
+    assert 'models.oil_beyond_range = "held"' in found.warnings[0]
+    held = ep.solve(coarse_talbot.updated({**COLD, "models.oil_beyond_range": "held"}))
+    assert held.status == "converged"
+    assert all(mesh.resistance < 0.1 for mesh in held.meshes.values())
+
+
+def test_losses_and_torques_that_drive_each_other_up_are_told(coarse_talbot):
+    with pytest.raises(ep.ConvergenceError, match="losses grow with the torques that they cause"):
+        ep.solve(coarse_talbot.updated(COLD))
+
+
+@pytest.mark.parametrize(("torque", "status"), [("20 kN*m", "converged"), ("2 MN*m", "unphysical")])
+def test_contacts_wider_than_their_radius_are_told(torque, status):
+    pair = ep.load_case(
+        "talbot-2012-pair",
+        {"operation.torque": torque, "losses.mesh_pocketing.include": False},
+    )
+    found = ep.solve(pair)
+    mesh = found.meshes["mesh"]
+    contact = mesh.contact
+    assert found.status == status
+    assert (mesh.flattening > 1) == (status == "unphysical")
+    # Johnson (1985), Eq. 4.43 and 4.45: b/R = 4 p/E_eq
+    assert mesh.flattening == pytest.approx(
+        4 * mesh.hertz_pressure_max / contact.flanks.equivalent_modulus, rel=1e-12
+    )
+    told = "The teeth of the mesh would be pressed with"
+    assert found.warnings[0].count(told) == (status == "unphysical")
+
+
 @pytest.fixture
 def impossible_pockets(monkeypatch):
     """Pockets that give power, as a damaged table of flows would have it."""

@@ -54,8 +54,8 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
     Returns
     -------
     Result
-        Its status is ``unphysical`` if a loss is below zero or energy does not balance; the first
-        of its warnings says why.
+        Its status is ``unphysical`` if a loss is below zero, energy does not balance, or teeth or
+        rollers carry or resist with more than any can; the first of its warnings says why.
 
     Raises
     ------

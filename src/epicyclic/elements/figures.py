@@ -90,9 +90,15 @@ class MeshFigures:
 
     Transmission error and stiffness, in the transverse plane of action, are those of elastic teeth
     and NaN with another load distribution.
+
+    `flattening` is the half-width of the contact that is pressed with `hertz_pressure_max` over its
+    radius, `resistance` the loss over what the load could resist with at the speeds of both flanks,
+    a mean coefficient of friction: numbers above 1 cannot be.
     """
 
     contact: MeshContact | None
+    flattening: float
+    resistance: float
     pressure_angle: float = figure("operating pressure angle, transverse", DEGREE)
     transverse_contact_ratio: float = figure("transverse contact ratio", NUMBER)
     overlap_ratio: float = figure("overlap ratio", NUMBER)
@@ -125,9 +131,14 @@ class MeshFigures:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BearingFigures:
-    """What an engineer checks by eye on the planet bearing."""
+    """What an engineer checks by eye on the planet bearing.
+
+    `flattening` and `resistance` as of `MeshFigures`, the latter at the speed of the pitch circle.
+    """
 
     loads: RollerLoads | None
+    flattening: float
+    resistance: float
     radial_force: float = figure("radial force", NEWTON)
     moment: float = figure("tilting moment", NEWTON_METRE)
     speed: float = figure("speed relative to carrier", RPM)

@@ -283,7 +283,7 @@ def solve_mesh(
         f"{duty.key}_pocketing": _pocketing(duty.models.pockets, flow, count),
     }
     elastic = None if loads is None else loads.elastic
-    figures = _mesh_figures(duty, contact, loss.mean_friction, elastic, flow.figures, warmth)
+    figures = _mesh_figures(duty, contact, loss, elastic, flow.figures, warmth)
     least = SMALLEST_SHOWN_SHARE * sum(term.watts for term in losses.values())
     notes = pocket_notes(duty, flow.figures, fluids, count, least)
     notes += stored_note(duty.models.pockets, duty.mesh, flow.figures)
@@ -316,10 +316,17 @@ def _largest(values: FloatArray, weight: FloatArray) -> float:
     return float(values[order][np.searchsorted(below, (1 - PEAK_SHARE) * below[-1])])
 
 
+def _resistance(contact: MeshContact, loss: MeshLoss) -> float:
+    """Loss over the load times the rolling and sliding speeds. [1]"""
+    speed = contact.rolling_speed + np.abs(contact.sliding_speed)
+    resisted = float((contact.line_load * speed) @ contact.weight)
+    return (loss.sliding + loss.rolling) / resisted if resisted else 0.0
+
+
 def _mesh_figures(
     duty: MeshDuty,
     contact: MeshContact | None,
-    friction_mean: float,
+    loss: MeshLoss,
     elastic: LoadedMesh | None,
     flow: FlowFigures | None,
     warmth: MeshWarmth | None,
@@ -344,12 +351,14 @@ def _mesh_figures(
         hertz_pressure_max=(
             math.nan if contact is None else _largest(contact.hertz_pressure, contact.weight)
         ),
+        flattening=0.0 if contact is None else _largest(contact.flattening, contact.weight),
+        resistance=0.0 if contact is None else _resistance(contact, loss),
         contact_share=(
             math.nan if contact is None else float(contact.weight.sum()) / mesh.mean_contact_length
         ),
         film_ratio_min=math.nan if contact is None else float(contact.film_ratio.min()),
         film_ratio_max=math.nan if contact is None else float(contact.film_ratio.max()),
-        friction_mean=friction_mean,
+        friction_mean=loss.mean_friction,
         loss_factor=ohlendorf_loss_factor(mesh),
         transmission_error_range=math.nan if elastic is None else elastic.transmission_error_range,
         mesh_stiffness=math.nan if elastic is None else elastic.mean(elastic.tangent_stiffness),

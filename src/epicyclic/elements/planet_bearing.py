@@ -139,7 +139,7 @@ def solve_bearing(
                 LOAD_INDEPENDENT, count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE
             ),
         },
-        _bearing_figures(own, loads, load, speed, oil),
+        _bearing_figures(own, loads, load, speed, oil, loss.loss),
         loss.flags + viscous_flags(key.replace("_", " "), speed, bearing.pitch_diameter),
     )
 
@@ -153,14 +153,18 @@ def _palmgren(
 
 
 def _bearing_figures(
-    own: PlanetBearing, loads: RollerLoads, load: PlanetLoad, speed: float, oil: OilState
+    own: PlanetBearing,
+    loads: RollerLoads,
+    load: PlanetLoad,
+    speed: float,
+    oil: OilState,
+    loss: float,
 ) -> BearingFigures:
     bearing = own.bearing
     rollers = loads.intensity.sum(axis=2) * bearing.slice_width
     row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
-    pressure = hertz_pressure(
-        float(loads.intensity.max()), bearing.inner_radius, bearing.equivalent_modulus
-    )
+    hardest = float(loads.intensity.max()), bearing.inner_radius, bearing.equivalent_modulus
+    resisted = float(rollers.sum()) * bearing.pitch_diameter / 2 * abs(speed)
     return BearingFigures(
         radial_force=load.force,
         moment=math.hypot(load.moment_x, load.moment_y),
@@ -168,7 +172,9 @@ def _bearing_figures(
         rollers_loaded=float(np.count_nonzero(rollers)),
         roller_load_max=float(rollers[row, most]),
         roller_azimuth=math.remainder(float(loads.azimuth[most]), 2 * math.pi),
-        hertz_pressure_max=pressure,
+        hertz_pressure_max=hertz_pressure(*hardest),
+        flattening=hertz_half_width(*hardest) / bearing.inner_radius,
+        resistance=loss / resisted if resisted else 0.0,
         contact_temperature=oil.temperature,
         heat_conductance=_heat_conductance(own, loads),
         loads=loads,

@@ -28,6 +28,9 @@ are small beside powers, so that the error leaves less of the change than a pass
 NO_POWER = 1e-12
 """Power, relative to the largest one, that is rounding. [1]"""
 MOST_PASSES = 60
+MOST_TORQUE = 1e15
+"""Torque at a mesh, far above what a case can state, from which losses and torques only drive each
+other up. [N m]"""
 MOST_BRANCHES = 8
 """Directions of the rolling powers that are tried with the losses of elements."""
 MOST_OF_A_MESH = 0.5
@@ -286,10 +289,13 @@ def _converged(
         new = balance(machine, operation, speeds, drives, efficiencies, frictions)
         if _agrees(found.meshes, new.meshes):
             return _Pass(new, drives, efficiencies, state, results)
+        if not max(map(abs, new.meshes.values()), default=0.0) < MOST_TORQUE:
+            break
         found = new
     raise ConvergenceError(
-        f"losses and torques do not agree after {MOST_PASSES} passes: the losses grow with the "
-        "torques that they cause. Choose smaller losses, or give efficiencies."
+        f"losses and torques do not agree after {number + 1} passes: the losses grow with the "
+        "torques that they cause. Choose smaller losses, or give efficiencies; a formula may run "
+        "away outside its range, see models.friction, models.rolling and models.oil_beyond_range."
     )
 
 
