@@ -25,8 +25,9 @@ TILT_TOLERANCE = 1e-6
 """Imbalance over the tilt at which the latter counts as found. [1]"""
 SMALL_TILT = 1e-6
 """A tilt as small as this counts as that size in `TILT_TOLERANCE`: 0.02 um across 20 mm. [rad]"""
-NEWTON_MOST = 20
-HALVINGS_MOST = 8
+NEWTON_MOST = 40
+FLATTER = 0.5
+"""Slope of the energy at the end of a step over that at its start, at most. [1]"""
 SLOPE = 1e-4
 """Step of differences, over the size of the tilt. [1]"""
 
@@ -193,9 +194,10 @@ def tilt_planet(
         return _misaligned(contacts, tilt), _load_at(tilt, contacts, centrifugal)
     axes = np.array(_axes(_radial_force(contacts, centrifugal)))
     excess = _excess(contacts, bearing, centrifugal)
-    tilts = _tilt_by_newton(excess)
+    reach = (bearing.diametral_clearance + bearing.crown_drop) / bearing.half_width + SMALL_TILT
+    tilts = _tilt_by_newton(excess, reach)
     if tilts is None:
-        tilts = _tilt_one_by_one(excess, bearing)
+        tilts = _tilt_one_by_one(excess, reach)
     tilt = tilts @ axes
     return _misaligned(contacts, tilt), _load_at(tilt, contacts, centrifugal)
 
@@ -220,41 +222,74 @@ def _excess(
     return excess
 
 
-def _tilt_by_newton(excess: Callable[[FloatArray], FloatArray]) -> FloatArray | None:
-    """Where both excesses are zero; None if Newton's method does not get there. [rad]"""
+def _tilt_by_newton(excess: Callable[[FloatArray], FloatArray], reach: float) -> FloatArray | None:
+    """Where both excesses are zero; None if Newton's method does not get there. [rad]
+
+    What resists a tilt stores energy, whose slopes the excesses are and which has one minimum.
+    Along each of Newton's directions the step ends where the energy falls far less steeply. A
+    stiffness with which the excess would tilt the planet by `reach` is added, so that steps stay
+    bounded in a play, where nothing resists.
+    """
     tilts: FloatArray = np.zeros(2)
     found = excess(tilts)
     for _ in range(NEWTON_MOST):
+        if not found.any():
+            return tilts
         size = max(float(np.abs(tilts).max()), SMALL_TILT)
         slope = np.column_stack(
-            [(excess(tilts + apart) - found) / SLOPE for apart in SLOPE * size * np.eye(2)]
+            [(excess(tilts + apart) - found) / (SLOPE * size) for apart in SLOPE * size * np.eye(2)]
         )
-        if not abs(np.linalg.det(slope)) > 0:
-            return None  # nothing resists the tilt here
-        step = np.asarray(np.linalg.solve(slope, -found) * size, dtype=np.float64)
-        for halvings in range(HALVINGS_MOST):
-            share = 0.5**halvings
-            ahead = excess(tilts + share * step)
-            if np.hypot(*ahead) <= np.hypot(*found):
-                break
-        else:
+        slope += float(np.hypot(*found)) / reach * np.eye(2)
+        step = np.asarray(np.linalg.solve(slope, -found), dtype=np.float64)
+        if not found @ step < 0:  # the slopes there are but errors of their differences
+            step = -found * (reach / float(np.hypot(*found)))
+        elif np.abs(step).max() <= TILT_TOLERANCE * size:
+            return tilts + step
+        ahead = _down(excess, tilts, step, found)
+        if ahead is None:
             return None
-        tilts, found = tilts + share * step, ahead
-        if np.abs(step).max() <= TILT_TOLERANCE * size:
-            return tilts
+        tilts, found = ahead
     return None
 
 
-def _tilt_one_by_one(
-    excess: Callable[[FloatArray], FloatArray], bearing: RollerBearing
-) -> FloatArray:
+def _down(
+    excess: Callable[[FloatArray], FloatArray],
+    tilts: FloatArray,
+    step: FloatArray,
+    found: FloatArray,
+) -> tuple[FloatArray, FloatArray] | None:
+    """Tilts ahead along a step, and their excesses; None if the energy does not fall that way.
+
+    The slope of the energy there is at most `FLATTER` of that at the start.
+    """
+    start = float(found @ step)
+    near, near_slope, far, far_slope = 0.0, start, math.inf, math.inf
+    share = 1.0
+    for _ in range(NEWTON_MOST):
+        ahead = excess(tilts + share * step)
+        along = float(ahead @ step)
+        if abs(along) <= -FLATTER * start:
+            return tilts + share * step, ahead
+        if along < 0:
+            near, near_slope = share, along
+        else:
+            far, far_slope = share, along
+        if math.isinf(far):
+            share *= 2
+        else:
+            secant = near + (far - near) * near_slope / (near_slope - far_slope)
+            margin = (far - near) / 10
+            share = min(max(secant, near + margin), far - margin)
+    return None
+
+
+def _tilt_one_by_one(excess: Callable[[FloatArray], FloatArray], reach: float) -> FloatArray:
     """Where both excesses are zero, each component in a bracket of its own. [rad]
 
-    Bearing and meshes resist the more the farther the planet tilts: for any tilt in one plane there
-    is one in the other. Slow, but it needs no stiffness where none is: rollers that are not loaded
-    let the planet tilt until the next ones touch.
+    What is left where Newton's method ends without a result, ten times slower: bearing and meshes
+    resist the more the farther the planet tilts, so that for any tilt in one plane there is one in
+    the other.
     """
-    reach = (bearing.diametral_clearance + bearing.crown_drop) / bearing.half_width + SMALL_TILT
 
     def first(second: float) -> float:
         return _rising_root(lambda tilt: excess(np.array([tilt, second]))[0], reach)
