@@ -20,6 +20,7 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import form_radius, tooth_outline
 from epicyclic.kernels import pocket_fluid
 from epicyclic.lubricant.properties import MixtureState
+from epicyclic.pocketing import fluid
 from epicyclic.pocketing.fluid import pocket_flow
 from epicyclic.pocketing.geometry import pocket_geometry
 from epicyclic.pocketing.network import bounded_flow, void_number
@@ -464,3 +465,21 @@ def test_flows_that_had_no_solution_are_found(name):
     checks = [item.value for item in result.numbers() if item.key.endswith("power_difference")]
     assert len(checks) == 2
     assert max(map(abs, checks)) < 0.02  # the loss found in two ways
+
+
+@pytest.mark.parametrize(("most", "periods"), [(2000, 60), (150, range(4, 60))])
+def test_a_flow_that_does_not_repeat_takes_bounded_work(pair, monkeypatch, most, periods):
+    monkeypatch.setattr(fluid, "ITERATIONS_MOST", most)
+    pocket_flow.cache_clear()
+    flow = solve(pair(0.0), rpm=14500.0, xi=0.9999, slices=8, steps=12)
+    assert not flow.periodic
+    assert flow.periods in (periods if isinstance(periods, range) else [periods])
+    assert flow.power > 0
+    assert math.isfinite(flow.power_from_flow)
+
+
+def test_a_flow_that_takes_more_than_the_bound_is_told(pair, monkeypatch):
+    monkeypatch.setattr(fluid, "ITERATIONS_MOST", 9)  # three periods at most
+    pocket_flow.cache_clear()
+    with pytest.raises(ep.ConvergenceError, match=r"too many iterations; take another models"):
+        solve(pair(0.0), rpm=14300.0, xi=0.9999, slices=8, steps=12)

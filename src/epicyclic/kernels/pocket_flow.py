@@ -37,9 +37,8 @@ PARTS = ((4, 4), (16, SMALLEST))
 """Into how many a time step is cut at first and at most where it has no solution otherwise."""
 EULER_MOST = 4000
 """Newton iterations for one time step that is cut, at most."""
-ITERATIONS_MOST = 30
-"""The same for all steps of a flow, in the mean over its steps in as many periods as there may be:
-usual are 8 in 8 periods."""
+FEWEST = 4
+"""Periods of which a mean is a result."""
 
 
 @kernel
@@ -212,7 +211,7 @@ def periodic_flow(
     fluid: Fluid,
     step: float,
     shift: int,
-    limits: tuple[int, float],
+    limits: tuple[int, float, int],
     history: Fields,
     works: Floats,
     figures: Floats,
@@ -233,24 +232,27 @@ def periodic_flow(
     shift : int
         Pockets by which the numbering moves on from one period to the next.
     limits : tuple
-        Most periods, and the change of the power from one period to the next, relative, below
-        which the flow is periodic; fields may change by ten times that of their largest value.
+        Most periods; the change of the power from one period to the next, relative, below which the
+        flow is periodic; and most Newton iterations. Fields may change by ten times that of their
+        largest value.
     history : tuple of ndarray
         Receives q (n, pockets, slices), velocities through axial faces (n, pockets, slices + 1)
         and gaps (n, pockets + 1, slices) [m/s] of the last period.
     works : ndarray, shape (n,)
         Receives the boundary work over p_a of each step of the last period. [m^3]
-    figures : ndarray, shape (8,)
+    figures : ndarray, shape (9,)
         Receives for the last period: boundary work over p_a [m^3]; work lost in the flow over
         rho_m [m^5/s^2], that left in pockets at their end included; volumes at ambient density
         that come with new pockets, leave through the openings and go with the ended ones, and
-        what is stored [m^3]; change of the power and of the fields [1].
+        what is stored [m^3]; change of the power and of the fields [1]. The last one is raised by
+        the iterations of all periods.
 
     Returns
     -------
     int
         Periods; negative if the flow did not repeat, and both works are then means of the last
-        half of the periods; zero if a step has no solution, or all take too many iterations.
+        half of these; zero if a step has no solution, or the iterations are over before there are
+        `FEWEST` periods.
     """
     steps, pockets, slices = live.shape
     xi = fluid[0]
@@ -271,8 +273,7 @@ def periodic_flow(
     moves_q = np.zeros((steps, 2, pockets, slices))
     moves_axial = np.zeros((steps, 2, pockets, slices + 1))
     last_work = math.nan
-    iterations = 0
-    mean = np.zeros(2)
+    courses = np.zeros((limits[0], 2))
     for period in range(1, limits[0] + 1):
         totals = np.zeros(6)
         stored = _stored(q, shape[0][0], alive, xi, excess)
@@ -309,9 +310,11 @@ def periodic_flow(
                 (moves_q[n], moves_axial[n]),
                 totals,
             )
-            iterations += abs(done)
-            if done < 0 or iterations > ITERATIONS_MOST * limits[0] * steps:
+            figures[8] += abs(done)
+            if done < 0:
                 return 0
+            if figures[8] > limits[2]:
+                return -_mean_works(courses[: period - 1], figures)
             works[n] = totals[0] - work_before
             history[0][n] = q
             history[1][n] = axial
@@ -323,15 +326,27 @@ def periodic_flow(
         work = totals[0]
         change = abs(work - last_work) / max(abs(work), 1e-300)
         last_work = work
-        if 2 * period > limits[0]:
-            mean += totals[:2] / (limits[0] - limits[0] // 2)
+        courses[period - 1] = totals[:2]
         figures[:5] = totals[0], totals[1], totals[3], totals[2], totals[4]
         figures[5] = stored_now - stored
         figures[6], figures[7] = change, field_change
         if change <= limits[1] and field_change <= 10 * limits[1]:
             return period
-    figures[:2] = mean
-    return -limits[0]
+    return -_mean_works(courses, figures)
+
+
+@kernel
+def _mean_works(courses: Floats, figures: Floats) -> int:
+    """Means of the works of the last half of the periods into `figures`; how many there are.
+
+    Zero if they are too few to tell.
+    """
+    count = courses.shape[0]
+    if count < FEWEST:
+        return 0
+    for kind in range(2):
+        figures[kind] = courses[count // 2 :, kind].mean()
+    return count
 
 
 @kernel

@@ -55,6 +55,9 @@ LEAST_OIL = 0.005
 LEAST_AIR = 1e-4
 """Air in a compressible mixture, at least: with it pure oil cavitates near zero pressure. The loss
 is that without a lower bound within a percent. [1]"""
+ITERATIONS_MOST = 2000
+"""Newton iterations of one flow, over its time steps in a period, in all periods and trials: usual
+are 70 to 200, and up to 1800 where the flow does not repeat. It bounds the time of a flow. [1]"""
 FINER = (1, 2, 4)
 """A flow with a time step that has no solution is tried with more steps, by these factors."""
 
@@ -176,12 +179,23 @@ def pocket_flow(
         number = abs(speed) * math.sqrt(mixture.density / pressure)
         flow = bounded_flow(geometry, number, slices, steps, end_length)
         return _scaled_up(flow, geometry, abs(speed), mixture.density)
+    used, most = 0, ITERATIONS_MOST * steps
     for finer in FINER:
-        found = _compressible_flow(
-            geometry, speed, mixture, pressure, model, slices, finer * steps, end_length
+        found, used = _compressible_flow(
+            geometry,
+            speed,
+            mixture,
+            pressure,
+            model,
+            slices,
+            finer * steps,
+            end_length,
+            (used, most),
         )
         if found is not None:
             return found
+        if used > most:
+            break
     raise _no_solution(geometry)
 
 
@@ -194,8 +208,12 @@ def _compressible_flow(
     slices: int,
     steps: int,
     end_length: float,
-) -> PocketFlow | None:
-    """`pocket_flow` of the models with sound waves; None if a time step has no solution."""
+    iterations: tuple[int, int],
+) -> tuple[PocketFlow | None, int]:
+    """`pocket_flow` of the models with sound waves; None if a time step has no solution.
+
+    Also returns the iterations so far. `iterations` are those of the trials before and the most.
+    """
     cells = pocket_cells(
         geometry, slices, steps, end_length * geometry.mesh.gear1.rack.normal_module
     )
@@ -208,24 +226,26 @@ def _compressible_flow(
         np.zeros((steps, pockets + 1, count)),
     )
     work = np.zeros(steps)
-    figures = np.zeros(8)
+    figures = np.zeros(9)
+    figures[8] = iterations[0]
     periods = periodic_flow(
         cells.shape,
         cells.live,
         fluid,
         period / steps,
         POCKETS_PER_PITCH,
-        (PERIODS_MOST, PERIOD_TOLERANCE),
+        (PERIODS_MOST, PERIOD_TOLERANCE, iterations[1]),
         history,
         work,
         figures,
     )
+    used = int(figures[8])
     if periods == 0:
-        return None
+        return None, used
     for array in (*history, work):
         array.flags.writeable = False
     work_done, lost, come, out, gone, stored = map(float, figures[:6])
-    return PocketFlow(
+    found = PocketFlow(
         power=pressure * work_done / period,
         power_from_flow=mixture.density * lost / period,
         mass_error=(come - out - gone - stored) / come,
@@ -238,12 +258,14 @@ def _compressible_flow(
         instant_power=pressure * work * steps / period,
         **_places(cells, geometry),
     )
+    return found, used
 
 
 def _no_solution(geometry: PocketGeometry) -> ConvergenceError:
     return ConvergenceError(
         f"pocketing of the {geometry.mesh.name}: the flow does not converge, not even in shorter "
-        "time steps; take another models.pocketing, or leave the term out (losses)."
+        "time steps, or takes too many iterations; take another models.pocketing, or leave the "
+        "term out (losses)."
     )
 
 
