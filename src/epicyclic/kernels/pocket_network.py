@@ -37,7 +37,8 @@ ITERATIONS_MOST = 30
 TOLERANCE = 1e-5
 """Last change of pressures and velocities over the largest of the field. [1]"""
 LOOSE = 0.1
-"""The same over the change of the work in the period before, while that is large. [1]"""
+"""The same over the change of the work in the period before, while that is large, but not in the
+last period where there are voids, whose shares hold the mass. [1]"""
 
 
 @kernel
@@ -502,6 +503,7 @@ def periodic_network(
                 alive[i] = False
         figures[0] = abs(done - last_work) / max(abs(done), 1e-300)
         last_work = done
-        if solved and figures[0] <= limits[1] and moved <= 10 * limits[1] * largest:
+        repeats = solved and figures[0] <= limits[1] and moved <= 10 * limits[1] * largest
+        if repeats and (tolerance <= TOLERANCE or history[1].min() >= 1.0):
             return period
     return -limits[0]
