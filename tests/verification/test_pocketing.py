@@ -409,7 +409,7 @@ def test_every_point_of_the_box_has_an_answer(
     ],
 )
 def test_voids_hold_the_mass(module, backlash, internal, times):
-    """Flows that had lost up to half a per cent of it, their last period was solved so loosely."""
+    """Flows of which up to half a per cent was missing: their voids did not repeat yet."""
     teeth = (23, 76) if internal else (23, 41)
     mesh = box_mesh(module, 0.0, backlash, teeth, internal, 8 * module)
     tools = (
@@ -420,7 +420,7 @@ def test_voids_hold_the_mass(module, backlash, internal, times):
     number = times * void_number(geometry, 24, 32, 1.0)
     flow = bounded_flow(geometry, number, 24, 32, 1.0)
     assert flow.periods > 0
-    assert abs(flow.mass_error) < 2e-4
+    assert abs(flow.mass_error) < 2e-5  # Newton's tolerance, summed over the cells of a period
 
 
 # --- in the solution of a case --------------------------------------------------------------------

@@ -413,7 +413,8 @@ def periodic_network(
         Pockets by which the numbering moves on from one period to the next.
     limits : tuple
         Most periods, and the change of the boundary work, relative, below which the flow is
-        periodic; pressures may change by ten times that of their largest value.
+        periodic; pressures may change by ten times that of their largest value, full shares by
+        that.
     history : tuple of ndarray
         Receives for each step of the last period pressures and full shares (n, pockets + 2,
         slices + 2), velocities in axial faces (n, pockets, slices + 1) and gaps (n, pockets + 1,
@@ -442,7 +443,7 @@ def periodic_network(
     last_work = 0.0
     figures[0] = 1.0
     for period in range(1, limits[0] + 1):
-        done, moved, largest, solved = 0.0, 0.0, 0.0, True
+        done, moved, largest, filled, solved = 0.0, 0.0, 0.0, 0.0, True
         tolerance = max(TOLERANCE, LOOSE * figures[0])
         for n in range(steps):
             now = (openings[0][n], openings[1][n], openings[2][n], openings[3][n])
@@ -487,6 +488,7 @@ def periodic_network(
                     done -= pressure * (volume[n + 1, i, j] - volume[n, i, j])
                     moved = max(moved, abs(pressure - history[0][n, i + 1, j + 1]))
                     largest = max(largest, abs(pressure))
+                    filled = max(filled, abs(full[i + 1, j + 1] - history[1][n, i + 1, j + 1]))
             history[0][n], history[1][n], history[2][n], history[3][n] = q, full, axial, cross
             history[4][n], history[5][n] = inertias
             _laws(axial, share, live[n], inertias[0], rules[2], history[6][n])
@@ -504,6 +506,7 @@ def periodic_network(
         figures[0] = abs(done - last_work) / max(abs(done), 1e-300)
         last_work = done
         repeats = solved and figures[0] <= limits[1] and moved <= 10 * limits[1] * largest
-        if repeats and (tolerance <= TOLERANCE or history[1].min() >= 1.0):
+        holds = tolerance <= TOLERANCE and filled <= limits[1]
+        if repeats and (holds or history[1].min() >= 1.0):
             return period
     return -limits[0]
