@@ -207,6 +207,14 @@ def test_a_bad_table_is_told(tmp_path, content, words):
         columns_of(file)
 
 
+def test_a_table_with_more_columns_than_keys_is_told_at_once(case):
+    """Each of its keys would be looked for among all others: 20 s."""
+    points = {f"a.b{number}": ["1", "2"] for number in range(3000)}
+    with pytest.raises(ep.InputError, match="names 3000 keys; such a case has") as caught:
+        make_plan(case, points=points)
+    assert len(caught.value.problems) == 1
+
+
 LENGTH = {"gears.normal_module": ["1.8 mm", "1.9 mm"]}
 
 

@@ -177,6 +177,10 @@ def _columns(
     """Keys with as many values each; the `first` one has no value twice."""
     if not columns:
         return [], [Problem("", "", "names no keys.", "Give keys and their values.")]
+    known = len(known_keys(case))
+    if len(columns) > known:
+        allowed = f"names {len(columns)} keys; such a case has {known}."
+        return [], [Problem("", "", allowed, "Give a table with one column for each key.")]
     axes: list[Axis] = []
     problems: list[Problem] = []
     leading, *_ = columns
