@@ -341,7 +341,7 @@ def _mean_works(courses: Floats, figures: Floats) -> int:
 
     Zero if they are too few to tell.
     """
-    count = courses.shape[0]
+    count = len(courses)
     if count < FEWEST:
         return 0
     for kind in range(2):
