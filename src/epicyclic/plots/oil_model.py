@@ -29,7 +29,10 @@ LABELS = {
 }
 BAND = 0.25
 """Half-width of the lines beside equality. [1]"""
-CAPTION = f"Lines: fitted as simulated, and {percent(BAND, 0)} more or less"
+CAPTION = (
+    f"Lines: fitted as simulated, and {percent(BAND, 0)} more or less. "
+    "The fit has seen these contacts; its errors at others are larger, and stand in the table."
+)
 PANEL = (4.0, 3.4)
 """Width and height of one of the Axes. [inch]"""
 SLIPS = (0.05, 0.2, 0.8)
