@@ -177,6 +177,7 @@ def test_command_writes_a_page(monkeypatch, rows, tmp_path):
     from click.testing import CliRunner
 
     from epicyclic.cli.main import cli
+    from epicyclic.report.validation_page import MOST_ROWS
     from epicyclic.validation import compare
 
     monkeypatch.setattr(compare, "compare_published", lambda progress: rows)
@@ -189,7 +190,8 @@ def test_command_writes_a_page(monkeypatch, rows, tmp_path):
         assert f">{topic}</h2>" in page
         assert all(html.escape(row.what, quote=False) in html.unescape(page) for row in own)
     assert sum(map(len, by_topic(rows).values())) == len(rows)
-    assert page.count("<figure") == len(by_topic(rows))
+    pictures = sum(math.ceil(len(own) / MOST_ROWS) for own in by_topic(rows).values())
+    assert page.count("<figure") == pictures
     assert "src=" not in page.partition("<main>")[2].partition("</main>")[0]
 
 
