@@ -29,9 +29,9 @@ __all__ = ["SPACING", "HeatSample", "HeatTables", "heat_samples"]
 
 Array = NDArray[np.float64]
 
-SPACING = 20.0
+SPACING = 10.0
 """Between the temperatures at which losses are solved. [K]"""
-WAYS = 8
+WAYS = 4
 """Temperatures from one of these to the next at which conductances are computed: free convection
 starts steeply, and they cost little."""
 
