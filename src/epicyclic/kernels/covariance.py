@@ -1,4 +1,8 @@
-"""Sums over the neighbours of each place, near ones counting more."""
+"""Sums over the neighbours of each place, near ones counting more.
+
+They are what `scipy.interpolate.RBFInterpolator` gives, which a test compares. Contacts are asked
+for tens of thousands of times in a solution, so that its time is felt.
+"""
 
 from __future__ import annotations
 

@@ -30,7 +30,8 @@ __all__ = ["SPACING", "HeatSample", "HeatTables", "heat_samples"]
 Array = NDArray[np.float64]
 
 SPACING = 10.0
-"""Between the temperatures at which losses are solved. [K]"""
+"""Between the temperatures at which losses are solved: with 20 K a train ended 0.12 K from its
+settled temperatures. [K]"""
 WAYS = 4
 """Temperatures from one of these to the next at which conductances are computed: free convection
 starts steeply, and they cost little."""

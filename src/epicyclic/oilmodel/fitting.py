@@ -70,7 +70,7 @@ def fit_quantity(
                 form=name,
                 coefficients=tuple(map(_rounded, coefficients)),
                 errors=_errors_of(alone if nearby is None else corrected, states.film_ratio),
-                simulations=nearby,
+                nearby=nearby,
             )
         )
     if not fitted:

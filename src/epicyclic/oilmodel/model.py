@@ -102,14 +102,14 @@ class FittedForm(_Data):
     coefficients : tuple of float
     errors : tuple of FitError
         With the correction, if there is one.
-    simulations : NearbySimulations, optional
+    nearby : NearbySimulations, optional
         What corrects a structured form.
     """
 
     form: str
     coefficients: tuple[float, ...]
     errors: tuple[FitError, ...]
-    simulations: NearbySimulations | None = None
+    nearby: NearbySimulations | None = None
 
 
 class QuantityFit(_Data):
@@ -240,8 +240,8 @@ class OilModel(_Data):
             limits["slide_to_roll_ratio"] = (0.0, limits["slide_to_roll_ratio"][1])
         held = states.held(limits)
         value = FORMS[quantity][fitted.form].value(held, coefficients)
-        if fitted.simulations is not None:
-            value = value * fitted.simulations.factor(held)
+        if fitted.nearby is not None:
+            value = value * fitted.nearby.factor(held)
         return value
 
 

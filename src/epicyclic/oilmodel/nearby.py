@@ -13,24 +13,25 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from epicyclic.contact import CONDITIONS, LineContacts, contacts_at
 from epicyclic.kernels.covariance import covariance_sums, covariances
+from epicyclic.oilmodel.structured import SMALLEST_SLIP
 
 __all__ = ["MOST_SIMULATIONS", "NearbySimulations"]
 
 FloatArray = NDArray[np.float64]
 
 MOST_SIMULATIONS = 512
-"""Of a larger campaign as many take part: each costs time wherever the fit is used."""
+"""As many of a larger campaign take part: each costs time wherever the fit is used."""
 LENGTH = 2.0
-"""Over which what a form lacks is alike, in standard deviations of a coordinate. [1]"""
-NOISE = 0.16
-"""Variance of what no neighbour knows over that of what a form lacks: (0.08/0.2)^2. [1]"""
+"""Standard deviations of a coordinate over which what a form lacks is alike. Chosen on the contacts
+of `atf-dexron-ulv`, as is `NOISE`. [1]"""
+NOISE = (0.08 / 0.2) ** 2
+"""Variance of what no neighbour knows over that of what a form lacks. [1]"""
 SMOOTH = 10e-9
 """Roughness that counts as none, which has no logarithm. [m]"""
-SMALLEST_SLIP = 0.01
-"""Added to the slide-to-roll ratio, whose logarithm is taken. [1]"""
 LARGEST_EXCESS = 3.0
-"""Of ln of simulated over computed: a form that is off by a factor of 20 is none. [1]"""
+"""A form is not corrected by more than a factor of 20, the logarithm of which this is. [1]"""
 DIGITS = 5
+"""Significant digits in a file."""
 
 
 class NearbySimulations(BaseModel):
@@ -63,7 +64,7 @@ class NearbySimulations(BaseModel):
         if any(len(column) != len(self.excess) for column in columns):
             raise ValueError("conditions, excess and weight must be equally many")
         with np.errstate(all="ignore"):  # what is no number is refused
-            sound = bool(np.isfinite(self._others).all())
+            sound = bool(np.isfinite(self._places).all())
         if not sound:
             raise ValueError("conditions must be above zero")
         if min(self.weight) <= 0 or max(map(abs, self.excess)) > LARGEST_EXCESS:
@@ -116,16 +117,21 @@ class NearbySimulations(BaseModel):
         return places
 
     @cached_property
+    def _places(self) -> FloatArray:
+        """Where the simulations lie, one in each row."""
+        return self._placed(self._states)
+
+    @cached_property
     def _others(self) -> FloatArray:
-        """Places of the simulations, one in each column."""
-        return np.ascontiguousarray(self._placed(self._states).T)
+        """The same, one in each column."""
+        return np.ascontiguousarray(self._places.T)
 
     @cached_property
     def _shares(self) -> FloatArray:
         """What each simulation adds where a contact is at its place."""
-        others, alike = self._others, np.empty((len(self.excess), len(self.excess)))
-        for place, row in zip(others.T, alike, strict=True):
-            covariances(place, others, row)
+        alike = np.empty((len(self.excess), len(self.excess)))
+        for place, row in zip(self._places, alike, strict=True):
+            covariances(place, self._others, row)
         noise = np.diag(NOISE / np.array(self.weight))
         shares: FloatArray = np.linalg.solve(alike + noise, np.array(self.excess))
         return shares

@@ -52,7 +52,7 @@ apart, such as size and exponent of a roughness that adds next to nothing, need 
 TINY = 1e-12
 """Roughness of a smooth surface, which has a logarithm. [m]"""
 SMALLEST_SLIP = 0.01
-"""Added to the slide-to-roll ratio where it is raised to a power. [1]"""
+"""Added to the slide-to-roll ratio where it is raised to a power or has a logarithm. [1]"""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _COSINES = np.cos(math.pi / 4 * (_NODES + 1))
