@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from epicyclic.ehl import rough
+from epicyclic.ehl.box import FEWEST_KEPT, SOLVER_BOX
 from epicyclic.ehl.conditions import ContactOil, LineContact, Roelands
 from epicyclic.ehl.rough import AsperityContact, solve_rough
 from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, sinusoidal_profile
@@ -271,3 +272,37 @@ def test_the_roughest_contacts_of_the_published_table_are_solved(
     records = run.march(250)
     assert (records[:, Column.ERROR] < rough.TOLERANCE).mean() >= 1 - rough.LARGEST_UNSOLVED_SHARE
     assert np.isfinite(records).all()
+
+
+@pytest.mark.slow
+def test_nearly_all_rough_contacts_of_the_box_are_solved():
+    unsolved = np.array([unsolved_share(number) for number in range(40)])
+    # the manual tells of the other four, which end as failed
+    assert (unsolved <= rough.LARGEST_UNSOLVED_SHARE).sum() >= 36
+
+
+def unsolved_share(number):
+    """Of 250 time steps of a random contact whose roughness the grid resolves."""
+    rng = np.random.default_rng(number)
+
+    def drawn(low, high):
+        return 10 ** rng.uniform(math.log10(low), math.log10(high))
+
+    while True:
+        radius, speed = drawn(*SOLVER_BOX["radius"]), drawn(*SOLVER_BOX["rolling_speed"])
+        p_h, slip = drawn(0.1e9, SOLVER_BOX["hertz_pressure"][1]), speed * rng.uniform(0, 1)
+        composite, share = drawn(0.05e-6, SOLVER_BOX["composite_roughness"][1]), rng.uniform(0, 1)
+        oil = ContactOil(drawn(2e-3, 1.0), Roelands(rng.uniform(8e-9, 2.5e-8)), 5e6)
+        load = 2 * math.pi * radius * p_h**2 / MODULUS
+        contact = LineContact(load, radius, MODULUS, speed + slip, speed - slip, oil)
+        smooth = solve_smooth(contact)
+        film_ratio = smooth.minimum_film / composite
+        pair = tuple(
+            generate_profile(rms, drawn(10e-6, 50e-6), 4e-3, seed)
+            for seed, rms in enumerate(composite * np.sqrt([share, 1 - share]), start=number)
+        )
+        run = rough._Simulation(smooth, pair, rough.NODES, AsperityContact())
+        low, high = SOLVER_BOX["film_ratio"]
+        if low < film_ratio < high and run.roughness_kept >= FEWEST_KEPT:
+            records = run.march(250)
+            return (records[:, Column.ERROR] >= rough.TOLERANCE).mean()

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from epicyclic.ehl.box import SOLVER_BOX
 from epicyclic.ehl.conditions import Barus, ContactOil, LineContact, Roelands, TwoSlope
 from epicyclic.ehl.film import moes_central_film
 from epicyclic.ehl.grid import graded_nodes, grid_for
@@ -196,9 +197,10 @@ def test_two_equal_slopes_are_barus():
 def test_converges_all_over_the_box(seed):
     rng = np.random.default_rng(seed)
     for _ in range(25):
-        p_h = 3e9 * 10 ** rng.uniform(-2.5, 0)
-        radius = 10 ** rng.uniform(math.log10(0.3e-3), -1)
-        speed = 10 ** rng.uniform(-1, math.log10(50))
+        p_h, radius, speed = (
+            10 ** rng.uniform(*np.log10(SOLVER_BOX[name]))
+            for name in ("hertz_pressure", "radius", "rolling_speed")
+        )
         slip = speed * rng.uniform(0, 1)
         alpha = rng.uniform(8e-9, 2.5e-8)
         law = (Barus(alpha), Roelands(alpha), TwoSlope(alpha, 0.4 * alpha, 0.4e9))[rng.integers(3)]

@@ -309,6 +309,7 @@ def _row(result: ContactResult) -> Row:
         "rolling_loss": smooth.rolling_loss,
         "rolling_loss_error": 0.0,
         "unsolved_share": 0.0,
+        "roughness_kept": 1.0,
         "smooth_friction": smooth.friction_coefficient,
         "smooth_rolling_loss": smooth.rolling_loss,
         "smooth_central_film": smooth.central_film,

@@ -14,6 +14,7 @@ from epicyclic.campaigns.design import AXES, quantity_of_axis
 from epicyclic.campaigns.folder import CampaignFolder, column_of
 from epicyclic.case.contact import contact_model
 from epicyclic.contact import LineContacts, contacts_at
+from epicyclic.ehl.box import FEWEST_KEPT
 from epicyclic.errors import InputError, Problem
 from epicyclic.lubricant.properties import oil_state
 from epicyclic.oilmodel.fitting import fit_quantity
@@ -114,8 +115,9 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
 
     Theory (O8).
 
-    A simulation counts if nearly all of its time steps converged and what is fitted is known to
-    10 %, whether or not it reached the error at which it is called converged.
+    A simulation counts if nearly all of its time steps converged, its grid resolved the roughness,
+    and what is fitted is known to 10 %, whether or not it reached the error at which it is called
+    converged.
 
     Raises
     ------
@@ -174,7 +176,8 @@ def _good(frame: pd.DataFrame, part: str, column: str) -> pd.Series:
     """Which simulations of a part are known well enough to be fitted."""
     value, error = frame[column], frame[f"{column}_error"]
     solved = frame["part"].eq(part) & frame["unsolved_share"].le(LARGEST_UNSOLVED_SHARE)
-    return solved & value.gt(0) & error.le(LARGEST_ERROR * value)
+    resolved = frame["roughness_kept"].ge(FEWEST_KEPT)
+    return solved & resolved & value.gt(0) & error.le(LARGEST_ERROR * value)
 
 
 def _modulus(folder: CampaignFolder) -> float:

@@ -124,6 +124,7 @@ class CampaignFolder:
         known = list(map(column_of, AXES))
         solved = [
             "unsolved_share",
+            "roughness_kept",
             *(f"{name}{end}" for name in _RESULTS for end in ("", "_error")),
         ]
         lacks = [name for name in ("part", *known, *solved) if name not in frame]

@@ -5,12 +5,12 @@ from __future__ import annotations
 __all__ = ["DRY_SPEED", "FEWEST_KEPT", "SOLVER_BOX", "VALIDATED_FILM_RATIO"]
 
 SOLVER_BOX: dict[str, tuple[float, float]] = {
-    "radius": (0.3e-3, 0.1),
+    "radius": (0.3e-3, 0.3),
     "hertz_pressure": (3e6, 3e9),
     "rolling_speed": (0.1, 50.0),
     "slide_to_roll_ratio": (0.0, 2.0),
     "film_ratio": (0.01, 20.0),
-    "composite_roughness": (0.0, 1e-6),
+    "composite_roughness": (0.0, 1.7e-6),
 }
 """Lowest and highest equivalent radius [m], Hertz pressure [Pa], rolling speed [m/s], slip [1], and
 of rough contacts minimum film over composite roughness [1], composite roughness [m]."""
