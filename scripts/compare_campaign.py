@@ -85,7 +85,7 @@ def row(name: str, ratio: FloatArray) -> None:
 
 
 def main(folder: Path) -> None:
-    for quantity, (states, value, _) in simulated_quantities(open_folder(folder)).items():
+    for quantity, (states, value, _) in simulated_quantities([open_folder(folder)]).items():
         for name, formula in FORMULAS[quantity].items():
             print(f"{quantity} over {name}: contacts, median, 10 %, 90 %, within 25 %")
             ratio = value / formula(states)

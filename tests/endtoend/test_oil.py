@@ -15,8 +15,9 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.campaigns.campaign import make_campaign
-from epicyclic.campaigns.fit import fit_campaign
+from epicyclic.campaigns.fit import fit_campaigns
 from epicyclic.campaigns.folder import CampaignFolder
+from epicyclic.oilmodel.model import read_oil_model
 from epicyclic.sweeps.runner import Runner
 
 # contacts that take a tenth of a second
@@ -68,7 +69,7 @@ def finished(tmp_path_factory):
     folder = CampaignFolder(tmp_path_factory.mktemp("oil") / "atf", campaign())
     folder.prepare()
     folder.run(Runner(jobs=1))
-    folder.model.write_text(fit_campaign(folder).to_text())
+    folder.model.write_text(fit_campaigns([folder]).to_text())
     return folder.path
 
 
@@ -237,6 +238,33 @@ def test_show_and_fit_print_the_errors(finished, epicyclic):
         for words in ("90 % below", "the default", "lubricant.eyring_stress", "Domain of"):
             assert words in done.stdout
     assert epicyclic("oil", "show", str(finished / "simulations.csv")).returncode == 2
+
+
+def test_campaigns_are_fitted_together(finished, epicyclic, tmp_path):
+    def folder(name, **given):
+        place = CampaignFolder(tmp_path / name, make_campaign("atf-talbot-2012", **given))
+        place.prepare()
+        place.run(Runner(jobs=1))
+        return place.path
+
+    wider = RANGES | {"radius": (7.0, 9.0)}
+    more = folder("more", size=3, ranges=wider, changes=COARSE, seed=8)
+    model = tmp_path / "model.json"
+    done = epicyclic("oil", "fit", str(finished), str(more), "-o", str(model))
+    assert done.returncode == 0, done.stderr
+    together, alone = map(read_oil_model, (model, finished / "model.json"))
+    assert together.simulations["simulated"] == SIZE + 3
+    assert together.fits["friction"].contacts == alone.fits["friction"].contacts + 3
+    assert together.fits["friction"].domain["radius"][1] > 7e-3
+    assert [design["size"] for design in together.designs] == [SIZE, 3]
+    assert together.command.count("epicyclic oil characterise") == 2
+
+    assert epicyclic("oil", "fit", str(finished), str(more)).returncode == 2
+    other = folder("other", size=1, ranges=RANGES, seed=7)
+    refused = epicyclic("oil", "fit", str(finished), str(other), "-o", str(tmp_path / "no.json"))
+    assert refused.returncode == 2
+    assert "with another oil or other settings than" in refused.stderr
+    assert not (tmp_path / "no.json").exists()
 
 
 def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.campaigns.campaign import command_of, make_campaign
+from epicyclic.campaigns.campaign import Campaign, command_of, make_campaign
 from epicyclic.campaigns.design import AXES, quantity_of_axis
 from epicyclic.campaigns.folder import CampaignFolder, column_of
 from epicyclic.case.contact import contact_model
@@ -25,7 +25,7 @@ from epicyclic.whole_file import write_file
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["characterise_oil", "fit_and_write", "fit_campaign", "simulated_quantities"]
+__all__ = ["characterise_oil", "fit_and_write", "fit_campaigns", "simulated_quantities"]
 
 FloatArray = NDArray[np.float64]
 
@@ -41,6 +41,10 @@ QUANTITIES = {
     "bearing_rolling_loss": ("bearing", "rolling_loss", "W/m"),
 }
 """What is fitted: to which contacts, to which column, in which unit."""
+
+
+_SHARED = {"settings": "with another oil or other settings", "version": "by another version"}
+"""Of campaigns that are fitted together, and what is said where they differ."""
 
 
 def characterise_oil(
@@ -100,17 +104,17 @@ def characterise_oil(
     place = CampaignFolder(Path(folder), campaign)
     place.prepare()
     place.run(runner)
-    return fit_and_write(place)
+    return fit_and_write([place], place.model)
 
 
-def fit_and_write(folder: CampaignFolder) -> OilModel:
-    """Fit, and write the models to the folder."""
-    model = fit_campaign(folder)
-    write_file(folder.model, model.to_text())
+def fit_and_write(folders: Sequence[CampaignFolder], output: Path) -> OilModel:
+    """Fit, and write the models."""
+    model = fit_campaigns(folders)
+    write_file(output, model.to_text())
     return model
 
 
-def fit_campaign(folder: CampaignFolder) -> OilModel:
+def fit_campaigns(folders: Sequence[CampaignFolder]) -> OilModel:
     """Fit friction and rolling loss to all simulations that are good enough.
 
     Theory (O8).
@@ -119,15 +123,21 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
     and what is fitted is known to 10 %, whether or not it reached the error at which it is called
     converged.
 
+    Parameters
+    ----------
+    folders : sequence of CampaignFolder
+        Of one oil, one version and the same settings.
+
     Raises
     ------
     InputError
-        If there are too few of them.
+        If there are too few of them, or campaigns differ in more than their points.
     """
-    campaign = folder.campaign
+    _check_alike(folders)
+    campaigns = [folder.campaign for folder in folders]
     fits: dict[str, QuantityFit] = {}
     reasons = []
-    for quantity, (states, target, weight) in simulated_quantities(folder).items():
+    for quantity, (states, target, weight) in simulated_quantities(folders).items():
         unit = QUANTITIES[quantity][2]
         try:
             fits[quantity] = fit_quantity(quantity, unit, states, target, weight)
@@ -136,15 +146,15 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
             remedy = "Simulate more, with a larger --size in another folder."
             reasons.append(Problem(quantity, given, f"not fitted: {error}.", remedy))
     if reasons:
-        raise InputError(reasons, str(folder.path))
-    frame, parts = folder.read(), QUANTITIES.values()
+        raise InputError(reasons, str(folders[0].path))
+    frame, parts = _read(folders), QUANTITIES.values()
     return OilModel(
         format=FORMAT,
-        version=campaign.version,
-        settings=campaign.describe()["settings"],
-        designs=tuple(campaign.describe()["designs"]),
-        seed=campaign.seed,
-        command=command_of(campaign),
+        version=campaigns[0].version,
+        settings=campaigns[0].describe()["settings"],
+        designs=tuple(item for one in campaigns for item in one.describe()["designs"]),
+        seed=campaigns[0].seed,
+        command="; ".join(map(command_of, campaigns)),
         simulations={
             "simulated": len(frame),
             "not converged": int(frame["status"].eq("failed").sum()),
@@ -153,23 +163,46 @@ def fit_campaign(folder: CampaignFolder) -> OilModel:
             ),
         },
         notes=("Errors are those against the simulations, not against measurements.",),
-        equivalent_modulus=_modulus(folder),
+        equivalent_modulus=_modulus(campaigns[0]),
         fits=fits,
     )
 
 
 def simulated_quantities(
-    folder: CampaignFolder,
+    folders: Sequence[CampaignFolder],
 ) -> dict[str, tuple[LineContacts, FloatArray, FloatArray]]:
     """Conditions, value and weight of the simulations that are good enough, by quantity."""
-    frame = folder.read()
+    frame = _read(folders)
     found = {}
     for quantity, (part, column, _) in QUANTITIES.items():
         if frame["part"].eq(part).any():
             rows = frame[_good(frame, part, column)]
-            states = _states(rows, folder)
+            states = _states(rows, folders[0].campaign)
             found[quantity] = (states, rows[column].to_numpy(), _weights(rows, column))
     return found
+
+
+def _check_alike(folders: Sequence[CampaignFolder]) -> None:
+    """Refuse campaigns that differ in more than their points."""
+    first, *others = folders
+    wrong = [
+        Problem(
+            "DIR", str(other.path), f"was simulated {told} than {first.path}.",
+            "Fit campaigns of the same oil, settings and version together.",
+        )
+        for other in others
+        for name, told in _SHARED.items()
+        if getattr(other.campaign, name) != getattr(first.campaign, name)
+    ]  # fmt: skip
+    if wrong:
+        raise InputError(wrong, "the campaigns")
+
+
+def _read(folders: Sequence[CampaignFolder]) -> pd.DataFrame:
+    """The tables of all simulations, one after the other."""
+    import pandas as pd
+
+    return pd.concat([folder.read() for folder in folders], ignore_index=True)
 
 
 def _good(frame: pd.DataFrame, part: str, column: str) -> pd.Series:
@@ -180,24 +213,24 @@ def _good(frame: pd.DataFrame, part: str, column: str) -> pd.Series:
     return solved & resolved & value.gt(0) & error.le(LARGEST_ERROR * value)
 
 
-def _modulus(folder: CampaignFolder) -> float:
+def _modulus(campaign: Campaign) -> float:
     """E_eq of all simulations. [Pa]"""
-    return contact_model(folder.campaign.case(0)).contact.equivalent_modulus
+    return contact_model(campaign.case(0)).contact.equivalent_modulus
 
 
-def _states(rows: pd.DataFrame, folder: CampaignFolder) -> LineContacts:
+def _states(rows: pd.DataFrame, campaign: Campaign) -> LineContacts:
     """Conditions of some simulations, SI."""
     values: dict[str, FloatArray] = {}
     for name in AXES:
         scale, offset = quantity_of_axis(name).scale_and_offset()
         values[name] = (rows[column_of(name)].to_numpy(dtype=float) - offset) / scale
-    oil = folder.campaign.case(0).lubricant.oil
+    oil = campaign.case(0).lubricant.oil
     states = [oil_state(oil, float(temperature)) for temperature in values.pop("temperature")]
     return contacts_at(
         **values,
         dynamic_viscosity=np.array([state.dynamic_viscosity for state in states]),
         pressure_viscosity=np.array([state.pressure_viscosity for state in states]),
-        equivalent_modulus=_modulus(folder),
+        equivalent_modulus=_modulus(campaign),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -118,7 +119,7 @@ def characterise(
             err=True,
         )
         raise
-    _fit(folder, plot)
+    _fit([folder], folder.model, plot)
 
 
 def campaign_writer(campaign: Campaign, output: Path) -> Write:
@@ -130,22 +131,37 @@ def campaign_writer(campaign: Campaign, output: Path) -> Write:
 
     def write(rows: Rows) -> str:
         folder.write(rows)
-        _fit(folder, None)
+        _fit([folder], folder.model, None)
         return f"Wrote {campaign.size} simulations to {folder.table}."
 
     return write
 
 
 @oil.command()
-@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.argument(
+    "folders", metavar="DIR...", nargs=-1, required=True, type=click.Path(path_type=Path)
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="The models; default: model.json in DIR; needed for more than one.",
+)
 @plot_models
-def fit(folder: Path, plot: Path | None) -> None:
-    """Fit models to the simulations in DIR again."""
+def fit(folders: tuple[Path, ...], output: Path | None, plot: Path | None) -> None:
+    """Fit models again to the simulations in DIR, or to those in several folders together.
+
+    Simulations in another folder widen the conditions for which the models hold.
+    """
     from epicyclic.campaigns.folder import open_folder
 
     if plot is not None:
         check_ending("--plot", plot)
-    _fit(open_folder(folder), plot)
+    if output is None and len(folders) > 1:
+        raise click.UsageError("For more than one DIR give the FILE of the models with -o.")
+    campaigns = [open_folder(folder) for folder in folders]
+    _fit(campaigns, output or campaigns[0].model, plot)
 
 
 @oil.command()
@@ -159,21 +175,21 @@ def show(model: Path) -> None:
     terminal().print(oil_model_tables(read_oil_model(model)))
 
 
-def _fit(folder: CampaignFolder, plot: Path | None) -> None:
+def _fit(folders: Sequence[CampaignFolder], output: Path, plot: Path | None) -> None:
     """Fit, write and show the models."""
     from epicyclic.campaigns.fit import fit_and_write
     from epicyclic.report.oil_model_table import oil_model_tables
     from epicyclic.report.tables import terminal
 
-    model = fit_and_write(folder)
+    model = fit_and_write(folders, output)
     terminal().print(oil_model_tables(model))
-    click.echo(f"Wrote {folder.model}.")
+    click.echo(f"Wrote {output}.")
     if plot is not None:
         from epicyclic.campaigns.fit import simulated_quantities
         from epicyclic.plots.oil_model import oil_model_figure
 
         simulated = {
             quantity: (states, target)
-            for quantity, (states, target, _) in simulated_quantities(folder).items()
+            for quantity, (states, target, _) in simulated_quantities(folders).items()
         }
         draw(oil_model_figure(model, simulated), plot)
