@@ -5,6 +5,8 @@ from __future__ import annotations
 import html
 import io
 import json
+import runpy
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -320,3 +322,11 @@ def test_recommendation_for_the_fluid_of_the_regression_and_for_an_unknown_oil()
     best, why = recommended(compare_friction(other))
     assert best.name == "schlenk"
     assert "no model was made for this oil" in why
+
+
+def test_the_manual_shows_the_table():
+    """Run scripts/update_oil_model_table.py where it does not."""
+    script = runpy.run_path(
+        str(Path(__file__).parents[2] / "scripts" / "update_oil_model_table.py")
+    )
+    assert script["table"]() in script["PAGE"].read_text(encoding="utf-8")
