@@ -23,7 +23,7 @@ LARGEST = 400_000_000
 """A result takes a few megabytes, a map of a million points less than this. [bytes]"""
 MOST_VARIABLES = 2000
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
-"""Of HDF5, in which NetCDF 4 files are kept."""
+"""First bytes of HDF5, in which NetCDF 4 files are kept."""
 _LONGEST_REASON = 120
 _MAKE_AGAIN = "Make it again."
 

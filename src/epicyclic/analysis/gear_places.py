@@ -21,7 +21,7 @@ Place = tuple[float, float, float]
 """x and y of the centre [m], direction of the first tooth [rad]."""
 UP = math.pi / 2
 HALF = 0.5
-"""Of a pitch: what a tooth is from the space beside it."""
+"""Part of a pitch by which a tooth is away from the space beside it."""
 
 
 @dataclass(frozen=True, slots=True)

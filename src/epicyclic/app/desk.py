@@ -24,7 +24,7 @@ from epicyclic.exchange.rexs.file import is_rexs
 __all__ = ["ENDINGS", "Desk", "built_in", "opened", "owner_of", "received"]
 
 ENDINGS = (".toml", ".rexs", ".rexsj", ".rexsz")
-"""Of files that hold a case."""
+"""Endings of files that hold a case."""
 _HEAD = "A case file of epicyclic, saved by its app. Keys behind a # have defaults."
 
 

@@ -18,7 +18,7 @@ __all__ = ["Form"]
 _OPEN = "operation"
 """The table that is open at first."""
 _STEPS, _DIGITS = 200, 6
-"""Of the slider of an input, and of its values."""
+"""Steps of the slider of an input, and digits of its values."""
 _THROTTLE = 0.05
 """Between two values of a slider that moves. [s]"""
 Call = Callable[[], Awaitable[None]]

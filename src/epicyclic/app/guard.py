@@ -11,7 +11,7 @@ from urllib.parse import parse_qs
 __all__ = ["HEADERS", "LARGEST_BODY", "Guard"]
 
 LARGEST_BODY = 10_000_000
-"""Of a request: a case file is a page of text, a REXS file may be some megabytes. [bytes]"""
+"""Largest request: a case file is a page of text, a REXS file may have some megabytes. [bytes]"""
 _FORBIDDEN, _TOO_LARGE, _SEE_OTHER = 403, 413, 303
 _CLOSED = 1008
 """Code of a websocket that is refused: against the policy."""
@@ -24,7 +24,7 @@ HEADERS = {
     "x-content-type-options": "nosniff",
     "x-frame-options": "DENY",
 }
-"""Of every answer: a page that loads nothing from elsewhere and stands in no other page."""
+"""Headers of every answer: a page loads nothing from elsewhere and stands in no other page."""
 
 
 class Guard:

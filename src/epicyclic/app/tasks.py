@@ -93,7 +93,7 @@ class Answer:
 
 
 _kept: dict[Study, Stored] = {}
-"""Of the last studies, so that their figures are drawn without computing them again."""
+"""Results of the last studies: their figures are drawn without computing them again."""
 
 
 def _stored(study: Study, progress: Progress) -> Stored:

@@ -42,7 +42,7 @@ FloatArray = NDArray[np.float64]
 SAMPLES = 64
 """Points in each of the two sets."""
 POINTS = 16
-"""Of the cycle, solved with every sample."""
+"""Points of the cycle that every sample solves."""
 DRAWN = 1024
 """Points in each set that indices are found by, from curves."""
 EXPLAINED = "share of the variance of the total that curves through the samples explain"

@@ -27,9 +27,9 @@ __all__ = ["MeasuredFigure", "measured_figures"]
 FloatArray = NDArray[np.float64]
 
 DRAWS = 1024
-"""Of the distributions, the same in all tests."""
+"""Draws from the distributions, the same in all tests."""
 FINISH = "shaved"
-"""Of the planets, where a figure does not say it."""
+"""Finish of the planets where a figure does not say it."""
 MEASURED = "measured"
 """What the names of measured figures end with."""
 

@@ -37,7 +37,7 @@ FloatArray = NDArray[np.float64]
 DRAWN = 4096
 """Points at which the parabolas of the inputs are put together."""
 KEPT = 1024
-"""Of these, how many a dataset keeps."""
+"""How many of these a dataset keeps."""
 SEED = 1
 
 

@@ -25,7 +25,7 @@ COVERAGE = 0.95
 COVERAGE_FACTOR = 2.0
 """k of the expanded uncertainty U = k u_c; JCGM 100:2008, 6.3.3. [1]"""
 RESAMPLES = 200
-"""Of the confidence intervals of indices."""
+"""Resamples for the confidence intervals of indices."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -64,7 +64,7 @@ LABELS = {
     "shortest_low": "low end of the shortest 95 % interval",
     "shortest_high": "high end of the shortest 95 % interval",
 }
-"""Of the fields of `Summary`."""
+"""Units of the fields of `Summary`."""
 assert [one.name for one in fields(Summary)] == list(LABELS)
 
 

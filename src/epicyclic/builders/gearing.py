@@ -33,7 +33,7 @@ class Gearing(ABC):
     @property
     @abstractmethod
     def tables(self) -> Mapping[str, GearTable]:
-        """Of the gears, by their names."""
+        """The tables of the gears, by their names."""
 
     @property
     @abstractmethod
@@ -43,7 +43,7 @@ class Gearing(ABC):
     @property
     @abstractmethod
     def misalignments(self) -> tuple[float, ...]:
-        """Of the meshes. [rad]"""
+        """Misalignments of the meshes. [rad]"""
 
     @property
     def planets(self) -> int:

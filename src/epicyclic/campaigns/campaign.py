@@ -129,7 +129,7 @@ class Campaign(Plan):
 
 
 MOST_CONTACTS = 1_000_000
-"""Of one design: years of simulation."""
+"""Most contacts of one design: years of simulation."""
 
 
 def make_campaign(

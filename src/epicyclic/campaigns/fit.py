@@ -44,7 +44,7 @@ QUANTITIES = {
 
 
 _SHARED = {"settings": "with another oil or other settings", "version": "by another version"}
-"""Of campaigns that are fitted together, and what is said where they differ."""
+"""What campaigns that are fitted together share, and what is said where they differ."""
 
 
 def characterise_oil(

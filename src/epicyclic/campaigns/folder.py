@@ -177,7 +177,7 @@ def column_of(name: str) -> str:
 
 
 _LARGEST_PLAN, _LARGEST_TABLE = 1_000_000, 200_000_000
-"""Of campaign.json, and of the table of results. [bytes]"""
+"""Largest campaign.json, and largest table of results. [bytes]"""
 _RESULTS = ("friction", "rolling_loss")
 """What the table holds with its error."""
 

@@ -30,7 +30,7 @@ class OperatingValue:
 
     @property
     def unit(self) -> str:
-        """Of columns and axes."""
+        """Unit of columns and axes."""
         return self.quantity.display
 
     def text(self, value: float) -> str:

@@ -31,7 +31,7 @@ DENSITY = {"mineral": 880, "pao": 850, "ester": 930, "pag": 1050, "atf": 850}
 """Usual densities at 15 degC; estimates. [kg/m^3]"""
 
 GRADES = (2, 3, 5, 7, 10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500, 2200, 3200)
-"""Of ISO 3448, by the middle of their viscosity at 40 degC in mm^2/s. Those below 10 have
+"""Grades of ISO 3448: middle of their viscosity at 40 degC in mm^2/s. Those below 10 have
 2.2, 3.2, 4.6 and 6.8."""
 _SMALL = {2: 2.2, 3: 3.2, 5: 4.6, 7: 6.8}
 

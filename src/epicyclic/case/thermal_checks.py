@@ -7,7 +7,7 @@ from epicyclic.errors import Problem
 from epicyclic.units import CELSIUS
 
 ROUNDING = 1e-9
-"""Of shares that add up to 1. [1]"""
+"""Rounding of shares that add up to 1. [1]"""
 
 __all__ = ["check_outlet", "check_thermal", "check_ways_out"]
 

@@ -34,7 +34,7 @@ __all__ = [
 ]
 
 DIGITS = 4
-"""Of the profile shifts that messages propose: 0.1 um at a module of 1.5 mm."""
+"""Decimals of the profile shifts that messages propose: 0.1 um at a module of 1.5 mm."""
 
 
 def half_angle(table: GearTable, rack: BasicRack, *, internal: bool) -> float:

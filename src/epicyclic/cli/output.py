@@ -33,7 +33,7 @@ __all__ = [
 PICTURES = (".png", ".svg", ".pdf")
 PAGE, PRINT = ".html", ".pdf"
 SIZES = (30, 2000)
-"""Of pictures, least and most. [mm]"""
+"""Smallest and largest size of a picture. [mm]"""
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 
 

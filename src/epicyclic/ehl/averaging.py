@@ -20,7 +20,7 @@ __all__ = ["Estimate", "Plan", "aided_mean", "next_plan"]
 FloatArray = NDArray[np.float64]
 
 GROWTH = 1.5
-"""Of the number of blocks on the fine grid between looks at the error, at most: an early look tells
+"""Largest growth of the number of fine blocks between looks at the error: an early look tells
 little of how many it takes. [1]"""
 LAGS = 2
 """Blocks that follow one another and are alike: a ridge stays for that long. [1]"""

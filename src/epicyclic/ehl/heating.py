@@ -25,7 +25,7 @@ __all__ = [
 FloatArray = NDArray[np.float64]
 
 FILM_EXPONENT = 0.694
-"""Of the viscosity in the film of Pan and Hamrock (1989). [1]"""
+"""Exponent of the viscosity in the film of Pan and Hamrock (1989). [1]"""
 SMALLEST_CHANGE = 1e-3
 """To which the temperature of a node is found. [K]"""
 

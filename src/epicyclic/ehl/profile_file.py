@@ -23,9 +23,9 @@ FloatArray = NDArray[np.float64]
 
 X3P = ".x3p"
 LARGEST_FILE = 10_000_000
-"""Of a measured profile. [bytes]"""
+"""Largest file of a measured profile. [bytes]"""
 MOST_POINTS = 200_000
-"""Of a measured profile; those in print have some ten thousand."""
+"""Most points of a measured profile; those in print have some ten thousand."""
 FEWEST_POINTS = 16
 EVEN = 0.01
 """Largest deviation of a distance of points from the others. [1]"""

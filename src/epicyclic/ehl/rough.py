@@ -39,10 +39,10 @@ until averages begin. [1]"""
 BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 0.5, 8, 1024
 """Time of a block in b/u_r, fewest blocks of an average, most times b/u_r of one."""
 FEWEST_COARSE_NODES, COARSE_SPACING = 96, 0.3
-"""Of the grid that aids the averages: fewest nodes, and their distance over the correlation length
+"""Fewest nodes of the grid that aids the averages, and their distance over the correlation length
 of the roughness; at most half of the nodes. [1]"""
 COST_EXPONENT = 1.9
-"""Of the number of nodes in the time that a step takes, measured from 96 to 512 nodes. [1]"""
+"""The time of a step rises with this power of the number of nodes, measured from 96 to 512. [1]"""
 BRIEF = 64
 """Number of blocks where many contacts are solved and the error of each is weighed."""
 FINEST_FEATURE = 0.2

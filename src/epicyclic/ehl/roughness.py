@@ -20,7 +20,7 @@ PERIOD = 4000.0
 """Length of a generated profile over its correlation length: that of 200 has a friction of its own,
 up to 10 % from that of other seeds. [1]"""
 FEWEST_SAMPLES = 4
-"""Of a period that a grid resolves."""
+"""Fewest samples of a period that a grid resolves."""
 GAUSSIAN = math.sqrt(math.log(2) / math.pi)
 """alpha of the Gaussian filter: half of a wave as long as the cutoff passes. [1]"""
 

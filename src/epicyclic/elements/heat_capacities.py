@@ -18,9 +18,9 @@ from epicyclic.thermal.solids import Solid
 __all__ = ["OF_SHAFT", "STEEL", "bearing_capacity", "gear_set_capacities"]
 
 STEEL = Solid(conductivity=46.0, heat_capacity=460.0, density=7850.0)
-"""Of parts whose material no case states: pins, carriers, bearings of shafts."""
+"""Material of parts for which no case states one: pins, carriers, shaft bearings."""
 OF_SHAFT = 500.0
-"""Of a shaft between its gears and bearings, about 1 kg of steel: an estimate. [J/K]"""
+"""Heat capacity of a shaft between gears and bearings, about 1 kg of steel: an estimate. [J/K]"""
 CARRIER_FILL = 0.5
 """Steel in the disc that a carrier describes; the rest is windows and planets: an estimate. [1]"""
 BEARING_FILL = 0.7

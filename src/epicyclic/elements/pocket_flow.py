@@ -64,8 +64,8 @@ STUDY_RANGES = (
     Range("helix_angle", "helix angle", 0.0, 35.0, DEGREE, STUDY_SOURCE),
     Range("pitch_line_speed", "pitch line speed", 0.0, 26.2, METRE_PER_SECOND, STUDY_SOURCE),
 )
-"""Of the parametric study: modules of Figure 4.13, face widths and helix angles of Figure 4.9, and
-10000 rpm on a pitch circle of 50 mm."""
+"""Ranges of the parametric study: modules of Figure 4.13, face widths and helix angles of Figure
+4.9, and 10000 rpm on a pitch circle of 50 mm."""
 LARGEST_MACH = 0.5
 """Fastest flow over the speed of sound above which waves matter. [1]"""
 _EDGE = 1e-3

@@ -133,7 +133,7 @@ class _Listener(event.Listener):
                 tell()
 
     def on_end(self, event: Any) -> None:
-        """Of no interest."""
+        """Ignored."""
 
 
 event.register("numba:compile", _Listener())  # type: ignore[no-untyped-call]

@@ -54,7 +54,7 @@ class Column(IntEnum):
     """Integral over X of the pressure where surfaces touch."""
     LEAST_FILM = 4
     FLOW_POWER = 5
-    """Of the pressure flow. Theory (H33)."""
+    """Power of the pressure flow. Theory (H33)."""
     NEWTON_STEPS = 6
     ERROR = 7
     """What the tolerance of a step bounds."""

@@ -15,7 +15,7 @@ __all__ = ["eyring_means"]
 FloatArray = NDArray[np.float64]
 
 LARGEST_EXPONENT = 300.0
-"""Of the viscosity under pressure: what is larger is solid, and overflows."""
+"""Largest exponent of the viscosity under pressure: what is larger is solid, and overflows."""
 LEAST_LOGARITHM = 0.01
 """Stress from which its arsinh is a logarithm: 1 + x keeps 14 digits of x. [1]"""
 

@@ -19,11 +19,11 @@ from epicyclic.kernels.pocket_stage import Flags, Floats, Fresh, Indices, downst
 __all__ = ["periodic_network"]
 
 Openings = tuple[Floats, Floats, Floats, Floats]
-"""Of axial faces and of gaps: areas [m^2], distances from the cells before and behind [m]."""
+"""Areas of axial faces and of gaps [m^2], distances from the cells before and behind them [m]."""
 Rules = tuple[float, float, bool]
 """Time step [rad]; pressure of a void; whether kinetic energy goes on inside a pocket."""
 Pair = tuple[Floats, Floats]
-"""Of axial faces and of gaps, unless said otherwise."""
+"""Values at axial faces and at gaps, unless said otherwise."""
 State = tuple[Floats, Floats, Floats, Floats]
 """Pressure and full share of the cells, velocities through axial faces and gaps."""
 

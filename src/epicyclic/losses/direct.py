@@ -52,7 +52,8 @@ LARGEST_ERROR = 0.10
 LARGEST_LEFT_OUT = 0.25
 """Share of contacts left out above which there is no result. [1]"""
 SMOOTHING = 1e-2
-"""Of the interpolation, about the scatter of 2 % of solved contacts squared over their variance."""
+"""Smoothing of the interpolation: about the scatter of solved contacts, 2 %, squared over their
+variance."""
 
 
 def solver_range(name: str, label: str, unit: Quantity) -> Range:

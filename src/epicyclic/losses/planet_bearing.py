@@ -115,7 +115,7 @@ PALMGREN_RANGES = (
     ),
     SPEED_PARAMETER,
 )
-"""Of the coefficient f1."""
+"""Ranges of the coefficient f1."""
 
 
 @dataclass(frozen=True, slots=True)

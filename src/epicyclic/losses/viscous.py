@@ -44,7 +44,7 @@ RPM = math.pi / 30
 SPEED_PARAMETER = Range(
     "speed_parameter", "speed times pitch diameter, rpm mm", None, 1e6, NUMBER, OF_THIS_PACKAGE
 )
-"""Of the formulas of Palmgren and Harris, which come from tests at moderate speed."""
+"""Range of the formulas of Palmgren and Harris, which come from tests at moderate speed."""
 _FACES = Range(
     "reynolds_number",
     "Reynolds number of the faces",

@@ -24,7 +24,7 @@ UNBALANCED = 1e-9
 SINGULAR = 1e-13
 """Singular values below this share of the largest count as zero."""
 LARGEST_FACTOR = 1e6
-"""Of torques over the given ones beyond which the system is looked at for its rank. [1]"""
+"""Torques over the given ones beyond which the rank of the system is looked at. [1]"""
 ROUNDING = 1e-14
 """Torque, relative to the largest one, that is left over from rounding. [1]"""
 NO_POWER = 1e-12

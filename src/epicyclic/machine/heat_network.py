@@ -45,7 +45,7 @@ SAME = 1e-13
 WALLS = (1.0, 1e7)
 """Between which the housing may be while temperatures settle. [K]"""
 LEAST_SHARE = 0.01
-"""Of the oil, for a part without heat, over that for one with all the heat: an estimate. [1]"""
+"""Oil for a part without heat over that for one with all the heat: an estimate. [1]"""
 SMALLEST_HEAT = 1e-6
 """With which a gearbox without any heat shares its oil evenly. [W]"""
 

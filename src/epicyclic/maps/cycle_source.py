@@ -22,7 +22,7 @@ SUFFIXES = (".csv", ".parquet")
 _BLOCK_BYTES = 1 << 22
 _BATCH_ROWS, _PAGE_BYTES = 1 << 16, 1 << 20
 LARGEST_PAGE = 16 * 10**6
-"""Of a Parquet file, unpacked: a page of each column is in memory as a whole. [bytes]"""
+"""Largest page of a Parquet file, unpacked: one of each column is in memory as a whole. [bytes]"""
 _LONGEST_HEAD = 1 << 18
 """Bytes within which the header of a CSV file must end."""
 

@@ -65,7 +65,7 @@ CROWD = 4
 MOST_STEPS = 2000
 """Into which the duration is divided, if a cycle has more rows."""
 TOLERANCE = 1e-3
-"""Of the temperatures in each of these steps. [K]"""
+"""Largest error of the temperatures in each of these steps. [K]"""
 TIMES = 241
 """At which the course is told if the operating point is constant."""
 REACHED = 0.9

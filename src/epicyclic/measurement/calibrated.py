@@ -20,7 +20,7 @@ __all__ = ["calibrated_case", "uncertainty_tables"]
 SHRUNK = 1 - 1e-6
 """Factor of coefficients of correlation, so that rounding leaves their matrix possible. [1]"""
 DIGITS = 8
-"""Of coefficients of correlation."""
+"""Decimals of coefficients of correlation."""
 
 
 def calibrated_case(case: Case, fit: Fit) -> Case:

@@ -20,7 +20,7 @@ __all__ = ["Grid", "read_frame", "read_grid"]
 
 _NOUN = "measurement"
 _LARGEST_FILE = 10_000_000
-"""Of a file, and of what a compressed file holds. [bytes]"""
+"""Largest file, also of what a compressed file holds. [bytes]"""
 MOST_ROWS = 10_000
 """Every row is a computation; tables of more rows are recordings, to be averaged first."""
 _MOST_COLUMNS = 200

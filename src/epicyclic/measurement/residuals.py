@@ -18,8 +18,8 @@ __all__ = ["STEP", "Residuals"]
 FloatArray = NDArray[np.float64]
 
 STEP = 1e-2
-"""Of the differences that give the derivatives, over the start value: flows through pockets are
-found to 1e-3 of their power, which smaller steps would show. [1]"""
+"""Step of the differences that give the derivatives, over the start value: flows through pockets
+are found to 1e-3 of their power, which smaller steps would show. [1]"""
 
 
 @dataclass(slots=True)
@@ -61,7 +61,7 @@ class Residuals:
 
     @property
     def bounds(self) -> FloatArray:
-        """Of the scaled parameters, shape (p, 2). [1]"""
+        """Bounds of the scaled parameters, shape (p, 2). [1]"""
         return np.array([item.ends for item in self.parameters])
 
     def settings(self, scaled: FloatArray) -> dict[str, Any]:

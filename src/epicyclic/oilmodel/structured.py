@@ -33,7 +33,7 @@ FloatArray = NDArray[np.float64]
 EYRING_STRESS = 5e6
 """Unit of the stress of the fit. [Pa]"""
 SLOPE_RATIO, TRANSITION = 0.41, 0.38e9
-"""Of the two slopes of the closed form, those of the default of the solver: slope at high over that
+"""The two slopes of the closed form are those of the default of the solver: slope at high over that
 at low pressure [1], and where they meet [Pa]."""
 LIGHT_LOAD = 0.6
 """M of Moes at which the pressure is half that of Hertz, found for smooth contacts. [1]"""

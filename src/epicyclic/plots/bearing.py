@@ -18,7 +18,7 @@ __all__ = ["plot_roller_loads", "plot_roller_profile"]
 Floats = NDArray[np.float64]
 
 CIRCLES = 4
-"""Of the scale of loads, at most."""
+"""Most circles that the scale of loads has."""
 SEEN = 0.02
 """Share of the highest load from which on a bar is seen. [1]"""
 STEP = 7.5

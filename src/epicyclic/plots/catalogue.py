@@ -60,7 +60,7 @@ __all__ = ["PLOTS", "Panel", "Plot", "about", "available", "figure_of", "in_inch
 Stored = ResultRecord | xr.Dataset
 MM_PER_INCH = 25.4
 SLIDE_WIDTHS = (6.4, 9.6, 12.8)
-"""Of figures with one, two, three and more panels side by side: letters stay readable. [inch]"""
+"""Widths of figures of one, two, three and more panels in a row: letters stay readable. [inch]"""
 FLATTEST = 0.75
 """Height of a figure over that of a slide of its width, at least."""
 

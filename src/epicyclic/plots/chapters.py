@@ -24,7 +24,7 @@ __all__ = ["SOURCE", "branch_figure", "family_figure", "roller_figure"]
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 STARS = ("*", "P", "X")
-"""Of published numbers."""
+"""Markers of published numbers."""
 SOURCE = "Talbot (2012)"
 MOST_COLUMNS = 3
 PANEL, ALONE = (4.3, 3.1), (6.4, 4.2)

@@ -15,7 +15,7 @@ from epicyclic.units import decimals_of
 __all__ = ["friction_figure", "plot_friction_models"]
 
 ROW_HEIGHT = 0.3
-"""Of one bar. [inch]"""
+"""Height of one bar. [inch]"""
 ROOM = 1.45
 """Length of the axis over that of the longest bar, for the words beside the bars. [1]"""
 COLOUR, OTHER = COLOURS[0], "0.75"

@@ -27,7 +27,7 @@ __all__ = ["heat_figure", "plot_heat_network"]
 INK, SOFT, FLOW, PAPER = "#1a1d21", "#5b6470", "#5b7fa6", "#ffffff"
 COLOURS = "YlOrRd"
 DARKEST = 0.62
-"""Of the scale of colours, so that words stay readable. [1]"""
+"""Darkest shade of the colour scale on which words stay readable. [1]"""
 LEFT, RIGHT = 0.15, SLIDE[0] - 0.15
 SLOT, BROADEST = 1.45, 2.6
 """Room for each way out of the oil; of a column at most."""
@@ -40,9 +40,9 @@ WITH_SHAFTS, WITHOUT = (4.5, 2.75, 1.65), (5.4, 3.3, 1.85)
 TALL, FLAT = 0.58, 0.22
 """Half the heights of a part, and of a rail."""
 NARROW = 1.2
-"""Of columns, up to which their words are small."""
+"""Width of a column up to which its words are small."""
 WIDEST, THINNEST = 0.5, 0.015
-"""Of arrows."""
+"""Widths of arrows."""
 SMALLEST = 0.5
 """Heat that is not drawn. [W]"""
 SHAFT = "_shaft"

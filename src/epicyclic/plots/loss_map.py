@@ -35,15 +35,15 @@ Limits = tuple[float, float] | None
 
 LEVELS = 7
 EFFICIENCIES = (50, 70, 80, 90, 95, 97, 98, 98.5, 99, 99.3, 99.5, 99.7, 99.9)
-"""Of lines and ticks. [%]"""
+"""Efficiencies that get a line and a tick. [%]"""
 LEAST_EFFICIENCY, BEST_EFFICIENCY = 50.0, 99.95
 """Between which colours of an efficiency differ, evenly in the logarithm of the loss. [%]"""
 LEAST_LINE = 90
 """Lines of lower efficiencies run into one another where the torque is zero. [%]"""
 LABELS = 4
-"""Of lines of equal value, at most: more collide where lines are close."""
+"""Most labels that a line of equal value gets: more collide where lines are close."""
 EDGE = 0.04
-"""Of the width and height of Axes, in which no such label begins."""
+"""Share of the width and height of the Axes, along its edges, in which no such label begins."""
 HATCHES = ("", "///", "...", "\\\\\\", "xxx")
 ROOM = 1.03
 """Height of an axis over the greatest value that it has to show. [1]"""

@@ -34,7 +34,7 @@ KINDS = (COLOURS[5], COLOURS[4])
 """A tooth of member 1 in a space of member 2, and the other way round."""
 FOLLOWED, CONTACT, BACKLASH = COLOURS[0], COLOURS[2], COLOURS[6]
 MARGIN = 0.06
-"""Of a picture around the places where pockets begin and end. [1]"""
+"""Share of a picture left around the places where pockets begin and end. [1]"""
 DEPTH = 4.0
 """How far a body reaches beyond the roots of its teeth. [tooth heights]"""
 

@@ -33,7 +33,7 @@ TOP, LOWEST, GROUNDS, LEGEND = 6.85, 1.75, 1.45, 0.25
 HEAD, ROW = 0.36, 0.24
 """Heights of the name on a card, and of each of its meshes."""
 WIDEST, THINNEST, SHORTEST = 0.6, 0.02, 0.55
-"""Of arrows, whatever the power; length below which they have no label."""
+"""Widths of arrows, whatever the power; length below which they have no label."""
 NO_POWER = 1e-9
 MOST_ORDERED = 6
 """Sets, and shafts, of which all orders are compared."""

@@ -42,7 +42,7 @@ __all__ = [
 FloatArray = NDArray[np.float64]
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-"""Of M. Okabe and K. Ito, Color Universal Design (2008)."""
+"""Colours of M. Okabe and K. Ito, Color Universal Design (2008)."""
 COLOUR_MAP = "viridis"
 LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (8, 2)))
 """Beside colours, for prints in grey."""

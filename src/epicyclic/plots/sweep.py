@@ -47,9 +47,9 @@ RESULTS = ("total", "efficiency")
 MOST_LINES = len(COLOURS)
 LEVELS = 8
 LABEL_WIDTH = 14
-"""Of the labels of parallel axes. [characters]"""
+"""Width of the labels of parallel axes. [characters]"""
 MOST_TICKS = 4
-"""Of a parallel axis with a tick at each of its values."""
+"""Most values of a parallel axis that has a tick at each of them."""
 MOST_POINTS = 5000
 """Drawn point by point."""
 

@@ -30,7 +30,7 @@ __all__ = [
 
 MOST_DRIVERS = 12
 TICKS = 6
-"""Of a distribution, at most: its values have many digits."""
+"""Most ticks under a distribution: its values have many digits."""
 WIDE = (7.2, 4.2)
 """Width and height of a picture with long names beside its bars. [inch]"""
 

@@ -23,14 +23,14 @@ from epicyclic.text_file import sealed, unsealed
 __all__ = ["ATTRIBUTE", "StoredTables", "read_stored", "store", "stored_table"]
 
 ATTRIBUTE = "flows"
-"""Of the NetCDF file, which holds the tables as JSON."""
+"""Attribute of the NetCDF file that holds the tables as JSON."""
 _KEY = "models.pocketing_table"
 _REMEDY = "Make it with 'epicyclic pockets-table', or leave the key out."
 _SAME = 1e-9
 """Numbers that differ less, relatively, are the same: machines round differently. [1]"""
 
 NEGLIGIBLE = 1e-3
-"""Of the largest power of a table: a power below zero by less is an error of the numerics. [1]"""
+"""Share of the largest power of a table; what is below zero by less is numerical error. [1]"""
 
 _Plain = bool | int | float | str | None
 _Finite = Annotated[float, Field(allow_inf_nan=False)]

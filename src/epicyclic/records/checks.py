@@ -85,7 +85,7 @@ _UNCERTAINTY_TEXTS = {
     "driver": ("driver",),
     "sum": ("sum",),
 }
-"""Of the inputs of an uncertainty, by their dimension."""
+"""Limits of uncertain inputs, by their dimension."""
 _MAY_LACK = {"meshes", "pockets", "uncertainty"}
 """Groups with NaN where nothing touches, or no pocket is; but places are known everywhere."""
 _PLACES = {

@@ -22,7 +22,7 @@ __all__ = ["explorable"]
 
 DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 DIGITS = 7
-"""Of values in the page."""
+"""Significant digits of values in the page."""
 COLOUR_STEPS = 16
 
 

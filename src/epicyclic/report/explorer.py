@@ -27,7 +27,7 @@ EXPLORER_LEAD = (
 MOST_VALUES = 1_500_000
 """That a page holds: 8 MB."""
 SHADES = 64
-"""Of the map."""
+"""Shades of the map."""
 SUMS = ("load_dependent", "load_independent", "total", "torque_loss", "input_power", "efficiency")
 """Below the losses."""
 MAIN = ("total", "input_power", "efficiency")

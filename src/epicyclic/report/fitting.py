@@ -15,9 +15,9 @@ __all__ = ["FittedTable"]
 GAP = 3
 """Between two columns, the spaces on both sides of a line that is not drawn."""
 LONGEST_WORD = 24
-"""Of text that stays whole; what is longer is an address, or a key with its table."""
+"""Longest word that stays whole; what is longer is an address, or a key with its table."""
 FIRST_SHARE = 0.5
-"""Of the width, for the names in the first column, at most."""
+"""Largest share of the width for the names in the first column."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from epicyclic.units import format_number, unit_text
 __all__ = ["grid_table"]
 
 MOST_COLUMNS = 9
-"""Of a table of values; larger maps are shown at evenly spaced points."""
+"""Most columns of a table of values; larger maps are shown at evenly spaced points."""
 
 
 def grid_table(point: xr.Dataset, title: str, cell: Callable[[int, int], Cell]) -> Table:

@@ -22,7 +22,7 @@ NOT_SHOWN = ("kind", "title")
 DATUM = {"value", "temperature", "source"}
 """Keys of a table that states one value."""
 MOST_VALUES = 12
-"""Of an array that are shown."""
+"""Most values of an array that are shown."""
 WORDS, VALUES = 18, 42
 """Widths of the columns of keys and values, beside their meaning. [%]"""
 MOST_EVEN = 3

@@ -27,7 +27,7 @@ _EXTREMES = (
     "flash_temperature",
 )
 _SMALLEST = ("film_ratio",)
-"""Of these the smallest value matters."""
+"""Figures whose smallest value matters."""
 
 
 def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:

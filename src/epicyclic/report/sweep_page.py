@@ -17,7 +17,7 @@ from epicyclic.units import format_number, unit_text
 __all__ = ["sweep_key_figures", "sweep_sections"]
 
 MOST_ROWS = 12
-"""Of the table of points."""
+"""Most rows of the table of points."""
 _POINTS_LEAD = "The points with the least total loss, and the one with the largest."
 
 

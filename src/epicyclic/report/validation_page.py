@@ -25,7 +25,7 @@ from epicyclic.validation.compare import Comparison, by_topic, summary
 __all__ = ["comparison_sections", "validation_html"]
 
 MOST_ROWS = 8
-"""Of one picture."""
+"""Most rows of one picture."""
 _HEAD = (
     "figure",
     "published",

@@ -58,7 +58,7 @@ class Plan(ABC):
     """The points of a study, handed to every worker: small, and picklable."""
 
     kind: ClassVar[str]
-    """Of the study: ``"sweep"``, ``"map"``."""
+    """Kind of the study: ``"sweep"``, ``"map"``."""
     may_fail: ClassVar[bool] = False
     """Whether points without a solution are to be expected."""
 

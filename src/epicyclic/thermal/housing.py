@@ -44,7 +44,7 @@ general knowledge, as `OVERALL_COEFFICIENTS`."""
 SPLASHED_WALL = 200.0
 """Coefficient between the oil and the wall that it splashes, ISO/TR 14179-2. [W/(m^2 K)]"""
 STANDARD_PRESSURE = 101325.0
-"""Of the atmosphere. [Pa]"""
+"""Standard pressure of the atmosphere. [Pa]"""
 GRAVITY = 9.80665
 """Standard acceleration of free fall. [m/s^2]"""
 

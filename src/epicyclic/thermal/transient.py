@@ -22,7 +22,7 @@ __all__ = ["Course", "Curves", "Source", "Transient"]
 FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-6
-"""Of the temperatures, in each step of the integration. [K]"""
+"""Largest error of the temperatures in each step of the integration. [K]"""
 LEAST_RELATIVE = 1e-12
 """No tolerance beside that. [1]"""
 

@@ -31,7 +31,7 @@ FILM_RANGES = (
     Range("speed_number", "speed number U", 1e-12, 5.03e-10, NUMBER, _FILM_SOURCE),
     Range("material_number", "material number G", 2504.0, 15027.0, NUMBER, _FILM_SOURCE),
 )
-"""Of the film formulas. The shares themselves are within 0 to 1 everywhere. Theory (F8)."""
+"""Ranges of the film formulas. The shares themselves are within 0 to 1 everywhere. Theory (F8)."""
 
 
 @dataclass(frozen=True, slots=True)
