@@ -299,7 +299,7 @@ async def _inner(scope, receive, send):
         await send({"type": "websocket.accept"})
 
 
-def _ask(kind="http", path="/", query="", bodies=(b"",), **headers):
+def _ask(kind="http", path="/", query="", bodies=(b"",), hosts=(HOST,), **headers):
     """What the guard sends."""
     sent = []
     messages = [
@@ -323,7 +323,7 @@ def _ask(kind="http", path="/", query="", bodies=(b"",), **headers):
             for name, text in ({"host": HOST} | headers).items()
         ],
     }
-    asyncio.run(Guard(_inner, TOKEN, [HOST])(scope, receive, send))
+    asyncio.run(Guard(_inner, TOKEN, hosts)(scope, receive, send))
     return sent
 
 
@@ -380,6 +380,19 @@ def test_what_is_too_large_is_refused_whatever_it_says():
     part = b"x" * (LARGEST_BODY // 2 + 1)
     assert _ask(cookie=COOKIE, bodies=(part, part))[0]["status"] == 499
     assert _ask(cookie=COOKIE, bodies=(part, b"x"))[0]["status"] == 200
+
+
+def test_a_length_of_thousands_of_digits_is_too_large():
+    assert _ask(cookie=COOKIE, content_length="9" * 5000)[0]["status"] == 413
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "[::1]"])
+def test_browsers_leave_out_the_usual_port(host):
+    cookie = f"epicyclic-80={TOKEN}"
+    for origin in ({}, {"origin": f"http://{host}"}):
+        sent = _ask(hosts=[f"{host}:80"], cookie=cookie, **({"host": host} | origin))
+        assert sent[0]["status"] == 200
+    assert _ask(cookie=COOKIE, host=host)[0]["status"] == 403
 
 
 def test_every_answer_forbids_what_lies_elsewhere():
@@ -475,6 +488,30 @@ def test_another_case_is_opened_and_a_group_shows_its_fields_when_it_is_opened(s
     simulate(desk, script)
 
 
+@pytest.mark.parametrize("typed", ["nan", "inf", "-1e308", "3 kg"])
+def test_the_slider_of_what_is_no_number_begins_at_zero(simulate, typed):
+    desk = opened("talbot-2012-pair")
+    desk.change("losses.mesh_pocketing.include", False)
+    key = "operation.torque"
+
+    async def script(user):
+        await user.should_see("total loss", retries=200)
+        user.find(marker=key).clear().type(typed).trigger("change")
+        await user.should_see("total loss", retries=200)
+        user.find(marker=f"tune-{key}").click()
+        await user.should_see(marker=f"slider-{key}", retries=50)
+        (slider,) = user.find(marker=f"slider-{key}").elements
+        assert (slider.props["min"], slider.value, slider.props["max"]) == (0, 0, 1)
+
+    simulate(desk, script)
+
+
+def test_a_map_without_speeds_is_no_result():
+    study = tasks.Study(opened("talbot-2012-pair").case, torque="0:310:3 N*m", is_map=True)
+    with pytest.raises(InputError, match=r"operation\.speed: has no values"):
+        tasks.answered(study, "", lambda done, total: None)
+
+
 # --- files ----------------------------------------------------------------------------------------
 
 
@@ -518,6 +555,39 @@ def test_a_broken_case_is_opened_with_its_problems(tmp_path):
     file.write_text("kind = 3")
     with pytest.raises(InputError):
         opened(str(file))
+
+
+@pytest.mark.parametrize("name", ["..", "", "a\0b", "a\nb", "\x1b[31m", "\udcff", "x" * 300])
+def test_what_is_no_name_of_a_file_is_refused(name, tmp_path, talbot):
+    text = Desk("x", talbot.given(), lambda changes: talbot).text().encode()
+    for case, files in ((name, {name: text}), ("mine.toml", {"mine.toml": text, name: b""})):
+        with pytest.raises(InputError, match="Rename it") as error:
+            received(case, files, tmp_path)
+        assert str(error.value).isascii()
+        assert str(tmp_path) not in str(error.value)
+
+
+@pytest.mark.parametrize("value", ["3", "[1, 2]", '"x"', "2020-01-01"])
+@pytest.mark.parametrize(
+    "key",
+    ["operation", "models", "losses.mesh_pocketing", "uncertainty", "uncertainty.x", "shafts",
+     "sets", "sets.a", "sets.a.sun", "states.a", "bearings", "bearings.a", "bearings.a.seal"],
+)  # fmt: skip
+def test_a_value_in_the_place_of_a_table_is_told_before_a_form_is_shown(key, value, tmp_path):
+    file = tmp_path / "case.toml"
+    kind = "train" if key.partition(".")[0] in ("sets", "states", "shafts", "bearings") else "pair"
+    file.write_text(f'kind = "{kind.replace("pair", "gear_pair")}"\n{key} = {value}\n')
+    with pytest.raises(InputError, match=key.partition(".")[0]):
+        opened(str(file))
+
+
+def test_a_date_is_shown_as_a_case_file_has_it(tmp_path):
+    file = tmp_path / "case.toml"
+    file.write_text('kind = "gear_pair"\ntitle = 2020-02-03\n')
+    desk = opened(str(file))
+    assert desk.problems_of("title")
+    assert {entry.key: entry.text for entry in desk.form().entries}["title"] == "2020-02-03"
+    assert "title = 2020-02-03" in desk.text()
 
 
 @pytest.mark.parametrize("name", ["talbot-2012-pair", "train-8hp70"])
@@ -567,10 +637,26 @@ def test_the_worker_tells_progress_and_errors_and_can_be_ended():
 
 
 def test_names_of_the_address():
-    assert names_of("127.0.0.1") == ["127.0.0.1", "localhost", "[::1]"]
-    assert names_of("192.0.2.7") == ["192.0.2.7"]
-    assert names_of("2001:db8::7") == ["[2001:db8::7]"]
-    assert {"127.0.0.1", "localhost"} < set(names_of("0.0.0.0"))
+    assert names_of("127.0.0.1", "127.0.0.1") == ["127.0.0.1", "localhost", "[::1]"]
+    assert names_of("192.0.2.7", "192.0.2.7") == ["192.0.2.7"]
+    assert names_of("2001:DB8:0::7", "2001:db8::7") == ["[2001:db8:0::7]", "[2001:db8::7]"]
+    assert names_of("Desk.example", "192.0.2.7") == ["desk.example", "192.0.2.7"]
+    assert {"127.0.0.1", "localhost"} < set(names_of("0.0.0.0", "0.0.0.0"))
+
+
+def test_a_machine_that_does_not_know_its_own_name_has_loopback_addresses(monkeypatch):
+    monkeypatch.setattr("socket.gethostname", lambda: "no-such-host.invalid")
+    assert names_of("::", "::") == ["127.0.0.1", "localhost", "[::1]"]
+
+
+@pytest.mark.parametrize("host", ["", "a\0b", "\udcff", "a" * 300, "no-such-host.invalid"])
+def test_what_is_no_address_is_told(host):
+    from epicyclic.cli.app import app
+
+    found = CliRunner().invoke(app, ["talbot-2012", "--host", host, "--no-browser"])
+    assert isinstance(found.exception, InputError)
+    assert "cannot be listened at" in str(found.exception)
+    assert len(str(found.exception)) < 300
 
 
 def test_another_host_is_told_what_it_means(monkeypatch):
@@ -592,6 +678,9 @@ def test_another_host_is_told_what_it_means(monkeypatch):
         ("torque", "0", "0 N*m"),
         ("temperature", "83", "83 degC"),
         ("temperature", "", ""),
+        ("torque", "nan", ""),
+        ("speed", "1e308", ""),
+        ("temperature", "-inf", ""),
     ],
 )
 def test_values_of_a_map_lie_around_those_of_the_case(axis, given, values):

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from epicyclic import library
-from epicyclic.app.form import Group, form_of
+from epicyclic.app.form import Group, form_of, has_form
 from epicyclic.case.base import FILE_KEYS
 from epicyclic.case.case import Case, build_case, changed_tables
 from epicyclic.case.plain import value_at
@@ -192,7 +192,7 @@ def _is_name(value: object) -> bool:
 def opened(path: str, shown: str = "") -> Desk:
     """The desk of a case: a file, or a built-in one.
 
-    A case with problems is opened, if it is known what kind it is.
+    A case with problems is opened, if it is known what kind it is and a form can show it.
 
     Parameters
     ----------
@@ -213,7 +213,8 @@ def opened(path: str, shown: str = "") -> Desk:
         return Desk(shown or path, found.tables, found.case, path)
     if Path(path).suffix.lower() == ".toml":
         tables, problems = read_file(Path(path))
-        if not problems and tables.get("kind") in ("planetary", "gear_pair", "train"):
+        is_known = not problems and tables.get("kind") in ("planetary", "gear_pair", "train")
+        if is_known and has_form(tables):
             return Desk(shown or path, tables, lambda changes: build_case(tables, changes, path))
     case = load_case(path)
     return Desk(shown or path, case.given(), case.updated)
@@ -234,15 +235,27 @@ def received(name: str, files: Mapping[str, bytes], folder: Path) -> Desk:
     Raises
     ------
     InputError
-        If it is no case, or names files elsewhere.
+        If it is no case, names files elsewhere, or cannot be kept.
     """
     for other, content in files.items():
-        (folder / Path(other).name).write_bytes(content)
+        _keep(folder, Path(other).name, content)
     desk = opened(str(folder / Path(name).name), Path(name).name)
     problems = list(_elsewhere(desk.tables))
     if problems:
         raise InputError(problems, desk.source)
     return desk
+
+
+def _keep(folder: Path, name: str, content: bytes) -> None:
+    """Write an uploaded file under its name."""
+    told = "is no name of a file" if name in ("", "..") or not name.isprintable() else ""
+    try:
+        if not told:
+            (folder / name).write_bytes(content)
+    except OSError as error:
+        told = f"cannot be kept: {error.strerror}"
+    if told:
+        raise InputError([Problem("file", written(name), f"{told}.", "Rename it.")], "the upload")
 
 
 def built_in(name: str) -> Desk:

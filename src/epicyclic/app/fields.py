@@ -9,7 +9,7 @@ from nicegui import ui
 from nicegui.element import Element
 
 from epicyclic.app.desk import Desk, owner_of
-from epicyclic.app.form import Entry, Group
+from epicyclic.app.form import Entry, Group, number_in
 from epicyclic.app.names import ask_for_name, ask_for_new
 from epicyclic.case.template import toml_key
 
@@ -149,7 +149,7 @@ class Form:
                 _icon("edit", "Rename", partial(self._ask_rename, entry.key, entry.name))
                 _icon("close", "Remove", partial(self._remove, entry.key))
             return
-        if not entry.choices and _number(entry.text) is not None:
+        if not entry.choices and number_in(entry.text) is not None:
             self._movable(entry, field)
 
     def _movable(self, entry: Entry, field: Element) -> None:
@@ -167,7 +167,7 @@ class Form:
         if sliders:
             sliders[0].delete()
             return
-        now = _number(str(self._fields[entry.key].value)) or 0.0
+        now = number_in(str(self._fields[entry.key].value)) or 0.0
         low, high = sorted((0.0, 2 * now or 1.0))
         is_count = entry.quantity is None and now == int(now) and "." not in entry.text
         with holder:
@@ -215,10 +215,3 @@ def _icon(icon: str, label: str, then: Callable[[], object]) -> None:
     """A button in a field."""
     button = ui.button(icon=icon, on_click=then).props("flat dense round size=sm tabindex=-1")
     button.tooltip(label)
-
-
-def _number(text: str) -> float | None:
-    try:
-        return float(text)
-    except ValueError:
-        return None

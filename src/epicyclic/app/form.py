@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -27,7 +28,7 @@ from epicyclic.case.train_tables import PlanetarySet
 from epicyclic.case.values import parse_value
 from epicyclic.units import Quantity, unit_text
 
-__all__ = ["Entry", "Group", "Kind", "form_of"]
+__all__ = ["Entry", "Group", "Kind", "form_of", "has_form", "number_in"]
 
 _KINDS: dict[str, type[BaseModel]] = {
     "planetary": PlanetaryCase,
@@ -170,6 +171,33 @@ def form_of(tables: Mapping[str, Any]) -> Group:
         As a case file has them, with the kind.
     """
     return _group(_KINDS[tables["kind"]], "", "", tables)
+
+
+def has_form(tables: Mapping[str, Any]) -> bool:
+    """False if something else stands where a table belongs: no field shows that."""
+    return _is_table([_KINDS[tables["kind"]]], tables)
+
+
+def _is_table(tables: list[type[BaseModel]], given: Any) -> bool:
+    """True for a table that has tables where its schema, one of several, has them."""
+    return isinstance(given, Mapping) and all(
+        _has_place(field, given[own])
+        for own, field in _likeliest(tables, given).model_fields.items()
+        if own != _MEMBERS and given.get(own) is not None
+    )
+
+
+def _has_place(field: FieldInfo, value: Any) -> bool:
+    """True for a value that the form has a place for, right or wrong."""
+    of_names = dict_value(field.annotation)
+    inner = field.annotation if of_names is None else of_names
+    tables = [] if entry_of(inner) is not None else list(tables_in(inner))
+    if of_names is not None:
+        return isinstance(value, Mapping) and all(
+            not tables or _is_table(tables, item) for item in value.values()
+        )
+    is_name = isinstance(value, str) and bool(_presets(field))
+    return not tables or is_name or _is_table(tables, value)
 
 
 def _group(table: type[BaseModel], key: str, name: str, given: Mapping[str, Any]) -> Group:
@@ -321,3 +349,12 @@ def _shown(value: Any, quantity: Quantity | None) -> str:
     if quantity is not None and isinstance(value, float):
         return quantity.exact_text(value).removesuffix(quantity.display).strip()
     return value if isinstance(value, str) else toml_value(value)
+
+
+def number_in(text: str) -> float | None:
+    """The number that a field shows; None for other text, and for one that cannot be doubled."""
+    try:
+        number = float(text)
+    except ValueError:
+        return None
+    return number if math.isfinite(2 * number) else None

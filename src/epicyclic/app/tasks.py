@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -63,13 +63,15 @@ class Study:
     ----------
     case : Case
     speed, torque, temperature : str
-        Values of the map, as the command has them; empty for a result.
+        Values of the map, as the command has them.
+    is_map : bool
     """
 
     case: Case
     speed: str = ""
     torque: str = ""
     temperature: str = ""
+    is_map: bool = field(default=False, kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +100,7 @@ _kept: dict[Study, Stored] = {}
 
 def _stored(study: Study, progress: Progress) -> Stored:
     if study not in _kept:
-        _kept[study] = _mapped(study, progress) if study.speed else _recorded(study, progress)
+        _kept[study] = _mapped(study, progress) if study.is_map else _recorded(study, progress)
         while len(_kept) > MOST_KEPT:
             del _kept[next(iter(_kept))]
     return _kept[study]

@@ -12,6 +12,7 @@ from nicegui import background_tasks, events, ui
 
 from epicyclic.app import tasks
 from epicyclic.app.desk import Desk
+from epicyclic.app.form import number_in
 from epicyclic.app.latest import Latest
 from epicyclic.app.sheet import Do, Sheet, key_figures
 from epicyclic.app.state import Doing
@@ -95,7 +96,8 @@ class MapView:
             if case is not None and (self._is_asked or is_old):
                 self._is_asked = False
                 self._fail("")
-                study = Study(case, *(self._texts[axis].strip() for axis in OPERATING))
+                texts = (self._texts[axis].strip() for axis in OPERATING)
+                study = Study(case, *texts, is_map=True)
                 with self._doing.shown("points of the map"):
                     progress = self._doing.progress
                     answer = await self._worker.do(tasks.answered, study, "", progress=progress)
@@ -138,9 +140,8 @@ class MapView:
 
 def _values(axis: str, part: OperatingValue, text: str) -> str:
     """Values around those of the case: from zero to twice them; its own zero or temperature."""
-    try:
-        now = float(text)
-    except ValueError:
+    now = number_in(text)
+    if now is None:
         return ""
     if axis not in MAP_STEPS or not now:
         return f"{now:g} {part.unit}"
