@@ -12,6 +12,9 @@ __all__ = ["HEADERS", "LARGEST_BODY", "Guard"]
 
 LARGEST_BODY = 10_000_000
 """Largest request: a case file is a page of text, a REXS file may have some megabytes. [bytes]"""
+_MOST_DIGITS = 20
+"""Of the length of a request; Python refuses to read thousands of digits."""
+_USUAL_PORT = 80
 _FORBIDDEN, _TOO_LARGE, _SEE_OTHER = 403, 413, 303
 _CLOSED = 1008
 """Code of a websocket that is refused: against the policy."""
@@ -64,7 +67,9 @@ class Guard:
     def _is_own(self, headers: Mapping[str, str]) -> bool:
         """True if the browser has the page from here, as far as it tells."""
         host, origin = headers.get("host", ""), headers.get("origin")
-        return host in self.hosts and origin in (None, f"http://{host}")
+        # browsers leave out the port that addresses have by themselves
+        full = host if ":" in host.rpartition("]")[2] else f"{host}:{_USUAL_PORT}"
+        return full in self.hosts and origin in (None, f"http://{host}")
 
     def _has_cookie(self, headers: Mapping[str, str]) -> bool:
         try:
@@ -92,7 +97,8 @@ class Guard:
         self, scope: Any, receive: Any, send: Any, headers: Mapping[str, str]
     ) -> None:
         length = headers.get("content-length", "0")
-        if not length.isdecimal() or int(length) > LARGEST_BODY:
+        is_number = length.isdecimal() and len(length) <= _MOST_DIGITS
+        if not is_number or int(length) > LARGEST_BODY:
             await _refuse(scope, receive, send, _TOO_LARGE, "This is too large.")
             return
         await self.app(scope, _bounded(receive), _with_headers(send))

@@ -7,7 +7,7 @@ import signal
 import socket
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import NoReturn
 
@@ -20,6 +20,7 @@ from epicyclic.app.desk import Desk
 from epicyclic.app.guard import Guard
 from epicyclic.app.page import Page, add_assets
 from epicyclic.app.shelves import Shelves
+from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
 
 __all__ = ["LOOPBACK", "application", "names_of", "serve", "show"]
@@ -52,28 +53,41 @@ def serve(desk: Desk, host: str, port: int, told: Callable[[str], None]) -> None
     """
     token = secrets.token_urlsafe(_TOKEN_BYTES)
     with closing(_listening(host, port)) as listening:
-        found = listening.getsockname()[1]
-        shown, *others = names_of(host)
-        hosts = [f"{name}:{found}" for name in (shown, *others)]
+        bound, found = listening.getsockname()[:2]
+        names = names_of(host, bound)
+        hosts = [f"{name}:{found}" for name in names]
         with _shelves(desk) as shelves:
             app = Guard(application(shelves), token, hosts)
-            told(f"http://{shown}:{found}/?token={token}")
+            told(f"http://{hosts[0]}/?token={token}")
             config = uvicorn.Config(
                 app, log_level="error", access_log=False, timeout_graceful_shutdown=1
             )
             uvicorn.Server(config).run(sockets=[listening])
 
 
-def names_of(host: str) -> list[str]:
-    """What browsers may call the address; the first one is shown."""
+def names_of(host: str, bound: str) -> list[str]:
+    """What browsers may call the address; the first one is shown.
+
+    Parameters
+    ----------
+    host, bound : str
+        The address as the user names it, and as the system writes it, which browsers do too.
+    """
     if host in LOOPBACK:
         names = [host, *LOOPBACK]
-    elif host in ANY:
-        own = socket.gethostname()
-        names = [own, *(str(found[4][0]) for found in socket.getaddrinfo(own, None)), *LOOPBACK]
+    elif bound in ANY:
+        names = [*_own_names(), *LOOPBACK]
     else:
-        names = [host]
+        names = [host.lower(), bound]
     return [f"[{name}]" if ":" in name else name for name in dict.fromkeys(names)]
+
+
+def _own_names() -> list[str]:
+    """The name of this machine and its addresses, as far as it knows them by its name."""
+    own = socket.gethostname().lower()
+    with suppress(OSError):
+        return [own, *(str(found[4][0]) for found in socket.getaddrinfo(own, None))]
+    return []
 
 
 @contextmanager
@@ -94,19 +108,23 @@ def _leave(number: int, frame: object) -> NoReturn:
 
 def _listening(host: str, port: int) -> socket.socket:
     """A socket that listens at an address, before anything else is started."""
+    if not host:
+        raise _not_listening(host, port, "no address would be every address of this machine")
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     listening = socket.socket(family, socket.SOCK_STREAM)
     try:
         listening.bind((host, port))
         listening.listen()  # who comes before the server is up waits
-    except (OSError, OverflowError) as error:
+    except (OSError, OverflowError, TypeError) as error:  # the last of signs that no name has
         listening.close()
-        told = getattr(error, "strerror", None) or str(error)
-        problem = Problem(
-            "--host", f"{host}:{port}", f"cannot be listened at: {told}.", "Take another."
-        )
-        raise InputError([problem], "the command") from None
+        raise _not_listening(host, port, getattr(error, "strerror", None) or str(error)) from None
     return listening
+
+
+def _not_listening(host: str, port: int, told: str) -> InputError:
+    address = one_line(f"{host}:{port}")
+    problem = Problem("--host", address, f"cannot be listened at: {told}.", "Take another.")
+    return InputError([problem], "the command")
 
 
 def application(shelves: Shelves) -> FastAPI:
