@@ -121,6 +121,24 @@ def test_there_is_nothing_to_explore_without_a_varied_axis_or_a_solved_point(dat
     assert explorer_items(data.assign(total=data["total"] * np.nan)) == ()
 
 
+def test_labels_are_shown_as_they_are_and_are_no_code_or_formula(data):
+    hostile = "</script><script>alert(1)</script> \u2028 <img src=x> $\\frac$ a $^$"
+    named = data.copy()
+    named["total"] = data["total"].assign_attrs(long_name=hostile)
+    named["operation.speed"] = data["operation.speed"].assign_attrs(case_key=hostile)
+    text = ep.report_html(named)
+    assert "<script>alert" not in text
+    assert "<img" not in text
+    contents, _ = contents_of(text)
+    assert hostile in [result["label"] for result in contents["results"]]
+    assert contents["axes"][0]["key"] == hostile
+
+
+def test_a_sweep_without_a_known_loss_is_reported_without_pictures_of_it(data):
+    unknown = data.assign(total=data["total"] * np.nan)
+    assert "<h1>" in ep.report_html(unknown)
+
+
 def test_a_sweep_has_a_report_of_its_own(data, page):
     sections = re.findall(r'<section id="([^"]+)"', page)
     assert sections == ["explorer", "lines", "all", "points", "validity", "inputs", "versions"]

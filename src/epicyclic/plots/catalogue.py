@@ -232,7 +232,11 @@ def _of_sweep(
 
 
 def _sweep_points(stored: Stored) -> list[Panel]:
-    if isinstance(stored, ResultRecord) or not shown_results(stored) or len(varied(stored)) < 2:
+    if (
+        isinstance(stored, ResultRecord)
+        or "total" not in shown_results(stored)
+        or len(varied(stored)) < 2
+    ):
         return []
     return [Panel("", partial(plot_sweep_parallel, stored))]
 

@@ -8,12 +8,17 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import StrMethodFormatter
 from numpy.typing import NDArray
 
 from epicyclic.contact import LineContacts, contacts_at
 from epicyclic.oilmodel.model import REGIMES, OilModel
-from epicyclic.plots.style import COLOURS, LINE_STYLES, legend_below, styled_figure
+from epicyclic.plots.style import (
+    COLOURS,
+    LINE_STYLES,
+    label_logarithms,
+    legend_below,
+    styled_figure,
+)
 from epicyclic.units import percent
 
 __all__ = ["oil_model_figure", "plot_against_simulations", "plot_over_film_ratio"]
@@ -70,6 +75,7 @@ def plot_against_simulations(
     if quantity != "friction":
         ax.set_xscale("log")
         ax.set_yscale("log")
+        label_logarithms(ax.xaxis, ax.yaxis)
     name, _, unit = LABELS[quantity].partition(", ")
     ax.set(
         title=f"{name[:1].upper()}{name[1:]}",
@@ -92,9 +98,8 @@ def plot_over_film_ratio(model: OilModel, ax: Axes) -> Axes:
             form = f", {fitted.form}" if len(fit.forms) > 1 else ""
             style, label = next(styles), f"slip {slip:g}{form}"
             ax.plot(states.film_ratio, values, linestyle=style, color=colour, label=label)
-    ax.set_xscale("log", subs=(2, 5))
-    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    ax.xaxis.set_minor_formatter(StrMethodFormatter("{x:g}"))
+    ax.set_xscale("log")
+    label_logarithms(ax.xaxis)
     ax.set_ylim(bottom=0)
     ax.set_xlabel("film ratio, by roughness")
     ax.set_title("At the middle of the simulated conditions")

@@ -10,7 +10,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from epicyclic.plots.style import COLOURS, label_of, legend_of_figure, styled_figure
+from epicyclic.plots.style import (
+    COLOURS,
+    label_logarithms,
+    label_of,
+    legend_of_figure,
+    styled_figure,
+)
 from epicyclic.units import format_number, unit_text
 from epicyclic.validation.pocketing import PublishedStudy
 
@@ -93,6 +99,7 @@ def _plot_exponents(study: xr.Dataset, ax: Axes, published: PublishedStudy | Non
         line = float(scale) * speed**published.exponent
         label = f"{PUBLISHED}, 0 deg: {published.exponent:.2f}"
         ax.loglog(speed, line, color="black", ls="--", lw=1.0, label=label)
+    label_logarithms(ax.xaxis, ax.yaxis)
     ax.set(title="Exponent of the speed", xlabel=label_of(loss["speed"]))
     ax.set_ylabel("pocketing loss, W")
     ax.legend(title=f"{loss[curves].attrs['long_name']}: exponent", loc="upper left")

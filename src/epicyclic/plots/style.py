@@ -15,7 +15,9 @@ import xarray as xr
 from matplotlib import rcsetup
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, StrMethodFormatter
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
@@ -31,6 +33,7 @@ __all__ = [
     "caption_below",
     "closed_period",
     "figure_bytes",
+    "label_logarithms",
     "label_of",
     "legend_below",
     "legend_of_figure",
@@ -74,6 +77,7 @@ LEGEND_ROW, LEGEND_REST = 0.2, 0.45
 """Height of a line of the legend of a figure, and of what is above it. [inch]"""
 
 STYLE: Any = {
+    "text.parse_math": False,  # names of users may have dollar signs
     "axes.prop_cycle": rcsetup.cycler("color", COLOURS),
     "axes.grid": True,
     "grid.alpha": 0.3,
@@ -127,7 +131,6 @@ def styled_figure(
                 ha="left",
                 fontsize=max(TITLE_POINTS, TITLE_SHARE * size[0]),
                 fontweight="bold",
-                parse_math=False,
             )
         if caption:
             caption_below(figure, caption)
@@ -155,7 +158,6 @@ def caption_below(figure: Figure, caption: str) -> None:
         ha="left",
         fontsize=points,
         color="0.3",
-        parse_math=False,
     )
 
 
@@ -219,6 +221,14 @@ def figure_bytes(figure: Figure, ending: str) -> bytes:
     picture = io.BytesIO()
     figure.savefig(picture, format=ending)
     return picture.getvalue()
+
+
+def label_logarithms(*axes: Axis) -> None:
+    """Plain numbers at 1, 2, 5, 10 and so on along axes with logarithms."""
+    for axis in axes:
+        axis.set_minor_locator(LogLocator(subs=(2, 5)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(StrMethodFormatter("{x:g}"))
 
 
 def label_of(variable: xr.DataArray) -> str:
