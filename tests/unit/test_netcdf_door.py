@@ -46,6 +46,9 @@ def bomb(data):
 
 
 HOSTILE = {
+    "gained power": (changed("total", (1, 1, 0), -3.0), "total: must not be below 0."),
+    "gained torque": (changed("torque_loss", (1, 1, 0), -2.0), "torque_loss: must not be below 0."),
+    "more than all": (changed("efficiency", (1, 1, 0), 1.07), "efficiency: must not exceed 1."),
     "nowhere": (changed("speed", 1, np.nan), "speed: must have finite values."),
     "endless": (changed("temperature", 1, np.inf), "temperature: must "),
     "unsorted": (swapped, "torque: must rise."),

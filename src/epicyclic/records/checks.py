@@ -21,6 +21,13 @@ RUN_AGAIN = (
 MOST_TEETH = 5000
 LARGEST_VALUE = 1e12
 """No number of a gear set is larger, in the units that users see."""
+_ROUNDING = 1e-9
+_LIMITS = {
+    "total": (0.0, LARGEST_VALUE),
+    "torque_loss": (0.0, LARGEST_VALUE),
+    "efficiency": (-LARGEST_VALUE, 1.0 + _ROUNDING),
+}
+"""Of numbers that have others than this in a map or a sweep."""
 
 _MESH = ("mesh_position", "contact_line", "segment")
 _POCKET = ("tooth", "roll")
@@ -160,8 +167,13 @@ def _number_problems(
     if array.dtype.kind != "f" or set(array.dims) != set(dims) or not array.size:
         over = f"over {', '.join(dims)}" if dims else "alone"
         yield Problem(place, "", f"must be numbers {over}.", RUN_AGAIN)
-    elif (np.abs(array.to_numpy()) > LARGEST_VALUE).any():
-        yield Problem(place, "", f"must not exceed {LARGEST_VALUE:g}.", RUN_AGAIN)
+        return
+    low, high = _LIMITS.get(name, (-LARGEST_VALUE, LARGEST_VALUE))
+    values = array.to_numpy()
+    if (values > high).any():
+        yield Problem(place, "", f"must not exceed {high:g}.", RUN_AGAIN)
+    if (values < low).any():
+        yield Problem(place, "", f"must not be below {low:g}.", RUN_AGAIN)
 
 
 def _value_problems(place: str, data: xr.Dataset, name: str) -> Iterator[Problem]:
