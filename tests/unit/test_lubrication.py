@@ -93,6 +93,13 @@ def test_the_share_decides_drag_and_pocketing_as_a_given_one_does():
     assert known.lubrication[""].grade == "given"
 
 
+def test_jets_without_a_flow_say_what_is_left_out():
+    unknown, known = ep.solve(pair({"method": "jet"})), ep.solve(pair(JETS))
+    assert any("oil_flow is not given" in note for note in unknown.notes)
+    assert not any("oil_flow" in note for note in known.notes)
+    assert sum(unknown.losses.values()) < sum(known.losses.values())
+
+
 def test_a_given_ratio_has_no_effect_and_says_so():
     table = {"method": "submerged"}
     alone = ep.solve(pair(table))
@@ -509,6 +516,8 @@ def test_heat_of_each_set_leaves_as_its_method_says():
         ({"method": "flow"}, "lubrication.oil_flow", "is missing"),
         ({"method": "jet", "oil_flow": "2 mm"}, "lubrication.oil_flow", "l/min"),
         ({"method": "jet", "oil_level": "-9 mm"}, "lubrication.oil_level", "has no effect"),
+        ({"method": "jet", "jet_speed": "9 m/s"}, "lubrication.jet_speed", "without oil_flow"),
+        ({"method": "jet", "nozzle_side": "radial"}, "lubrication.nozzle_side", "oil_flow"),
         ({"method": "drained", "churning": "iso-14179-1"}, "lubrication.churning", "has no effect"),
         ({"method": "dip", "oil_volume": "1.9 l"}, "lubrication.oil_level", "is missing"),
         ({"method": "dip", "oil_level": "-9 mm"}, "lubrication.oil_volume", "is missing"),

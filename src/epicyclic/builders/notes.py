@@ -107,7 +107,7 @@ def fluid_notes(case: SetCase) -> tuple[str, ...]:
 
 
 def lubrication_notes(case: SetCase) -> Iterator[str]:
-    """What a stated share of oil overrides, and what churning leaves out."""
+    """What a stated share of oil overrides, and what is left out of the losses."""
     table = case.lubrication
     if table is None:
         return
@@ -115,6 +115,11 @@ def lubrication_notes(case: SetCase) -> Iterator[str]:
         yield (
             f"{SHARE_KEY} has no effect: the share of oil follows from [lubrication], whose "
             "oil_share states a known one."
+        )
+    if table.method == "jet" and table.oil_flow is None:
+        yield (
+            "lubrication.oil_flow is not given: the oil that jets bring between the teeth, and the "
+            "power that accelerates it, are left out."
         )
     if table.method == "dip":
         gearing = gearing_of(case)

@@ -32,10 +32,7 @@ _KEYS: Mapping[Method, Collection[str]] = {
 
 def check_lubrication(table: LubricationTable) -> list[Problem]:
     """Keys that another method needs, and those that its own one lacks."""
-    method, usual = table.method, LubricationTable(method=table.method)
-    given = {
-        name for name in table.model_fields_set if getattr(table, name) != getattr(usual, name)
-    }
+    method, given = table.method, _stated(table)
     problems = []
     for key in sorted(given - _EVERY - set(_KEYS[method])):
         users = [f'"{name}"' for name, keys in _KEYS.items() if key in keys]
@@ -44,6 +41,16 @@ def check_lubrication(table: LubricationTable) -> list[Problem]:
     if method == "flow" and table.oil_flow is None:
         allowed = 'is missing, and method = "flow" needs it.'
         problems.append(Problem("lubrication.oil_flow", "", allowed, 'Give it, as "2 l/min".'))
+    if method == "jet" and table.oil_flow is None:
+        problems += [
+            Problem(
+                f"lubrication.{key}",
+                "",
+                "has no effect without oil_flow, the flow of the jets.",
+                'Give that, as oil_flow = "2 l/min", or remove this key.',
+            )
+            for key in sorted(given & {"jet_speed", "nozzle_side"})
+        ]
     if method == "dip" and table.oil_level is None and not table.immersion:
         allowed = 'is missing, and method = "dip" needs it, or immersion.'
         remedy = 'Give it from the axis of the set, as "-30 mm", or immersion = { sun = "5 mm" }.'
