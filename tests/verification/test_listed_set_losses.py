@@ -187,6 +187,20 @@ def test_plus_set_that_cannot_be_driven_back_is_self_locking():
     assert any("Self-locking" in note for note in back.notes)
 
 
+def test_losses_that_grow_beyond_bounds_next_to_self_locking_are_told_in_plain_words():
+    case = ep.load_case(listed_trains.plus()).updated(
+        {
+            "models.friction": "constant",
+            "models.constant_friction": 0.3,
+            "models.load_distribution": "uniform",
+            "operation.torque": "-10 N*m",
+        }
+    )
+    with pytest.raises(ep.ConvergenceError, match=r"self-locking.*smaller losses.*the other way"):
+        ep.solve(case)
+    assert ep.solve(case.updated({"operation.torque": "10 N*m"})).efficiency > 0
+
+
 def test_planet_that_carries_more_heats_its_meshes_more():
     tables = listed_trains.stepped()
     own = tables["sets"]["S"]

@@ -294,8 +294,10 @@ def _converged(
         found = new
     raise ConvergenceError(
         f"losses and torques do not agree after {number + 1} passes: the losses grow with the "
-        "torques that they cause. Choose smaller losses, or give efficiencies; a formula may run "
-        "away outside its range, see models.friction, models.rolling and models.oil_beyond_range."
+        "torques that they cause. Either the gears are next to self-locking in this direction of "
+        "power: they can turn only with smaller losses, or with power the other way. Or a formula "
+        "gives far too much outside its range: choose another models.friction or models.rolling, "
+        'or models.oil_beyond_range = "held".'
     )
 
 
