@@ -17,7 +17,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, StrMethodFormatter
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
@@ -67,6 +67,8 @@ TITLE_SHARE, CAPTION_SHARE = 1.1, 0.85
 """Points of title and caption for an inch of a wide figure: it is made smaller on a slide."""
 TITLE_CHARACTERS = 13
 """That fit into an inch of the title of Axes."""
+SHORT_SPAN = 300
+"""Largest over smallest value of an axis with logarithms on which 2 and 5 have labels too. [1]"""
 SHORTEST = 12
 """Characters of a line of a label, at least."""
 ENTRY = 0.45
@@ -224,11 +226,13 @@ def figure_bytes(figure: Figure, ending: str) -> bytes:
 
 
 def label_logarithms(*axes: Axis) -> None:
-    """Plain numbers at 1, 2, 5, 10 and so on along axes with logarithms."""
+    """Plain numbers along axes with logarithms: 1, 2, 5, 10 where there is room, else 1, 10."""
     for axis in axes:
+        low, high = axis.get_view_interval()
+        is_short = high < SHORT_SPAN * low
         axis.set_minor_locator(LogLocator(subs=(2, 5)))
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-        axis.set_minor_formatter(StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(StrMethodFormatter("{x:g}") if is_short else NullFormatter())
 
 
 def label_of(variable: xr.DataArray) -> str:
