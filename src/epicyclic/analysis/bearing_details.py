@@ -24,7 +24,7 @@ def bearing_details(bearing: RollerBearing, loads: RollerLoads) -> xr.Dataset:
     ----------
     bearing : RollerBearing
     loads : RollerLoads
-        Of the result, ``result.bearing.loads``, of a train ``result.bearings[...].loads``.
+        Loads of the result, ``result.bearing.loads``, of a train ``result.bearings[...].loads``.
 
     Returns
     -------

@@ -31,7 +31,7 @@ class SetPlaces:
     Attributes
     ----------
     tables : mapping of str to GearTable
-        Of its gears, by name.
+        Tables of its gears, by name.
     centers : mapping of str to tuple of tuple of float
         Where each gear stands; several times on the planets. [m]
     bodies : mapping of str to str

@@ -127,7 +127,7 @@ class BeyondRange:
     Attributes
     ----------
     share : float
-        Of the load-dependent loss. [1]
+        Share of the load-dependent loss. [1]
     low, high : float
         The range. [degC]
     """
@@ -182,11 +182,11 @@ class Found:
     unit : Quantity
         How it is shown.
     temperature : float
-        Of the oil, as wanted. [K]
+        Temperature of the oil, as wanted. [K]
     case : Case
         With the value.
     result : Result
-        Of that case.
+        Result of that case.
     """
 
     key: str
@@ -254,7 +254,7 @@ def solve_for(
         ``"cooler_power"``: heat that a cooler takes from the oil; ``"oil_flow"``: oil that leaves
         and comes back at the inlet temperature; ``"input_power"``: torque at the given speed.
     temperature : str or float
-        Of the oil in the gearbox: text with a unit, or in kelvin.
+        Temperature of the oil in the gearbox: text with a unit, or in kelvin.
     progress : callable, optional
         Called with the number of settled states found, and of those expected.
 

@@ -44,7 +44,7 @@ class PocketVariant:
         The transverse section stays as it is, but for the fillets, which a tool of the same
         rounding over the normal module leaves. [rad]
     face_width : float
-        Of both gears. [m]
+        Face width of both gears. [m]
     oil_fraction : float
         [1]
     backlash : float
@@ -54,7 +54,7 @@ class PocketVariant:
         allow; addendum and dedendum at the operating circles go with the module, the backlash
         stays.
     speed : float
-        Of member 1 against the line of centres. [rad/s]
+        Speed of member 1 against the line of centres. [rad/s]
     """
 
     helix_angle: float

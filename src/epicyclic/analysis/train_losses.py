@@ -20,7 +20,7 @@ def loss_sums(
     Parameters
     ----------
     losses : mapping of str to float
-        Of a train, ``"planets.sun_mesh_sliding"``; without those that are left out.
+        Losses of a train, ``"planets.sun_mesh_sliding"``; without those that are left out.
     inputs : mapping
         The case, as a file has it.
 

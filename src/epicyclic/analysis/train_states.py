@@ -31,7 +31,8 @@ class StateKinematics:
     ratio : float or None
         Speed of the input over that of the output, signed; None if there is none. [1]
     speeds : mapping of str to float
-        Of every shaft over that of the input; NaN where it is open, empty if the state is blocked.
+        Speed of every shaft over that of the input; NaN where it is open, empty if the state is
+        blocked.
         [1]
     remark : str
         Why there is no ratio, or what is open.

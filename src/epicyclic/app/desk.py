@@ -43,7 +43,7 @@ class Desk:
     original : str or None
         The REXS file it came from.
     changes : dict
-        Of dotted keys, as ``--set`` has them; None for keys that are removed.
+        Changes of dotted keys, as ``--set`` has them; None for keys that are removed.
     case : Case or None
         None if it is not sound.
     problems : tuple of Problem
@@ -226,11 +226,11 @@ def received(name: str, files: Mapping[str, bytes], folder: Path) -> Desk:
     Parameters
     ----------
     name : str
-        Of the file with the case.
+        Name of the file with the case.
     files : mapping of str to bytes
         That file, and those that the case names.
     folder : Path
-        Of the app, empty.
+        Folder of the app, empty.
 
     Raises
     ------

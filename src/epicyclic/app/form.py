@@ -67,7 +67,7 @@ class Entry:
     is_required : bool
         True if something must be given.
     quantity : Quantity or None
-        Of keys with a unit.
+        Quantity of keys with a unit.
     is_text : bool
         True if what is typed is not read as a number or a list.
     is_own : bool

@@ -13,7 +13,7 @@ __all__ = ["HEADERS", "LARGEST_BODY", "Guard"]
 LARGEST_BODY = 10_000_000
 """Largest request: a case file is a page of text, a REXS file may have some megabytes. [bytes]"""
 _MOST_DIGITS = 20
-"""Of the length of a request; Python refuses to read thousands of digits."""
+"""Most digits of the length of a request; Python refuses to read thousands."""
 _USUAL_PORT = 80
 _FORBIDDEN, _TOO_LARGE, _SEE_OTHER = 403, 413, 303
 _CLOSED = 1008

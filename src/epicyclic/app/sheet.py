@@ -60,7 +60,7 @@ class Place:
     title, name : str
         Shown below the figure; of its files.
     classes : str
-        Of the frame.
+        Classes of the frame.
     draw : callable
         Draws it in a format.
     """

@@ -37,7 +37,7 @@ class Limit:
     advice : str
         What to do about it.
     width : float
-        Of the band that it makes alone, in the unit of the total.
+        Width of the band that it makes alone, in the unit of the total.
     """
 
     name: str
@@ -55,7 +55,7 @@ class Measurement:
     is_input : bool
         False for a part of the loss.
     width : float
-        Of the band that is left once it is known, in the unit of the total.
+        Width of the band that is left once it is known, in the unit of the total.
     """
 
     name: str

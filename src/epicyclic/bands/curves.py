@@ -30,9 +30,9 @@ class Curves:
         Which of them depend on the load.
     values : tuple of UncertainValue
     slopes : ndarray of float, shape (c, t)
-        Of the logarithm of each loss, over the columns of `_columns`.
+        Slopes of the logarithm of each loss, over the columns of `_columns`.
     means : ndarray of float, shape (t,)
-        Of losses that do not vary, or are 0 in some samples; NaN for all others.
+        Means of losses that do not vary, or are 0 in some samples; NaN for all others.
     explained : float
         Share of the variance of the total that the curves explain, less what they would by chance;
         NaN with too few samples. [1]

@@ -159,7 +159,7 @@ def cycle_study(
     celsius, samples, points, seed
         As for `uncertainty`.
     runner : Runner
-        Of the solutions with one input changed.
+        Runner of the solutions with one input changed.
     """
     count = SAMPLES if samples is None else samples
     check_samples(count)

@@ -22,15 +22,15 @@ class Known:
     Attributes
     ----------
     unit : str
-        Of the total and its parts.
+        Unit of the total and its parts.
     nominal : mapping of str to float
         Results of the case.
     ends : mapping of str to tuple of float
-        Of the symmetric 95 % interval of each result.
+        Ends of the symmetric 95 % interval of each result.
     draws : mapping of str to ndarray of float, shape (n,)
         What each result may be.
     shares : mapping of str to float
-        Of drivers in the variance of the total, each alone. [1]
+        Shares of drivers in the variance of the total, each alone. [1]
     names, advice : mapping of str to str
         What each input is called, and how to know it better.
     remarks : tuple of str

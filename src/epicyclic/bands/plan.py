@@ -124,7 +124,7 @@ class SampledCase:
     ----------
     outputs : Outputs
     samples : tuple of Samples
-        Of each operating point: of equal probabilities, about the values of that point.
+        Samples of each operating point: of equal probabilities, about the values of that point.
     groups : tuple of int
         Numbers of the groups that are solved for with values from B.
     plan : SamplePlan
@@ -200,7 +200,7 @@ def sampled_case(
     ----------
     case : PlanetaryCase, GearPairCase or TrainCase
     result : Result
-        Of the case.
+        Result of the case.
     count, seed : int
         As for `make_samples`.
     points : sequence of mapping
@@ -250,7 +250,7 @@ def nearby_at(
     ----------
     case : PlanetaryCase, GearPairCase or TrainCase
     result : Result
-        Of the case.
+        Result of the case.
     points : sequence of mapping
         What the operating points change.
     runner : Runner

@@ -60,9 +60,9 @@ def uncertainty(
     samples : int, optional
         Points in each of the two sets, a power of 2. Default: 256; 32 over a map, 64 over a cycle.
     points : int, optional
-        Of the cycle, that are solved with all samples. Default: 16.
+        Points of the cycle, that are solved with all samples. Default: 16.
     seed : int, optional
-        Of the scrambling: equal ones give equal results, whatever computes them.
+        Seed of the scrambling: equal ones give equal results, whatever computes them.
     jobs, dask, journal, progress
         As for `sweep`.
 

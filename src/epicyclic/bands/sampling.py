@@ -61,9 +61,9 @@ def make_samples(values: Sequence[UncertainValue], count: int, seed: int) -> Sam
     ----------
     values : sequence of UncertainValue
     count : int
-        Of points in each set.
+        Number of points in each set.
     seed : int
-        Of the scrambling: equal ones give equal points.
+        Seed of the scrambling: equal ones give equal points.
     """
     drawn = _sobol(2 * len(values), count, seed)
     one, two = (

@@ -86,9 +86,9 @@ class Indices:
     Attributes
     ----------
     first, total : ndarray of float, shape (s, g)
-        Of `s` results: alone, and with all interactions.
+        Shares for `s` results: alone, and with all interactions.
     first_ends, total_ends : ndarray of float, shape (2, s, g)
-        Of their 95 % intervals.
+        Ends of their 95 % intervals.
     """
 
     first: FloatArray
@@ -107,7 +107,7 @@ def sobol_indices(a: FloatArray, b: FloatArray, mixed: FloatArray, seed: int) ->
     mixed : ndarray of float, shape (g, s, n)
         At those of A with a group from B.
     seed : int
-        Of the resampling of points that the intervals are found by.
+        Seed of the resampling of points that the intervals are found by.
     """
     count = a.shape[1]
     found = index_values(a, b, mixed)

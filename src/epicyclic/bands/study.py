@@ -134,9 +134,9 @@ def sample_variables(
         For one standard deviation of each input.
     sampled : SampledCase
     rows : Rows
-        Of all samples.
+        Rows of all samples.
     unit : str
-        Of all results but the efficiency.
+        Unit of all results but the efficiency.
     """
     import xarray as xr
 

@@ -49,7 +49,7 @@ def listed_element(
     bodies : mapping of str to str
         The body in the machine of every body of the set, and of its carrier.
     flow_tables : mapping
-        Of flows through pockets.
+        Tables of flows through pockets.
     """
     planets = bool(case.shape.planets)
     missing = (

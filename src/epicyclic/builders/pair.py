@@ -63,7 +63,7 @@ def pair_element(
     reference : str
         The gear whose torque states the load.
     flow_tables : mapping
-        Of flows through pockets.
+        Tables of flows through pockets.
     """
     mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
     tables = (case.pinion, case.gear)

@@ -112,7 +112,7 @@ def planetary_element(
     order : tuple of str
         The member whose torque states the load, and the two between which the losses act.
     flow_tables : mapping
-        Of flows through pockets.
+        Tables of flows through pockets.
     """
     carrier = bodies["carrier"]
     return GearSet(

@@ -48,7 +48,7 @@ class Campaign(Plan):
     seed : int
         Every profile of every point follows from it and the number of the point.
     version : str
-        Of this package, which solves the contacts.
+        Version of this package, which solves the contacts.
     """
 
     kind: ClassVar[str] = "oil"
@@ -153,7 +153,7 @@ def make_campaign(
         Number of bearing contacts in a space-filling design, 0 for none; default: the full table,
         or with `size` none.
     seed : int
-        Of designs and profiles.
+        Seed of designs and profiles.
     ranges : mapping of str to (float, float), optional
         Other limits of gear axes, in display units, and with ``bearing.`` before the name of those
         of bearings; for space-filling designs.

@@ -64,7 +64,7 @@ class Design:
     size : int or None
         Number of points of a space-filling design; None for the full product.
     seed : int
-        Of the scrambling of a space-filling design.
+        Seed of the scrambling of a space-filling design.
     """
 
     part: str

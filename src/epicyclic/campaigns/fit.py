@@ -74,7 +74,7 @@ def characterise_oil(
         Numbers of gear and bearing contacts of a space-filling design; by default the full tables
         of Talbot (2012), or with `size` no bearing contacts.
     seed : int
-        Of designs and profiles.
+        Seed of designs and profiles.
     ranges : mapping of str to (float, float), optional
         Other limits of gear contacts, ``{"hertz_pressure": (0.3, 1.6)}``, in display units.
     changes : mapping of str to object, optional
@@ -126,7 +126,7 @@ def fit_campaigns(folders: Sequence[CampaignFolder]) -> OilModel:
     Parameters
     ----------
     folders : sequence of CampaignFolder
-        Of one oil, one version and the same settings.
+        Campaigns of one oil, of one version and with the same settings.
 
     Raises
     ------

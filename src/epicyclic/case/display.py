@@ -17,7 +17,7 @@ def case_line(name: str, given: Mapping[str, Any]) -> str:
     Parameters
     ----------
     name : str
-        Of its class.
+        Name of its class.
     given : mapping
         Its tables, without defaults.
     """

@@ -191,7 +191,7 @@ def check_mesh(
     ----------
     mesh : Mesh
     tables : mapping of str to GearTable
-        Of both gears, by their names.
+        Tables of both gears, by their names.
     distance_key : str
         Where its centre distance is stated.
     """

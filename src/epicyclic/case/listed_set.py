@@ -140,7 +140,7 @@ class Arrangement:
     Attributes
     ----------
     angles : tuple of float
-        Of the arms of the carrier. [rad]
+        Angles of the arms of the carrier. [rad]
     number : int
         Alike planets fit at multiples of a turn over this number; 0: anywhere. [1]
     individual : bool

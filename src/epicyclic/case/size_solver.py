@@ -77,7 +77,7 @@ class SizedMesh:
     backlash : float or None
         j_bn. [m]
     rack : BasicRack
-        Of both gears.
+        Rack of both gears.
     place : tuple of str
         Path of its centre distance.
     stated_distance : float or None
@@ -115,7 +115,7 @@ class Solver:
     made : mapping of str to Gear
         Those that say how thick their teeth are.
     tables : mapping of str to GearTable
-        Of all.
+        Tables of all gears.
     meshes : sequence of SizedMesh
     raw : mapping
         The tables as the user wrote them, for the digits that are printed.

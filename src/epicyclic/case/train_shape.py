@@ -40,7 +40,7 @@ class ShapeMesh:
     first, second : str
         Gears; the ring gear of an internal mesh is the second.
     teeth : tuple of float
-        Of both. [1]
+        Numbers of teeth of both. [1]
     internal : bool
     efficiency : float
         Given, or 1. [1]

@@ -75,7 +75,7 @@ def unknown_key(place: Place, value: Any, tables: Iterable[tuple[str, type[BaseM
     Parameters
     ----------
     place : Place
-        Of the key.
+        Place of the key.
     value : object
     tables : iterable of (str, type)
         Names and classes of the tables in which the key might belong.

@@ -49,7 +49,7 @@ class UncertainValue:
     key : str
         Dotted key of the case, or ``"model_form.sliding"``.
     unit : str
-        Of all values here; empty for pure numbers.
+        Unit of all values here; empty for pure numbers.
     value : float
         That of the case; 1 for the factor of a model.
     kind : str
@@ -178,7 +178,7 @@ def uncertain_values(
     ----------
     case : PlanetaryCase, GearPairCase or TrainCase
     kinds : tuple of str
-        Of losses that it has, see `model_form_of`.
+        Kinds of losses that it has, see `model_form_of`.
     """
     known = set(known_keys(case))
     found, problems = _stated(case)

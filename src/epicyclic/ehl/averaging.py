@@ -82,7 +82,7 @@ def aided_mean(fine: FloatArray, coarse: FloatArray) -> Estimate:
     fine : ndarray, shape (n,)
         Means over blocks.
     coarse : ndarray, shape (m,)
-        Of the same blocks, and of those that follow; none if m < n.
+        Means of the same blocks on the coarse grid, and of those that follow; none if m < n.
 
     Examples
     --------
@@ -139,11 +139,11 @@ def next_plan(estimate: Estimate, tolerance: float, cost: float, most: int) -> P
     Parameters
     ----------
     estimate : Estimate
-        Of what has been simulated.
+        Estimate of what has been simulated.
     tolerance : float
         Wanted error over the mean.
     cost : float
-        Of a block on the coarse grid, over that of one on the fine grid. [1]
+        Cost of a block on the coarse grid, over that of one on the fine grid. [1]
     most : int
         Blocks on the fine grid.
 

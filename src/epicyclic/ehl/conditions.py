@@ -115,7 +115,7 @@ class LineContact:
     equivalent_modulus : float
         E_eq. [Pa]
     speed1, speed2 : float
-        Of the surfaces through the contact, both in the direction of x. [m/s]
+        Speeds of the surfaces through the contact, both in the direction of x. [m/s]
     oil : ContactOil
     """
 

@@ -145,11 +145,11 @@ class OilLaws:
         Barus, Roelands or TwoSlope.
     shear : Newtonian, ReeEyring, LimitingStress or Carreau
     second_slope : float or None
-        Of two slopes: the one at high pressure. [1/Pa]
+        For two slopes: the one at high pressure. [1/Pa]
     slope_ratio : float
-        Of two slopes, without `second_slope`: it over the one at ambient pressure. [1]
+        For two slopes, without `second_slope`: it over the one at ambient pressure. [1]
     transition : float
-        Of two slopes: where they meet. [Pa]
+        For two slopes: where they meet. [Pa]
     """
 
     pressure_law: type[PressureLaw]

@@ -123,7 +123,7 @@ def generate_profile(
     correlation_length : float
         Where the autocorrelation exp(-(x/l)^2) has fallen to 1/e. [m]
     length : float
-        Of the period. [m]
+        Length of the period. [m]
     seed : int
         The same seed gives the same profile.
     skewness, kurtosis : float

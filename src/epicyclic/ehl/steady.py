@@ -62,7 +62,7 @@ class SmoothSolution:
     flow : ndarray, shape (n - 1,)
         Volume flow at ambient density through the faces between the nodes. [m^2/s]
     temperature_rise : ndarray, shape (n,)
-        Of the film above the inlet; zero without heating. [K]
+        Rise of the temperature of the film above the inlet; zero without heating. [K]
     """
 
     contact: LineContact

@@ -44,8 +44,8 @@ class LoadedMesh:
     line_load : ndarray, shape (positions, lines, segments)
         [N/m]
     normal_approach : ndarray, shape (positions,)
-        Of the gears along the common normal of the flanks, from where flanks without deviations
-        touch unloaded. [m]
+        Approach of the gears along the common normal of the flanks, from where flanks without
+        deviations touch unloaded. [m]
     normal_stiffness : ndarray, shape (positions,)
         Slope of the normal force over the normal approach, at this load. [N/m]
     """

@@ -46,7 +46,7 @@ class GearBody:
     tool : RackTool, ShaperTool or None
         The tool that leaves the root fillet; None for `default_tool`.
     rim : Rim or None
-        Of a ring gear; None for a body that only yields under each tooth.
+        Rim of a ring gear; None for a body that only yields under each tooth.
     """
 
     modulus: float

@@ -54,7 +54,7 @@ class ElasticRing:
     Attributes
     ----------
     radius : float
-        Of its middle line. [m]
+        Radius of its middle line. [m]
     thickness, width : float
         [m]
     modulus, poisson_ratio : float

@@ -45,7 +45,7 @@ class State:
     Attributes
     ----------
     speeds : mapping of str to float
-        Of every body, positive in one common sense; that of `HOUSING` is 0. [rad/s]
+        Speeds of every body, positive in one common sense; that of `HOUSING` is 0. [rad/s]
     torques : mapping of str to float
         That each mesh takes up at its first gear, by the key of the mesh; all its planets together.
         Torque times speed of that gear against the carrier is the rolling power. [N m]

@@ -48,9 +48,9 @@ class Sump:
     part : Dipped
         How far it does.
     volume : float
-        Of the oil. [m^3]
+        Volume of the oil. [m^3]
     model : ChurningModel
-        Of its churning.
+        Model of its churning.
     """
 
     part: Dipped
@@ -71,12 +71,12 @@ class Jets:
     Attributes
     ----------
     flow : float
-        Of all of them, which the gears that turn share evenly. [m^3/s]
+        Flow of all of them, which the gears that turn share evenly. [m^3/s]
     speed : float
-        Of the oil along the teeth. [m/s]
+        Speed of the oil along the teeth. [m/s]
     side : NozzleSide
     pitch_radius : float
-        Of the gear that they meet. [m]
+        Pitch radius of the gear that they meet. [m]
     """
 
     flow: float
@@ -97,7 +97,7 @@ class Disc:
     radius, width : float
         [m]
     oil_fraction : float
-        Of the mixture, by volume. [1]
+        Oil in the mixture, by volume. [1]
     sump : Sump or None
         Oil that it dips into, which then drags in place of the mixture.
     jets : Jets or None

@@ -111,7 +111,7 @@ class GearMesh:
         Micro-geometry of both flanks, and misalignment.
     models : MeshModels
     materials : tuple of Solid
-        Of both gears.
+        Materials of both gears.
     nodes : tuple of str
         The thermal nodes of both gears.
     """
@@ -139,7 +139,7 @@ class MeshDuty:
     torque1 : float
         That gear 1 brings into the mesh. [N m]
     speed1 : float
-        Of gear 1 against the carrier. [rad/s]
+        Speed of gear 1 against the carrier. [rad/s]
     drives1 : bool
         True if power flows from gear 1 to gear 2 or no power flows.
     """

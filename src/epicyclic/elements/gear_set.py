@@ -96,7 +96,7 @@ class Planet:
         From the axis of the set to that of the planet. [m]
     meshes : tuple of PlanetMesh
     mass : float
-        Of one planet with its rollers. [kg]
+        Mass of one planet with its rollers. [kg]
     mass_estimated : bool
         True if no case states it.
     bearing : PlanetBearing or None

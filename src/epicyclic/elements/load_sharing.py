@@ -49,7 +49,7 @@ class LoadSharing:
     angles : tuple of float
         Positions of the planets. [rad]
     position_errors : tuple of float
-        Of each pin, against the sense in which a positive torque of the sun pushes it. [m]
+        Error of each pin, against the sense in which a positive torque of the sun pushes it. [m]
     floating_member : str
         The member that gives way, or ``"none"``.
     support_stiffness : float
@@ -85,7 +85,7 @@ def planet_shares(
     duties : tuple of MeshDuty
         The meshes of a planet under the mean load, that of the sun first.
     bearing : RollerBearing or None
-        Of one planet; None: rigid.
+        Bearing of one planet; None: rigid.
 
     Raises
     ------

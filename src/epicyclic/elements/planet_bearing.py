@@ -114,11 +114,11 @@ def solve_bearing(
         First word of the losses, ``"planet_bearing"``.
     own : PlanetBearing
     load : PlanetLoad
-        Of each of them.
+        Load of each of them.
     count : int
     oil : OilState
     speed : float
-        Of the planet against the carrier. [rad/s]
+        Speed of the planet against the carrier. [rad/s]
     """
     bearing = own.bearing
     loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)

@@ -66,7 +66,7 @@ class PlanetContact:
     hand : int
         +1 if a positive `sense` pushes the planet along y, else -1.
     position : float
-        Of the middle of the face, along y. [m]
+        Position of the middle of the face, along y. [m]
     """
 
     duty: MeshDuty
@@ -134,7 +134,7 @@ def planet_load(
     centrifugal : float
         [N]
     mesh_moments : sequence of float, optional
-        Of the transverse force of each mesh about the middle of its face. [N m]
+        Moments of the transverse force of each mesh about the middle of its face. [N m]
     """
     moment = np.zeros(2)  # along t and r
     for contact, own in zip(contacts, mesh_moments or [0.0] * len(contacts), strict=True):

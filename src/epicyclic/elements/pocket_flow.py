@@ -93,9 +93,9 @@ class PocketSettings:
     slices, steps : int
         Resolution: across the face, in one pitch.
     end_length : float
-        Of the control volumes at the ends of the face. [normal modules]
+        Length of the control volumes at the ends of the face. [normal modules]
     file : Path or None
-        Of a stored table.
+        File of a stored table.
     tables : mapping of FlowFamily to FlowTable
         Tables that the points of a sweep share.
     memory : FlowMemory or None

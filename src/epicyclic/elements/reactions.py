@@ -202,7 +202,7 @@ def mesh_force(
     Parameters
     ----------
     torque : float
-        Of the mesh on the gear, about +z. [N m]
+        Torque of the mesh on the gear, about +z. [N m]
     radius : float
         r_w, of the operating pitch circle. [m]
     pressure_angle : float

@@ -83,11 +83,11 @@ def seal_loss(
     formula : str
         ``"iso-14179-1-viton"``, ``"iso-14179-1-buna-n"``, ``"iso-14179-2"`` or ``"linke"``.
     diameter : float
-        Of the shaft under the lip. [m]
+        Diameter of the shaft under the lip. [m]
     speed : float
-        Of the shaft against the seal. [rad/s]
+        Speed of the shaft against the seal. [rad/s]
     temperature : float
-        Of the oil; only Linke. [K]
+        Temperature of the oil; only Linke. [K]
     viscosity_40 : float
         Kinematic viscosity of the oil at 40 degC, more than 0.2 mm^2/s; only Linke. [m^2/s]
 
@@ -171,7 +171,7 @@ class Seal:
     between : tuple of str
         The shaft that runs under the lip, and the body that holds the seal.
     diameter : float
-        Of the shaft under the lip. [m]
+        Diameter of the shaft under the lip. [m]
     model : str or LossTable
         A formula of `seal_loss`, or a table of the user.
     viscosity_40 : float

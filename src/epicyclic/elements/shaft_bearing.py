@@ -59,7 +59,7 @@ class ShaftBearing:
     minimum_load_factor : float or None
         k_r of SKF; None for the default of the type. [1]
     reference_speed : float or None
-        Of a cylindrical roller bearing, for its minimum load. [rad/s]
+        Reference speed of a cylindrical roller bearing, for its minimum load. [rad/s]
     """
 
     key: str

@@ -110,7 +110,7 @@ def fitted_tool(gear: Gear, rounding: float | None, needed: float) -> Tool:
     ----------
     gear : Gear
     rounding : float or None
-        Of the tip of the tool, as stated; None if it is not. [m]
+        Rounding of the tip of the tool, as stated; None if it is not. [m]
     needed : float
         Radius to which the involute must reach towards the root. [m]
 

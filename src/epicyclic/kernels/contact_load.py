@@ -132,7 +132,7 @@ def newton_step(
     approach : float
         [m]
     stiffness : float
-        Of the total force against the approach. [N/m]
+        Stiffness of the total force against the approach. [N/m]
     """
     lines, segments = loaded.shape
     unit = np.zeros((lines, segments))
@@ -357,7 +357,7 @@ def solve_contact_loads(
     separation : ndarray, shape (lines, segments)
         s: gap of the unloaded flanks along the common normal. [m]
     length : ndarray, shape (lines, segments)
-        Of the segments; zero where a line is not in contact. [m]
+        Lengths of the segments; zero where a line is not in contact. [m]
     local_a : ndarray, shape (lines, segments)
         A of delta_c. [m^2/N]
     local_b : float
@@ -366,16 +366,16 @@ def solve_contact_loads(
         Largest gap or penetration at loaded segments over the approach, and largest error of the
         balance over the force. [1]
     max_iterations : int
-        Of the careful method, for which one segment may leave or join at a time.
+        Most iterations of the careful method, for which one segment may leave or join at a time.
 
     Returns
     -------
     forces : ndarray, shape (lines, segments)
         [N]
     approach : float
-        Of the gears along the common normal, from where unmodified flanks touch. [m]
+        Approach of the gears along the common normal, from where unmodified flanks touch. [m]
     stiffness : float
-        Of the total normal force against the approach. [N/m]
+        Stiffness of the total normal force against the approach. [N/m]
     iterations : int
         Newton steps, or -1 without a solution.
     """

@@ -191,21 +191,21 @@ def solve_step(
     approach : float
         H_0 to start from.
     kernel_row : ndarray, shape (2 n - 1,)
-        Of `deflect`.
+        As for `deflect`.
     order, history : ndarray, shape (n,)
         Factor of the mass now, and what earlier masses contribute.
     active : ndarray of bool, shape (n,)
         Nodes with a full film, changed to the solution.
     grouped, included : ndarray
-        Of `update_groups`.
+        As for `update_groups`.
     held : float
-        Of `hold_back`, over the compliance of a node to its own pressure.
+        As for `hold_back`, over the compliance of a node to its own pressure.
     tolerance : float
         Largest change of a pressure in the last step, over the largest or p_h, and largest
         relative lack of load.
     max_iterations : int
     space : Space
-        Of `solve_linear`.
+        As for `solve_linear`.
 
     Returns
     -------
@@ -388,7 +388,7 @@ def march(
     base : ndarray, shape (n,)
         Smooth gap, with the deflection by the pressure outside the grid.
     kernel_row, grouped, included : ndarray
-        Of `deflect` and `update_groups`.
+        As for `deflect` and `update_groups`.
     heights1, heights2 : ndarray, shape (m1,), (m2,)
         Periodic profiles with the spacing of the nodes.
     shift1, shift2 : float
@@ -402,11 +402,11 @@ def march(
     fluid, dx, load
         Oil, with `stride` times its conductance; spacing; load on the grid.
     thinned : ndarray, shape (n,)
-        Of `mean_shear`.
+        As for `mean_shear`.
     contact_film, boundary_friction : float
         Film below which surfaces touch; friction there over the pressure.
     tolerance, max_iterations
-        Of `solve_step`.
+        As for `solve_step`.
     records : ndarray, shape (steps, 10)
         See `Column`.
 

@@ -34,9 +34,9 @@ def eyring_means(
     highest, slope : ndarray, shape (n,)
         Highest pressure [Pa], slope of ln(mu) at ambient pressure [1/Pa].
     slope_ratio, transition : float
-        Of two slopes: high over low [1], pressure where they meet [Pa].
+        For two slopes: high over low [1], pressure where they meet [Pa].
     cosines, weights : ndarray, shape (k,)
-        Of the quadrature.
+        Cosines and weights of the quadrature.
     """
     total = np.zeros(rate.size)
     for i in range(rate.size):

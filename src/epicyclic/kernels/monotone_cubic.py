@@ -38,7 +38,7 @@ def monotone_cubic(
     Parameters
     ----------
     first, spacing : float
-        Of the points.
+        Place of the first point, and spacing of all.
     values : ndarray, shape (n, k)
     at : ndarray, shape (m,)
 

@@ -46,13 +46,13 @@ class Dipped:
     Attributes
     ----------
     radius : float
-        Of the pitch circle; of a part without teeth, its outside. [m]
+        Radius of the pitch circle, or of the outside of a part without teeth. [m]
     tip_radius : float
         [m]
     width : float
         [m]
     depth : float
-        Of its lowest point below the oil at rest. [m]
+        Depth of its lowest point below the oil at rest. [m]
     module : float
         Normal module; of a part without teeth, that of the gears beside it. [m]
     teeth : int

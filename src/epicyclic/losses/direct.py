@@ -87,9 +87,9 @@ class DirectSettings:
     asperities : AsperityContact
         Where surfaces touch.
     effusivity : float or None
-        Of the gears; None for isothermal contacts. [W s^0.5/(m^2 K)]
+        Effusivity of the gears; None for isothermal contacts. [W s^0.5/(m^2 K)]
     correlation_length : float
-        Of both flanks. [m]
+        Correlation length of both flanks. [m]
     seed : int
     error : float
         Wanted mean error at contacts that take no part. [1]

@@ -46,7 +46,7 @@ def mesh_warmth(
     friction : ndarray, shape (n,)
         Coefficient of friction at every point. [1]
     materials : tuple of Solid
-        Of both gears.
+        Materials of both gears.
     """
     flash = flash_temperatures(contact, friction, materials)
     load = contact.line_load * contact.weight

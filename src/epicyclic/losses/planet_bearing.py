@@ -130,7 +130,7 @@ class RollerBearing:
     diametral_clearance : float
         [m]
     crown_drop : float
-        Of the profile at the ends of a roller. [m]
+        Crown drop of the profile at the ends of a roller. [m]
     crown_length_fraction : float
         Crowned part of the length, at each end. [1]
     row_gap : float
@@ -224,7 +224,7 @@ class RollerLoads:
     Attributes
     ----------
     azimuth : ndarray, shape (rollers,)
-        Of each roller from the direction of the load. [rad]
+        Azimuth of each roller from the direction of the load. [rad]
     intensity : ndarray, shape (rows, rollers, slices)
         Load per length of each slice. [N/m]
     displacement : ndarray, shape (4,)

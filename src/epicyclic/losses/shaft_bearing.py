@@ -407,13 +407,14 @@ def minimum_load(
     bearing : CatalogueBearing
         Tapered and needle rollers need its dynamic load rating.
     speed : float
-        Of one ring against the other. [rad/s]
+        Speed of one ring against the other. [rad/s]
     viscosity : float
         Kinematic, of the oil. [m^2/s]
     factor : float or None
         k_r of the product table; by default 0.025 (deep groove) or 0.15 (cylindrical). [1]
     reference_speed : float or None
-        Of a cylindrical roller bearing. Without it the part that grows with the speed is left out.
+        Reference speed of a cylindrical roller bearing. Without it the part that grows with the
+        speed is left out.
         [rad/s]
     """
     if bearing.type in ("tapered", "needle"):

@@ -413,7 +413,7 @@ def skf_moments(
     bearing : CatalogueBearing
     load : BearingLoad
     speed : float
-        Of one ring against the other. [rad/s]
+        Speed of one ring against the other. [rad/s]
     viscosity : float
         Kinematic, of the oil at its temperature in the bearing. [m^2/s]
     """

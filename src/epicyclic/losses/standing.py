@@ -70,7 +70,7 @@ def standing(role: str, name: str, model: OilModel | None = None, form: str = ""
     role : str
         ``"friction"``, ``"rolling"``, ``"bearing"`` of planets or ``"shaft_bearing"``.
     name : str
-        Of the model, as a case chooses it.
+        Name of the model, as a case chooses it.
     model : OilModel, optional
         The fitted models of the oil, for a name that begins with ``fitted``.
     form : str

@@ -87,9 +87,9 @@ def bearing_viscous_loss(
     factor : float
         f0. [1]
     kinematic_viscosity : float
-        Of the oil, not of the mixture. [m^2/s]
+        Viscosity of the oil, not of the mixture. [m^2/s]
     speed : float
-        Of one ring against the other. [rad/s]
+        Speed of one ring against the other. [rad/s]
     pitch_diameter : float
         d_m. [m]
     """
@@ -118,7 +118,7 @@ class DiscDrag:
     Attributes
     ----------
     rim, faces : float
-        Of the rim and of both faces. [W]
+        Losses at the rim and at both faces. [W]
     """
 
     rim: float

@@ -87,11 +87,11 @@ def balance(
     ----------
     machine, operation
     speeds : mapping of str to float
-        Of all bodies. [rad/s]
+        Speeds of all bodies. [rad/s]
     drives : mapping of str to bool
         For each mesh, True if its first gear drives it.
     efficiencies : mapping of str to float
-        Of each mesh with its carrier at rest. [1]
+        Efficiency of each mesh with its carrier at rest. [1]
     frictions : iterable of Friction
     """
     bodies = machine.bodies

@@ -63,11 +63,11 @@ def find_directions(
     ----------
     machine, operation
     speeds : mapping of str to float
-        Of all bodies. [rad/s]
+        Speeds of all bodies. [rad/s]
     lossless : Balance
         Torques without losses.
     efficiencies : mapping of str to float
-        Of each mesh with its carrier at rest. [1]
+        Efficiency of each mesh with its carrier at rest. [1]
     """
     start = drives_first(lossless.powers, dict.fromkeys(lossless.powers, True))
     wanted = lossless.torques[operation.output]

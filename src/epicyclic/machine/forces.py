@@ -32,7 +32,7 @@ class GearSeat:
     hand : int
         +1 for a right-handed helix of the teeth, -1 for a left-handed one.
     direction : float
-        Of the vector from the axis of the gear to the pitch point. [rad]
+        Direction of the vector from the axis of the gear to the pitch point. [rad]
     internal : bool
         True for a ring gear.
     around : bool

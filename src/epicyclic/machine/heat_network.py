@@ -132,7 +132,7 @@ class Wet:
     bath : float
         Share of them that dips into oil. [1]
     effectiveness : float
-        Of jets. [1]
+        Effectiveness of jets. [1]
     """
 
     bath: float
@@ -148,7 +148,7 @@ class HeatSettings:
     inlet, outlet : float, float or None
         Temperatures of the oil; the outlet where it was measured. [K]
     flow : float
-        Of oil. [m^3/s]
+        Flow of oil. [m^3/s]
     wet : Wet
         How oil gets to what is in no set.
     wet_sets : mapping of str to Wet
@@ -172,7 +172,7 @@ class HeatSettings:
     oil_volume : float or None
         [m^3]
     housing_mass : float or None
-        Of steel that stores as much as the housing. [kg]
+        Mass of steel that stores as much as the housing. [kg]
     capacity_changes : mapping of str to Change
         By the node.
     """

@@ -25,7 +25,7 @@ class MeshRow:
     first, second, carrier : str
         Bodies of gear 1, gear 2 and the carrier; `HOUSING` for axes that stand still.
     teeth : tuple of float
-        Of gear 1 and gear 2. [1]
+        Numbers of teeth of gear 1 and gear 2. [1]
     internal : bool
         True if gear 2 is a ring gear around gear 1.
     efficiency : float

@@ -35,7 +35,7 @@ class Answer:
     Attributes
     ----------
     temperatures : mapping of str to float
-        Of all nodes. [K]
+        Temperatures of all nodes. [K]
     links : tuple of Link
         Ways of the heat; empty where temperatures follow from formulas.
     flows : mapping of str to float
@@ -76,7 +76,7 @@ class Settled:
     solution : Solution
     answer : Answer
     evaluations : int
-        Of the losses.
+        Evaluations of the losses.
     """
 
     solution: Solution

@@ -44,7 +44,7 @@ class Solution:
     Attributes
     ----------
     speeds, torques : mapping of str to float
-        Of every body; a torque is the one from outside. [rad/s], [N m]
+        Speeds of every body, and torques from outside. [rad/s], [N m]
     couplings : mapping of str to float
         Torque through each clutch. [N m]
     meshes : mapping of str to float
@@ -148,7 +148,7 @@ class Start:
     Attributes
     ----------
     speeds : mapping of str to float
-        Of all bodies. [rad/s]
+        Speeds of all bodies. [rad/s]
     lossless : Balance
     directions : Directions
         With the given efficiencies.

@@ -110,7 +110,8 @@ def loss_map(
     ----------
     case : PlanetaryCase, GearPairCase or TrainCase
     speed, torque : iterable
-        Of the input member (the pinion of a pair, the input shaft of a train), as text with units.
+        Speeds and torques of the input member (the pinion of a pair, the input shaft of a train),
+        as text with units.
         A torque against the speed is coasting.
     temperature : iterable, optional
         Oil inlet temperatures. Default: that of the case.

@@ -74,7 +74,7 @@ def heat_samples(
     knots : sequence of float
         Temperatures. [K]
     flow_tables : mapping
-        Of flows through pockets.
+        Tables of flows through pockets.
     told : callable
         Called after each.
 

@@ -52,7 +52,7 @@ class Deviation:
     energy : float
         Estimate of the energy by interpolation less that by direct solution. [J]
     standard_error : float
-        Of the estimate, because only a sample is solved. [J]
+        Standard error of the estimate, because only a sample is solved. [J]
     largest : float
         Largest deviation of the loss of one point of the sample, relative to its direct solution.
     method : str

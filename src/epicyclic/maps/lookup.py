@@ -39,7 +39,7 @@ class Lookup:
     Attributes
     ----------
     names : tuple of str
-        Of the axes: speed, torque, temperature if there is an oil, state if there are any.
+        Names of the axes: speed, torque, temperature if there is an oil, state if there are any.
     axes : tuple of array
         Rising values of speed [rpm], torque [N m], temperature [degC]; states are numbered from 1.
     states : tuple of str

@@ -126,7 +126,7 @@ def loss_table(data: xr.Dataset) -> tuple[NDArray[np.float64], NDArray[np.float6
     table : array, shape (speeds, 5)
         \\|w\\| [rad/s], eta_mf1, eta_mf2, \\|tau_bf1\\|, \\|tau_bf2\\| [N m].
     deviation : array, shape (speeds, torques)
-        Of the table less that of the map. [N m]
+        Deviation of the table less that of the map. [N m]
     """
     to_rpm, _ = RPM.scale_and_offset()
     torque = data["torque"].values

@@ -90,7 +90,7 @@ def warm_up(
     duration : str
         As ``"2 h"``.
     start_temperature : str, optional
-        Of all parts, as ``"20 degC"``. Default: ``thermal.ambient_temperature``.
+        Start temperature of all parts, as ``"20 degC"``. Default: ``thermal.ambient_temperature``.
     cycle : str, Path, pandas.DataFrame or mapping, optional
         As for `duty_cycle`, repeated until the end; a column of temperatures is left alone.
         Default: the operating point of the case.

@@ -202,7 +202,7 @@ def compare_measured(
         `seed`.
     seed : int, optional
     confidence : float, optional
-        Of the intervals of fitted values. [1]
+        Confidence of the intervals of fitted values. [1]
     jobs, dask, progress
         As for `sweep`; the progress starts again with every round of a fit.
     journal : str or Path, optional

@@ -26,7 +26,8 @@ class FittedParameter:
     start, value : float
         In the case, and calibrated; in `unit`.
     standard_error, low, high : float
-        Of the linearised model, and the confidence interval, in `unit`; NaN if they do not exist.
+        Standard error of the linearised model, and the confidence interval, in `unit`; NaN if they
+        do not exist.
     at_bound : bool
         True if it ended at a bound of the schema.
     profiled : bool
@@ -58,9 +59,9 @@ class Fit:
     settings : mapping of str to object
         The calibrated values as a case file has them.
     confidence : float
-        Of the intervals. [1]
+        Confidence of the intervals. [1]
     correlation : ndarray, shape (p, p)
-        Of the parameters; NaN where it does not exist.
+        Correlation of the parameters; NaN where it does not exist.
     points, degrees_of_freedom : int
         Points used, and these less the parameters.
     chi_squared : float

@@ -27,7 +27,7 @@ class Linearised:
     deviations : ndarray, shape (n,)
         Computed less measured, over the uncertainty if `weighted`.
     derivatives : ndarray, shape (n, p)
-        Of the deviations.
+        Derivatives of the deviations.
     at_bound : ndarray of bool, shape (p,)
         Parameters that cannot move freely; they have no interval.
     weighted : bool

@@ -34,7 +34,7 @@ class Computed:
     Attributes
     ----------
     loss : ndarray, shape (n,)
-        Of what was measured; NaN where the point failed. [W]
+        Computed loss where one was measured; NaN where the point failed. [W]
     messages, warnings : tuple of str
         Why a point failed, and what to know about it.
     """

@@ -95,7 +95,7 @@ class _Valley:
         At the solution.
     bounds : ndarray, shape (p, 2)
     growth : float
-        Of the sum of squares at the ends.
+        Growth of the sum of squares at the ends.
     """
 
     found: Linearised
@@ -161,7 +161,7 @@ class _Way:
     parameter : int
         The one that is held.
     derivatives : ndarray, shape (n, p)
-        Of the deviations; of the solution at first, then kept up to date after Broyden.
+        Derivatives of the deviations; of the solution at first, then kept up to date after Broyden.
     direction : ndarray, shape (p,)
         From the solution to the bottom at the last place, for each unit of the parameter.
     """

@@ -152,7 +152,7 @@ class OilModel(_Data):
     format : str
         `FORMAT`.
     version : str
-        Of this package, which solved the contacts.
+        Version of this package, which solved the contacts.
     settings : dict
         Tables of a line contact that all simulations shared; the oil is one of them.
     designs : list

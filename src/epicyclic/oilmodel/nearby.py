@@ -40,13 +40,13 @@ class NearbySimulations(BaseModel):
     Attributes
     ----------
     conditions : dict of str to tuple of float
-        Of each simulation, SI, the slide-to-roll ratio with its sign.
+        Conditions of each simulation, SI, the slide-to-roll ratio with its sign.
     excess : tuple of float
         ln of the simulated quantity over that of the form. [1]
     weight : tuple of float
         What each counts. [1]
     equivalent_modulus : float
-        Of all. [Pa]
+        Equivalent modulus of all. [Pa]
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)

@@ -92,7 +92,7 @@ class Plot:
     panels : callable
         The panels that a stored result or map has; none if it lacks what the plot shows.
     projection : str or None
-        Of its Axes.
+        Projection of its Axes.
     size : tuple of float
         Width and height of one of its Axes. [inch]
     """

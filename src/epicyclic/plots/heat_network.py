@@ -80,7 +80,7 @@ class _Layout:
     rows : tuple of float
         y of parts, oil, and housing.
     spacing : float
-        Of the columns.
+        Spacing of the columns.
     scale : float
         Width of an arrow over its heat. [inch/W]
     """

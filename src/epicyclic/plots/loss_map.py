@@ -103,9 +103,9 @@ def plot_map(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Ax
     Parameters
     ----------
     data : xarray.Dataset
-        Of `map_at`.
+        As `map_at` returns them.
     limits : tuple of float, optional
-        Of the scale of colours, from `limits_of`; default: those of `data`.
+        Limits of the scale of colours, from `limits_of`; default: those of `data`.
     """
     values = _shown(data[name]).transpose("torque", "speed")
     if min(values.shape) < 2 or not np.isfinite(values).any():
@@ -272,7 +272,7 @@ def plot_half_width(data: xr.Dataset, ax: Axes) -> Axes:
     Parameters
     ----------
     data : xarray.Dataset
-        Of `map_at`, from a map with its uncertainty.
+        As `map_at` returns them, from a map with its uncertainty.
     """
     total = data.sel(result="total", drop=True)
     share = 50 * (total["high"] - total["low"]) / total["nominal"].where(total["nominal"] > 0)

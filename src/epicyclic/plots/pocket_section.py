@@ -166,7 +166,7 @@ class Section:
         ----------
         moment : int
         colours : ndarray, shape (pockets, 4)
-            Of the pockets, in the order of `pockets`.
+            Colours of the pockets, in the order of `pockets`.
         """
         for body, points in zip(self._bodies, self._rows_of_teeth(moment), strict=True):
             body.set_verts([points])

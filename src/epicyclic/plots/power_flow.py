@@ -60,7 +60,7 @@ class _Layout:
     taps : mapping of str to _Tap
         By line.
     width, spacing : float
-        Of a column; of a lane.
+        Width of a column, and spacing of lanes.
     scale : float
         Width of an arrow over its power. [inch/W]
     """

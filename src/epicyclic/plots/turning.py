@@ -44,7 +44,7 @@ class Layer:
     Attributes
     ----------
     name : str
-        Of its layer in a picture.
+        Name of its layer in a picture.
     x, y : float
         Its centre, from the left and the top of the picture. [point]
     start, rate : float
@@ -71,7 +71,7 @@ class Turning:
     gears : dict of str to tuple of float
         By layer: centre in the coordinates of `ax`, start and rate as of `Layer`.
     phases : tuple of float
-        Of the positions that are layers, in mesh periods.
+        Phases of the positions that are layers, in mesh periods.
     """
 
     figure: Figure
@@ -98,7 +98,7 @@ def turning_set(
     Parameters
     ----------
     gears : mapping of str to xarray.Dataset
-        Of one set, as `epicyclic.analysis.shapes.gear_shapes` returns them.
+        Gears of one set, as `epicyclic.analysis.shapes.gear_shapes` returns them.
     title, caption : str
     phase : float
         At which it is drawn. [mesh periods of the first gear]
@@ -143,7 +143,7 @@ def turning_mesh(
     view : xarray.Dataset
         As `epicyclic.analysis.shapes.mesh_views` returns it.
     gears : mapping of str to xarray.Dataset
-        Of its set.
+        Gears of its set.
     mesh : xarray.Dataset
         As `epicyclic.mesh_details` returns it.
     title, caption : str

@@ -35,7 +35,7 @@ class Cells:
     volume : ndarray, shape (2 steps + 1, pockets, slices)
         [m^3]
     growth : ndarray, shape (2 steps, pockets, slices)
-        Of the volume in a stage of a step, at the rate of the end of the stage. [m^3]
+        Growth of the volume in a stage of a step, at the rate of the end of the stage. [m^3]
     axial, gap : ndarray, shape (2 steps + 1, pockets (+ 1), slices (+ 1))
         Areas of openings. [m^2]
     axial_reach, gap_reach : ndarray, shape (2 steps + 1, 2, pockets (+ 1), slices (+ 1))
@@ -137,9 +137,9 @@ def _reaches(width: Floats, centroid: Floats, middle: Floats) -> tuple[Floats, F
     width : ndarray, shape (slices,)
         [m]
     centroid : ndarray, shape (times, pockets, slices + 1, 2)
-        Of the sections of the pockets. [m]
+        Centroids of the sections of the pockets. [m]
     middle : ndarray, shape (times, pockets + 1, slices, 2)
-        Of the gaps. [m]
+        Middles of the gaps. [m]
     """
     cell = _mean_of_ends(centroid)
     axial = np.zeros((len(centroid), 2, *centroid.shape[1:3]))

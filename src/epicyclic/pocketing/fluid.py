@@ -80,7 +80,8 @@ class PocketFlow:
     periodic : bool
         False if it did not; powers are then means of the last half of the periods.
     sound_speed : float
-        Of the mixture in the model at ambient pressure; infinite for an incompressible one. [m/s]
+        Speed of sound of the mixture in the model at ambient pressure; infinite for an
+        incompressible one. [m/s]
     angle : ndarray, shape (steps,)
         Rotation of gear 1 at the end of each step, one pitch in all. [rad]
     place : ndarray, shape (pockets,)
@@ -149,7 +150,7 @@ def pocket_flow(
     ----------
     geometry : PocketGeometry
     speed : float
-        Of gear 1 against the line of centres, not zero; its sign does not matter. [rad/s]
+        Speed of gear 1 against the line of centres, not zero; its sign does not matter. [rad/s]
     mixture : MixtureState
         At ambient pressure.
     pressure : float

@@ -148,7 +148,7 @@ def pocket_outlines(
     member : int
         1 or 2: whose tooth is in the space of the other.
     angle : ndarray, shape (n,)
-        Of that tooth of gear 1, or of that space of gear 1, from the line of centres. [rad]
+        Angle of that tooth of gear 1, or of that space of gear 1, from the line of centres. [rad]
 
     Returns
     -------
@@ -170,9 +170,9 @@ def gap_feet(
     mesh, tools, drives1
         As for `pocket_geometry`.
     leading : bool
-        Of the leading or of the trailing flank of the tooth of gear 1.
+        True for the leading flank of the tooth of gear 1, False for the trailing one.
     angle : ndarray, shape (n,)
-        Of that tooth from the line of centres. [rad]
+        Angle of that tooth from the line of centres. [rad]
 
     Returns
     -------

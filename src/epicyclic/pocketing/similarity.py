@@ -47,7 +47,7 @@ class FlowFigures:
     power : float
         [W]
     difference : float
-        Of the power from the energy balance, relative. [1]
+        Difference of the power from the energy balance, relative. [1]
     pressure_max, pressure_min : float
         Above ambient. [Pa]
     speed_max : float

@@ -59,7 +59,7 @@ class Link:
     ----------
     stage, line : str
     members : tuple of str
-        Of the set, ``("sun",)``; empty for other parts.
+        Members of the set, ``("sun",)``; empty for other parts.
     torque : float
         That the stage takes from the line. [N m]
     power : float
@@ -178,11 +178,11 @@ def _flow(
     Parameters
     ----------
     speeds, torques : mapping of str to float
-        Of every shaft; torques from outside. [rad/s], [N m]
+        Speeds of every shaft, and torques from outside. [rad/s], [N m]
     stages : mapping of str to mapping of str to float
         Torque that each stage takes from each shaft. [N m]
     losses : mapping of str to float
-        Of each stage. [W]
+        Losses of each stage. [W]
     clutches : mapping of str to float, optional
         Torque through each closed clutch. [N m]
     rolling : mapping of str to float, optional

@@ -124,7 +124,7 @@ def record(
     ----------
     case : PlanetaryCase, GearPairCase or TrainCase
     result : Result, optional
-        Of that case, if it is solved already.
+        Result of that case, if it is solved already.
     groups : collection of str, optional
         Groups of fields to keep, of those of `ResultRecord`. Default: all.
 

@@ -25,7 +25,7 @@ def import_tables(
     given : collection of str
         Keys that the user set.
     problems : sequence of Problem
-        Of the case as it is.
+        Problems of the case as it is.
     notes : sequence of str
         What is to be known beside the notes of the import itself.
     """

@@ -49,7 +49,7 @@ class HeatBalance:
     model : str
         ``"flank"`` or ``"network"``.
     temperatures : mapping of str to float
-        Of all nodes. [K]
+        Temperatures of all nodes. [K]
     sources : mapping of str to float
         Heat that losses bring to each node. [W]
     ways : tuple of HeatWay
@@ -60,7 +60,7 @@ class HeatBalance:
     residual : float
         Largest heat of a node that does not leave it, over all heat or the largest flow. [1]
     evaluations : int
-        Of the losses, until temperatures and losses agreed.
+        Evaluations of the losses, until temperatures and losses agreed.
     """
 
     model: str

@@ -65,7 +65,7 @@ class LossTerm:
     name : str
         Key of the term, ``"sun_mesh_sliding"``.
     watts : float
-        Of the whole gear set, factor included. [W]
+        Loss of the whole gear set, factor included. [W]
     group : str
         ``"load-dependent"`` or ``"load-independent"``.
     method, source : str
@@ -223,7 +223,7 @@ class Result(Views):
         Speeds, torques, powers, efficiency.
     meshes : mapping of str to MeshFigures
     bearings : mapping of str to BearingFigures
-        Of planets, by the first words of their losses.
+        Bearings of planets, by the first words of their losses.
     parts : mapping of str to dataclass
         Figures of further elements: bearings of shafts, seals.
     fluid : FluidFigures or None
@@ -251,7 +251,7 @@ class Result(Views):
     heat : HeatBalance or None
         None if everything is at the temperature of the oil inlet.
     lubrication : mapping of str to OilSupply
-        Of each set that states it; the key of a single set is empty.
+        Supply of oil to each set that states it; the key of a single set is empty.
     status : Status
     unloaded : float or None
         Total loss without torque, where losses are grouped as a test rig does; else None. [W]

@@ -123,7 +123,7 @@ class Journal:
     ----------
     path : Path
     fingerprint : str
-        Of the plan; a journal of another plan is not touched.
+        Fingerprint of the plan; a journal of another plan is not touched.
     """
 
     path: Path

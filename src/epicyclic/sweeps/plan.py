@@ -78,7 +78,7 @@ class CasePlan(Plan):
     ----------
     case : Case
     flow_tables : mapping
-        Of flows through pockets that points share, see `prepared`.
+        Tables of flows through pockets that points share, see `prepared`.
     """
 
     case: Case

@@ -67,7 +67,7 @@ class Study:
     Attributes
     ----------
     figure : str
-        Of Talbot (2012).
+        Figure of Talbot (2012).
     panels : tuple of str
         Parameters with one panel for each value.
     curves : str

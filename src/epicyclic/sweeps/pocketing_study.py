@@ -50,8 +50,8 @@ def pocketing_study(
     ----------
     case : PlanetaryCase or GearPairCase
     what : iterable of str
-        Of ``"speed"``, ``"helix-angle"``, ``"face-width"``, ``"oil-fraction"``, ``"backlash"``,
-        ``"module"``; default: all.
+        Some of ``"speed"``, ``"helix-angle"``, ``"face-width"``, ``"oil-fraction"``,
+        ``"backlash"``, ``"module"``; default: all.
     mesh : str, optional
         ``"sun_mesh"`` (default) or ``"ring_mesh"`` of a planetary set.
     ranges : mapping, optional

@@ -63,9 +63,9 @@ def pocketing_table(
     ----------
     case : PlanetaryCase or GearPairCase
     speeds : iterable
-        Of the input member (the pinion of a pair), as text with units.
+        Speeds of the input member (the pinion of a pair), as text with units.
     temperatures : iterable, optional
-        Of the oil at the inlet. Default: that of the case.
+        Temperatures of the oil at the inlet. Default: that of the case.
     jobs, dask, shard, journal, progress
         As for `sweep`; the points are the tables, one for each mesh and member that drives.
 

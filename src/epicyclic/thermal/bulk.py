@@ -54,7 +54,7 @@ def mean_friction(
     radius : float
         Equivalent radius of curvature at the pitch point, normal section. [m]
     viscosity : float
-        Of the oil at its inlet temperature, dynamic. [Pa s]
+        Viscosity of the oil at its inlet temperature, dynamic. [Pa s]
     roughness_factor : float
         X_R, from `roughness_factor`. [1]
     lubricant_factor : float

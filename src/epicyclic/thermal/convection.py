@@ -41,7 +41,7 @@ def disc_coefficient(
     outer_radius : float
         [m]
     inner_radius : float
-        Of an annulus; 0 for a disc. [m]
+        Inner radius of an annulus; 0 for a disc. [m]
 
     Examples
     --------
@@ -161,13 +161,13 @@ def roller_conductance(
     inner_half_width, outer_half_width : ndarray
         Half-width of the Hertz contacts of each roller, or slice of a roller. [m]
     length : ndarray or float
-        Of the same. [m]
+        Length of the same. [m]
     roller_diameter : float
         [m]
     inner_pitch, outer_pitch : float
         Distance of neighbouring contacts along each race. [m]
     conductivity : float
-        Of races and rollers. [W/(m K)]
+        Conductivity of races and rollers. [W/(m K)]
 
     Examples
     --------

@@ -67,7 +67,7 @@ def flash_temperature(
     sliding_speed : ndarray or float
         u_s, of either sign. [m/s]
     speed1, speed2 : ndarray or float
-        Of the surfaces across the contact line, of either sign. [m/s]
+        Speeds of the surfaces across the contact line, of either sign. [m/s]
     half_width : ndarray or float
         b of Hertz. [m]
     effusivity1, effusivity2 : float
@@ -99,7 +99,7 @@ def heat_share(
     Parameters
     ----------
     speed1, speed2 : ndarray or float
-        Of the surfaces across the contact line, of either sign. [m/s]
+        Speeds of the surfaces across the contact line, of either sign. [m/s]
     effusivity1, effusivity2 : float
         [W s^0.5/(m^2 K)]
 

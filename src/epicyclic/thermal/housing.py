@@ -57,7 +57,7 @@ def free_convection(height: float, housing_temperature: float, air_temperature: 
     Parameters
     ----------
     height : float
-        Of the housing. [m]
+        Height of the housing. [m]
     housing_temperature, air_temperature : float
         [K]
 
@@ -90,13 +90,13 @@ def forced_convection(
     air_speed : float
         [m/s]
     length : float
-        Of the housing along the flow. [m]
+        Length of the housing along the flow. [m]
     height : float
-        Of the housing. [m]
+        Height of the housing. [m]
     housing_temperature, air_temperature : float
         [K]
     pressure : float
-        Of the air. [Pa]
+        Pressure of the air. [Pa]
 
     Examples
     --------
@@ -186,11 +186,11 @@ def fin_factor(
     plain_area : float
         Area of the housing as if it had no fins, for which the factor holds. [m^2]
     fin_area : float
-        Of both faces of all fins, less what they cover of the housing. [m^2]
+        Area of both faces of all fins, less what they cover of the housing. [m^2]
     fin_height, fin_thickness : float
         [m]
     conductivity : float
-        Of the fins. [W/(m K)]
+        Conductivity of the fins. [W/(m K)]
 
     Examples
     --------
@@ -218,7 +218,7 @@ def fin_conductance(
     perimeter : float
         Through which the cross-section gives heat to the air. [m]
     area : float
-        Of the cross-section. [m^2]
+        Area of the cross-section. [m^2]
     length : float
         [m]
     conductivity : float
@@ -245,7 +245,7 @@ def foundation_conductance(
     coefficient : float
         From the plate to the air. [W/(m^2 K)]
     width : float
-        Of the joint to the housing. [m]
+        Width of the joint to the housing. [m]
     thickness : float
         [m]
     length : float

@@ -57,7 +57,7 @@ class Network:
     Attributes
     ----------
     nodes : tuple of str
-        Of unknown temperature.
+        Nodes of unknown temperature.
     given : mapping of str to float
         Nodes of given temperature. [K]
     links : tuple of Link

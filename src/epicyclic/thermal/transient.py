@@ -55,7 +55,7 @@ class Curves:
     knots : array, shape (k,)
         Rising. [K]
     coefficients : array, shape (4, k - 1, n)
-        Of the powers of the distance from the knot below, the highest first.
+        Coefficients of the powers of the distance from the knot below, the highest first.
     weights : array, shape (n, nodes)
         With which the temperatures of the nodes make the one of each quantity. [1]
     """
@@ -121,16 +121,16 @@ class Transient:
     Attributes
     ----------
     capacities : mapping of str to float
-        Of the nodes, in their order. [J/K]
+        Capacities of the nodes, in their order. [J/K]
     given : mapping of str to float
         Nodes of given temperature. [K]
     sources : tuple of Source
     heat : Curves
-        Of each source. [W]
+        Heat of each source. [W]
     links : tuple of Link
         Their own conductances do not matter.
     conductance : Curves
-        Of each link. [W/K]
+        Conductance of each link. [W/K]
     taken : mapping of str to float
         Heat that leaves nodes at all times: that of a cooler. [W]
     """

@@ -33,7 +33,7 @@ class PublishedStudy:
     helix_angle, face_width, speed, loss : float
         A loss and where it holds. [deg], [mm], [rpm], [W]
     exponent : float
-        Of the speed in the loss of the spur pair. [1]
+        Exponent of the speed in the loss of the spur pair. [1]
     bands : tuple of (float, float, float, float)
         Helix angle, face width, and the losses between which the one at `speed` lies, by the axes
         of the figures. [deg], [mm], [W], [W]

@@ -36,7 +36,7 @@ class RexsImport:
     source : str
         The file.
     version : str
-        Of REXS.
+        Version of REXS.
     kind : str
         ``"planetary"`` or ``"gear_pair"``; ``"train"`` if the file has several stages.
     component : str

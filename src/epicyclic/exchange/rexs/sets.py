@@ -83,7 +83,7 @@ class PlanetarySet:
     sun_meshes, ring_meshes : tuple of Mesh
         One for each planet.
     shafts : dict of str to tuple of Component
-        Of sun, ring, carrier, planet and pin.
+        Shafts of sun, ring, carrier, planet and pin.
     """
 
     component: Component

@@ -38,7 +38,7 @@ class Shaft:
     Attributes
     ----------
     name : str
-        Of the shaft in the case; if the file has none there, the name of its first member.
+        Name of the shaft in the case; if the file has none there, the name of its first member.
     parts : mapping of int to Component
         Shafts, gears, loads.
     members : tuple of str
