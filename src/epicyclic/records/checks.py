@@ -27,7 +27,7 @@ _LIMITS = {
     "torque_loss": (0.0, LARGEST_VALUE),
     "efficiency": (-LARGEST_VALUE, 1.0 + _ROUNDING),
 }
-"""Of numbers that have others than this in a map or a sweep."""
+"""Limits of numbers that have others than these in a map or a sweep."""
 
 _MESH = ("mesh_position", "contact_line", "segment")
 _POCKET = ("tooth", "roll")
