@@ -107,7 +107,7 @@ class _Flow:
 
     @property
     def number(self) -> float:
-        """Speed over the root of pressure over density. Theory (Q21). [1/m]"""
+        """Speed over the root of pressure over density. [1/m]"""
         return self.family.number(*self.request)
 
 
