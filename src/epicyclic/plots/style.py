@@ -17,11 +17,11 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
-from epicyclic.units import unit_text
+from epicyclic.units import format_number, unit_text
 
 __all__ = [
     "COLOURS",
@@ -231,8 +231,13 @@ def label_logarithms(*axes: Axis) -> None:
         low, high = axis.get_view_interval()
         is_short = high < SHORT_SPAN * low
         axis.set_minor_locator(LogLocator(subs=(2, 5)))
-        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-        axis.set_minor_formatter(StrMethodFormatter("{x:g}") if is_short else NullFormatter())
+        axis.set_major_formatter(FuncFormatter(_plain_number))
+        axis.set_minor_formatter(FuncFormatter(_plain_number) if is_short else NullFormatter())
+
+
+def _plain_number(value: float, place: int | None = None) -> str:
+    """For a formatter of ticks: ``"1000000"``, not ``"1e+06"``."""
+    return format_number(value)
 
 
 def label_of(variable: xr.DataArray) -> str:
