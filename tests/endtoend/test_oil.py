@@ -298,6 +298,17 @@ def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
     assert f"{100 * share:.0f} % of the sliding power is at film ratios below 0.7" in notes[0]
 
 
+def test_contacts_of_a_mesh_are_told_where_output_is_redirected(monkeypatch, capsys):
+    from epicyclic.cli import progress, single
+    from epicyclic.losses import direct
+
+    monkeypatch.setattr(progress, "EVERY", 0.0)
+    case = ep.load_case("talbot-2012-pair").updated({"models.friction": "ehl-direct"})
+    with single.telling_contacts(case):
+        direct._PROGRESS.get()(3, 20)
+    assert "contacts of the mesh: 3 of 20" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("rpm", "kept", "told"),
     [(4000, 0.97, ()), (0.3, 0.97, ("less than 0.01 m/s",)), (4000, 0.87, ("resolve 87 % of",))],

@@ -71,18 +71,17 @@ def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path |
 @contextmanager
 def telling_contacts(case: Case) -> Iterator[None]:
     """A progress bar: of the contacts of each mesh if they are solved, which takes minutes."""
-    if not sys.stderr.isatty():
-        yield
-        return
     from epicyclic.cli.progress import progress_bar, working
 
-    if case.models.friction != "ehl-direct":
+    if case.models.friction == "ehl-direct":
+        from epicyclic.losses.direct import contacts_told
+
+        with progress_bar("contacts of the mesh") as progress, contacts_told(progress):
+            yield
+    elif sys.stderr.isatty():
         with working("solving"):  # pockets may take minutes too
             yield
-        return
-    from epicyclic.losses.direct import contacts_told
-
-    with progress_bar("contacts of the mesh") as progress, contacts_told(progress):
+    else:
         yield
 
 
