@@ -5,18 +5,20 @@ from __future__ import annotations
 import json
 import random
 import resource
+import shutil
 import signal
 import subprocess
 import sys
 import time
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import epicyclic as ep
 from epicyclic.campaigns.campaign import make_campaign
-from epicyclic.campaigns.fit import fit_campaigns
-from epicyclic.campaigns.folder import CampaignFolder
+from epicyclic.campaigns.fit import fit_campaigns, simulated_quantities
+from epicyclic.campaigns.folder import CampaignFolder, open_folder
 from epicyclic.oilmodel.model import read_oil_model
 from epicyclic.sweeps.runner import Runner
 
@@ -296,6 +298,18 @@ def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
     thin = contact.film_ratio < 0.7
     share = power[thin].sum() / power.sum()
     assert f"{100 * share:.0f} % of the sliding power is at film ratios below 0.7" in notes[0]
+
+
+def test_roughness_that_the_grid_loses_is_not_fitted(finished, tmp_path):
+    folder = tmp_path / "lost"
+    shutil.copytree(finished, folder)
+    usual = simulated_quantities([open_folder(folder)])["friction"][1]
+    table = folder / "simulations.csv"
+    frame = pd.read_csv(table)
+    frame.loc[[2, 5, 7], "roughness_kept"] = 0.94, 0.5, 0.95
+    frame.to_csv(table, index=False)
+    fitted = simulated_quantities([open_folder(folder)])["friction"][1]
+    assert set(usual) - set(fitted) == set(frame["friction"][[2, 5]])
 
 
 def test_contacts_of_a_mesh_are_told_where_output_is_redirected(monkeypatch, capsys):

@@ -24,7 +24,7 @@ from epicyclic.losses.pairing import SIMULATED
 from epicyclic.losses.rolling import ROLLING_MODELS
 from epicyclic.losses.standing import STANDING, standing
 from epicyclic.oilmodel.fitting import fit_quantity
-from epicyclic.oilmodel.model import FORMAT, FORMS, OilModel
+from epicyclic.oilmodel.model import FORMAT, FORMS, OilModel, read_oil_model
 from epicyclic.records.contents import contents_of
 from epicyclic.report.result_tables import standing_items
 from epicyclic.report.tables import result_tables
@@ -322,6 +322,17 @@ def test_recommendation_for_the_fluid_of_the_regression_and_for_an_unknown_oil()
     best, why = recommended(compare_friction(other))
     assert best.name == "schlenk"
     assert "no model was made for this oil" in why
+
+
+SHIPPED = [name for name in library.oil_names() if library.oil_model_file(name)]
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_friction_of_unseen_contacts_meets_the_aims_that_the_manual_states(name):
+    errors = read_oil_model(library.oil_model_file(name)).fits["friction"].forms[0].errors[0]
+    assert errors.regime == "all"
+    assert errors.median < 0.08
+    assert errors.largest_of_90_percent < 0.25
 
 
 def test_the_manual_shows_the_table():

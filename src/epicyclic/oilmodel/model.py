@@ -158,8 +158,9 @@ class OilModel(_Data):
     designs : list
         The simulated points.
     seed : int
+        Seed of the profiles; of several campaigns that of the first one.
     command : str
-        That makes the file.
+        Command that makes the simulations; of several campaigns one after the other.
     simulations : dict of str to int
         How many were simulated, failed, and were fitted.
     notes : tuple of str
