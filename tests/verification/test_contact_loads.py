@@ -18,7 +18,9 @@ from epicyclic.kernels.contact_load import (
 from epicyclic.reference.mesh_stiffness import face_load_factor
 
 
-def solve(force, compliance, length, local_a, local_b, *, separation=None, coupling=None):
+def solve(
+    force, compliance, length, local_a, local_b, *, separation=None, coupling=None, start=None
+):
     """The contact problem with the local law given by two numbers."""
     lines = len(length)
     return solve_contact_loads(
@@ -29,6 +31,7 @@ def solve(force, compliance, length, local_a, local_b, *, separation=None, coupl
         length,
         np.full_like(length, local_a),
         local_b,
+        length if start is None else start,
         1e-9,
         1000,
     )
@@ -160,6 +163,35 @@ def test_the_careful_method_finds_the_same_solution():
         # both are solutions to 1e-9 of the approach
         assert np.abs(careful - forces).max() < 1e-7 * problem["force"]
         assert same_approach + nearest == pytest.approx(approach, rel=1e-8)
+
+
+def test_a_start_next_to_the_solution_saves_steps_and_changes_nothing():
+    rng = np.random.default_rng(5)
+    fewer = []
+    for kind in range(60):
+        problem = random_problem(rng, kind)
+        near, *_ = solve(**(problem | {"force": 0.99 * problem["force"]}))
+        forces, approach, stiffness, iterations = solve(**problem)
+        again, same_approach, same_stiffness, steps = solve(**problem, start=near)
+        assert np.abs(again - forces).max() < 1e-7 * problem["force"]
+        assert same_approach == pytest.approx(approach, rel=1e-8)
+        assert same_stiffness == pytest.approx(stiffness, rel=1e-3)  # of the step before the last
+        assert steps > 0
+        fewer.append(iterations - steps)
+    assert min(fewer) >= 0
+    assert np.median(fewer) >= 2
+
+
+def test_any_start_leads_to_the_solution():
+    rng = np.random.default_rng(6)
+    for kind in range(60):
+        problem = random_problem(rng, kind)
+        forces, *_ = solve(**problem)
+        start = np.zeros_like(forces)
+        start[0, rng.integers(20)] = 7.0
+        found, _, _, steps = solve(**problem, start=start)
+        assert steps > 0
+        assert np.abs(found - forces).max() < 1e-7 * problem["force"]
 
 
 def test_the_local_law_rises_for_any_load_and_has_no_kink():

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.elasticity.mesh_compliance import GearBody, mesh_compliance
+from epicyclic.elasticity.mesh_compliance import GearBody, MeshCompliance, mesh_compliance
 from epicyclic.elasticity.threads import one_thread
 from epicyclic.errors import ConvergenceError
 from epicyclic.geometry.contact_lines import ContactLines
@@ -17,7 +17,7 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.micro_geometry import FlankDeviations
 from epicyclic.kernels.contact_load import solve_all_positions
 
-__all__ = ["LoadedMesh", "load_mesh_elastically"]
+__all__ = ["LoadedMesh", "load_mesh_elastically", "load_mesh_next_to"]
 
 FloatArray = NDArray[np.float64]
 
@@ -135,6 +135,39 @@ def load_mesh_elastically(
         If no loads are found that satisfy all conditions of the contact.
     """
     compliance = mesh_compliance(mesh, body1, body2, positions, segments)
+    return _loaded(mesh, compliance, force, deviations, compliance.lines.length)
+
+
+def load_mesh_next_to(
+    last: LoadedMesh,
+    body1: GearBody,
+    body2: GearBody,
+    positions: int,
+    segments: int,
+    force: float,
+    deviations: FlankDeviations = UNMODIFIED,
+) -> LoadedMesh:
+    """The mesh of `last` under nearly the same load, which saves most of the work.
+
+    Parameters
+    ----------
+    last : LoadedMesh
+        With the same `positions` and `segments`.
+    body1, body2, positions, segments, force, deviations
+        As for `load_mesh_elastically`, which has the same solution but for its tolerance.
+    """
+    compliance = mesh_compliance(last.mesh, body1, body2, positions, segments)
+    return _loaded(last.mesh, compliance, force, deviations, last.line_load * last.lines.length)
+
+
+def _loaded(
+    mesh: Mesh,
+    compliance: MeshCompliance,
+    force: float,
+    deviations: FlankDeviations,
+    start: FloatArray,
+) -> LoadedMesh:
+    """The mesh under the transverse `force`, from the normal forces `start` of the segments."""
     lines = compliance.lines
     normal = force / math.cos(mesh.gear1.rack.base_helix_angle)
     separation = deviations.separation(mesh, lines)
@@ -147,6 +180,7 @@ def load_mesh_elastically(
             lines.length,
             compliance.local_a,
             compliance.local_b,
+            start,
             TOLERANCE,
             STEPS_PER_SEGMENT * lines.length[0].size,
         )

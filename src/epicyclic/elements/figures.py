@@ -7,7 +7,7 @@ them from one place.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 __all__ = [
     "BearingFigures",
     "Figure",
+    "Figures",
     "FluidFigures",
     "MeshFigures",
     "displayed",
@@ -63,6 +64,30 @@ class Figure:
     label: str
     value: float
     unit: str
+
+
+class Figures(Mapping[str, "DataclassInstance"]):
+    """Figures by what they describe, found when somebody reads them.
+
+    Most answers of an element are steps on the way to the last one, of which alone anybody does.
+    """
+
+    __slots__ = ("_finds", "_found")
+
+    def __init__(self, finds: Mapping[str, Callable[[], DataclassInstance]]) -> None:
+        self._finds = finds
+        self._found: dict[str, DataclassInstance] = {}
+
+    def __getitem__(self, key: str) -> DataclassInstance:
+        if key not in self._found:
+            self._found[key] = self._finds[key]()
+        return self._found[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._finds)
+
+    def __len__(self) -> int:
+        return len(self._finds)
 
 
 def figures(source: DataclassInstance) -> Iterator[Figure]:

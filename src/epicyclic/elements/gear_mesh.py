@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +38,7 @@ from epicyclic.losses.mesh import (
     loss_factor_notes,
     ohlendorf_loss_factor,
 )
-from epicyclic.losses.mesh_warmth import MeshWarmth, mesh_warmth
+from epicyclic.losses.mesh_warmth import heat_share1, mesh_warmth
 from epicyclic.losses.rolling import RollingModel
 from epicyclic.losses.validity import SMALLEST_SHOWN_SHARE, SomeFlags
 from epicyclic.lubricant.properties import OilState
@@ -188,19 +190,28 @@ class MeshDuty:
 
 @dataclass(frozen=True, slots=True)
 class MeshOutcome:
-    """Losses, figures and flags of one mesh."""
+    """Losses and flags of one mesh, how its figures are found, and what the next pass goes on from.
+
+    The latter are the teeth under load, if they are elastic, and the friction model with what it
+    has solved.
+    """
 
     losses: dict[str, Loss]
-    figures: MeshFigures
+    figures: Callable[[], MeshFigures]
     flags: SomeFlags
     notes: tuple[str, ...]
+    elastic: LoadedMesh | None
+    friction: FrictionModel
 
 
-def distribute_load(duty: MeshDuty) -> LineLoads:
-    """Contact lines of a mesh and the load on them under the torque of its duty."""
+def distribute_load(duty: MeshDuty, last: LoadedMesh | None = None) -> LineLoads:
+    """Contact lines of a mesh and the load on them under the torque of its duty.
+
+    `last`, the mesh under nearly that torque, saves work.
+    """
     models = duty.models
     distribution = LOAD_DISTRIBUTIONS[models.load_distribution]
-    load = MeshLoad(duty.mesh, duty.force, duty.gears.solids, duty.gears.deviations)
+    load = MeshLoad(duty.mesh, duty.force, duty.gears.solids, duty.gears.deviations, last)
     return distribution.distribute(load, models.positions, models.segments)
 
 
@@ -250,19 +261,33 @@ def contact_under(
 
 
 def solve_mesh(
-    duty: MeshDuty, fluids: Fluids, flow: MeshFlow, count: int, oil: OilState
+    duty: MeshDuty,
+    fluids: Fluids,
+    flow: MeshFlow,
+    count: int,
+    oil: OilState,
+    last: MeshOutcome | None = None,
 ) -> MeshOutcome:
-    """Losses and figures of one mesh of `count` in parallel, with `oil` on its flanks."""
-    friction, rolling = duty.models.friction, duty.models.rolling
-    loads = distribute_load(duty) if duty.torque1 != 0 and duty.speed1 != 0 else None
+    """Losses and figures of one mesh of `count` in parallel, with `oil` on its flanks.
+
+    `last`, the outcome under nearly this torque, saves work.
+    """
+    friction = duty.models.friction if last is None else last.friction
+    rolling = duty.models.rolling
+    loads = None
+    if duty.torque1 != 0 and duty.speed1 != 0:
+        loads = distribute_load(duty, None if last is None else last.elastic)
     contact = None if loads is None else contact_under(duty, loads, oil, fluids.oil)
+    if contact is not None and isinstance(friction, EhlDirect):
+        friction = friction.solved_for(contact)
     if contact is None:
         loss = MeshLoss(0.0, 0.0, math.nan)
     elif duty.models.by_loss_factor:
         loss = loss_factor_loss(contact, friction)
     else:
         loss = local_loss(contact, friction, rolling)
-    warmth = None if contact is None else mesh_warmth(contact, loss.friction, duty.gears.materials)
+    materials = duty.gears.materials
+    share1 = 0.5 if contact is None else heat_share1(contact, loss.friction, materials)
     method, source = friction.title, friction.source
     halves = _heat(duty.gears.nodes, 0.5)
     rolling_loss = Loss(
@@ -277,21 +302,21 @@ def solve_mesh(
             count * loss.sliding,
             method,
             source,
-            heat=halves if warmth is None else _heat(duty.gears.nodes, warmth.share1),
+            heat=_heat(duty.gears.nodes, share1),
         ),
         f"{duty.key}_rolling": rolling_loss,
         f"{duty.key}_pocketing": _pocketing(duty.models.pockets, flow, count),
     }
     elastic = None if loads is None else loads.elastic
-    figures = _mesh_figures(duty, contact, loss, elastic, flow.figures, warmth)
+    figures = partial(_mesh_figures, duty, contact, loss, elastic, flow.figures)
     least = SMALLEST_SHOWN_SHARE * sum(term.watts for term in losses.values())
     notes = pocket_notes(duty, flow.figures, fluids, count, least)
     notes += stored_note(duty.models.pockets, duty.mesh, flow.figures)
     if duty.models.by_loss_factor:
         notes += loss_factor_notes(duty.mesh)
-    if contact is not None and isinstance(friction, EhlDirect):
-        notes += friction.remarks(contact)
-    return MeshOutcome(losses, figures, loss.flags, notes)
+    if isinstance(friction, EhlDirect):
+        notes += friction.remarks
+    return MeshOutcome(losses, figures, loss.flags, notes, elastic, friction)
 
 
 def _heat(nodes: tuple[str, str], share1: float) -> tuple[tuple[str, float], ...]:
@@ -329,9 +354,9 @@ def _mesh_figures(
     loss: MeshLoss,
     elastic: LoadedMesh | None,
     flow: FlowFigures | None,
-    warmth: MeshWarmth | None,
 ) -> MeshFigures:
     mesh = duty.mesh
+    warmth = None if contact is None else mesh_warmth(contact, loss.friction, duty.gears.materials)
     speed1 = abs(duty.speed1)
     sliding = max(
         abs(speed1 * rho1 - speed1 / mesh.ratio * mesh.curvature2(rho1))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -17,8 +17,8 @@ from epicyclic.elements.base import (
     joined_key,
 )
 from epicyclic.elements.disc import Disc, ThrustBearing, disc_loss, thrust_loss
-from epicyclic.elements.figures import BearingFigures, MeshFigures
-from epicyclic.elements.gear_mesh import GearMesh, MeshDuty, solve_mesh
+from epicyclic.elements.figures import BearingFigures, Figures, MeshFigures
+from epicyclic.elements.gear_mesh import GearMesh, MeshDuty, MeshOutcome, solve_mesh
 from epicyclic.elements.load_sharing import LoadSharing, planet_shares
 from epicyclic.elements.planet_bearing import PlanetBearing, missing_bearing, solve_bearing
 from epicyclic.elements.planet_load import PlanetContact, PlanetLoad, planet_load, tilt_planet
@@ -166,11 +166,15 @@ class Planet:
 
 @dataclass(frozen=True, slots=True)
 class _Idle:
-    """What follows from the speeds; flows through pockets also by which gears drive."""
+    """What follows from the speeds; flows through pockets also by which gears drive.
+
+    `meshes` has what became of each mesh in the last pass, from where the next one goes on.
+    """
 
     drags: dict[str, Loss]
     flags: tuple[ValidityFlag, ...]
     flows: dict[tuple[bool, ...], Mapping[str, MeshFlow]]
+    meshes: dict[str, MeshOutcome]
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,10 +192,10 @@ class GearSetResult(ElementResult):
 
 @dataclass(frozen=True, slots=True)
 class _Branch:
-    """Losses of all planets that carry one and the same share, and the figures of one of them."""
+    """Losses of all planets with one and the same share, and how figures of one are found."""
 
     losses: dict[str, Loss]
-    figures: dict[str, Any]
+    figures: dict[str, Callable[[], Any]]
     flags: SomeFlags
     notes: tuple[str, ...]
 
@@ -240,7 +244,7 @@ class GearSet:
         shares = self.shares(state, torques)
         flows = self._flows(state, torques, idle)
         branches = [
-            self._branch(state, torques, share, shares.count(share), flows)
+            self._branch(state, torques, share, shares.count(share), flows, idle.meshes)
             for share in sorted(set(shares), reverse=True)
         ]
         found = idle.drags | {
@@ -249,7 +253,7 @@ class GearSet:
         first = branches[0]
         return GearSetResult(
             losses={name: found[name] for name in self.choices},
-            figures=first.figures,
+            figures=Figures(first.figures),
             flags=Flags(partial(_widest, branches)) + idle.flags,
             notes=first.notes,
             shares=shares if self.planets else (),
@@ -383,7 +387,7 @@ class GearSet:
             name: self._placed(_with_choice(loss, self.choices[name]))
             for name, loss in losses.items()
         }
-        return _Idle(placed, flags, {})
+        return _Idle(placed, flags, {}, {})
 
     def _branch(
         self,
@@ -392,6 +396,7 @@ class GearSet:
         share: float,
         planets: int,
         flows: Mapping[str, MeshFlow],
+        last: dict[str, MeshOutcome],
     ) -> _Branch:
         duties = {duty.key: duty for duty in self.duties(state, torques, share)}
         bearings = []
@@ -423,9 +428,11 @@ class GearSet:
                 flows[duty.key],
                 planets,
                 state.fluids.at(joined_key(self.key, duty.key)),
+                last.get(duty.key),
             )
             for duty in duties.values()
         ]
+        last |= dict(zip(duties, meshes, strict=True))
         notes += tuple(note for mesh in meshes for note in mesh.notes)
         branch = _Branch({}, {}, (), notes)
         losses, figures, flags = branch.losses, branch.figures, branch.flags

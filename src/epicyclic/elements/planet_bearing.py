@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -86,10 +88,10 @@ class PlanetBearing:
 
 @dataclass(frozen=True, slots=True)
 class BearingOutcome:
-    """Losses of the planet bearings, and the figures of one of them."""
+    """Losses of the planet bearings, and how the figures of one of them are found."""
 
     losses: dict[str, Loss]
-    figures: BearingFigures | None = None
+    figures: Callable[[], BearingFigures] | None = None
     flags: SomeFlags = ()
 
 
@@ -139,7 +141,7 @@ def solve_bearing(
                 LOAD_INDEPENDENT, count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE
             ),
         },
-        _bearing_figures(own, loads, load, speed, oil, loss.loss),
+        partial(_bearing_figures, own, loads, load, speed, oil, loss.loss),
         loss.flags + viscous_flags(key.replace("_", " "), speed, bearing.pitch_diameter),
     )
 

@@ -339,6 +339,7 @@ def solve_contact_loads(
     length: FloatArray,
     local_a: FloatArray,
     local_b: float,
+    start: FloatArray,
     tolerance: float,
     max_iterations: int,
 ) -> tuple[FloatArray, float, float, int]:
@@ -362,6 +363,9 @@ def solve_contact_loads(
         A of delta_c. [m^2/N]
     local_b : float
         B of delta_c. [m^2/N]
+    start : ndarray, shape (lines, segments)
+        Forces to begin with, whatever their sum: the solution for a force next to this one saves
+        most of the steps, the lengths do for a start from nothing. [N]
     tolerance : float
         Largest gap or penetration at loaded segments over the approach, and largest error of the
         balance over the force. [1]
@@ -380,18 +384,20 @@ def solve_contact_loads(
         Newton steps, or -1 without a solution.
     """
     approach = stiffness = np.nan
-    given = compliance.sum() + coupling.sum() + separation.sum() + local_a.sum() + force
+    given = (
+        compliance.sum() + coupling.sum() + separation.sum() + local_a.sum() + start.sum() + force
+    )
     if not np.isfinite(given):
         return np.zeros(length.shape), approach, stiffness, -1
-    loaded = length > 0.0
+    loaded = start > 0.0
     nearest = np.inf
     for line in range(length.shape[0]):
         for k in range(length.shape[1]):
-            if loaded[line, k]:
+            if length[line, k] > 0.0:
                 nearest = min(nearest, separation[line, k])
     gap = separation - nearest
     floor = LINEAR_SHARE * force / length.sum()
-    forces = force * length / length.sum()
+    forces = force * start / start.sum()
     for iteration in range(QUICK_STEPS):
         closed, slope = deflections(
             forces, compliance, coupling, gap, length, local_a, local_b, floor
@@ -429,6 +435,7 @@ def solve_all_positions(
     length: FloatArray,
     local_a: FloatArray,
     local_b: float,
+    start: FloatArray,
     tolerance: float,
     max_iterations: int,
 ) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.int64]]:
@@ -447,6 +454,7 @@ def solve_all_positions(
             length[m],
             local_a[m],
             local_b,
+            start[m],
             tolerance,
             max_iterations,
         )

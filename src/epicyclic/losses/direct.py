@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar
 
@@ -51,6 +51,10 @@ LARGEST_ERROR = 0.10
 """Standard error of a friction over it above which a contact is left out. [1]"""
 LARGEST_LEFT_OUT = 0.25
 """Share of contacts left out above which there is no result. [1]"""
+ALIKE = 1e-9
+"""Range of the logarithm of the line load, and of the path in metres, that is rounding."""
+NEARLY = 0.1
+"""Change of the force of a mesh up to which its solved contacts are used again. [1]"""
 SMOOTHING = 1e-2
 """Smoothing of the interpolation: about the scatter of solved contacts, 2 %, squared over their
 variance."""
@@ -106,12 +110,33 @@ class DirectSettings:
     most_contacts: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Solved:
-    """Friction at every point of a mesh, and what to know about it."""
+    """The contacts of a mesh that were solved, and what to know about them.
 
-    friction: FloatArray
+    Attributes
+    ----------
+    force : float
+        Transverse force of the mesh. [N]
+    place : ndarray, shape (n, 2)
+        Position on the path of contact and logarithm of the line load, as from `_place`.
+    ratio : ndarray, shape (n,)
+        Friction over the closed form. [1]
+    limits : ndarray, shape (2, 2)
+        Least and largest values of both over the whole mesh.
+    remark : str
+    """
+
+    force: float
+    place: FloatArray
+    ratio: FloatArray
+    limits: FloatArray
     remark: str
+
+    def friction(self, contact: MeshContact) -> FloatArray:
+        """Coefficient of friction at every point of the mesh under nearly that force. [1]"""
+        place = _spread(_place(contact), self.limits)
+        return _closed_form(contact) * _interpolated(self.place, self.ratio, place)
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +159,22 @@ class EhlDirect:
     )
 
     settings: DirectSettings
+    solved: _Solved | None = None
+
+    def solved_for(self, contact: MeshContact) -> EhlDirect:
+        """With contacts that are solved: those it has, where they are of nearly that load.
+
+        Between passes that bring torques and losses together the load changes by a few per cent,
+        and the ratio to the closed form by far less than its error.
+
+        Raises
+        ------
+        ConvergenceError
+            If too many contacts have no solution.
+        """
+        if self.solved and abs(contact.force - self.solved.force) <= NEARLY * self.solved.force:
+            return self
+        return replace(self, solved=_solve_mesh(contact, self.settings))
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]
@@ -143,17 +184,29 @@ class EhlDirect:
         ConvergenceError
             If too many contacts have no solution.
         """
-        return _solve_mesh(contact, self.settings).friction
+        return (self.solved or _solve_mesh(contact, self.settings)).friction(contact)
 
-    def remarks(self, contact: MeshContact) -> tuple[str, ...]:
+    @property
+    def remarks(self) -> tuple[str, ...]:
         """How many contacts were solved, how many not, and the error."""
-        return (_solve_mesh(contact, self.settings).remark,)
+        return () if self.solved is None else (self.solved.remark,)
 
 
-@lru_cache(maxsize=16)
+def _closed_form(contact: MeshContact) -> FloatArray:
+    """Friction between which and that of solved contacts the ratio is interpolated. [1]"""
+    return eyring_friction(contact, EYRING_STRESS)
+
+
+def _place(contact: MeshContact) -> FloatArray:
+    """Position on the path of contact and logarithm of the line load, shape (n, 2)."""
+    return np.stack([contact.path, np.log(contact.line_load)], axis=1)
+
+
 def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
-    base = eyring_friction(contact, EYRING_STRESS)
-    place = np.stack([_spread(contact.path), _spread(np.log(contact.line_load))], axis=1)
+    base = _closed_form(contact)
+    own = _place(contact)
+    limits = np.stack([own.min(axis=0), own.max(axis=0)])
+    place = _spread(own, limits)
     power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
     sliding = np.flatnonzero(contact.slide_to_roll_ratio >= SMALLEST_SLIP)
     usable = sliding if sliding.size > BATCH + CHECKS else np.arange(power.size)
@@ -182,10 +235,12 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
             f"{np.count_nonzero(~found)} of {found.size} contacts of the {contact.mesh.name} have "
             "no solution: use another models.friction."
         )
-    friction = base * _interpolated(place[solved[found]], ratios[found], place)
     missed = "" if error <= settings.error else f", more than the {percent(settings.error)} wanted"
     return _Solved(
-        friction,
+        contact.force,
+        place[solved[found]],
+        ratios[found],
+        limits,
         f"models.friction ehl-direct: {found.size} contacts of the {contact.mesh.name} solved, "
         f"{np.count_nonzero(~found)} of them without convergence and left out; error of "
         f"interpolated contacts {percent(error)} on average{missed}, of their power "
@@ -226,10 +281,12 @@ def _unresolved(kept: float) -> str:
     )
 
 
-def _spread(values: FloatArray) -> FloatArray:
-    """`values` over -1 to 1."""
-    low, high = values.min(), values.max()
-    return np.zeros(values.shape) if high == low else 2 * (values - low) / (high - low) - 1
+def _spread(values: FloatArray, limits: FloatArray) -> FloatArray:
+    """`values` from their `limits` over to -1 to 1; those that are alike to -1."""
+    low, high = limits
+    width = np.where(high - low > ALIKE, high - low, np.inf)
+    spread: FloatArray = 2 * (values - low) / width - 1
+    return spread
 
 
 def _quantiles(path: FloatArray, power: FloatArray, usable: IntArray) -> IntArray:
@@ -254,8 +311,10 @@ def _interpolated(known: FloatArray, ratio: FloatArray, place: FloatArray) -> Fl
     """Ratios at `place` by thin-plate splines of their logarithm, within what was found."""
     from scipy.interpolate import RBFInterpolator
 
-    spline = RBFInterpolator(known, np.log(ratio), smoothing=SMOOTHING)
-    values: FloatArray = np.exp(np.clip(spline(place), np.log(ratio.min()), np.log(ratio.max())))
+    matters = np.ptp(known, axis=0) > 0  # an even load is the same everywhere
+    spline = RBFInterpolator(known[:, matters], np.log(ratio), smoothing=SMOOTHING)
+    logarithm = np.clip(spline(place[:, matters]), np.log(ratio.min()), np.log(ratio.max()))
+    values: FloatArray = np.exp(logarithm)
     return values
 
 

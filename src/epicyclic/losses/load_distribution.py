@@ -18,7 +18,12 @@ from functools import lru_cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.elasticity.loaded_mesh import UNMODIFIED, LoadedMesh, load_mesh_elastically
+from epicyclic.elasticity.loaded_mesh import (
+    UNMODIFIED,
+    LoadedMesh,
+    load_mesh_elastically,
+    load_mesh_next_to,
+)
 from epicyclic.elasticity.mesh_compliance import GearBody
 from epicyclic.geometry.contact_lines import ContactLines, contact_lines
 from epicyclic.geometry.mesh import Mesh
@@ -48,12 +53,15 @@ class MeshLoad:
     bodies : tuple of GearBody
         Both members.
     deviations : FlankDeviations
+    last : LoadedMesh or None
+        The same mesh under nearly the same load, from where a solution is found sooner.
     """
 
     mesh: Mesh
     force: float
     bodies: tuple[GearBody, GearBody]
     deviations: FlankDeviations = UNMODIFIED
+    last: LoadedMesh | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -159,9 +167,11 @@ def _in_proportion(name: str, load: MeshLoad, positions: int, segments: int) -> 
 
 
 def _elastic(load: MeshLoad, positions: int, segments: int) -> LineLoads:
-    loaded = load_mesh_elastically(
-        load.mesh, *load.bodies, positions, segments, load.force, load.deviations
-    )
+    rest = (*load.bodies, positions, segments, load.force, load.deviations)
+    if load.last is None:
+        loaded = load_mesh_elastically(load.mesh, *rest)
+    else:
+        loaded = load_mesh_next_to(load.last, *rest)
     return LineLoads(loaded.lines, loaded.line_load, loaded)
 
 

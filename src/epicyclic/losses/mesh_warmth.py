@@ -11,34 +11,31 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.thermal.flash import flash_temperature, heat_share
 from epicyclic.thermal.solids import Solid
 
-__all__ = ["MeshWarmth", "flash_temperatures", "mesh_warmth"]
+__all__ = ["MeshWarmth", "flash_temperatures", "heat_share1", "mesh_warmth"]
 
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class MeshWarmth:
-    """What sliding does to the temperatures of a mesh.
+    """Flash temperature of a mesh.
 
     Attributes
     ----------
     flash_mean : float
-        Flash temperature, weighted with the load over the mesh period. [K]
+        Weighted with the load over the mesh period. [K]
     flash_max : float
         Largest one. [K]
-    share1 : float
-        Share of the heat of sliding that gear 1 takes up. [1]
     """
 
     flash_mean: float
     flash_max: float
-    share1: float
 
 
 def mesh_warmth(
     contact: MeshContact, friction: FloatArray, materials: tuple[Solid, Solid]
 ) -> MeshWarmth:
-    """Flash temperature and shares of the heat of a mesh in contact. Theory (W1), (W2).
+    """Flash temperature of a mesh in contact. Theory (W1).
 
     Parameters
     ----------
@@ -50,14 +47,25 @@ def mesh_warmth(
     """
     flash = flash_temperatures(contact, friction, materials)
     load = contact.line_load * contact.weight
-    heat = friction * load * np.abs(contact.sliding_speed)
-    share1 = heat_share(*contact.surface_speeds, *(solid.effusivity for solid in materials))
-    total = float(heat.sum())
     return MeshWarmth(
         flash_mean=float((flash * load).sum() / load.sum()),
         flash_max=float(flash.max()),
-        share1=float((heat * share1).sum()) / total if total > 0 else 0.5,
     )
+
+
+def heat_share1(
+    contact: MeshContact, friction: FloatArray, materials: tuple[Solid, Solid]
+) -> float:
+    """Share of the heat of sliding that gear 1 takes up. Theory (W2). [1]
+
+    Parameters as of `mesh_warmth`.
+    """
+    heat = friction * (contact.line_load * contact.weight) * np.abs(contact.sliding_speed)
+    total = float(heat.sum())
+    if not total > 0:
+        return 0.5
+    share1 = heat_share(*contact.surface_speeds, *(solid.effusivity for solid in materials))
+    return float((heat * share1).sum()) / total
 
 
 def flash_temperatures(
