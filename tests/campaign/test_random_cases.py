@@ -5,10 +5,14 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from campaign.outcomes import FAULTS
+import epicyclic as ep
+from campaign.cases import drawn_case
+from campaign.outcomes import FAULTS, outcome_of
 from campaign.run import CampaignPlan, counted
+from epicyclic.losses import direct
 
 TABLE = Path(__file__).parents[2] / "docs" / "development" / "campaign.csv"
 
@@ -29,6 +33,21 @@ def check(counts):
 
 def test_a_quick_share_ends_in_results_or_outcomes():
     check(solved(range(100_001, 100_006)))  # beyond those that the documentation counts
+
+
+def stand_in(line, roughness, seeds, heating, settings):
+    """Friction of a contact that the solver of contacts would take seconds for; some have none."""
+    known = np.nan if seeds[0] % 17 == 0 else 0.05 * (line.radius / 0.01) ** 0.3
+    return known, 0.9 if seeds[1] % 5 == 0 else 1.0
+
+
+@pytest.mark.parametrize("number", [18, 41, 117, 289, 308, 358, 456])
+def test_meshes_of_few_and_of_equal_contacts_can_be_solved_directly(number, monkeypatch):
+    """Few positions and segments, spur gears, even loads: contacts at one place of the mesh."""
+    monkeypatch.setattr(direct, "_friction", stand_in)
+    case = drawn_case(number).updated({"models.friction": "ehl-direct"})
+    assert outcome_of(case).name == "solved"
+    assert "ehl-direct" in " ".join(ep.solve(case).notes)
 
 
 @pytest.mark.slow

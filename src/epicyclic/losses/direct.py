@@ -53,6 +53,8 @@ LARGEST_LEFT_OUT = 0.25
 """Share of contacts left out above which there is no result. [1]"""
 ALIKE = 1e-9
 """Range of the logarithm of the line load, and of the path in metres, that is rounding."""
+PLACES = 9
+"""Decimals of a place, of which the whole mesh has -1 to 1, that are not rounding."""
 NEARLY = 0.1
 """Change of the force of a mesh up to which its solved contacts are used again. [1]"""
 SMOOTHING = 1e-2
@@ -208,9 +210,12 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
     limits = np.stack([own.min(axis=0), own.max(axis=0)])
     place = _spread(own, limits)
     power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
-    sliding = np.flatnonzero(contact.slide_to_roll_ratio >= SMALLEST_SLIP)
-    usable = sliding if sliding.size > BATCH + CHECKS else np.arange(power.size)
-    checks = _quantiles(contact.path, power, usable)
+    usable = _different(place)
+    sliding = usable[contact.slide_to_roll_ratio[usable] >= SMALLEST_SLIP]
+    if sliding.size > BATCH + CHECKS:
+        usable = sliding
+    few = usable.size <= BATCH + CHECKS
+    checks = usable[:0] if few else _quantiles(contact.path, power, usable)
     others = np.setdiff1d(usable, checks)
     order = others[_spread_out(place[others], settings.most_contacts)]
     known, kept = _ratios(contact, settings, checks, base, 0)
@@ -222,7 +227,7 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
         new, resolved = _ratios(contact, settings, more, base, checks.size + ratio.size)
         ratio, kept = np.append(ratio, new), min(kept, resolved)
         found = np.isfinite(ratio)
-        if found.sum() < 4:
+        if few or found.sum() < 4:
             continue
         guess = _interpolated(place[order[: ratio.size][found]], ratio[found], place[checks])
         off = guess[np.isfinite(known)] / trusted - 1
@@ -230,22 +235,30 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
     solved = np.append(order[: ratio.size], checks)
     ratios = np.append(ratio, known)
     found = np.isfinite(ratios)
-    if not np.isfinite(error) or np.mean(~found) > LARGEST_LEFT_OUT:
+    if not (few or np.isfinite(error)) or np.mean(~found) > LARGEST_LEFT_OUT:
         raise ConvergenceError(
             f"{np.count_nonzero(~found)} of {found.size} contacts of the {contact.mesh.name} have "
             "no solution: use another models.friction."
         )
-    missed = "" if error <= settings.error else f", more than the {percent(settings.error)} wanted"
     return _Solved(
         contact.force,
         place[solved[found]],
         ratios[found],
         limits,
         f"models.friction ehl-direct: {found.size} contacts of the {contact.mesh.name} solved, "
-        f"{np.count_nonzero(~found)} of them without convergence and left out; error of "
-        f"interpolated contacts {percent(error)} on average{missed}, of their power "
+        f"{np.count_nonzero(~found)} of them without convergence and left out; "
+        + ("these are all that differ." if few else _errors(error, bias, settings.error))
+        + _limits_left(contact, power)
+        + _unresolved(kept),
+    )
+
+
+def _errors(error: float, bias: float, wanted: float) -> str:
+    """What to say of the error of interpolated contacts."""
+    missed = "" if error <= wanted else f", more than the {percent(wanted)} wanted"
+    return (
+        f"error of interpolated contacts {percent(error)} on average{missed}, of their power "
         f"{percent(bias, signed=True)}."
-        f"{_limits_left(contact, power)}{_unresolved(kept)}",
     )
 
 
@@ -289,6 +302,12 @@ def _spread(values: FloatArray, limits: FloatArray) -> FloatArray:
     return spread
 
 
+def _different(place: FloatArray) -> IntArray:
+    """The first one of all points at the same place."""
+    _, first = np.unique(np.round(place, PLACES), axis=0, return_index=True)
+    return np.sort(first)
+
+
 def _quantiles(path: FloatArray, power: FloatArray, usable: IntArray) -> IntArray:
     """Points at even shares of the sliding power along the path."""
     order = usable[np.argsort(path[usable], kind="stable")]
@@ -308,12 +327,18 @@ def _spread_out(place: FloatArray, count: int) -> IntArray:
 
 
 def _interpolated(known: FloatArray, ratio: FloatArray, place: FloatArray) -> FloatArray:
-    """Ratios at `place` by thin-plate splines of their logarithm, within what was found."""
+    """Ratios at `place` by thin-plate splines of their logarithm, within what was found.
+
+    Where places lie on a line, as under an even load, by the sum of cones instead.
+    """
     from scipy.interpolate import RBFInterpolator
 
-    matters = np.ptp(known, axis=0) > 0  # an even load is the same everywhere
-    spline = RBFInterpolator(known[:, matters], np.log(ratio), smoothing=SMOOTHING)
-    logarithm = np.clip(spline(place[:, matters]), np.log(ratio.min()), np.log(ratio.max()))
+    in_a_plane = np.linalg.matrix_rank(np.insert(known, 0, 1.0, axis=1)) > known.shape[1]
+    kernel, degree = ("thin_plate_spline", 1) if in_a_plane else ("linear", 0)
+    spline = RBFInterpolator(
+        known, np.log(ratio), smoothing=SMOOTHING, kernel=kernel, degree=degree
+    )
+    logarithm = np.clip(spline(place), np.log(ratio.min()), np.log(ratio.max()))
     values: FloatArray = np.exp(logarithm)
     return values
 
