@@ -327,7 +327,8 @@ def test_a_case_reports_transmission_error_and_stiffness(talbot):
         # of the last pass of torques and losses but one: they agree to 5e-10
         error, stiffness = mesh.transmission_error_range, mesh.mean(mesh.tangent_stiffness)
         assert figures.transmission_error_range == pytest.approx(error, rel=1e-8)
-        assert figures.mesh_stiffness == pytest.approx(stiffness, rel=1e-8)
+        # that of the step before the last, which starts elsewhere
+        assert figures.mesh_stiffness == pytest.approx(stiffness, rel=1e-6)
         assert error > 0
         assert stiffness > 0
     uniform = ep.solve(talbot.updated({"models.load_distribution": "uniform"}))
