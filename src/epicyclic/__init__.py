@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from epicyclic.maps.formats import write_map
     from epicyclic.maps.lumped import with_temperature_state
     from epicyclic.maps.warm_up import warm_up
-    from epicyclic.measurement.compare import MeasuredComparison, compare_measured
+    from epicyclic.measurement.compare import compare_measured
+    from epicyclic.measurement.comparison import MeasuredComparison
     from epicyclic.records.files import open_result, save_result
     from epicyclic.records.record import ResultRecord, record
     from epicyclic.report.html import report_html
@@ -46,7 +47,7 @@ _HOME = {
     "EpicyclicError": "epicyclic.errors",
     "GearPairCase": "epicyclic.case.case",
     "InputError": "epicyclic.errors",
-    "MeasuredComparison": "epicyclic.measurement.compare",
+    "MeasuredComparison": "epicyclic.measurement.comparison",
     "PlanetaryCase": "epicyclic.case.case",
     "Problem": "epicyclic.errors",
     "Result": "epicyclic.results.result",

@@ -17,6 +17,7 @@ import xarray as xr
 
 import epicyclic as ep
 from epicyclic.cli.main import main
+from epicyclic.sweeps import plan as plans
 from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.plan import make_plan
 from epicyclic.sweeps.runner import Runner, share_of
@@ -289,6 +290,168 @@ def test_a_shard_in_python_is_a_journal_to_merge(call, coarse_talbot, tmp_path):
         assert merged.identical(whole)
     with pytest.raises(ep.InputError, match="must be I/N"):
         ep.sweep(coarse_talbot, vary, shard=(3, 2))
+
+
+MEASURED = """# no two numbers are equal
+speed [rpm],torque [N*m],temperature [degC],loss [W],uncertainty [W],rig,pinion.face_width [mm]
+1013,51,38,12.7,1.9,a,15.5
+2929,97,61,61.3,2.3,b,16.25
+5871,103,87,140.9,3.1,a,17
+4007,8.5,44,33.3,2.7,b,14.75
+7919,77,93,121.1,4.3,a,13.5
+"""
+CYCLE = """time [s],speed [rpm],torque [N*m]
+0,1009,21
+5.5,3001,-11
+9.25,4421,31.5
+17,6203,43
+23.5,811,-5.75
+"""
+NO_POCKETS = ("--set", "losses.mesh_pocketing.include=false")
+UNCERTAIN = ("--set", "uncertainty={'surroundings.oil_air_ratio'={normal=0.0113}}")
+
+
+def in_shards(call, command, option, output, count, merged):
+    """What is printed when the shards of a command, in any order, are merged to a file."""
+    for number in (count, *range(1, count)):
+        shard = ("--shard", f"{number}/{count}", "--jobs", "1")
+        code, printed, errors = call(*command, *shard, option, output)
+        assert code == 0, errors
+        assert f"shard-{number}-of-{count}" in printed
+    assert not output.exists()
+    code, printed, errors = call("merge", *files_of(output.parent, output.name), "-o", merged)
+    assert code == 0, errors
+    return printed
+
+
+@pytest.mark.parametrize("how", ["computed", "as-tested"])
+def test_shards_of_a_comparison_are_that_of_one_run(call, tmp_path, monkeypatch, how):
+    monkeypatch.chdir(tmp_path)
+    Path("measured.csv").write_text(MEASURED)
+    command = ("compare", "talbot-2012-pair", "measured.csv", *NO_POCKETS, *UNCERTAIN)
+    command += ("--group", "rig")
+    if how == "as-tested":
+        command += ("--load-dependent", how, "--component", "load_dependent")
+    code, whole, errors = call(*command, "--jobs", "1", "--json", "one.json", "--plot", "one.png")
+    assert code == 0, errors
+    drawn = ("--plot", "shards.png")
+    output = tmp_path / "shards.json"
+    printed = in_shards(call, (*command, *drawn), "--json", output, 3, "merged.json")
+    assert Path("merged.json").read_bytes() == Path("one.json").read_bytes()
+    assert Path("shards.png").read_bytes() == Path("one.png").read_bytes()
+    one, merged = (text.replace("one.", "X.") for text in (whole, printed))
+    lines = [line for line in one.splitlines() if not line.startswith("Wrote")]
+    assert [line for line in merged.splitlines() if not line.startswith("Wrote")] == lines
+    points = json.loads(Path("one.json").read_text())["points"]
+    computed = [point["computed [W]"] for point in points]
+    assert len({*computed}) == len(computed) == 5
+    # measurements are in the shards, and not looked for again
+    Path("measured.csv").unlink()
+    code, _, errors = call("merge", *files_of(tmp_path, output.name), "-o", "again.json")
+    assert code == 0, errors
+    assert Path("again.json").read_bytes() == Path("one.json").read_bytes()
+
+
+def test_a_comparison_with_points_that_fail_is_the_same_in_shards(call, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("measured.csv").write_text(MEASURED)
+    solve = plans.solve
+
+    def fails_at_high_speed(case, **options):
+        if case.operation.speed > 600:  # rad/s
+            raise ep.ConvergenceError("the test says no")
+        return solve(case, **options)
+
+    monkeypatch.setattr(plans, "solve", fails_at_high_speed)
+    command = ("compare", "talbot-2012-pair", "measured.csv", *NO_POCKETS)
+    code, whole, errors = call(*command, "--jobs", "1", "--json", "one.json")
+    assert code == 0, errors
+    assert "2 of 5 points could not be computed" in " ".join(whole.split())
+    in_shards(call, command, "--json", tmp_path / "shards.json", 2, "merged.json")
+    assert Path("merged.json").read_bytes() == Path("one.json").read_bytes()
+
+
+@pytest.mark.parametrize(("ending", "option"), [(".nc", "-o"), (".csv", "-o"), (".json", "--json")])
+def test_shards_of_a_duty_cycle_are_that_of_one_run(call, tmp_path, monkeypatch, ending, option):
+    monkeypatch.chdir(tmp_path)
+    Path("cycle.csv").write_text(CYCLE)
+    command = ("duty", "talbot-2012-pair", "cycle.csv", *NO_POCKETS)
+    command += ("--temperature", "41 degC", "--temperature", "83 degC")
+    one, shards = tmp_path / f"one{ending}", tmp_path / f"shards{ending}"
+    code, whole, errors = call(*command, "--jobs", "1", option, one, "--map", "one-map.nc")
+    assert code == 0, errors
+    kept = ("--map", "shards-map.nc")
+    printed = in_shards(call, (*command, *kept), option, shards, 3, tmp_path / f"merged{ending}")
+    assert (tmp_path / f"merged{ending}").read_bytes() == one.read_bytes()
+    assert Path("shards-map.nc").read_bytes() == Path("one-map.nc").read_bytes()
+    tables = [line for line in whole.splitlines() if not line.startswith("Wrote")]
+    assert [line for line in printed.splitlines() if not line.startswith("Wrote")] == tables
+
+
+def test_shards_find_their_cycle_and_no_other(call, tmp_path, monkeypatch):
+    computed, elsewhere = tmp_path / "computed", tmp_path / "elsewhere"
+    for folder in (computed, elsewhere):
+        folder.mkdir()
+    monkeypatch.chdir(computed)
+    Path("cycle.csv").write_text(CYCLE)
+    command = ("duty", "talbot-2012-pair", "cycle.csv", *NO_POCKETS)
+    output = computed / "d.csv"
+    in_shards(call, command, "-o", output, 2, "merged.csv")
+    shards = files_of(computed, "d.csv")
+    monkeypatch.chdir(elsewhere)
+    assert call("merge", *shards, "-o", "d.csv")[0] == 0  # where the shards were computed
+    assert Path("d.csv").read_bytes() == (computed / "merged.csv").read_bytes()
+    Path("cycle.csv").write_text(CYCLE.replace("-5.75", "-5.25"))
+    code, _, errors = call("merge", *shards, "-o", "e.csv")
+    assert code == 2
+    assert "has changed since then" in " ".join(errors.split())
+    Path("cycle.csv").unlink()
+    (computed / "cycle.csv").unlink()
+    code, _, errors = call("merge", *shards, "-o", "e.csv")
+    assert code == 2
+    assert "cannot be read: No such file" in " ".join(errors.split())
+    assert not Path("e.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--fit", "pinion.roughness", "--json", "c.json"), "each round of a fit"),
+        (("--journal", "kept", "--json", "c.json"), "are kept beside the file of --json"),
+        (("--json", "-"), "must name the file"),
+        ((), "must name the file"),
+    ],
+)
+def test_what_is_not_for_shards_of_a_comparison_is_told(call, tmp_path, monkeypatch, options, told):
+    monkeypatch.chdir(tmp_path)
+    Path("measured.csv").write_text(MEASURED)
+    shard = ("--shard", "1/2")
+    code, _, errors = call("compare", "talbot-2012-pair", "measured.csv", *shard, *options)
+    assert code == 2
+    assert told in " ".join(errors.split())
+    assert [file.name for file in tmp_path.iterdir()] == ["measured.csv"]
+
+
+@pytest.mark.parametrize(
+    ("source", "options", "told"),
+    [
+        ("map.nc", ("-o", "d.nc"), "goes with a case, not with a map"),
+        ("talbot-2012-pair", (), "must name the file"),
+        ("talbot-2012-pair", ("--json", "-"), "must be the one file"),
+        ("talbot-2012-pair", ("--json", "d.json", "-o", "d.nc"), "must be the one file"),
+        ("talbot-2012-pair", ("--journal", "kept", "-o", "d.nc"), "file of -o or --json"),
+        ("talbot-2012-pair", ("--json", "d.txt"), "must end in .nc or .csv or .json"),
+    ],
+)
+def test_what_is_not_for_shards_of_a_cycle_is_told(
+    call, tmp_path, monkeypatch, source, options, told
+):
+    monkeypatch.chdir(tmp_path)
+    Path("cycle.csv").write_text(CYCLE)
+    code, _, errors = call("duty", source, "cycle.csv", "--shard", "1/2", *options)
+    assert code == 2
+    assert told in " ".join(errors.split())
+    assert [file.name for file in tmp_path.iterdir()] == ["cycle.csv"]
 
 
 def test_a_calibration_and_a_duty_cycle_go_on(call, cluster, tmp_path):

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from epicyclic.cli.many import Write, compute
 from epicyclic.cli.options import (
     case_argument,
     journal_option,
@@ -15,17 +17,20 @@ from epicyclic.cli.options import (
     plot_option,
     runner_options,
     set_option,
+    shard_option,
 )
 from epicyclic.cli.output import check_ending, draw, show
 from epicyclic.errors import InputError, Problem
 from epicyclic.whole_file import write_file
 
 if TYPE_CHECKING:
-    from epicyclic.measurement.compare import MeasuredComparison
+    from epicyclic.measurement.comparison import MeasuredComparison
+    from epicyclic.measurement.question import ComparisonPlan
+    from epicyclic.sweeps.journal import Rows
     from epicyclic.sweeps.runner import Runner
     from epicyclic.sweeps.unloaded import LoadDependent
 
-__all__ = ["compare"]
+__all__ = ["compare", "comparison_writer"]
 
 
 @click.command()
@@ -68,6 +73,7 @@ __all__ = ["compare"]
 @plot_option("Draw parity and residuals to .png, .svg or .pdf.")
 @json_option
 @journal_option
+@shard_option
 @runner_options
 def compare(
     case: str,
@@ -90,6 +96,8 @@ def compare(
     MEASURED is a .csv, .xlsx or .parquet file with columns such as "speed [rpm]", "torque [N*m]",
     "temperature [degC]", "loss [W]"; optionally "uncertainty [W]" or [%], component, the state of a
     train, and any key of the case.
+
+    A shard keeps its points beside the file of --json, which 'epicyclic merge' writes.
     """
     from epicyclic.cli.progress import progress_bar, tell
     from epicyclic.measurement.compare import compare_measured
@@ -97,7 +105,18 @@ def compare(
 
     keys = [key.strip() for key in (fit or "").split(",") if key.strip()]
     _check_outputs(output, plot, keys)
+    if runner.shard is not None:
+        _check_shard(json_file, {"--fit": fit, "--hold-out": hold_out, "--journal": journal})
     loaded = load_with(case, changes)
+    if runner.shard is not None:
+        from epicyclic.measurement.files import read_grid
+        from epicyclic.measurement.question import ComparisonPlan, ask
+
+        question = ask(loaded, read_grid(measured), component, load_dependent, group)
+        plan, file = ComparisonPlan.of(question), Path(str(json_file))
+        write = comparison_writer(plan, file)
+        compute(plan, file, runner, write, plot=None if plot is None else str(plot))
+        return
     with progress_bar("points") as progress:
         comparison = compare_measured(
             loaded,
@@ -118,9 +137,55 @@ def compare(
     if output is not None:
         write_file(output, _calibrated_text(comparison))
     if plot is not None:
-        from epicyclic.plots.measured import measured_figure
+        _draw(comparison, plot)
 
-        draw(measured_figure(comparison), plot)
+
+def comparison_writer(plan: ComparisonPlan, output: Path, plot: str | None = None) -> Write:
+    """Shows a comparison, writes it as JSON and draws it to the file `plot`.
+
+    Raises `InputError` if it cannot.
+    """
+    from epicyclic.whole_file import check_place
+
+    check_place(output)
+
+    def write(rows: Rows) -> str:
+        from epicyclic.report.measured_table import measured_tables
+        from epicyclic.report.tables import terminal
+
+        comparison = plan.comparison(rows)
+        write_file(output, comparison.to_json() + "\n")
+        terminal().print(measured_tables(comparison))
+        if plot is not None:
+            _draw(comparison, Path(plot))
+        return f"Wrote {output}."
+
+    return write
+
+
+def _draw(comparison: MeasuredComparison, plot: Path) -> None:
+    from epicyclic.plots.measured import measured_figure
+
+    draw(measured_figure(comparison), plot)
+
+
+def _check_shard(json_file: str | None, others: Mapping[str, object]) -> None:
+    """Raise `InputError` for options that do not go with a shard."""
+    reasons = {
+        "--fit": "is not for shards: each round of a fit begins with what the one before found.",
+        "--hold-out": "goes with --fit, which is not for shards.",
+        "--journal": "is not for shards: their points are kept beside the file of --json.",
+    }
+    problems = [
+        Problem(name, "", reasons[name], "Leave one of them out.")
+        for name, value in others.items()
+        if value is not None
+    ]
+    if json_file in (None, "-"):
+        allowed = "must name the file beside which the points of a shard are kept."
+        problems.append(Problem("--json", json_file or "", allowed, "For example --json c.json."))
+    if problems:
+        raise InputError(problems, "the command")
 
 
 def _check_outputs(output: Path | None, plot: Path | None, keys: list[str]) -> None:

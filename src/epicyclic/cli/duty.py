@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 
 import click
 
+from epicyclic.cli.many import Write, compute
 from epicyclic.cli.options import (
     journal_option,
     json_option,
     load_with,
     runner_options,
     set_option,
+    shard_option,
 )
 from epicyclic.cli.output import show, wrong_ending
 from epicyclic.errors import InputError, Problem
@@ -23,12 +25,15 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from epicyclic.maps.cycle import Cycle
+    from epicyclic.maps.duty_plan import DutyPlan
+    from epicyclic.sweeps.journal import Rows
     from epicyclic.sweeps.runner import Runner
 
-__all__ = ["duty"]
+__all__ = ["duty", "duty_writer"]
 
 _MAP_SUFFIX = ".nc"
 _OUTPUTS = (".nc", ".csv")
+_JSON = ".json"
 
 
 @click.command()
@@ -55,6 +60,7 @@ _OUTPUTS = (".nc", ".csv")
 )
 @json_option
 @journal_option
+@shard_option
 @runner_options
 def duty(
     map_or_case: str,
@@ -73,32 +79,105 @@ def duty(
     CYCLE is a .csv or .parquet file with the columns "speed [rpm]", "torque [N*m]", if it varies
     "temperature [degC]", and "time [s]", "duration [s]" or "share"; any units. MAP is a loss map in
     a .nc file; for a CASE one that covers the cycle is computed first.
+
+    A shard has its share of the points of that map. It keeps them beside the file of -o or --json,
+    which 'epicyclic merge' writes.
     """
     from epicyclic.cli.progress import progress_bar
     from epicyclic.maps.cycle import open_cycle
-    from epicyclic.maps.duty import add_up, make_duty, parse_temperatures
+    from epicyclic.maps.duty import parse_temperatures
 
-    _check_options(map_or_case, changes, map_file, output)
+    _check_options(map_or_case, changes, map_file, output, runner)
+    if runner.shard is not None:
+        _check_shard(output, json_file, journal)
     runner = replace(runner, journal=journal)
     with progress_bar("rows read") as progress:
         checked = open_cycle(cycle, progress)
     celsius = parse_temperatures(checked, temperatures or None)
+    if runner.shard is not None:
+        from epicyclic.maps.duty_plan import DutyPlan, digest_of
+
+        case = load_with(map_or_case, changes)
+        digest = digest_of(Path(cycle))
+        plan = DutyPlan.of(case, checked, celsius, digest=digest, clamp=clamp)
+        file = output or Path(str(json_file))
+        how = {"cycle": cycle, "folder": str(Path.cwd())}
+        how |= {} if map_file is None else {"map_file": str(map_file)}
+        compute(plan, file, runner, duty_writer(plan, file, **how), **how)
+        return
     data = _map(map_or_case, changes, checked, celsius, map_file, runner)
+    result = _result(data, checked, celsius, clamp, runner)
+    _write_table(result, output)
+    _show(result, json_file)
+
+
+def duty_writer(
+    plan: DutyPlan, output: Path, cycle: str, folder: str, map_file: str | None = None
+) -> Write:
+    """Shows a duty cycle and writes it; raises `InputError` if it cannot.
+
+    The cycle is that of this name here, else that in `folder`.
+    """
+    from epicyclic.maps.duty_plan import check_same
+    from epicyclic.whole_file import check_place
+
+    problems = wrong_ending("-o", output, (*_OUTPUTS, _JSON))
+    if problems:
+        raise InputError(problems, "the command")
+    check_place(output)
+    path = Path(cycle) if Path(cycle).is_file() else Path(folder, cycle)
+    check_same(plan, path)
+
+    def write(rows: Rows) -> str:
+        from epicyclic.maps.compute import to_map
+        from epicyclic.maps.cycle import open_cycle
+        from epicyclic.report.duty_table import duty_json
+        from epicyclic.sweeps.runner import HERE
+
+        read = open_cycle(path)
+        named = replace(read, source=replace(read.source, name=cycle))
+        data = to_map(plan, rows)
+        result = _result(data, named, plan.celsius, plan.clamp, HERE)
+        if map_file is not None:
+            _write_map(data, Path(map_file))
+        if output.suffix == _JSON:
+            write_file(output, duty_json(result) + "\n")
+        else:
+            _write_table(result, output)
+        _show(result, None)
+        return f"Wrote {output}."
+
+    return write
+
+
+def _result(
+    data: xr.Dataset,
+    cycle: Cycle,
+    celsius: tuple[float, ...] | None,
+    clamp: bool,
+    runner: Runner,
+) -> xr.Dataset:
+    from epicyclic.cli.progress import progress_bar
+    from epicyclic.maps.duty import add_up, make_duty
+
     with progress_bar("rows") as progress:
-        sums = add_up(data, checked, celsius, clamp=clamp, progress=progress)
+        sums = add_up(data, cycle, celsius, clamp=clamp, progress=progress)
     with progress_bar("checked points") as progress:
-        result = make_duty(data, checked, sums, replace(runner, progress=progress))
-    _write(result, output, json_file)
+        return make_duty(data, cycle, sums, replace(runner, progress=progress))
 
 
 def _check_options(
-    map_or_case: str, changes: tuple[str, ...], map_file: Path | None, output: Path | None
+    map_or_case: str,
+    changes: tuple[str, ...],
+    map_file: Path | None,
+    output: Path | None,
+    runner: Runner,
 ) -> None:
     from epicyclic.whole_file import check_place
 
     problems = []
     if Path(map_or_case).suffix == _MAP_SUFFIX:
-        given = (("--set", changes), ("--map", map_file))
+        given = (("--set", changes), ("--map", map_file), ("--shard", runner.shard))
         problems += [
             Problem(name, "", "goes with a case, not with a map.", "Leave it out.")
             for name, value in given
@@ -114,6 +193,23 @@ def _check_options(
             check_place(path)
 
 
+def _check_shard(output: Path | None, json_file: str | None, journal: Path | None) -> None:
+    """Raise `InputError` unless there is one file beside which a shard can keep its points."""
+    problems = []
+    if journal is not None:
+        allowed = "is not for shards: their points are kept beside the file of -o or --json."
+        problems.append(Problem("--journal", str(journal), allowed, "Leave it out."))
+    if json_file is not None and (output is not None or json_file == "-"):
+        allowed = "must be the one file that a shard is for."
+        remedy = "Give -o FILE or --json FILE; 'epicyclic merge' writes any of them."
+        problems.append(Problem("--json", json_file, allowed, remedy))
+    elif json_file is None and output is None:
+        allowed = "must name the file beside which the points of a shard are kept."
+        problems.append(Problem("-o", "", allowed, "For example -o duty.nc."))
+    if problems:
+        raise InputError(problems, "the command")
+
+
 def _map(
     map_or_case: str,
     changes: tuple[str, ...],
@@ -125,7 +221,6 @@ def _map(
     """The map that is named, or one of the case that is."""
     from epicyclic.cli.progress import progress_bar
     from epicyclic.maps.duty import cycle_map
-    from epicyclic.maps.formats import write_map
     from epicyclic.records.files import open_map
 
     if Path(map_or_case).suffix == _MAP_SUFFIX:
@@ -134,17 +229,28 @@ def _map(
     with progress_bar("points of the map") as progress:
         data = cycle_map(case, cycle, celsius, replace(runner, progress=progress))
     if map_file is not None:
-        write_map(data, map_file)
-        click.echo(f"Wrote the map to {map_file}.", err=True)
+        _write_map(data, map_file)
     return data
 
 
-def _write(result: xr.Dataset, output: Path | None, json_file: str | None) -> None:
-    from epicyclic.report.duty_table import duty_json, duty_rows, duty_tables
+def _write_map(data: xr.Dataset, map_file: Path) -> None:
+    from epicyclic.maps.formats import write_map
+
+    write_map(data, map_file)
+    click.echo(f"Wrote the map to {map_file}.", err=True)
+
+
+def _write_table(result: xr.Dataset, output: Path | None) -> None:
+    from epicyclic.report.duty_table import duty_rows
     from epicyclic.sweeps.dataset import csv_safe, write_dataset
 
     if output is not None and output.suffix == _MAP_SUFFIX:
         write_dataset(result, output)
     elif output is not None:
         write_file(output, csv_safe(duty_rows(result)).to_csv(index=False))
+
+
+def _show(result: xr.Dataset, json_file: str | None) -> None:
+    from epicyclic.report.duty_table import duty_json, duty_tables
+
     show(lambda: duty_tables(result), lambda: duty_json(result), json_file)

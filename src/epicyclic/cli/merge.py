@@ -7,6 +7,8 @@ from pathlib import Path
 
 import click
 
+from epicyclic.cli.compare import comparison_writer
+from epicyclic.cli.duty import duty_writer
 from epicyclic.cli.many import Write, finish, map_writer, sweep_writer
 from epicyclic.cli.oil import campaign_writer
 from epicyclic.cli.pockets import study_writer
@@ -20,6 +22,8 @@ WRITERS: dict[str, Callable[..., Write]] = {
     "study": study_writer,
     "pockets-table": table_writer,
     "oil": campaign_writer,
+    "comparison": comparison_writer,
+    "duty": duty_writer,
 }
 """What writes the rows of each kind of plan."""
 
@@ -47,11 +51,13 @@ def merge(files: tuple[Path, ...], output: Path) -> None:
     """
     from epicyclic.campaigns.campaign import Campaign
     from epicyclic.maps.compute import MapPlan
+    from epicyclic.maps.duty_plan import DutyPlan
+    from epicyclic.measurement.question import ComparisonPlan
     from epicyclic.sweeps.plan import SweepPlan
     from epicyclic.sweeps.pocketing_plan import StudyPlan
     from epicyclic.sweeps.pocketing_table import TablePlan
     from epicyclic.sweeps.shards import gather
 
-    plans = (SweepPlan, MapPlan, StudyPlan, TablePlan, Campaign)
+    plans = (SweepPlan, MapPlan, StudyPlan, TablePlan, Campaign, ComparisonPlan, DutyPlan)
     plan, rows, how = gather(files, {plan.kind: plan for plan in plans})
     finish(plan, rows, WRITERS[plan.kind](plan, output, **how))

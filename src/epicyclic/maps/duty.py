@@ -21,7 +21,7 @@ from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.operating import STATE
 from epicyclic.case.wording import sentence, written
 from epicyclic.errors import InputError, Problem
-from epicyclic.maps.compute import map_plan, to_map
+from epicyclic.maps.compute import MapPlan, map_plan, to_map
 from epicyclic.maps.cycle import Cycle, Piece, open_cycle
 from epicyclic.maps.interpolation_error import (
     Deviation,
@@ -53,6 +53,7 @@ __all__ = [
     "check_states",
     "crowded",
     "cycle_map",
+    "cycle_plan",
     "duty_cycle",
     "make_duty",
     "parse_temperatures",
@@ -171,6 +172,12 @@ def cycle_map(
     runner: Runner = HERE,
 ) -> xr.Dataset:
     """A map of `case` that covers a cycle."""
+    plan = cycle_plan(case, cycle, celsius)
+    return to_map(plan, runner.within(plan).run(plan))
+
+
+def cycle_plan(case: Case, cycle: Cycle, celsius: tuple[float, ...] | None) -> MapPlan:
+    """The points of that map."""
     speeds = crowded(*cycle.ranges["speed"], _SPEEDS)
     torques = resolving_zero(crowded(*cycle.ranges["torque"], _TORQUES), _CROWD)
     temperatures, states = celsius, None
@@ -182,14 +189,13 @@ def cycle_map(
     elif "temperature" in cycle.ranges:
         low, high = cycle.ranges["temperature"]
         temperatures = tuple(np.unique(np.linspace(low, high, _TEMPERATURES)).tolist())
-    plan = map_plan(
+    return map_plan(
         case,
         texts_of(speeds, RPM),
         texts_of(torques, NEWTON_METRE),
         None if temperatures is None else texts_of(temperatures, CELSIUS),
         states=states,
     )
-    return to_map(plan, runner.within(plan).run(plan))
 
 
 def crowded(low: float, high: float, count: int) -> Array:

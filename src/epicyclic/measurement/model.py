@@ -72,18 +72,28 @@ class MeasuredPoints:
 
     def compute(self, *settings: Mapping[str, Any]) -> list[Computed]:
         """The losses for each of several `settings` of keys, all of them in one go."""
-        changes = self.measured.changes
-        asked = tuple({**_EXACT, **change, **keys} for keys in settings for change in changes)
-        points, unloaded = asked, np.arange(len(asked))
-        if self.load_dependent == AS_TESTED:
-            points, unloaded = with_unloaded(asked)
+        points, unloaded = self.asked(*settings)
         plan = (
             PointList(self.case, points)
             if self.lattice is None
             else NearbyPoints(self.case, points, lattice=self.lattice)
         )
-        rows = self.runner.within(plan).run(plan)
-        return [self._computed(rows, unloaded, i) for i in range(0, unloaded.size, len(changes))]
+        return self.losses(self.runner.within(plan).run(plan), unloaded)
+
+    def asked(
+        self, *settings: Mapping[str, Any]
+    ) -> tuple[tuple[dict[str, Any], ...], NDArray[np.intp]]:
+        """The keys that each point changes, and numbers of the points without torque, if asked."""
+        changes = self.measured.changes
+        points = tuple({**_EXACT, **change, **keys} for keys in settings for change in changes)
+        if self.load_dependent == AS_TESTED:
+            return with_unloaded(points)
+        return points, np.arange(len(points))
+
+    def losses(self, rows: Rows, unloaded: NDArray[np.intp]) -> list[Computed]:
+        """The losses for each of the settings, of the rows of all points that were `asked` for."""
+        count = len(self.measured)
+        return [self._computed(rows, unloaded, i) for i in range(0, unloaded.size, count)]
 
     def _computed(self, rows: Rows, unloaded: NDArray[np.intp], first: int) -> Computed:
         """The points of one of the settings, from number `first` on."""

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from epicyclic.case.operating import OPERATING
-from epicyclic.measurement.compare import MeasuredComparison
+from epicyclic.measurement.comparison import MeasuredComparison
 from epicyclic.measurement.deviations import AS_GIVEN, CALIBRATED
 from epicyclic.plots.style import COLOURS, styled_figure
 from epicyclic.units import format_number, percent, unit_text

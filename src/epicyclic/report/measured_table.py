@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from epicyclic.case.operating import OPERATING
-from epicyclic.measurement.compare import MeasuredComparison
+from epicyclic.measurement.comparison import MeasuredComparison
 from epicyclic.measurement.deviations import CALIBRATED, ErrorFigures
 from epicyclic.measurement.fit_result import Fit, FittedParameter
 from epicyclic.report.shown import MISSING, shown
