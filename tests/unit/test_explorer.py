@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import re
 import shutil
 import subprocess
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import epicyclic as ep
+from epicyclic.plots.sweep import LEFT_OUT, MOST_POINTS, thinned
 from epicyclic.report import explorer
 from epicyclic.report.explorer import explorer_items
 from epicyclic.report.page import Explorer, Listing
@@ -145,6 +148,76 @@ def test_a_sweep_has_a_report_of_its_own(data, page):
     assert '<section id="explorer" hidden>' in page  # until its script has run
     shown = [float(one) for one in re.findall(r'<data value="([^"]+)" data-key="total\[', page)]
     assert shown == sorted(data["total"].values.ravel())
+
+
+def enlarged(data, speeds, torques):
+    """A sweep of as many speeds and torques, made of a small one; no two numbers are equal."""
+    sizes = {"operation.speed": speeds, "operation.torque": torques}
+    repeated = {dim: np.arange(count) % data.sizes[dim] for dim, count in sizes.items()}
+    large = data.isel(repeated)
+    for dim, count in sizes.items():
+        values = 1.5 * data[dim].values[0] + 0.37 * np.arange(count)
+        large = large.assign_coords({dim: (dim, values, data[dim].attrs)})
+    factor = 1 + 1e-7 * np.arange(large["total"].size).reshape(large["total"].shape)
+    for name, array in large.data_vars.items():
+        if array.dtype.kind == "f" and array.shape == factor.shape:
+            large[name] = (array.dims, array.values * factor, array.attrs)
+    return large
+
+
+def test_the_page_of_a_large_sweep_is_bounded_and_says_what_it_leaves_out(data):
+    large, larger = enlarged(data, 70, 60), enlarged(data, 230, 110)
+    pages = [ep.report_html(sweep) for sweep in (large, larger)]
+    for sweep, page in zip((large, larger), pages, strict=True):
+        size = sweep["total"].size
+        contents, values = contents_of(page)
+        shown = int(np.prod([len(axis["values"]) for axis in contents["axes"]]))
+        assert 0.8 * MOST_POINTS < shown <= MOST_POINTS
+        told = f"Of {size} points {shown} are shown"
+        assert page.count(told) == 3
+        assert page.count(f"{size - shown} are left out.") == 3
+        assert f"{shown} of {size} points of the sweep" in page
+        # what is shown is what was computed there, the least loss among it
+        names = [result["name"] for result in contents["results"]]
+        total = values[names.index("total")]
+        at = {axis["name"]: axis["values"] for axis in contents["axes"]}
+        np.testing.assert_array_equal(total, sweep["total"].squeeze().sel(at).astype("f4"))
+        assert total.min() == np.float32(sweep["total"].min())
+        for axis in ("operation.speed", "operation.torque"):
+            assert {at[axis][0], at[axis][-1]} == {*sweep[axis].values[[0, -1]]}
+        # tables and counts are of all points
+        rows = [float(one) for one in re.findall(r'<data value="([^"]+)" data-key="total\[', page)]
+        every = np.sort(sweep["total"].values, axis=None)
+        assert rows == [*every[:11], every[-1]]
+        counts = re.findall(rf"\((\d+) of {size} points\)", page)
+        assert counts
+        assert all(int(count) <= size for count in counts)
+    assert len(pages[1]) < 1.1 * len(pages[0])
+
+
+@pytest.mark.parametrize(
+    "sizes", [(5001,), (1_000_000,), (1000, 1000), (2,) * 20, (3, 4999, 2), (71, 72), (7, 1, 20000)]
+)
+def test_thinned_sweeps_keep_their_least_loss_and_as_many_values_as_there_is_room(sizes):
+    losses = np.random.default_rng(4).permutation(math.prod(sizes)) + 0.5
+    dims = [f"key{number}" for number in range(len(sizes))]
+    sweep = xr.Dataset({"total": (dims, losses.reshape(sizes))})
+    part = thinned(sweep)
+    kept = part["total"]
+    assert 0.4 * MOST_POINTS < kept.size <= MOST_POINTS
+    assert part.attrs[LEFT_OUT] == losses.size - kept.size
+    assert kept.min() == 0.5
+    assert len({*kept.values.ravel()}) == kept.size  # no point twice
+    assert all(some <= every for some, every in zip(kept.shape, sizes, strict=True))
+    assert thinned(part) is part
+
+
+def test_a_sweep_of_as_many_points_as_a_page_has_room_for_is_whole():
+    total = np.arange(MOST_POINTS) + 0.5
+    sweep = xr.Dataset({"total": ("key", total)})
+    assert thinned(sweep) is sweep
+    unknown = xr.Dataset({"total": ("key", np.full(MOST_POINTS + 1, np.nan))})
+    assert thinned(unknown).attrs[LEFT_OUT] == 1
 
 
 def test_like_warnings_are_counted_together(data, page):

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 import textwrap
+from bisect import bisect
+from collections.abc import Sequence
 
 import matplotlib as mpl
 import numpy as np
@@ -31,12 +34,14 @@ from epicyclic.records.files import is_sweep
 from epicyclic.units import format_number, unit_text
 
 __all__ = [
+    "LEFT_OUT",
     "fields_of",
     "plot_sweep_field",
     "plot_sweep_lines",
     "plot_sweep_parallel",
     "shown_results",
     "sweep_line",
+    "thinned",
     "varied",
 ]
 
@@ -51,13 +56,60 @@ LABEL_WIDTH = 14
 MOST_TICKS = 4
 """Most values of a parallel axis that has a tick at each of them."""
 MOST_POINTS = 5000
-"""Drawn point by point."""
+"""Drawn point by point, and in a report altogether."""
+LEFT_OUT = "points_left_out"
+"""Attribute of a sweep that is thinned out: the number of its other points."""
+MOST_NAMES = 8
+"""Of a key, in a line of text."""
 
 
 def varied(data: xr.Dataset) -> list[str]:
     """Dimensions with several values: numbers before names, those with most values first."""
     found = [str(name) for name in data["total"].dims if data.sizes[name] > 1]
     return sorted(found, key=lambda name: (not _is_number(data[name]), -data.sizes[name]))
+
+
+def thinned(data: xr.Dataset) -> xr.Dataset:
+    """At most `MOST_POINTS` of a sweep: evenly spaced values of each key, those of the least loss.
+
+    The attribute `LEFT_OUT` says how many are left out. Keys of few values keep all of them as long
+    as those of many can be thinned out.
+    """
+    total = data["total"]
+    if total.size <= MOST_POINTS:
+        return data
+    losses = total.to_numpy()
+    known = np.isfinite(losses).any()
+    best = np.unravel_index(int(np.nanargmin(losses)) if known else 0, losses.shape)
+    kept = {
+        dim: _evenly(size, count, int(place))
+        for dim, size, count, place in zip(
+            total.dims, total.shape, _counts(total.shape), best, strict=True
+        )
+    }
+    part = data.isel(kept)
+    left_out = data.attrs.get(LEFT_OUT, 0) + total.size - part["total"].size
+    return part.assign_attrs({LEFT_OUT: left_out})
+
+
+def _counts(sizes: Sequence[int]) -> list[int]:
+    """How many values of each key to keep: as many of all, and one more where there is room."""
+    tops = range(1, MOST_POINTS + 1)
+    top = bisect(tops, MOST_POINTS, key=lambda top: math.prod(min(n, top) for n in sizes))
+    counts = [min(size, top) for size in sizes]
+    for number, size in enumerate(sizes):
+        more = [*counts[:number], counts[number] + 1, *counts[number + 1 :]]
+        if more[number] <= size and math.prod(more) <= MOST_POINTS:
+            counts = more
+    return counts
+
+
+def _evenly(size: int, count: int, place: int) -> list[int]:
+    """Indices of `count` of `size` values, evenly spaced but for `place`, which is one of them."""
+    chosen = np.linspace(0, size - 1, count).round().astype(int)
+    inner = chosen[1:-1] if count > 2 and 0 < place < size - 1 else chosen  # both ends stay
+    inner[np.abs(inner - place).argmin()] = place
+    return [int(one) for one in chosen]
 
 
 def shown_results(data: xr.Dataset) -> list[str]:
@@ -144,9 +196,8 @@ def plot_sweep_field(data: xr.Dataset, name: str, ax: Axes) -> Axes:
 def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
     """A line for each point through the values of all keys and results, coloured by its loss."""
     dims, results = varied(data), shown_results(data)
-    part = _at_first(data, dims)[results]
+    part = thinned(_at_first(data, dims)[results])
     points = part.stack(point=dims).dropna("point", subset=["total"])
-    points = points.isel(point=slice(0, None, -(-points.sizes["point"] // MOST_POINTS)))
     arrays = [points[dim] for dim in dims] + [_in_percent(points[name]) for name in results]
     columns = [_column(array) for array in arrays]
     places = np.arange(len(arrays), dtype=float)
@@ -179,7 +230,10 @@ def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
     ax.set_yticks([])
     ax.grid(visible=False)
     ax.spines["left"].set_visible(False)
-    ax.set(title="Every point of the sweep", xlim=(-0.1, places[-1] + 0.3), ylim=(-0.05, 1.05))
+    left_out = part.attrs.get(LEFT_OUT, 0)
+    drawn = f"{part['total'].size} of {part['total'].size + left_out} points"
+    title = f"{drawn if left_out else 'Every point'} of the sweep"
+    ax.set(title=title, xlim=(-0.1, places[-1] + 0.3), ylim=(-0.05, 1.05))
     figure = ax.get_figure()
     assert isinstance(figure, Figure)
     figure.colorbar(lines, ax=ax, label=label_of(data["total"]))
@@ -263,7 +317,9 @@ def _value(value: xr.DataArray) -> str:
 
 def _span(values: xr.DataArray) -> str:
     if not _is_number(values):
-        return ", ".join(map(str, values.values))
+        names = list(dict.fromkeys(map(str, values.values)))
+        more = len(names) - MOST_NAMES
+        return ", ".join(names[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
     low, high = float(values.min()), float(values.max())
     texts = [format_number(one) for one in ((low,) if low == high else (low, high))]
     return f"{' to '.join(texts)} {_unit(values)}".rstrip()

@@ -18,7 +18,7 @@ from epicyclic.case.operating import operating_line
 from epicyclic.maps.tables import map_inputs
 from epicyclic.plots.catalogue import Stored, available
 from epicyclic.plots.loss_map import map_line
-from epicyclic.plots.sweep import sweep_line
+from epicyclic.plots.sweep import sweep_line, thinned
 from epicyclic.records.files import is_sweep
 from epicyclic.records.record import ResultRecord
 from epicyclic.report.drawings import draw
@@ -61,13 +61,16 @@ def report_html(
     Returns
     -------
     str
-        HTML. The same for the same content, whether computed or read from a file.
+        HTML. The same for the same content, whether computed or read from a file. Of a sweep of
+        very many points pictures and explorer have some, and say so.
     """
-    drawings = _drawings(stored, progress or (lambda done, total: None), size)
+    tell = progress or (lambda done, total: None)
+    if not isinstance(stored, ResultRecord) and is_sweep(stored):
+        shown = thinned(stored)  # a page holds so many, a sweep any number
+        return page_html(**_sweep_content(stored, shown, _drawings(shown, tell, size)))
+    drawings = _drawings(stored, tell, size)
     if isinstance(stored, ResultRecord):
         content = _result_content(stored, drawings)
-    elif is_sweep(stored):
-        content = _sweep_content(stored, drawings)
     elif "torque_loss" in stored:
         content = _map_content(stored, drawings)
     else:
@@ -110,7 +113,7 @@ def _map_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
     }
 
 
-def _sweep_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
+def _sweep_content(data: xr.Dataset, shown: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
     kind = map_inputs(data)["kind"]
     return {
         "title": str(data.attrs["title"]) or kind.replace("_", " "),
@@ -118,7 +121,7 @@ def _sweep_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
         "operation": sweep_line(data),
         "source": f"Computed with {data.attrs['source']}",
         "key_figures": sweep_key_figures(data),
-        "sections": sweep_sections(data, drawings),
+        "sections": sweep_sections(data, shown, drawings),
     }
 
 

@@ -136,14 +136,14 @@ def validity_items(data: xr.Dataset) -> tuple[Listing, ...]:
     for name, title in (("message", "Failed points"), ("warnings", "Warnings")):
         counts: Counter[str] = Counter()
         first: dict[str, str] = {}
-        for text in data[name].values.ravel():
+        for text, points in Counter(map(str, data[name].values.ravel())).items():
             kinds = {
                 _NUMBER.sub("#", one): one
-                for line in filter(None, str(text).split(" | "))
+                for line in filter(None, text.split(" | "))
                 for one in _without_values(line)
             }
             first = kinds | first
-            counts.update(list(kinds))
+            counts.update(dict.fromkeys(kinds, points))
         if counts:
             items = tuple(
                 f"{first[kind]} ({count} of {size} points)" for kind, count in counts.most_common()

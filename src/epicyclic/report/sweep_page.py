@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from epicyclic.maps.tables import map_inputs
-from epicyclic.plots.sweep import shown_results
+from epicyclic.plots.sweep import LEFT_OUT, shown_results
 from epicyclic.report.explorer import EXPLORER_LEAD, explorer_items
 from epicyclic.report.inputs import input_tables
 from epicyclic.report.map_page import validity_items, versions_of
@@ -41,19 +41,33 @@ def sweep_key_figures(data: xr.Dataset) -> list[KeyFigure]:
     return figures
 
 
-def sweep_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
-    """All chapters of a sweep."""
+def sweep_sections(data: xr.Dataset, shown: xr.Dataset, drawings: Drawings) -> list[Section]:
+    """All chapters of a sweep, of which `shown` are the points that the page has room for."""
     inputs = map_inputs(data)
+    some = _left_out(shown)
     sections = [
-        Section("explorer", "Explorer", explorer_items(data), EXPLORER_LEAD),
-        Section("lines", "Over the varied keys", gallery(drawings, "lines", "contours")),
-        Section("all", "All points", gallery(drawings, "parallel", wide=True)),
+        Section("explorer", "Explorer", explorer_items(shown), f"{EXPLORER_LEAD} {some}".strip()),
+        Section("lines", "Over the varied keys", gallery(drawings, "lines", "contours"), some),
+        Section("all", "Point by point", gallery(drawings, "parallel", wide=True), some),
         Section("points", "Least loss", _points(data), _POINTS_LEAD),
         Section("validity", "Validity", validity_items(data)),
         Section("inputs", "Inputs", tuple(input_tables(inputs, inputs)), _INPUT_LEAD),
         Section("versions", "Versions", (versions_of(data),)),
     ]
     return [section for section in sections if section.items]
+
+
+def _left_out(shown: xr.Dataset) -> str:
+    """How many points pictures leave out, and where all are; nothing if there are none."""
+    left_out = shown.attrs.get(LEFT_OUT, 0)
+    if not left_out:
+        return ""
+    size = shown["total"].size
+    return (
+        f"Of {size + left_out} points {size} are shown, at evenly spaced values of each key and "
+        f"those of the least loss; {left_out} are left out. Key figures, least losses and validity "
+        "are those of all points, which are in the file of the sweep."
+    )
 
 
 _INPUT_LEAD = "The case before anything was varied."
