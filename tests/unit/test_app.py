@@ -650,6 +650,27 @@ def test_a_machine_that_does_not_know_its_own_name_has_loopback_addresses(monkey
 
 
 @pytest.mark.parametrize("host", ["", "a\0b", "\udcff", "a" * 300, "no-such-host.invalid"])
+@pytest.mark.parametrize("task", [app_tasks.endless, app_tasks.doubled])
+def test_a_worker_that_is_closed_between_two_answers_ends_its_work(task):
+    async def run():
+        worker = Worker()
+        arguments = (23,) if task is app_tasks.doubled else ()
+        told = []
+
+        def close(*count):  # an answer is here, and the next one is still to be waited for
+            told.append(count)
+            worker.close()
+
+        with pytest.raises(Ended):
+            await worker.do(task, *arguments, progress=close)
+        with pytest.raises(Ended):
+            await worker.do(app_tasks.doubled, 3, progress=print)
+        assert len(told) == 1
+        worker.close()
+
+    asyncio.run(run())
+
+
 def test_what_is_no_address_is_told(host):
     from epicyclic.cli.app import app
 

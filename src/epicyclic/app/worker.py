@@ -63,7 +63,7 @@ class Worker:
         Raises
         ------
         Ended
-            If `end` was called meanwhile, or `close` before.
+            If `end` or `close` was called meanwhile, or `close` before.
         EpicyclicError
             As the task raises it.
         """
@@ -81,6 +81,8 @@ class Worker:
                     if what == "failed":
                         raise content
                     progress(*content)
+                    if self.is_closed:  # since then, and there is no thread to wait any more
+                        raise Ended
             except (EOFError, OSError):
                 self.end()
                 raise Ended from None
