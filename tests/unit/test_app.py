@@ -525,17 +525,34 @@ def test_no_path_on_the_machine_is_opened(path, tmp_path, talbot):
     tables = talbot.given()
     text = Desk("x", tables | {"models": {"oil_model": path}}, lambda changes: talbot).text()
     with pytest.raises(InputError, match="beside the case"):
-        received("mine.toml", {"mine.toml": text.encode()}, tmp_path)
+        received([("mine.toml", text.encode())], tmp_path)
 
 
 def test_an_uploaded_name_cannot_leave_its_folder(tmp_path, talbot):
     text = Desk("x", talbot.given(), lambda changes: talbot).text()
     folder = tmp_path / "own"
     folder.mkdir()
-    desk = received("../mine.toml", {"../mine.toml": text.encode()}, folder)
+    desk = received([("../mine.toml", text.encode())], folder)
     assert desk.source == "mine.toml"
     assert desk.case == talbot
     assert [path.name for path in tmp_path.iterdir()] == ["own"]
+
+
+@pytest.mark.parametrize("second", ["mine.toml", "other/mine.toml", "Mine.TOML"])
+def test_of_two_files_of_one_name_neither_wins(second, tmp_path, talbot):
+    files = [("mine.toml", b"kind"), ("film.csv", b"7"), (second, b"torque"), ("film.csv", b"8")]
+    with pytest.raises(InputError) as error:
+        received(files, tmp_path)
+    problems = [(one.value, one.allowed) for one in error.value.problems]
+    assert problems[-1] == ('"film.csv"', "is the name of 2 files.")
+    assert len(problems) == 2
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("names", [("a.csv",), ("a.toml", "b.toml"), ("a.toml", "b.rexs")])
+def test_one_of_the_files_of_an_upload_is_a_case(names, tmp_path):
+    with pytest.raises(InputError, match="One of the files must be a case"):
+        received([(name, b"") for name in names], tmp_path)
 
 
 def test_only_built_in_cases_are_opened_by_name(tmp_path):
@@ -560,9 +577,9 @@ def test_a_broken_case_is_opened_with_its_problems(tmp_path):
 @pytest.mark.parametrize("name", ["..", "", "a\0b", "a\nb", "\x1b[31m", "\udcff", "x" * 300])
 def test_what_is_no_name_of_a_file_is_refused(name, tmp_path, talbot):
     text = Desk("x", talbot.given(), lambda changes: talbot).text().encode()
-    for case, files in ((name, {name: text}), ("mine.toml", {"mine.toml": text, name: b""})):
+    for files in ([(name, text)], [("mine.toml", text), (name, b"")]):
         with pytest.raises(InputError, match="Rename it") as error:
-            received(case, files, tmp_path)
+            received(files, tmp_path)
         assert str(error.value).isascii()
         assert str(tmp_path) not in str(error.value)
 
@@ -633,23 +650,6 @@ def test_the_worker_tells_progress_and_errors_and_can_be_ended():
     asyncio.run(run())
 
 
-# --- where it listens -----------------------------------------------------------------------------
-
-
-def test_names_of_the_address():
-    assert names_of("127.0.0.1", "127.0.0.1") == ["127.0.0.1", "localhost", "[::1]"]
-    assert names_of("192.0.2.7", "192.0.2.7") == ["192.0.2.7"]
-    assert names_of("2001:DB8:0::7", "2001:db8::7") == ["[2001:db8:0::7]", "[2001:db8::7]"]
-    assert names_of("Desk.example", "192.0.2.7") == ["desk.example", "192.0.2.7"]
-    assert {"127.0.0.1", "localhost"} < set(names_of("0.0.0.0", "0.0.0.0"))
-
-
-def test_a_machine_that_does_not_know_its_own_name_has_loopback_addresses(monkeypatch):
-    monkeypatch.setattr("socket.gethostname", lambda: "no-such-host.invalid")
-    assert names_of("::", "::") == ["127.0.0.1", "localhost", "[::1]"]
-
-
-@pytest.mark.parametrize("host", ["", "a\0b", "\udcff", "a" * 300, "no-such-host.invalid"])
 @pytest.mark.parametrize("task", [app_tasks.endless, app_tasks.doubled])
 def test_a_worker_that_is_closed_between_two_answers_ends_its_work(task):
     async def run():
@@ -671,6 +671,23 @@ def test_a_worker_that_is_closed_between_two_answers_ends_its_work(task):
     asyncio.run(run())
 
 
+# --- where it listens -----------------------------------------------------------------------------
+
+
+def test_names_of_the_address():
+    assert names_of("127.0.0.1", "127.0.0.1") == ["127.0.0.1", "localhost", "[::1]"]
+    assert names_of("192.0.2.7", "192.0.2.7") == ["192.0.2.7"]
+    assert names_of("2001:DB8:0::7", "2001:db8::7") == ["[2001:db8:0::7]", "[2001:db8::7]"]
+    assert names_of("Desk.example", "192.0.2.7") == ["desk.example", "192.0.2.7"]
+    assert {"127.0.0.1", "localhost"} < set(names_of("0.0.0.0", "0.0.0.0"))
+
+
+def test_a_machine_that_does_not_know_its_own_name_has_loopback_addresses(monkeypatch):
+    monkeypatch.setattr("socket.gethostname", lambda: "no-such-host.invalid")
+    assert names_of("::", "::") == ["127.0.0.1", "localhost", "[::1]"]
+
+
+@pytest.mark.parametrize("host", ["", "a\0b", "\udcff", "a" * 300, "no-such-host.invalid"])
 def test_what_is_no_address_is_told(host):
     from epicyclic.cli.app import app
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -220,26 +221,40 @@ def opened(path: str, shown: str = "") -> Desk:
     return Desk(shown or path, case.given(), case.updated)
 
 
-def received(name: str, files: Mapping[str, bytes], folder: Path) -> Desk:
+def received(files: Iterable[tuple[str, bytes]], folder: Path) -> Desk:
     """The desk of an uploaded case.
 
     Parameters
     ----------
-    name : str
-        Name of the file with the case.
-    files : mapping of str to bytes
-        That file, and those that the case names.
+    files : iterable of (str, bytes)
+        Names and contents: the file with the case, and those that it names.
     folder : Path
         Folder of the app, empty.
 
     Raises
     ------
     InputError
-        If it is no case, names files elsewhere, or cannot be kept.
+        If two have the same name, not one of them is a case, it names files elsewhere, or they
+        cannot be kept.
     """
-    for other, content in files.items():
-        _keep(folder, Path(other).name, content)
-    desk = opened(str(folder / Path(name).name), Path(name).name)
+    contents = [(Path(name).name, content) for name, content in files]
+    counts = Counter(name.casefold() for name, _ in contents)  # as some systems compare names
+    problems = [
+        Problem(
+            "file", written(name), f"is the name of {count} files.", "Rename all but one of them."
+        )
+        for name, count in counts.items()
+        if count > 1
+    ]
+    if problems:
+        raise InputError(problems, "the upload")
+    for name, content in contents:
+        _keep(folder, name, content)
+    cases = [name for name, _ in contents if Path(name).suffix.lower() in ENDINGS]
+    if len(cases) != 1:
+        allowed = f"One of the files must be a case, {', '.join(ENDINGS)}."
+        raise InputError([Problem("", "", allowed, "")], "the upload")
+    desk = opened(str(folder / cases[0]), cases[0])
     problems = list(_elsewhere(desk.tables))
     if problems:
         raise InputError(problems, desk.source)

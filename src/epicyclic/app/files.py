@@ -52,13 +52,9 @@ def ask_for_case(folder: Path, then: Callable[[Desk], None]) -> None:
             then(desk)
 
         async def upload(event: events.MultiUploadEventArguments) -> None:
-            files = {file.name: await file.read() for file in event.files}
-            cases = [name for name in files if Path(name).suffix.lower() in ENDINGS]
-            if len(cases) != 1:
-                told.set_text(f"One of the files must be a case, {', '.join(ENDINGS)}.")
-                return
+            files = [(file.name, await file.read()) for file in event.files]
             own = Path(tempfile.mkdtemp(dir=folder))
-            take(lambda: received(cases[0], files, own))
+            take(lambda: received(files, own))
 
         with ui.row():
             for name in library.case_files():
