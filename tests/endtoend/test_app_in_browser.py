@@ -15,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+import epicyclic as ep
+
 pytest.importorskip("nicegui", reason="optional")
 playwright = pytest.importorskip("playwright.sync_api", reason="optional")
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -364,4 +366,47 @@ def test_two_cases_stand_side_by_side(open_app):
     page.wait_for_function(
         "document.querySelectorAll('.chapter figure svg').length == 4", timeout=SOLVED
     )
+    assert not page.wrong
+
+
+def test_what_is_shown_at_the_end_belongs_to_the_last_of_many_quick_inputs(open_app):
+    page = open_app("talbot-2012")
+    _solved(page)
+    page.wait_for_selector(".state.idle", state="attached", timeout=SOLVED)
+    field = page.get_by_label("torque", exact=True)
+    cancel = page.locator("main .state", has_text="Cancel").get_by_role("button").first
+
+    def type_quickly(*values):
+        for value in values:
+            field.fill("")
+            field.press_sequentially(str(value), delay=2)
+            field.press("Enter")
+
+    def at_rest():
+        return (
+            page.locator("main > div > .state.idle").count() == 1
+            and page.locator(".behind").count() == 0
+            and abs(_watts(page) / wanted - 1) < 5e-3  # three digits are shown
+        )
+
+    def told():
+        return page.locator("main > .problem").locator("visible=true")
+
+    case = ep.load_case("talbot-2012")
+    for values in ((311, 977, 613), (431,)):
+        type_quickly(*values, 1009)
+        cancel.click(timeout=SOLVED)  # one is being solved, and others wait
+        type_quickly(271, values[0])
+        wanted = ep.solve(case.updated({"operation.torque": f"{values[0]} N*m"})).total
+        _until(at_rest)
+        page.wait_for_timeout(500)
+        assert at_rest()
+        assert told().count() == 0
+    # also if nothing is typed after the cancel: what waits is solved, and nothing is said of it
+    type_quickly(523, 1033, 719)
+    cancel.click(timeout=SOLVED)
+    wanted = ep.solve(case.updated({"operation.torque": "719 N*m"})).total
+    _until(lambda: abs(_watts(page) / wanted - 1) < 5e-3)
+    page.wait_for_selector("main > div > .state.idle", state="attached", timeout=SOLVED)
+    assert (page.locator(".behind").count() > 0) == (told().count() > 0)
     assert not page.wrong

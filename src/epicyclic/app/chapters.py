@@ -77,7 +77,7 @@ class Chapters:
             background_tasks.create(self._views[name].follow())
         elif name in self._sections:
             answer = await self._do(tasks.answered, study, name)
-            if self._tabs.value != name or self._body.is_deleted:
+            if self._tabs.value != name or name not in self._sections or self._body.is_deleted:
                 return
             (section,) = answer.sections
             if not self._update(section, study, answer):
@@ -91,7 +91,7 @@ class Chapters:
             if not is_wanted():
                 return
         answer = await self._do(tasks.answered, study, "")
-        if self._body.is_deleted:
+        if self._body.is_deleted or not is_wanted():
             return
         sections = {section.name: section for section in answer.sections}
         if list(sections) != list(self._sections):

@@ -132,14 +132,14 @@ class Page:
 
     async def _follow_figures(self) -> None:
         """Key figures of the case as it is."""
-        case = self.desk.case
+        desk, case = self.desk, self.desk.case
         if case is None:
             return
         try:
             figures = await self._shelf.quick.do(tasks.moved, case, progress=self._doing.progress)
         except (Ended, EpicyclicError):
             return  # what follows the chapters says it
-        if self._figures.is_deleted:
+        if self._figures.is_deleted or desk is not self.desk:
             return
         self._figures.clear()
         with self._figures:
@@ -151,6 +151,7 @@ class Page:
         case = self.desk.case
         if case is None:
             return
+        self._fail("")  # what was cancelled is of an earlier case
         study = Study(case)
 
         def is_wanted() -> bool:
