@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import pickle
+import tomllib
 
 import jsonschema
 import pytest
 
 import epicyclic as ep
-from epicyclic.case.case import case_schema
+import listed_trains
+from epicyclic.case.case import build_case, case_schema
 from epicyclic.case.fields import find_field, quantity_of
+from epicyclic.case.train_text import train_text
 from trains import published, wolfrom
 
 SAME = 1e-12
@@ -32,6 +35,18 @@ def test_inputs_are_the_same_train_again(train):
     again = ep.load_case(train.inputs())
     assert again.inputs() == train.inputs()
     assert ep.load_case(again.given()) == again
+
+
+def test_commented_files_hold_every_gear(train):
+    again = build_case(tomllib.loads(train_text(train.given(), [], {})), {}, "")
+    assert again == train
+
+
+@pytest.mark.parametrize("name", listed_trains.__all__)
+def test_commented_files_hold_every_listed_gear(name):
+    tables = getattr(listed_trains, name)()
+    again = build_case(tomllib.loads(train_text(tables, [], {})), {}, "")
+    assert again == ep.load_case(tables)
 
 
 def test_the_json_schema_accepts_trains(train):

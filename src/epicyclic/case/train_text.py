@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from epicyclic.case.element_kinds import ELEMENT_KINDS
-from epicyclic.case.fields import table_of
+from epicyclic.case.fields import dict_value, table_of
 from epicyclic.case.template import COMMENT_COLUMN, TableWriter, toml_key, toml_value
-from epicyclic.case.train import TrainCase
-from epicyclic.case.train_tables import PairSet, PlanetarySet
+from epicyclic.case.train import TrainCase, form_of_set
+from epicyclic.case.train_tables import ListedSet, PlanetarySet, SharedGears
 from epicyclic.case.wording import dotted, key_parts
 
 __all__ = ["train_text"]
@@ -103,17 +102,32 @@ class _TrainWriter:
         """The tables of a set."""
         place = dotted(["sets", name])
         values = self.tables["sets"][name]
-        form: type[BaseModel] = PairSet if "pinion" in values else PlanetarySet
-        inner = [key for key, field in form.model_fields.items() if table_of(field.annotation)]
+        form = form_of_set(values)[0] or PlanetarySet
+        fields = {key: field for key, field in form.model_fields.items() if _is_table(field)}
+        of_gears = fields.pop("members", None)
+        if of_gears is not None:  # in a file they stand below what all gears share
+            fields["gears"] = ListedSet.model_fields["gears"]
         lines = ["", f"[{place}]"]
         for key, value in values.items():
-            if key not in inner:
+            if key not in fields:
                 lines.append(self._line(f"{toml_key(key)} = {toml_value(value)}", f"{place}.{key}"))
-        for key in inner:
+        for key, field in fields.items():
             full = f"{place}.{key}"
             if key in values or self.writer.tells_of(full):
-                lines += self._table(full, form.model_fields[key], values.get(key, {}))
+                lines += self._table(full, field, values.get(key, {}))
+                if key == "gears" and of_gears is not None:
+                    lines += self._listed_gears(full, of_gears, values["gears"])
         return lines
+
+    def _listed_gears(self, place: str, field: FieldInfo, gears: Mapping[str, Any]) -> list[str]:
+        """A table of each gear of a listed set."""
+        one = FieldInfo.from_annotation(dict_value(field.annotation))
+        return [
+            line
+            for name, gear in gears.items()
+            if name not in SharedGears.model_fields
+            for line in self._table(f"{place}.{dotted([name])}", one, gear)
+        ]
 
     def parts(self, kind: str) -> Iterator[str]:
         """Bearings and the like."""
@@ -139,3 +153,7 @@ class _TrainWriter:
     def _line(self, text: str, key: str) -> str:
         told = self.about.get(key)
         return f"{text.ljust(COMMENT_COLUMN - 1)} # {told}" if told else text
+
+
+def _is_table(field: FieldInfo) -> bool:
+    return table_of(field.annotation) is not None
