@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 import epicyclic as ep
 import listed_trains
@@ -15,14 +16,21 @@ from epicyclic.plots.catalogue import figure_of
 from epicyclic.plots.drawing import plot_gear_set
 from epicyclic.plots.loss_map import limits_of
 from epicyclic.plots.losses import plot_loss_sum, plot_losses
-from epicyclic.plots.mesh import plot_along_path, plot_plane_of_action, plot_transmission_error
-from epicyclic.plots.pockets import plot_power
+from epicyclic.plots.mesh import (
+    mesh_figure,
+    plot_along_path,
+    plot_plane_of_action,
+    plot_transmission_error,
+)
+from epicyclic.plots.pockets import plot_power, pocket_figure
+from epicyclic.plots.power_flow import SLIDE
 from epicyclic.plots.style import styled_figure
 from epicyclic.records.record import sets_of
 from epicyclic.report.drawings import draw
+from epicyclic.report.page import Cell, Table
 from epicyclic.report.result_tables import key_figures
 from epicyclic.report.uncertainty_tables import _shown
-from epicyclic.report.validation_page import MOST_ROWS, _drawings
+from epicyclic.report.validation_page import MOST_ROWS, _items
 from epicyclic.results.result import of_gear
 from epicyclic.units import decimals_of, format_number, power_unit
 from epicyclic.validation.compare import compare_published
@@ -242,11 +250,34 @@ def test_labels_of_figures_in_pages_are_broken_where_they_are_longer_than_the_ax
     assert "normal force on the tooth pair" not in svg
 
 
+@pytest.mark.parametrize(("sheet", "group"), [(mesh_figure, "meshes"), (pocket_figure, "pockets")])
+def test_letters_of_sheets_have_ten_points_on_a_slide(talbot_record, sheet, group):
+    figure = sheet(talbot_record.group(group)["sun_mesh"])
+    figure.draw_without_rendering()
+    width = figure.get_size_inches()[0]
+    smallest = min(text.get_fontsize() for text in figure.findobj(Text) if text.get_text())
+    assert smallest * SLIDE[0] / width > 10.0
+    assert smallest / 72 * figure.dpi > 20.0  # pixels, at 1920 over the width
+
+
+def test_tables_with_long_texts_are_divided_between_pages():
+    def table(text, rows):
+        return Table(("figure", "unit"), ((Cell(text), Cell("W")),) * rows)
+
+    assert table("ratio", 6).is_short
+    assert not table("ratio", 7).is_short
+    assert table("loss factor " * 7, 3).is_short
+    assert not table("loss factor " * 7, 4).is_short
+
+
 def test_pictures_of_published_figures_have_few_rows():
     row = compare_published()[0]
-    drawn = list(_drawings("trains", [row] * (2 * MOST_ROWS + 1)))
-    assert [one.name for one in drawn] == ["trains-1", "trains-2", "trains-3"]
-    assert [one.name for one in _drawings("trains", [row])] == ["trains"]
+    items = list(_items("trains", [row] * (2 * MOST_ROWS + 1)))
+    assert [item.kind for item in items] == ["table", "gallery"] * 3
+    assert [len(item.rows) for item in items[::2]] == [6, 6, 5]
+    drawn = [item.drawings[0].name for item in items[1::2]]
+    assert drawn == ["trains-1", "trains-2", "trains-3"]
+    assert [one.drawings[0].name for one in [*_items("trains", [row])][1:]] == ["trains"]
 
 
 def test_a_result_without_a_value_shows_none_in_the_table_of_bands():

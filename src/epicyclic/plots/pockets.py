@@ -49,16 +49,16 @@ GAP_SHARE = 0.05
 
 
 def pocket_figure(mesh: xr.Dataset) -> Figure:
-    """Everything an engineer looks at on the pockets of one mesh."""
-    with styled_figure(3, 4, str(mesh.attrs["title"])) as (figure, axes):
+    """Everything an engineer looks at on the pockets of one mesh, both kinds side by side."""
+    with styled_figure(6, 2, str(mesh.attrs["title"])) as (figure, axes):
         plot_areas(mesh, axes[0, 0])
         plot_volumes(mesh, axes[0, 1])
-        plot_gaps(mesh, axes[0, 2])
-        plot_power(mesh, axes[0, 3])
-        for kind in (0, 1):
-            for ax, name in zip(axes[1 + kind], OVER_LIFE, strict=True):
+        plot_gaps(mesh, axes[1, 0])
+        plot_power(mesh, axes[1, 1])
+        for row, name in zip(axes[2:], OVER_LIFE, strict=True):
+            for kind, ax in enumerate(row):
                 plot_over_life(mesh, name, kind, ax)
-        _add_face_scale(mesh, figure, axes[1:], aspect=40)
+        _add_face_scale(mesh, figure, axes[2:], aspect=60)
     return figure
 
 

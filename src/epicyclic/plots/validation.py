@@ -18,7 +18,7 @@ __all__ = ["deviations_size", "plot_deviations"]
 
 SHOWN = 0.40
 """Differences beyond it are drawn at the edge, with their number. [1]"""
-WIDTH, ROW, REST = 9.5, 0.40, 1.1
+WIDTH, ROW, REST = 8.2, 0.32, 1.0
 """Width of a picture, height of a row, and of what is not rows. [inch]"""
 LETTERS = 62
 """In one line of a label."""

@@ -29,7 +29,9 @@ __all__ = [
 
 
 SHORT = 6
-"""Rows of a table that is not divided between pages."""
+"""Lines of a table that is not divided between pages."""
+LINE = 60
+"""Characters of a cell that stand in one line, about."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +81,8 @@ class Table:
     @property
     def is_short(self) -> bool:
         """True if it stays on one page."""
-        return len(self.rows) <= SHORT
+        lines = (math.ceil(max(len(cell.text) for cell in row) / LINE) for row in self.rows)
+        return sum(lines) <= SHORT
 
     def is_numeric(self, column: int) -> bool:
         """True for a column of numbers."""

@@ -98,13 +98,13 @@ BAND_LEAD = (
 def _uncertainty(record: ResultRecord, drawings: Drawings) -> tuple[Item, ...]:
     """Bands, budget and tornado.
 
-    Tables stand between the figures: they break, and fill a page that has no room for the next one.
+    A table stands before each figure: it breaks, and fills a page that has no room for the figure.
     """
     items: list[Item] = []
     for data in record.group("uncertainty").values():
-        results, *more = uncertainty_items(data)
+        results, budget, *more = uncertainty_items(data)
         tornado = gallery(drawings, "drivers", wide=True)
-        items += [*gallery(drawings, "band"), results, *tornado, *more]
+        items += [results, *gallery(drawings, "band"), budget, *tornado, *more]
     return tuple(items)
 
 

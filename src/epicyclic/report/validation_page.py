@@ -10,7 +10,17 @@ from epicyclic.plots.validation import deviations_size, plot_deviations
 from epicyclic.report.drawings import svg_text
 from epicyclic.report.explore import explorable
 from epicyclic.report.html import page_html
-from epicyclic.report.page import Cell, Drawing, Gallery, KeyFigure, Listing, Section, Table, number
+from epicyclic.report.page import (
+    Cell,
+    Drawing,
+    Gallery,
+    Item,
+    KeyFigure,
+    Listing,
+    Section,
+    Table,
+    number,
+)
 from epicyclic.report.validation_table import (
     closure_table,
     published_text,
@@ -35,6 +45,7 @@ _HEAD = (
     "verdict",
     "cause of the tolerance",
 )
+_WIDTHS = (32, 8, 8, 8, 8, 15, 21)
 
 
 def validation_html(
@@ -73,12 +84,12 @@ def _key_figures(rows: Sequence[Comparison]) -> list[KeyFigure]:
 def comparison_sections(
     rows: Sequence[Comparison], progress: Callable[[int, int], None] = lambda done, total: None
 ) -> Iterator[Section]:
-    """A picture and a table for each topic, and what the signs mean."""
+    """The figures of each topic, pictures of them, and what the signs mean."""
     topics = by_topic(rows)
     for done, (topic, own) in enumerate(topics.items()):
         progress(done, len(topics))
         key = topic.lower().replace(" ", "-").replace(",", "")
-        yield Section(key, topic, (Gallery(tuple(_drawings(key, own)), is_wide=True), _table(own)))
+        yield Section(key, topic, tuple(_items(key, own)))
     text = (
         "* The tolerance was settled with the computed figure in view. Without a star it is the "
         "rounding of what is printed.",
@@ -93,13 +104,15 @@ def _closure_section(rows: Sequence[ClosureFigure]) -> Iterator[Section]:
         yield Section("closures", "Pocketing by every closure", (closure_table(rows),))
 
 
-def _drawings(key: str, rows: Sequence[Comparison]) -> Iterator[Drawing]:
-    """Pictures of like height, so that each can be read where a page is printed."""
+def _items(key: str, rows: Sequence[Comparison]) -> Iterator[Item]:
+    """Pictures of like height, each below its table, which breaks and fills a printed page."""
     count = math.ceil(len(rows) / MOST_ROWS)
     height = math.ceil(len(rows) / count)
     for place in range(count):
         part = rows[place * height : (place + 1) * height]
-        yield _drawing(f"{key}-{place + 1}" if count > 1 else key, part)
+        yield _table(part)
+        drawing = _drawing(f"{key}-{place + 1}" if count > 1 else key, part)
+        yield Gallery((drawing,), is_wide=True)
 
 
 def _drawing(key: str, rows: Sequence[Comparison]) -> Drawing:
@@ -123,4 +136,5 @@ def _table(rows: Sequence[Comparison]) -> Table:
             )
             for row in rows
         ),
+        widths=_WIDTHS,
     )
