@@ -153,10 +153,22 @@ def test_a_profile_shorter_than_the_contact_is_told(tmp_path):
 def test_the_figure_has_a_panel_for_whatever_there_is(rough):
     from epicyclic.plots.contact import contact_figure
 
-    labels = [ax.get_ylabel() for ax in contact_figure(rough).axes]
+    labels = [" ".join(ax.get_ylabel().split()) for ax in contact_figure(rough).axes]
     assert labels == ["pressure, GPa", "film, µm", "shear stress, MPa", "temperature rise, K"]
     rolling = contact_figure(solved(contact={"slide_to_roll_ratio": 0.0}))
-    assert [ax.get_ylabel() for ax in rolling.axes] == labels[:2]
+    assert [" ".join(ax.get_ylabel().split()) for ax in rolling.axes] == labels[:2]
+
+
+def test_the_figure_names_the_contact_and_is_no_higher_than_a_slide():
+    from epicyclic.plots.contact import contact_figure
+
+    case = {"line_load": None, "hertz_pressure": "0.9 GPa", "slide_to_roll_ratio": 0.0}
+    figure = contact_figure(solved(contact=case))
+    point = " ".join(figure.get_supxlabel().split())
+    assert "Hertz pressure 0.9 GPa" in point
+    assert f"{TABLES['lubricant']['oil']} at " in point
+    width, height = figure.get_size_inches()
+    assert height / width == pytest.approx(9 / 16)
 
 
 def test_progress_ends_at_what_was_expected():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
@@ -14,7 +15,7 @@ from epicyclic.cli.output import parse_size
 from epicyclic.plots.bearing import plot_roller_loads
 from epicyclic.plots.catalogue import figure_of
 from epicyclic.plots.drawing import plot_gear_set
-from epicyclic.plots.loss_map import limits_of
+from epicyclic.plots.loss_map import limits_of, limits_of_band, limits_of_half_width
 from epicyclic.plots.losses import plot_loss_sum, plot_losses
 from epicyclic.plots.mesh import (
     mesh_figure,
@@ -55,6 +56,17 @@ def test_lines_of_all_panels_reach_the_same_height(pair_map):
     figure = figure_of(pair_map, "loss-over-speed")
     assert len({ax.get_ylim() for ax in figure.axes}) == 1
     assert figure.axes[0].get_ylim()[1] > float(pair_map["total"].max())
+
+
+def test_bands_of_all_panels_have_one_scale():
+    axes = ("result", "temperature", "speed", "torque")
+    nominal = np.array([[[[97.0, 211.0]], [[83.0, 190.0]]]])
+    bands = {"nominal": nominal, "low": 0.8 * nominal, "high": 1.45 * nominal}
+    bands["high"][0, 1, 0, 1] = 301.0
+    data = xr.Dataset({name: (axes, values) for name, values in bands.items()})
+    data = data.assign_coords(result=["total"])
+    assert limits_of_band(data) == pytest.approx((0.8 * 83.0, 1.45 * 211.0))
+    assert limits_of_half_width(data) == (32, 40)  # from 32.5, and 50 (301 - 152)/190
 
 
 def test_an_efficiency_map_tells_98_from_99_percent(pair_map):

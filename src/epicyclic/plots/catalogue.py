@@ -20,7 +20,10 @@ from epicyclic.plots.bearing import plot_roller_loads, plot_roller_profile
 from epicyclic.plots.drawing import plot_gear_set, plot_teeth
 from epicyclic.plots.heat_network import plot_heat_network
 from epicyclic.plots.loss_map import (
+    Limits,
     limits_of,
+    limits_of_band,
+    limits_of_half_width,
     map_at,
     map_line,
     plot_band_lines,
@@ -171,13 +174,16 @@ def _of_map(draw: Callable[..., Axes], name: str, *more: object) -> Callable[[St
     return panels
 
 
-def _of_band(draw: Callable[..., Axes], *more: object) -> Callable[[Stored], list[Panel]]:
-    """The panels of a map with its uncertainty."""
+def _of_band(
+    draw: Callable[..., Axes], limits: Callable[[xr.Dataset], Limits], *more: object
+) -> Callable[[Stored], list[Panel]]:
+    """The panels of a map with its uncertainty, all with one scale."""
 
     def panels(stored: Stored) -> list[Panel]:
         if isinstance(stored, ResultRecord) or not {"torque_loss", "explained"} <= set(stored):
             return []
-        return _over_plane(stored, lambda data: partial(draw, data, *more))
+        scale = limits(stored)
+        return _over_plane(stored, lambda data: partial(draw, data, *more, limits=scale))
 
     return panels
 
@@ -343,10 +349,12 @@ PLOTS: dict[str, Plot] = {
     ),
     "loss-parts": Plot("Which components make up the loss?", _of_map(plot_map_parts, "total")),
     "loss-band": Plot(
-        "How well is the loss known over speed and torque?", _of_band(plot_half_width)
+        "How well is the loss known over speed and torque?",
+        _of_band(plot_half_width, limits_of_half_width),
     ),
     "loss-band-lines": Plot(
-        "How far may the loss be off along a line?", _of_band(plot_band_lines, "torque")
+        "How far may the loss be off along a line?",
+        _of_band(plot_band_lines, limits_of_band, "torque"),
     ),
     "lines": Plot(
         "How do loss and efficiency follow the keys that are varied?",

@@ -38,7 +38,8 @@ SHOWN_FILMS = 5.0
 """Height of the film axis, over the central film of the smooth contact. [1]"""
 SHOWN_STRESSES = 10.0
 """Height of the stress axis, over the highest of the smooth contact; touching ones leave it. [1]"""
-PANEL = (6.4, 2.5)
+PANEL = (6.4, 1.8)
+"""Width and height of one of the Axes: two of them fill a slide. [inch]"""
 FRAMES_PER_SECOND = 20
 ANIMATION_DPI = 80
 
@@ -64,10 +65,12 @@ def contact_figure(result: ContactResult) -> Figure:
 
 
 def _point(result: ContactResult) -> str:
-    """Load, speeds and temperature of the contact."""
+    """Load and speeds of the contact, its oil and temperature."""
     inputs = to_inputs(result.case)
-    stated = [f"{key.replace('_', ' ')} {value}" for key, value in inputs["contact"].items()]
-    return unit_text(", ".join([*stated, f"oil at {inputs['lubricant']['temperature']}"]))
+    words = {key: key.replace("_", " ").replace("hertz", "Hertz") for key in inputs["contact"]}
+    stated = [f"{words[key]} {value}" for key, value in inputs["contact"].items()]
+    oil = result.case.lubricant.oil.name or "oil"
+    return unit_text(", ".join([*stated, f"{oil} at {inputs['lubricant']['temperature']}"]))
 
 
 def plot_pressure(result: ContactResult, ax: Axes) -> Axes:
@@ -169,6 +172,6 @@ def _plot_both(
 def _over_x(result: ContactResult, ax: Axes, label: str) -> Axes:
     width = result.smooth.contact.half_width / MILLIMETRE
     ax.set_xlim(SHOWN_WIDTHS[0] * width, SHOWN_WIDTHS[1] * width)
-    ax.set_xlabel("x, mm")
+    ax.set_xlabel("place along the rolling direction, mm")
     ax.set_ylabel(label)
     return ax

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -21,6 +22,8 @@ __all__ = [
     "at_temperatures",
     "draw_lines",
     "limits_of",
+    "limits_of_band",
+    "limits_of_half_width",
     "map_at",
     "map_line",
     "plot_band_lines",
@@ -33,6 +36,7 @@ __all__ = [
 FloatArray = NDArray[np.float64]
 Limits = tuple[float, float] | None
 
+HALF_WIDTH = "half_width"
 LEVELS = 7
 EFFICIENCIES = (50, 70, 80, 90, 95, 97, 98, 98.5, 99, 99.3, 99.5, 99.7, 99.9)
 """Efficiencies that get a line and a tick. [%]"""
@@ -125,6 +129,10 @@ def plot_map(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Ax
         field, ax=ax, label=label_of(values), extend="min" if below else "neither"
     )
     levels: list[float] | int = LEVELS
+    if name == HALF_WIDTH:
+        whole = MaxNLocator(LEVELS, integer=True).tick_values(low, high)
+        levels = [one for one in whole if low <= one <= high]
+        bar.set_ticks(levels, labels=[f"{one:g}" for one in levels])
     if of_efficiency:
         levels = [one for one in EFFICIENCIES if low <= one <= high]
         bar.set_ticks(levels, labels=[f"{one:g}" for one in levels])
@@ -266,26 +274,39 @@ def plot_map_parts(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None)
     return ax
 
 
-def plot_half_width(data: xr.Dataset, ax: Axes) -> Axes:
+def plot_half_width(data: xr.Dataset, ax: Axes, limits: Limits = None) -> Axes:
     """Half the width of the 95 % band of the total loss, over the loss, over speed and torque.
 
     Parameters
     ----------
     data : xarray.Dataset
         As `map_at` returns them, from a map with its uncertainty.
+    limits : tuple of float, optional
+        Limits of the scale of colours, from `limits_of_half_width`.
     """
+    share = _half_width(data)
+    known = data.assign({HALF_WIDTH: share}).sel(
+        speed=share.notnull().any([dim for dim in share.dims if dim != "speed"])
+    )  # at rest nothing is lost
+    return plot_map(known, HALF_WIDTH, ax, limits)
+
+
+def limits_of_half_width(data: xr.Dataset) -> Limits:
+    """Least and greatest half width in all panels, in whole percent: it is not known better."""
+    found = limits_of(data.assign({HALF_WIDTH: _half_width(data)}), HALF_WIDTH)
+    return found and (math.floor(found[0]), math.ceil(found[1]))
+
+
+def _half_width(data: xr.Dataset) -> xr.DataArray:
     total = data.sel(result="total", drop=True)
     share = 50 * (total["high"] - total["low"]) / total["nominal"].where(total["nominal"] > 0)
     about = {"long_name": "half width of the 95 % band of the loss", "units": "%"}
-    known = data.assign(half_width=share.assign_attrs(about)).sel(
-        speed=share.notnull().any([dim for dim in share.dims if dim != "speed"])
-    )  # at rest nothing is lost
-    return plot_map(known, "half_width", ax)
+    return share.assign_attrs(about)
 
 
-def plot_band_lines(data: xr.Dataset, over: str, ax: Axes) -> Axes:
+def plot_band_lines(data: xr.Dataset, over: str, ax: Axes, limits: Limits = None) -> Axes:
     """The total loss with its 95 % band over speed or torque, for some values of the other."""
-    plot_map_lines(data, "total", over, ax)
+    plot_map_lines(data, "total", over, ax, limits)
     other = "torque" if over == "speed" else "speed"
     total = data.sel(result="total")
     for number, index in enumerate(_some(data[other])):
@@ -297,6 +318,13 @@ def plot_band_lines(data: xr.Dataset, over: str, ax: Axes) -> Axes:
         )
     ax.set_title(f"{ax.get_title(loc='left')}, with its 95 % band")
     return ax
+
+
+def limits_of_band(data: xr.Dataset) -> Limits:
+    """Lower end of the lowest and upper end of the highest band of the loss in all panels."""
+    total = data.sel(result="total", drop=True)
+    ends = [limits for end in ("low", "high") if (limits := limits_of(total, end)) is not None]
+    return (min(low for low, _ in ends), max(high for _, high in ends)) if ends else None
 
 
 def _shown(values: xr.DataArray) -> xr.DataArray:
