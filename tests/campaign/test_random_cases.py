@@ -50,6 +50,23 @@ def test_meshes_of_few_and_of_equal_contacts_can_be_solved_directly(number, monk
     assert "ehl-direct" in " ".join(ep.solve(case).notes)
 
 
+def test_of_few_contacts_all_are_solved_whatever_the_most_of_many(monkeypatch):
+    """Of number 41 eighteen differ, more than `most_contacts`, but no more than with the checks."""
+    solved = []
+
+    def stand_in_of_all(line, *_):
+        solved.append((line.radius, line.line_load))
+        return 0.05 * (line.radius / 0.01) ** 0.3, 1.0
+
+    monkeypatch.setattr(direct, "_friction", stand_in_of_all)
+    changes = {"models.friction": "ehl-direct", "contact_solver.most_contacts": 12}
+    result = ep.solve(drawn_case(41).updated(changes))
+    (note,) = (note for note in result.notes if "ehl-direct" in note)
+    assert "18 contacts" in note
+    assert "these are all that differ" in note
+    assert len(solved) == len(set(solved)) == 18
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("first", [200_000, 201_000])
 def test_a_longer_share_ends_in_results_or_outcomes(first):

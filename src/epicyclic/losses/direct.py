@@ -121,7 +121,7 @@ class _Solved:
     force : float
         Transverse force of the mesh. [N]
     place : ndarray, shape (n, 2)
-        Position on the path of contact and logarithm of the line load, as from `_place`.
+        As from `_place`, each over -1 to 1 within `limits`.
     ratio : ndarray, shape (n,)
         Friction over the closed form. [1]
     limits : ndarray, shape (2, 2)
@@ -217,7 +217,7 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
     few = usable.size <= BATCH + CHECKS
     checks = usable[:0] if few else _quantiles(contact.path, power, usable)
     others = np.setdiff1d(usable, checks)
-    order = others[_spread_out(place[others], settings.most_contacts)]
+    order = others[_spread_out(place[others], others.size if few else settings.most_contacts)]
     known, kept = _ratios(contact, settings, checks, base, 0)
     trusted = known[np.isfinite(known)]
     ratio = np.empty(0)
@@ -333,8 +333,8 @@ def _interpolated(known: FloatArray, ratio: FloatArray, place: FloatArray) -> Fl
     """
     from scipy.interpolate import RBFInterpolator
 
-    in_a_plane = np.linalg.matrix_rank(np.insert(known, 0, 1.0, axis=1)) > known.shape[1]
-    kernel, degree = ("thin_plate_spline", 1) if in_a_plane else ("linear", 0)
+    spans_plane = np.linalg.matrix_rank(np.insert(known, 0, 1.0, axis=1)) > known.shape[1]
+    kernel, degree = ("thin_plate_spline", 1) if spans_plane else ("linear", 0)
     spline = RBFInterpolator(
         known, np.log(ratio), smoothing=SMOOTHING, kernel=kernel, degree=degree
     )
