@@ -93,6 +93,8 @@ class Loss:
         The user's factor, which `watts` contain. [1]
     heat : tuple of (str, float)
         The thermal nodes that it heats, each with its share. [1]
+    follows : tuple of str
+        Those of the loads of its element that it depends on; empty: all of them.
     """
 
     group: str
@@ -104,6 +106,7 @@ class Loss:
     mesh: str = ""
     factor: float = 1.0
     heat: tuple[tuple[str, float], ...] = ((OIL, 1.0),)
+    follows: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

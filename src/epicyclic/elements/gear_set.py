@@ -282,8 +282,27 @@ class GearSet:
         return self._drags(state)
 
     def loads(self, state: State) -> Mapping[str, float]:
-        """Torque at the first gear of each mesh, all planets together. [N m]"""
-        return self._torques(state, self._known_idle(state).drags)
+        """What each mesh and each planet bearing carries, all planets together. [N m]
+
+        Torques at the first gears of meshes; forces on bearings times the radius of their pins.
+        """
+        torques = self._torques(state, self._known_idle(state).drags)
+        if not self._parts_apart:
+            return torques
+        duties = {duty.key: duty for duty in self.duties(state, torques, 1 / self.count)}
+        speed = state.speeds[self.carrier]
+        bearings = {
+            planet.key: self.count * planet.pin_radius * planet.load(duties, speed)[1].force
+            for planet in self.planets
+            if planet.bearing is not None
+        }
+        return torques | bearings
+
+    @property
+    def _parts_apart(self) -> bool:
+        """True if each mesh and each planet bearing loses by its own load alone."""
+        alike = self.sharing is None or self.sharing.whatever_the_load
+        return alike and not any(planet.tilts for planet in self.planets)
 
     @property
     def count(self) -> int:
@@ -453,13 +472,18 @@ class GearSet:
         """Losses of a mesh where they act: sliding is a share of its power, half of the rest brakes
         each of its gears against the carrier.
         """
+        follows = (duty.key,) if self._parts_apart else ()
         if self.reference is not None:
-            return {name: self._inside(loss) for name, loss in losses.items()}
+            return {
+                name: replace(self._inside(loss), follows=follows) for name, loss in losses.items()
+            }
         mesh = duty.gears
         halves = tuple((body, self.carrier, 0.5) for body in mesh.bodies)
         sliding, own = f"{mesh.key}_sliding", f"{self.key}.{mesh.key}"
         return {
-            name: replace(loss, brakes=halves, mesh=own if name == sliding else "")
+            name: replace(
+                loss, brakes=halves, mesh=own if name == sliding else "", follows=follows
+            )
             for name, loss in losses.items()
         }
 
@@ -469,6 +493,8 @@ class GearSet:
         placed = replace(loss, brakes=((*between, 1.0),))
         if loss.group == LOAD_INDEPENDENT:
             return placed
+        if planet.bearing is not None and self._parts_apart:
+            placed = replace(placed, follows=(planet.key,))
         return replace(placed, heat=tuple((node, 0.5) for node in planet.nodes))
 
     def _inside(self, loss: Loss) -> Loss:

@@ -71,6 +71,11 @@ class LoadSharing:
         """Number of planets."""
         return len(self.angles)
 
+    @property
+    def whatever_the_load(self) -> bool:
+        """True if the shares do not depend on the load."""
+        return self.method in ("equal", "mesh-load-factor") or self.count == 1
+
 
 def planet_shares(
     sharing: LoadSharing, duties: tuple[MeshDuty, ...], bearing: RollerBearing | None
@@ -96,7 +101,7 @@ def planet_shares(
     if sharing.method == "mesh-load-factor":
         return mesh_load_factor_shares(count, sharing.mesh_load_factor)
     idle = not all(duty.torque1 for duty in duties)
-    if sharing.method == "equal" or count == 1 or idle:
+    if sharing.whatever_the_load or idle:
         return (1 / count,) * count
     branches = _branches(sharing, duties, bearing)
     floats = sharing.floating_member != "none"

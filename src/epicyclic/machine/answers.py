@@ -1,7 +1,7 @@
 """What elements have answered so far, and what they would answer to loads next to those.
 
-Losses and torques agree after some passes, each with a little other loads. The losses of an element
-over its loads follow a straight line there so nearly that most passes need not ask it again.
+Losses and torques agree after some passes, each with a little other loads. A loss over the load
+that it follows is there so nearly a straight line that most passes need not ask its element again.
 """
 
 from __future__ import annotations
@@ -10,12 +10,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from epicyclic.elements.base import ElementResult
+from epicyclic.elements.base import ElementResult, Loss
 
 __all__ = ["Answer", "distance"]
 
-CAUTION = 10.0
-"""How much larger the error of a foretold loss is taken to be than its estimate. [1]"""
+CAUTION = 2.0
+"""How much larger the error of foretold losses is taken to be than its estimate. [1]"""
+STEEPEST = 3.0
+"""Relative change of a loss over that of its load above which no loss rises with a load. [1]"""
 ROUNDING = 1e-14
 """Change, relative to the largest load, that is rounding. [1]"""
 
@@ -31,49 +33,42 @@ class Answer:
     result : ElementResult
     before : Answer or None
         None if there is none, or none that the same losses at the same places belong to.
-    slope_error : float
-        Largest error of a foretold loss, relative, over the change of the loads, relative:
-        measured where this answer was foretold, from the answer before. [1]
     """
 
     loads: Mapping[str, float]
     result: ElementResult
     before: Answer | None = None
-    slope_error: float = math.inf
 
     def followed_by(self, loads: Mapping[str, float], result: ElementResult) -> Answer:
-        """The next answer, compared with what this one foretold of it."""
-        if not self._alike(loads, result):
-            return Answer(loads, result)
-        told = self._losses(loads)
-        scale = sum(abs(loss.watts) for loss in result.losses.values())
-        off = max(
-            (
-                abs(told[name] - loss.watts) / loss.watts
-                for name, loss in result.losses.items()
-                if loss.watts > ROUNDING * scale
-            ),
-            default=0.0,
-        )
-        moved = distance(self.loads, loads)
-        return Answer(loads, result, replace(self, before=None), off / moved if moved else math.inf)
+        """The next answer."""
+        before = replace(self, before=None) if self._alike(loads, result) else None
+        return Answer(loads, result, before)
 
     def foretold(self, loads: Mapping[str, float], allowed: float) -> ElementResult | None:
         """What the element would answer; None if that may be off by more than `allowed`.
 
         Losses only: figures and flags are those of the last answer.
+
+        Parameters
+        ----------
+        loads : mapping of str to float
+        allowed : float
+            Error of all losses together, relative. [1]
         """
         if self.before is None or not self._alike(loads, self.result):
             return None
-        moved = distance(self.loads, loads)
-        error = self.slope_error * moved + self._aside(loads)
-        if not CAUTION * error <= allowed:
+        losses, off = {}, 0.0
+        steps: dict[tuple[str, ...], _Step] = {}
+        for name, loss in self.result.losses.items():
+            older = self.before.result.losses[name].watts
+            if loss.follows not in steps:
+                steps[loss.follows] = self._step(loads, loss)
+            step = steps[loss.follows]
+            off += step.error(loss.watts, older) * loss.watts
+            watts = max(0.0, loss.watts + step.part * (loss.watts - older))
+            losses[name] = replace(loss, watts=watts) if watts != loss.watts else loss
+        if not CAUTION * off <= allowed * sum(loss.watts for loss in losses.values()):
             return None
-        told = self._losses(loads)
-        losses = {
-            name: replace(loss, watts=max(0.0, told[name]))
-            for name, loss in self.result.losses.items()
-        }
         return replace(self.result, losses=losses)
 
     def _alike(self, loads: Mapping[str, float], result: ElementResult) -> bool:
@@ -86,39 +81,71 @@ class Answer:
             for name, loss in result.losses.items()
         )
 
-    def _losses(self, loads: Mapping[str, float]) -> dict[str, float]:
-        """Losses on the line through the last two answers; as the last one if it is alone. [W]"""
-        part = self._part(loads)
-        own = {name: loss.watts for name, loss in self.result.losses.items()}
-        if self.before is None:
-            return own
-        older = self.before.result.losses
-        return {name: watts + part * (watts - older[name].watts) for name, watts in own.items()}
-
-    def _part(self, loads: Mapping[str, float]) -> float:
-        """How far loads lie beyond the last ones, over the distance of these from those before."""
-        if self.before is None:
-            return 0.0
-        steps = {key: load - self.before.loads[key] for key, load in self.loads.items()}
-        length = sum(step**2 for step in steps.values())
-        if not length:
-            return 0.0
-        return sum((loads[key] - self.loads[key]) * step for key, step in steps.items()) / length
-
-    def _aside(self, loads: Mapping[str, float]) -> float:
-        """How far loads lie beside the line through the last two, relative. [1]"""
+    def _step(self, loads: Mapping[str, float], loss: Loss) -> _Step:
+        """From the last loads that a loss follows to these, along the line from those before."""
         assert self.before is not None
-        part = self._part(loads)
-        on_line = {
-            key: load + part * (load - self.before.loads[key]) for key, load in self.loads.items()
-        }
-        aside = distance(on_line, loads)
-        return aside if aside > ROUNDING else 0.0
+        keys = loss.follows or tuple(loads)
+        new, last, old = (
+            [those[key] for key in keys] for those in (loads, self.loads, self.before.loads)
+        )
+        largest = max(map(abs, new), default=0.0)
+        ways = [one - two for one, two in zip(last, old, strict=True)]
+        length = sum(way**2 for way in ways)
+        if not length > (ROUNDING * largest) ** 2:
+            return _Step(0.0, 0.0, _apart(last, new), 0.0)
+        ahead = sum(
+            (one - two) * way for one, two, way in zip(new, last, ways, strict=True)
+        )
+        part = ahead / length
+        on_line = [two + part * way for two, way in zip(last, ways, strict=True)]
+        aside = _apart(on_line, new)
+        return _Step(
+            part, _apart(old, last), _apart(last, new), aside if aside > ROUNDING else 0.0
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """A step of the loads along the line through the last two of them, and beside it.
+
+    Attributes
+    ----------
+    part : float
+        How far it goes, over the step before. [1]
+    before, size : float
+        Size of the step before and of this one, relative to the largest load. [1]
+    aside : float
+        How far it ends beside the line, relative. [1]
+    """
+
+    part: float
+    before: float
+    size: float
+    aside: float
+
+    def error(self, watts: float, older: float) -> float:
+        """Estimate of the error of a loss on the line from `older` to `watts`, relative.
+
+        The loss goes with some power of its load: its slope differs over both steps by as much as
+        the load does. Of what changed more than any such power nothing is known but the change.
+        """
+        if not self.before:
+            return STEEPEST * self.size
+        if watts == older:
+            return 0.0
+        steepness = abs(watts - older) / watts / self.before if watts else math.inf
+        if steepness > STEEPEST:
+            return math.inf
+        return steepness * self.size * (self.before + self.size) + STEEPEST * self.aside
 
 
 def distance(old: Mapping[str, float], new: Mapping[str, float]) -> float:
     """Largest change of a load, relative to the largest load. [1]"""
-    largest = max(map(abs, new.values()), default=0.0)
+    return _apart([old[key] for key in new], list(new.values()))
+
+
+def _apart(old: list[float], new: list[float]) -> float:
+    largest = max(map(abs, new), default=0.0)
     if not largest:
         return 0.0
-    return max(abs(load - old[key]) for key, load in new.items()) / largest
+    return max(abs(two - one) for one, two in zip(old, new, strict=True)) / largest

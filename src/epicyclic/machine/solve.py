@@ -25,6 +25,8 @@ ROUNDING = 1e-14
 FORETOLD = 0.1
 """Error of a foretold loss over the change of the loads from one pass to the next, at most: losses
 are small beside powers, so that the error leaves less of the change than a pass does. [1]"""
+LOSS_AGREEMENT = 1e-7
+"""Error of foretold losses at which they agree with torques, at most. [1]"""
 NO_POWER = 1e-12
 """Power, relative to the largest one, that is rounding. [1]"""
 MOST_PASSES = 60
@@ -252,6 +254,7 @@ def _converged(
     """
     rows = {row.key: row.efficiency for row in machine.rows}
     found = balance(machine, operation, speeds, drives, rows)
+    lossless = found.meshes
     answers: dict[str, Answer] = {}
     seen: dict[str, Mapping[str, float]] = {}
     results: dict[str, ElementResult] = {}
@@ -269,6 +272,7 @@ def _converged(
         )
         if not number:
             idle |= {element.key: element.idle(state) for element in machine.elements}
+        allowed = _allowed(distance(lossless, found.meshes))
         changed = False
         for element in machine.elements:
             key, loads = element.key, element.loads(state)
@@ -277,7 +281,7 @@ def _converged(
             last = answers.get(key)
             told = None
             if last is not None:
-                told = last.foretold(loads, max(AGREEMENT, FORETOLD * distance(seen[key], loads)))
+                told = last.foretold(loads, max(allowed, FORETOLD * distance(seen[key], loads)))
             if told is None:
                 told = element.evaluate(state)
                 answers[key] = last.followed_by(loads, told) if last else Answer(loads, told)
@@ -299,6 +303,14 @@ def _converged(
         "gives far too much outside its range: choose another models.friction or models.rolling, "
         'or models.oil_beyond_range = "held".'
     )
+
+
+def _allowed(moved: float) -> float:
+    """Error of all losses that changes loads by less than they may, if the losses moved them so.
+
+    An error changes the loads about as much as the losses do of which it is that share.
+    """
+    return min(AGREEMENT / moved, LOSS_AGREEMENT) if moved else LOSS_AGREEMENT
 
 
 def _ratio(operation: Operation, speeds: Mapping[str, float]) -> float | None:
