@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from epicyclic.elements.base import LOAD_DEPENDENT, ElementResult, Loss
-from epicyclic.machine.answers import Answer, distance
+from epicyclic.machine.answers import NEAR, Answer, distance
 
 
 def result(watts, mesh="S.mesh"):
@@ -59,8 +59,41 @@ def test_loads_beside_the_line_are_not_foretold():
     answer = Answer({"one": 100.0, "two": 50.0}, result(1.0))
     answer = answer.followed_by({"one": 99.0, "two": 49.5}, result(0.99))
     answer = answer.followed_by({"one": 98.9, "two": 49.45}, result(0.989))
-    assert answer.foretold({"one": 98.89, "two": 49.445}, 1e-6) is not None
-    assert answer.foretold({"one": 98.89, "two": 49.46}, 1e-6) is None
+    assert answer.foretold({"one": 98.898, "two": 49.449}, 1e-6) is not None
+    assert answer.foretold({"one": 98.898, "two": 49.4505}, 1e-6) is None
+
+
+def own(name, load):
+    """Two meshes of one element, each with the loss of its own load."""
+    watts = {"one": 0.01, "two": 0.02}[name] * load**1.1
+    return Loss(LOAD_DEPENDENT, watts, mesh=f"S.{name}", follows=(name,))
+
+
+def both(one, two):
+    return {"one": one, "two": two}, ElementResult({"one": own("one", one), "two": own("two", two)})
+
+
+def test_a_loss_that_follows_one_load_is_foretold_beside_the_line_of_all():
+    answer = Answer(*both(100.0, 50.0)).followed_by(*both(99.9, 49.8))
+    loads, wanted = both(99.9001, 49.8007)
+    told = answer.foretold(loads, 1e-6)
+    assert told is not None
+    for name, loss in wanted.losses.items():
+        assert told.losses[name].watts == pytest.approx(loss.watts, rel=5e-9)
+    joint = Answer(loads, losses(1.0)).followed_by(both(99.9, 49.8)[0], losses(1.001))
+    assert joint.foretold(both(99.9001, 49.7993)[0], 1e-6) is None
+
+
+def test_figures_serve_for_loads_next_to_theirs_only():
+    answer = answers(100.0, 99.9)
+    assert answer.foretold({"mesh": 99.9 * (1 + 0.9 * NEAR)}, 1.0) is not None
+    assert answer.foretold({"mesh": 99.9 * (1 + 1.1 * NEAR)}, 1.0) is None
+
+
+def test_a_load_that_did_not_move_before_foretells_little():
+    answer = Answer(*both(100.0, 50.0)).followed_by(*both(99.9, 50.0))
+    assert answer.foretold(both(99.9, 50.0001)[0], 1e-6) is None
+    assert answer.foretold(both(99.9001, 50.0)[0], 1e-6) is not None
 
 
 def test_distance_is_relative_to_the_largest_load():

@@ -16,6 +16,7 @@ from epicyclic.elasticity.rim import ElasticRing, Rim
 from epicyclic.elasticity.tooth_plate import _stiffness, tooth_plate
 from epicyclic.geometry.generation import default_tool
 from epicyclic.geometry.micro_geometry import FlankDeviations, MicroGeometry, Relief, Topography
+from epicyclic.machine.answers import NEAR, STEEPEST
 
 STEEL = GearBody(206e9, 0.3)
 
@@ -324,11 +325,11 @@ def test_a_case_reports_transmission_error_and_stiffness(talbot):
     assert set(loaded) == {"sun_mesh", "ring_mesh"}
     for key, mesh in loaded.items():
         figures = result.meshes[key]
-        # of the last pass of torques and losses but one: they agree to 5e-10
+        # figures are of the last loads whose losses were not foretold; no power above 3
+        near = STEEPEST * NEAR
         error, stiffness = mesh.transmission_error_range, mesh.mean(mesh.tangent_stiffness)
-        assert figures.transmission_error_range == pytest.approx(error, rel=1e-8)
-        # that of the step before the last, which starts elsewhere
-        assert figures.mesh_stiffness == pytest.approx(stiffness, rel=1e-6)
+        assert figures.transmission_error_range == pytest.approx(error, rel=near)
+        assert figures.mesh_stiffness == pytest.approx(stiffness, rel=near)
         assert error > 0
         assert stiffness > 0
     uniform = ep.solve(talbot.updated({"models.load_distribution": "uniform"}))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from epicyclic.elasticity.mesh_compliance import GearBody, MeshCompliance, mesh_compliance
 from epicyclic.elasticity.threads import one_thread
 from epicyclic.errors import ConvergenceError
-from epicyclic.geometry.contact_lines import ContactLines
+from epicyclic.geometry.contact_lines import ContactLines, contact_lines
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.micro_geometry import FlankDeviations
 from epicyclic.kernels.contact_load import solve_all_positions
@@ -135,7 +135,8 @@ def load_mesh_elastically(
         If no loads are found that satisfy all conditions of the contact.
     """
     compliance = mesh_compliance(mesh, body1, body2, positions, segments)
-    return _loaded(mesh, compliance, force, deviations, compliance.lines.length)
+    separation = _separation(mesh, deviations, positions, segments)
+    return _loaded(mesh, compliance, force, separation, compliance.lines.length)
 
 
 def load_mesh_next_to(
@@ -157,20 +158,30 @@ def load_mesh_next_to(
         As for `load_mesh_elastically`, which has the same solution but for its tolerance.
     """
     compliance = mesh_compliance(last.mesh, body1, body2, positions, segments)
-    return _loaded(last.mesh, compliance, force, deviations, last.line_load * last.lines.length)
+    separation = _separation(last.mesh, deviations, positions, segments)
+    return _loaded(last.mesh, compliance, force, separation, last.line_load * last.lines.length)
+
+
+@lru_cache(maxsize=64)
+def _separation(
+    mesh: Mesh, deviations: FlankDeviations, positions: int, segments: int
+) -> FloatArray:
+    """Gap of the unloaded flanks on all segments, shape (positions, lines, segments). [m]"""
+    separation = deviations.separation(mesh, contact_lines(mesh, positions, segments))
+    separation.flags.writeable = False
+    return separation
 
 
 def _loaded(
     mesh: Mesh,
     compliance: MeshCompliance,
     force: float,
-    deviations: FlankDeviations,
+    separation: FloatArray,
     start: FloatArray,
 ) -> LoadedMesh:
     """The mesh under the transverse `force`, from the normal forces `start` of the segments."""
     lines = compliance.lines
     normal = force / math.cos(mesh.gear1.rack.base_helix_angle)
-    separation = deviations.separation(mesh, lines)
     with one_thread():
         forces, approach, stiffness, iterations = solve_all_positions(
             normal,

@@ -23,6 +23,7 @@ from epicyclic.elements.load_sharing import LoadSharing, planet_shares
 from epicyclic.elements.planet_bearing import PlanetBearing, missing_bearing, solve_bearing
 from epicyclic.elements.planet_load import PlanetContact, PlanetLoad, planet_load, tilt_planet
 from epicyclic.elements.pocket_flow import MeshFlow, mesh_flows
+from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.losses.validity import Flags, ModelUse, SomeFlags, ValidityFlag
 from epicyclic.units import NEWTON, format_number
 
@@ -168,13 +169,15 @@ class Planet:
 class _Idle:
     """What follows from the speeds; flows through pockets also by which gears drive.
 
-    `meshes` has what became of each mesh in the last pass, from where the next one goes on.
+    `meshes` and `bearings` have what became of each mesh, and of each planet bearing under each
+    share of the load, in the last pass, from where the next one goes on.
     """
 
     drags: dict[str, Loss]
     flags: tuple[ValidityFlag, ...]
     flows: dict[tuple[bool, ...], Mapping[str, MeshFlow]]
     meshes: dict[str, MeshOutcome]
+    bearings: dict[tuple[str, float], RollerLoads | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,7 +247,7 @@ class GearSet:
         shares = self.shares(state, torques)
         flows = self._flows(state, torques, idle)
         branches = [
-            self._branch(state, torques, share, shares.count(share), flows, idle.meshes)
+            self._branch(state, torques, share, shares.count(share), flows, idle)
             for share in sorted(set(shares), reverse=True)
         ]
         found = idle.drags | {
@@ -406,7 +409,7 @@ class GearSet:
             name: self._placed(_with_choice(loss, self.choices[name]))
             for name, loss in losses.items()
         }
-        return _Idle(placed, flags, {}, {})
+        return _Idle(placed, flags, {}, {}, {})
 
     def _branch(
         self,
@@ -415,7 +418,7 @@ class GearSet:
         share: float,
         planets: int,
         flows: Mapping[str, MeshFlow],
-        last: dict[str, MeshOutcome],
+        idle: _Idle,
     ) -> _Branch:
         duties = {duty.key: duty for duty in self.duties(state, torques, share)}
         bearings = []
@@ -430,16 +433,17 @@ class GearSet:
                 bearings.append(missing_bearing(planet.key, planet.no_bearing))
             else:
                 speed = state.speeds[planet.body] - carrier
-                bearings.append(
-                    solve_bearing(
-                        planet.key,
-                        planet.bearing,
-                        load,
-                        planets,
-                        state.fluids.at(joined_key(self.key, planet.key)),
-                        speed,
-                    )
+                bearing = solve_bearing(
+                    planet.key,
+                    planet.bearing,
+                    load,
+                    planets,
+                    state.fluids.at(joined_key(self.key, planet.key)),
+                    speed,
+                    idle.bearings.get((planet.key, share)),
                 )
+                idle.bearings[planet.key, share] = bearing.loads
+                bearings.append(bearing)
         meshes = [
             solve_mesh(
                 duty,
@@ -447,11 +451,11 @@ class GearSet:
                 flows[duty.key],
                 planets,
                 state.fluids.at(joined_key(self.key, duty.key)),
-                last.get(duty.key),
+                idle.meshes.get(duty.key),
             )
             for duty in duties.values()
         ]
-        last |= dict(zip(duties, meshes, strict=True))
+        idle.meshes.update(zip(duties, meshes, strict=True))
         notes += tuple(note for mesh in meshes for note in mesh.notes)
         branch = _Branch({}, {}, (), notes)
         losses, figures, flags = branch.losses, branch.figures, branch.flags
@@ -481,9 +485,7 @@ class GearSet:
         halves = tuple((body, self.carrier, 0.5) for body in mesh.bodies)
         sliding, own = f"{mesh.key}_sliding", f"{self.key}.{mesh.key}"
         return {
-            name: replace(
-                loss, brakes=halves, mesh=own if name == sliding else "", follows=follows
-            )
+            name: replace(loss, brakes=halves, mesh=own if name == sliding else "", follows=follows)
             for name, loss in losses.items()
         }
 

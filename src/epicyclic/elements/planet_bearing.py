@@ -23,6 +23,7 @@ from epicyclic.losses.planet_bearing import (
     palmgren_flags,
     palmgren_loss,
     roller_loads,
+    roller_loads_next_to,
 )
 from epicyclic.losses.validity import SomeFlags
 from epicyclic.losses.viscous import (
@@ -88,11 +89,15 @@ class PlanetBearing:
 
 @dataclass(frozen=True, slots=True)
 class BearingOutcome:
-    """Losses of the planet bearings, and how the figures of one of them are found."""
+    """Losses of the planet bearings, and how the figures of one of them are found.
+
+    `loads`, those on its rollers, is what the next pass goes on from.
+    """
 
     losses: dict[str, Loss]
     figures: Callable[[], BearingFigures] | None = None
     flags: SomeFlags = ()
+    loads: RollerLoads | None = None
 
 
 def missing_bearing(key: str, reason: str) -> BearingOutcome:
@@ -106,7 +111,13 @@ def missing_bearing(key: str, reason: str) -> BearingOutcome:
 
 
 def solve_bearing(
-    key: str, own: PlanetBearing, load: PlanetLoad, count: int, oil: OilState, speed: float
+    key: str,
+    own: PlanetBearing,
+    load: PlanetLoad,
+    count: int,
+    oil: OilState,
+    speed: float,
+    last: RollerLoads | None = None,
 ) -> BearingOutcome:
     """Losses of `count` planet bearings under the same load.
 
@@ -121,9 +132,14 @@ def solve_bearing(
     oil : OilState
     speed : float
         Speed of the planet against the carrier. [rad/s]
+    last : RollerLoads, optional
+        The rollers under nearly this load, which saves work.
     """
     bearing = own.bearing
-    loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
+    if last is None:
+        loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
+    else:
+        loads = roller_loads_next_to(last, bearing, load.force, load.moment_x, load.moment_y)
     if isinstance(own.model, FittedRolling):
         beyond = _palmgren(own, loads, load, speed) if own.palmgren_beyond else None
         loss = fitted_rolling_loss(bearing, loads, speed, oil, own.model, beyond)
@@ -143,6 +159,7 @@ def solve_bearing(
         },
         partial(_bearing_figures, own, loads, load, speed, oil, loss.loss),
         loss.flags + viscous_flags(key.replace("_", " "), speed, bearing.pitch_diameter),
+        loads,
     )
 
 

@@ -7,6 +7,7 @@ turns the planet from t to r: for a sun, t is then the sense in which it pushes 
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -98,13 +99,11 @@ class PlanetContact:
         return mesh.operating_radius1 if self.member == 1 else mesh.operating_radius2
 
     @property
-    def direction(self) -> FloatArray:
-        """Unit vector along t and r of the transverse force on the planet."""
+    def direction(self) -> complex:
+        """Unit vector of the transverse force on the planet, t + i r."""
         angle = self.duty.mesh.operating_pressure_angle
-        t, r = self.outward
-        # z x e with e = -outward, the arm of the force
-        tangent = np.array([r, -t]) * self.sense
-        return math.cos(angle) * tangent + math.sin(angle) * np.array(self.outward)
+        # its arm is -outward, and z x is i times
+        return complex(*self.outward) * complex(math.sin(angle), -self.sense * math.cos(angle))
 
     @property
     def axial_force(self) -> float:
@@ -136,28 +135,26 @@ def planet_load(
     mesh_moments : sequence of float, optional
         Moments of the transverse force of each mesh about the middle of its face. [N m]
     """
-    moment = np.zeros(2)  # along t and r
+    moment = 0j  # t + i r
     for contact, own in zip(contacts, mesh_moments or [0.0] * len(contacts), strict=True):
         lever = own + contact.position * contact.duty.force
         moment += lever * contact.direction
         couple = contact.axial_force * contact.planet_radius
-        moment += couple * np.array(contact.outward)
+        moment += couple * complex(*contact.outward)
     force = _radial_force(contacts, centrifugal)
-    along, across = _axes(force)
-    return PlanetLoad(math.hypot(*force), float(moment @ along), float(moment @ across))
+    turned = moment * cmath.rect(1.0, -cmath.phase(force))
+    return PlanetLoad(abs(force), turned.real, turned.imag)
 
 
-def _radial_force(contacts: Contacts, centrifugal: float) -> FloatArray:
-    """Force of all meshes and of rotation on the planet, along t and r. [N]"""
-    force = np.array([0.0, centrifugal])
-    for contact in contacts:
-        force += contact.duty.force * contact.direction
-    return force
+def _radial_force(contacts: Contacts, centrifugal: float) -> complex:
+    """Force of all meshes and of rotation on the planet, t + i r. [N]"""
+    forces = (contact.duty.force * contact.direction for contact in contacts)
+    return sum(forces, complex(0.0, centrifugal))
 
 
-def _axes(force: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _axes(force: complex) -> tuple[FloatArray, FloatArray]:
     """Unit vectors along the radial force and at right angles to it, in t and r."""
-    turn = math.atan2(force[1], force[0])
+    turn = cmath.phase(force)
     along = np.array([math.cos(turn), math.sin(turn)])
     return along, np.array([-along[1], along[0]])
 
@@ -212,7 +209,7 @@ def _excess(
     """
     force = _radial_force(contacts, centrifugal)
     axes = np.array(_axes(force))
-    size = math.hypot(*force)
+    size = abs(force)
 
     def excess(tilts: FloatArray) -> FloatArray:
         load = _load_at(tilts @ axes, contacts, centrifugal)
@@ -318,7 +315,9 @@ def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
         replace(
             contact,
             duty=contact.duty.misaligned(
-                contact.face_sense * contact.duty.mesh.face_width * float(tilt @ contact.direction)
+                contact.face_sense
+                * contact.duty.mesh.face_width
+                * float(tilt @ (contact.direction.real, contact.direction.imag))
             ),
         )
         for contact in contacts

@@ -18,6 +18,7 @@ TOOL_HALVINGS = 30
 """Halvings of the rounding of a tool until it is known: to a billionth."""
 
 
+@lru_cache(maxsize=64)
 def longest_involute(gear: Gear, rounding: float | None) -> float:
     """Radius at which the involute of `gear` ends towards its root, as long as a tool leaves it.
 

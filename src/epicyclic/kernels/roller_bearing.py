@@ -283,6 +283,7 @@ def solve_roller_loads(
     tolerance: float,
     max_iterations: int,
     held: bool = False,
+    near: bool = False,
 ) -> tuple[FloatArray, FloatArray, int]:
     """Load intensity of every slice of every roller.
 
@@ -308,6 +309,8 @@ def solve_roller_loads(
         For each of the two nested iterations.
     held : bool
         True to keep the tilts of `start`.
+    near : bool
+        True if `start` is so near that its loaded lengths serve.
 
     Returns
     -------
@@ -324,6 +327,8 @@ def solve_roller_loads(
     if np.abs(load).max() == 0.0:
         return q, d, 0
     lengths = np.full((rows, psi.size), width * slices)
+    if near:
+        loaded_lengths(d, psi, y_over_l, crown, width, clearance, lengths)
     stiffness = np.empty((rows, psi.size))
     total = 0
     converged = False

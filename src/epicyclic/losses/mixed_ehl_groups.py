@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -118,6 +119,7 @@ Limits = Mapping[str, tuple[float | None, float | None]]
 _OIL = (VISCOSITY_RANGE.name, PRESSURE_VISCOSITY_RANGE.name)
 
 
+@lru_cache(maxsize=2)  # friction and rolling of a mesh ask for the same one
 def held_in_table(contact: LineContacts, *, oil_held: bool = True) -> LineContacts:
     """The contacts with their conditions held in Table 5.1, but for the slip. Theory (F5).
 

@@ -60,6 +60,7 @@ __all__ = [
     "palmgren_loss",
     "radial_stiffness",
     "roller_loads",
+    "roller_loads_next_to",
     "tilting_moments",
 ]
 
@@ -271,12 +272,37 @@ def roller_loads(
     ConvergenceError
         If the balance of forces is not found.
     """
+    load = np.array([force_x, force_y, moment_x, moment_y])
+    load[2:] /= bearing.half_width
+    return _loaded(bearing, load, _start(bearing, load), near=False)
+
+
+def roller_loads_next_to(
+    last: RollerLoads, bearing: RollerBearing, force: float, moment_x: float, moment_y: float
+) -> RollerLoads:
+    """Load on every slice under nearly the load of `last`, which saves most of the work.
+
+    Parameters
+    ----------
+    last : RollerLoads
+    bearing, force, moment_x, moment_y
+        As for `roller_loads`, which has the same solution but for its tolerance.
+    """
     half_width = bearing.half_width
-    load = np.array([force_x, force_y, moment_x / half_width, moment_y / half_width])
+    load = np.array([force, 0.0, moment_x / half_width, moment_y / half_width])
+    start = last.displacement * (1.0, 1.0, half_width, half_width)
+    return _loaded(bearing, load, start, near=True)
+
+
+def _loaded(
+    bearing: RollerBearing, load: FloatArray, start: FloatArray, *, near: bool
+) -> RollerLoads:
+    """The bearing under forces and moments over its half-width, from the displacements `start`."""
+    half_width = bearing.half_width
     azimuth = np.arange(bearing.rollers_per_row) * 2 * math.pi / bearing.rollers_per_row
     intensity, state, iterations = solve_roller_loads(
         load,
-        _start(bearing, load),
+        start,
         azimuth,
         bearing.slice_positions() / half_width,
         bearing.crown(),
@@ -284,12 +310,14 @@ def roller_loads(
         bearing.diametral_clearance,
         TOLERANCE,
         MAX_ITERATIONS,
+        held=False,
+        near=near,
     )
     if iterations < 0:
         raise ConvergenceError(
             "the load distribution of the planet bearing was not found under "
-            f"{NEWTON.text(math.hypot(force_x, force_y), 4)} and "
-            f"{format_number(math.hypot(moment_x, moment_y), 4)} N m; "
+            f"{NEWTON.text(math.hypot(*load[:2]), 4)} and "
+            f"{format_number(half_width * math.hypot(*load[2:]), 4)} N m; "
             "check roller length and clearance, or use the bearing model 'palmgren'."
         )
     state[2:] /= half_width

@@ -299,9 +299,9 @@ def check_ranges(
     flags = []
     for item in ranges:
         value = np.atleast_1d(np.asarray(values[item.name], dtype=float))
-        low, high = _bounds(item)
-        if not value.size or (low <= value.min() and value.max() <= high):
+        if _holds(item, value):
             continue
+        low, high = _bounds(item)
         outside = (value < low) | (value > high)
         if not outside.any():  # no numbers
             continue
@@ -337,9 +337,18 @@ def check_contacts(
     flags: tuple[ValidityFlag, ...] = ()
     for item in ranges:
         values = item.found_in(contacts)
-        local = values.shape == weight.shape
-        flags += check_ranges(use, (item,), {item.name: values}, weight if local else 1.0, part)
+        if not _holds(item, values):
+            local = values.shape == weight.shape
+            flags += check_ranges(use, (item,), {item.name: values}, weight if local else 1.0, part)
     return flags
+
+
+def _holds(item: Range, values: FloatArray) -> bool:
+    """True if all values lie in the range."""
+    low, high = _bounds(item)
+    if values.ndim == 0:
+        return low <= float(values) <= high
+    return not values.size or bool(low <= values.min() and values.max() <= high)
 
 
 @lru_cache(maxsize=1024)

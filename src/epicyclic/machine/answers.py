@@ -12,12 +12,16 @@ from dataclasses import dataclass, replace
 
 from epicyclic.elements.base import ElementResult, Loss
 
-__all__ = ["Answer", "distance"]
+__all__ = ["NEAR", "STEEPEST", "Answer", "distance"]
 
 CAUTION = 2.0
 """How much larger the error of foretold losses is taken to be than its estimate. [1]"""
 STEEPEST = 3.0
-"""Relative change of a loss over that of its load above which no loss rises with a load. [1]"""
+"""Power above which no loss rises with its load. [1]"""
+BENT = 0.25
+"""Change of the power with which a loss rises, over the relative change of its load. [1]"""
+NEAR = 3e-5
+"""Change of a load over which the figures of an answer serve. [1]"""
 ROUNDING = 1e-14
 """Change, relative to the largest load, that is rounding. [1]"""
 
@@ -47,7 +51,8 @@ class Answer:
     def foretold(self, loads: Mapping[str, float], allowed: float) -> ElementResult | None:
         """What the element would answer; None if that may be off by more than `allowed`.
 
-        Losses only: figures and flags are those of the last answer.
+        Losses only: figures and flags are those of the last answer, to loads no farther off than
+        `NEAR`.
 
         Parameters
         ----------
@@ -64,6 +69,8 @@ class Answer:
             if loss.follows not in steps:
                 steps[loss.follows] = self._step(loads, loss)
             step = steps[loss.follows]
+            if step.size > NEAR:
+                return None
             off += step.error(loss.watts, older) * loss.watts
             watts = max(0.0, loss.watts + step.part * (loss.watts - older))
             losses[name] = replace(loss, watts=watts) if watts != loss.watts else loss
@@ -93,15 +100,11 @@ class Answer:
         length = sum(way**2 for way in ways)
         if not length > (ROUNDING * largest) ** 2:
             return _Step(0.0, 0.0, _apart(last, new), 0.0)
-        ahead = sum(
-            (one - two) * way for one, two, way in zip(new, last, ways, strict=True)
-        )
+        ahead = sum((one - two) * way for one, two, way in zip(new, last, ways, strict=True))
         part = ahead / length
         on_line = [two + part * way for two, way in zip(last, ways, strict=True)]
         aside = _apart(on_line, new)
-        return _Step(
-            part, _apart(old, last), _apart(last, new), aside if aside > ROUNDING else 0.0
-        )
+        return _Step(part, _apart(old, last), _apart(last, new), aside if aside > ROUNDING else 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,17 +129,18 @@ class _Step:
     def error(self, watts: float, older: float) -> float:
         """Estimate of the error of a loss on the line from `older` to `watts`, relative.
 
-        The loss goes with some power of its load: its slope differs over both steps by as much as
-        the load does. Of what changed more than any such power nothing is known but the change.
+        The loss goes with some power of its load, the slope of which bends the line, and which
+        changes a little itself. Of what changed more than any power would nothing is foretold.
         """
         if not self.before:
             return STEEPEST * self.size
         if watts == older:
             return 0.0
-        steepness = abs(watts - older) / watts / self.before if watts else math.inf
-        if steepness > STEEPEST:
+        power = abs(watts - older) / watts / self.before if watts else math.inf
+        if power > STEEPEST:
             return math.inf
-        return steepness * self.size * (self.before + self.size) + STEEPEST * self.aside
+        bend = power * abs(power - 1) / 2 + BENT
+        return bend * self.size * (self.before + self.size) + STEEPEST * self.aside
 
 
 def distance(old: Mapping[str, float], new: Mapping[str, float]) -> float:

@@ -6,11 +6,13 @@ enters there.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dgetrf, dgetrs
 
 from epicyclic.elements.base import HOUSING
 from epicyclic.machine.machine import Machine, MeshRow, Operation, Terms
@@ -98,15 +100,17 @@ def balance(
     place = {body: index for index, body in enumerate(bodies)}
     unknown = _unknown_torques(operation, place)
     columns = np.zeros((len(bodies), len(machine.rows) + len(machine.couplings) + len(unknown)))
-    scale = []
+    scale: list[float] = []
     lossy = [_lossy_terms(row, drives[row.key], efficiencies[row.key]) for row in machine.rows]
     stiff = [coupling.terms() for coupling in machine.couplings]
     for number, terms in enumerate((*lossy, *stiff)):
+        column: dict[str, float] = {}
         for body, coefficient in terms:
             if body != HOUSING:
-                columns[place[body], number] += coefficient
-        length = float(np.linalg.norm(columns[:, number])) or 1.0
-        columns[:, number] /= length
+                column[body] = column.get(body, 0.0) + coefficient
+        length = math.hypot(*column.values()) or 1.0
+        for body, coefficient in column.items():
+            columns[place[body], number] = coefficient / length
         scale.append(length)
     for number, body in enumerate(unknown, len(scale)):
         columns[place[body], number] = 1.0
@@ -146,12 +150,10 @@ def _lossy_terms(row: MeshRow, first: bool, efficiency: float) -> Terms:
 def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
     """The smallest solution of a linear system, and whether it is the only one."""
     if matrix.shape[0] == matrix.shape[1]:
-        try:
-            found = np.asarray(np.linalg.solve(matrix, known), float)
-        except np.linalg.LinAlgError:
-            pass
-        else:
-            found += np.linalg.solve(matrix, known - matrix @ found)
+        factors, pivots, singular = dgetrf(matrix)
+        if not singular:
+            found = np.asarray(dgetrs(factors, pivots, known)[0], float)
+            found += dgetrs(factors, pivots, known - matrix @ found)[0]
             size = float(np.abs(known).max(initial=0.0))
             if float(np.abs(found).max(initial=0.0)) <= LARGEST_FACTOR * size:
                 return found, True

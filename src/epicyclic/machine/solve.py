@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, cast
 
-from epicyclic.elements.base import LOAD_DEPENDENT, ElementResult, Loss, State
+from epicyclic.elements.base import LOAD_DEPENDENT, Element, ElementResult, Loss, State
 from epicyclic.elements.fluids import Fluids
 from epicyclic.errors import ConvergenceError
 from epicyclic.machine.answers import Answer, distance
@@ -16,7 +16,15 @@ from epicyclic.machine.forces import forces_of
 from epicyclic.machine.kinematics import speeds_of
 from epicyclic.machine.machine import Machine, Operation
 
-__all__ = ["Solution", "Start", "effects_of", "lossless_state", "solve_machine", "start_of"]
+__all__ = [
+    "LOSS_AGREEMENT",
+    "Solution",
+    "Start",
+    "effects_of",
+    "lossless_state",
+    "solve_machine",
+    "start_of",
+]
 
 AGREEMENT = 5e-10
 """Relative change of each load from one pass to the next at which torques and losses agree. [1]"""
@@ -202,13 +210,14 @@ def solve_machine(
     efficiencies: Mapping[str, float] = {row.key: row.efficiency for row in machine.rows}
     drives = directions.drives
     tried: list[Mapping[str, bool]] = []
+    known = _Known()
     while drives not in tried and len(tried) < MOST_BRANCHES:
         tried.append(drives)
-        last = _converged(machine, operation, speeds, drives, fluids)
+        last = _converged(machine, operation, start, drives, fluids, known)
         drives = drives_first(last.balance.powers, drives)
     floating = frozenset(key for key, first in drives.items() if first != last.drives[key])
     if floating:
-        last = _converged(machine, operation, speeds, last.drives, fluids, floating)
+        last = _converged(machine, operation, start, last.drives, fluids, known, floating)
     if last.efficiencies != efficiencies and not directions.jammed:
         directions = find_directions(machine, operation, speeds, lossless, last.efficiencies)
     return Solution(
@@ -218,7 +227,7 @@ def solve_machine(
         meshes=last.balance.meshes,
         drives=last.drives,
         rolling=last.balance.powers,
-        results=last.results,
+        results=known.results,
         given=_given_losses(machine, last.balance),
         ratio=start.ratio,
         self_locking=directions.locking,
@@ -230,22 +239,64 @@ def solve_machine(
 
 
 @dataclass(frozen=True, slots=True)
+class _Known:
+    """What the elements have answered, by their keys: each pass goes on from it.
+
+    Attributes
+    ----------
+    idle : dict of str to object
+        As `State.idle`.
+    answers : dict of str to Answer
+        When they were last asked.
+    results, loads : dict
+        Their last answers, foretold ones among them, and the loads that these belong to.
+    """
+
+    idle: dict[str, Any] = field(default_factory=dict[str, Any])
+    answers: dict[str, Answer] = field(default_factory=dict[str, Answer])
+    results: dict[str, ElementResult] = field(default_factory=dict[str, ElementResult])
+    loads: dict[str, Mapping[str, float]] = field(default_factory=dict[str, Mapping[str, float]])
+
+    def follow(self, elements: Iterable[Element], state: State, allowed: float) -> bool:
+        """Have the elements answer to a state; False if none sees other loads than before.
+
+        `allowed` is the error of foretold losses, relative.
+        """
+        changed = False
+        for element in elements:
+            key, loads = element.key, element.loads(state)
+            if key in self.loads and _agrees(self.loads[key], loads):
+                continue
+            last = self.answers.get(key)
+            told = None
+            if last is not None:
+                passed = distance(self.loads[key], loads)
+                told = last.foretold(loads, max(allowed, FORETOLD * passed))
+            if told is None:
+                told = element.evaluate(state)
+                self.answers[key] = last.followed_by(loads, told) if last else Answer(loads, told)
+            self.results[key], self.loads[key] = told, loads
+            changed = True
+        return changed
+
+
+@dataclass(frozen=True, slots=True)
 class _Pass:
-    """Torques, and what the elements answer to them."""
+    """Torques that agree with the losses."""
 
     balance: Balance
     drives: Mapping[str, bool]
     efficiencies: Mapping[str, float]
     state: State
-    results: Mapping[str, ElementResult]
 
 
 def _converged(
     machine: Machine,
     operation: Operation,
-    speeds: Mapping[str, float],
+    start: Start,
     drives: Mapping[str, bool],
     fluids: Fluids | None,
+    known: _Known,
     braking: Collection[str] = (),
 ) -> _Pass:
     """Torques and losses that agree, with these directions of the rolling powers.
@@ -253,51 +304,41 @@ def _converged(
     Losses of the meshes `braking` are friction, whichever gear drives.
     """
     rows = {row.key: row.efficiency for row in machine.rows}
-    found = balance(machine, operation, speeds, drives, rows)
-    lossless = found.meshes
-    answers: dict[str, Answer] = {}
-    seen: dict[str, Mapping[str, float]] = {}
-    results: dict[str, ElementResult] = {}
-    idle: dict[str, Any] = {}
-    for number in range(MOST_PASSES):
-        forces = forces_of(machine.layouts, found.meshes)
+    speeds, found = start.speeds, start.lossless
+    if any(efficiency < 1 for efficiency in rows.values()):
+        found = balance(machine, operation, speeds, drives, rows)
+    unlost = found.meshes
+    if known.results:
+        effects = effects_of(machine, found.powers, known.results.values(), braking)
+        found = balance(machine, operation, speeds, drives, *effects)
+    passes = 0
+    while passes < MOST_PASSES:
+        passes += 1
         state = State(
             speeds,
             found.meshes,
-            forces,
+            forces_of(machine.layouts, found.meshes),
             cast(Fluids, fluids),
-            lossless=number == 0,
+            lossless=not known.results,
             drives=drives,
-            idle=idle,
+            idle=known.idle,
         )
-        if not number:
-            idle |= {element.key: element.idle(state) for element in machine.elements}
-        allowed = _allowed(distance(lossless, found.meshes))
-        changed = False
-        for element in machine.elements:
-            key, loads = element.key, element.loads(state)
-            if key in seen and _agrees(seen[key], loads):
-                continue
-            last = answers.get(key)
-            told = None
-            if last is not None:
-                told = last.foretold(loads, max(allowed, FORETOLD * distance(seen[key], loads)))
-            if told is None:
-                told = element.evaluate(state)
-                answers[key] = last.followed_by(loads, told) if last else Answer(loads, told)
-            results[key], seen[key] = told, loads
-            changed = True
-        efficiencies, frictions = effects_of(machine, found.powers, results.values(), braking)
+        if not known.idle:
+            known.idle.update({element.key: element.idle(state) for element in machine.elements})
+        allowed = _allowed(distance(unlost, found.meshes))
+        changed = known.follow(machine.elements, state, allowed)
+        effects = effects_of(machine, found.powers, known.results.values(), braking)
+        efficiencies, _ = effects
         if not changed and efficiencies == rows:  # friction alone: the balance has all of it
-            return _Pass(found, drives, efficiencies, state, results)
-        new = balance(machine, operation, speeds, drives, efficiencies, frictions)
+            return _Pass(found, drives, efficiencies, state)
+        new = balance(machine, operation, speeds, drives, *effects)
         if _agrees(found.meshes, new.meshes):
-            return _Pass(new, drives, efficiencies, state, results)
+            return _Pass(new, drives, efficiencies, state)
         if not max(map(abs, new.meshes.values()), default=0.0) < MOST_TORQUE:
             break
         found = new
     raise ConvergenceError(
-        f"losses and torques do not agree after {number + 1} passes: the losses grow with the "
+        f"losses and torques do not agree after {passes} passes: the losses grow with the "
         "torques that they cause. Either the gears are next to self-locking in this direction of "
         "power: they can turn only with smaller losses, or with power the other way. Or a formula "
         "gives far too much outside its range: choose another models.friction or models.rolling, "
