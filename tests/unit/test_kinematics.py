@@ -202,3 +202,26 @@ def test_power_balance_closes_with_one_member_held(driver, held, torque, speed):
     else:  # coasts: 400 kW leave through the member of given torque
         assert output.power == pytest.approx(403e3, rel=ROUNDING)
         assert flow.input_power == pytest.approx(403e3, rel=ROUNDING)
+
+
+class SteepDrag(Brake):
+    """Drag of the pinion that rises steeply from no load of the mesh."""
+
+    def loads(self, state):
+        return {"mesh": state.torques["mesh"]}
+
+    def evaluate(self, state):
+        watts = 120.0 * abs(state.torques["mesh"]) ** 0.05
+        return ElementResult(
+            {"drag": Loss(LOAD_INDEPENDENT, watts, brakes=(("pinion", HOUSING, 1.0),))}
+        )
+
+
+def test_losses_that_throw_a_small_load_to_and_fro_settle():
+    rows = (MeshRow("mesh", "pinion", "gear", HOUSING, (20, 47)),)
+    machine = Machine(("pinion", "gear"), rows, (SteepDrag(),))
+    found = solve_machine(machine, Operation("pinion", "gear", 1.0, {"pinion": 100.0}), None)
+    load = found.meshes["mesh"]
+    # a load less by dx raises the drag by more than dx: passes with whole steps only grow
+    assert 0.05 * 1.2 * load**-0.95 > 1
+    assert load == pytest.approx(1.0 - 1.2 * load**0.05, rel=1e-7)

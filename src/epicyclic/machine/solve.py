@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
 from epicyclic.elements.base import LOAD_DEPENDENT, Element, ElementResult, Loss, State
@@ -38,6 +38,9 @@ LOSS_AGREEMENT = 1e-7
 NO_POWER = 1e-12
 """Power, relative to the largest one, that is rounding. [1]"""
 MOST_PASSES = 60
+WHOLE_STEPS, HALF_STEPS = 15, 35
+"""Passes up to which loads follow the losses by the whole step, by a half, and then by a fifth:
+losses that rise steeply from no load may throw a small load to and fro. [1]"""
 MOST_TORQUE = 1e15
 """Torque at a mesh, far above what a case can state, from which losses and torques only drive each
 other up. [N m]"""
@@ -336,7 +339,7 @@ def _converged(
             return _Pass(new, drives, efficiencies, state)
         if not max(map(abs, new.meshes.values()), default=0.0) < MOST_TORQUE:
             break
-        found = new
+        found = _towards(new, found, passes)
     raise ConvergenceError(
         f"losses and torques do not agree after {passes} passes: the losses grow with the "
         "torques that they cause. Either the gears are next to self-locking in this direction of "
@@ -344,6 +347,18 @@ def _converged(
         "gives far too much outside its range: choose another models.friction or models.rolling, "
         'or models.oil_beyond_range = "held".'
     )
+
+
+def _towards(new: Balance, found: Balance, passes: int) -> Balance:
+    """The loads of the next pass."""
+    if passes < WHOLE_STEPS:
+        return new
+    share = 0.5 if passes < HALF_STEPS else 0.2
+    meshes, powers = (
+        {key: old[key] + share * (value - old[key]) for key, value in those.items()}
+        for old, those in ((found.meshes, new.meshes), (found.powers, new.powers))
+    )
+    return replace(new, meshes=meshes, powers=powers)
 
 
 def _allowed(moved: float) -> float:
