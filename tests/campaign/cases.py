@@ -1,5 +1,9 @@
 """Random valid cases over the whole schema: planetary sets, pairs and trains, each by its number.
 
+A case is a point of a design: designs differ in kind, geometry, models and oil, the points of a
+design in speed, torque, temperature, share of oil and pressure. Points share the flows through
+pockets where they may, so that many of them are solved soon.
+
 Sets and pairs are those of the frozen results, with operating points, oils and models over all that
 is documented. Trains are listed sets with their losses computed, sets and pairs inside a train, and
 trains of given efficiencies.
@@ -8,7 +12,8 @@ trains of given efficiencies.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import lru_cache
 from typing import Any
 
 import epicyclic as ep
@@ -18,10 +23,16 @@ from epicyclic.case.case import Case
 from frozen import make_frozen
 from property.test_random_trains import random_train
 
-__all__ = ["drawn_case"]
+__all__ = ["POINTS", "drawn_case", "drawn_design", "is_whole"]
 
 Tables = dict[str, Any]
 ATTEMPTS = 10_000
+POINTS = 10
+"""Of each design."""
+WHOLE = 10
+"""One design of so many has the default resolution."""
+TORQUES = 2
+"""Other torques at each state of speed, temperature and air around the gears."""
 
 KINDS = ("planetary", "planetary", "gear_pair", "gear_pair", "listed", "train")
 """Each drawn as often as it is written here."""
@@ -49,8 +60,19 @@ LISTED: tuple[Callable[[], Tables], ...] = (
 )  # fmt: skip
 
 
-def drawn_case(number: int, *, whole: bool = False) -> Case:
-    """The case of a number; in the default resolution with all its losses if `whole`."""
+def drawn_case(number: int) -> Case:
+    """The case of a number: of its design the point that its last digit names."""
+    design, point = divmod(number, POINTS)
+    return _points(design)[point]
+
+
+def is_whole(number: int) -> bool:
+    """Whether a case has the default resolution and all its losses."""
+    return number // POINTS % WHOLE == WHOLE - 1
+
+
+def drawn_design(number: int, *, whole: bool = False) -> Case:
+    """A design at a point of its own; in the default resolution with all its losses if `whole`."""
     rng = random.Random(number)
     for _ in range(ATTEMPTS):
         tables = _drawn(rng)
@@ -62,6 +84,40 @@ def drawn_case(number: int, *, whole: bool = False) -> Case:
         except (ep.InputError, ValueError):
             continue
     raise RuntimeError(f"no valid case among {ATTEMPTS}")
+
+
+@lru_cache(maxsize=1)
+def _points(design: int) -> tuple[Case, ...]:
+    """The design at all its points: a few states, each with several torques."""
+    rng = random.Random(f"points of {design}")
+    case = drawn_design(design, whole=is_whole(design * POINTS))
+    found = [case]
+    for changes in _changes(case, rng):
+        if len(found) == POINTS:
+            break
+        try:
+            found.append(case.updated(changes))
+        except ep.InputError:
+            continue
+    return tuple(found)
+
+
+def _changes(case: Case, rng: random.Random) -> Iterator[Tables]:
+    """What points of a design change, without end: points with one state follow each other."""
+    given = case.given()
+    operation = given["operation"]
+    torque, speed = (abs(make_frozen.value(operation[key])) for key in ("torque", "speed"))
+    has_oil = "lubricant" in given
+    yield {"operation.torque": "0 N*m"}
+    yield {"operation.speed": "0 rpm"}
+    while True:
+        state: Tables = {"operation.speed": _point(rng, torque, speed or 1500.0)["speed"]}
+        if has_oil:
+            state["operation.oil_inlet_temperature"] = _temperature(rng)
+            state |= {f"surroundings.{key}": each for key, each in _surroundings(rng).items()}
+        yield state
+        for _ in range(TORQUES):
+            yield state | {"operation.torque": _point(rng, torque or 50.0, speed)["torque"]}
 
 
 def _drawn(rng: random.Random) -> Tables:

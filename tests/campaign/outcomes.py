@@ -16,7 +16,7 @@ from limits import is_soon
 
 __all__ = ["FAULTS", "LONGEST", "Outcome", "outcome_of"]
 
-LONGEST = 60.0
+LONGEST = 45.0
 """Processor time of one case of any resolution drawn here, compiled code at hand. [s]"""
 ENERGY = 1e-9
 """What powers of the shafts and losses may differ by, over the largest of them. [1]"""

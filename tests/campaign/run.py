@@ -5,7 +5,7 @@ Run it from the folder tests:
     python -m campaign.run 100000 --journal cases.partial --table ../docs/development/campaign.csv
 
 It goes on where it was stopped, prints how many cases ended how, and writes the table of the docs.
-Every tenth case has the default resolution and all its losses. ``--shard 2/8`` solves a share, and
+Every tenth design has the default resolution and all its losses. ``--shard 2/8`` solves a share, and
 ``--seconds 3600`` ends it after the case in which that time is over. Exit code 1: faults.
 """
 
@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from campaign.cases import drawn_case
+from campaign.cases import POINTS, WHOLE, drawn_case, is_whole
 from campaign.outcomes import FAULTS, outcome_of
 from epicyclic.status import Status
 from epicyclic.sweeps.journal import Journal, Row
@@ -32,8 +32,6 @@ from epicyclic.sweeps.runner import Plan, Runner, fingerprint, parse_shard
 
 __all__ = ["CampaignPlan", "Counts", "counted"]
 
-WHOLE = 10
-"""One case of so many has the default resolution."""
 KINDS = ("planetary", "gear_pair", "train")
 RESOLUTIONS = ("coarse", "default")
 
@@ -54,11 +52,11 @@ class CampaignPlan(Plan):
         return range(self.count)
 
     def describe(self) -> dict[str, Any]:
-        return {"cases": "by number", "whole": WHOLE}  # not how many: more go on from fewer
+        # not how many: more go on from fewer
+        return {"cases": "by number", "points": POINTS, "whole": WHOLE}
 
     def solve(self, index: int) -> Row:
-        whole = index % WHOLE == WHOLE - 1
-        case = drawn_case(index, whole=whole)
+        case = drawn_case(index)
         found = outcome_of(case)
         return Row(
             status=str(Status.FAILED if found.name in FAULTS else Status.CONVERGED),
@@ -66,7 +64,7 @@ class CampaignPlan(Plan):
             warnings=found.detail,
             numbers={
                 "kind": KINDS.index(case.kind),
-                "whole": whole,
+                "whole": is_whole(index),
                 "seconds": found.seconds,
                 "energy": found.energy,
             },

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from campaign.cases import drawn_case
+from campaign.cases import drawn_case, drawn_design
 from campaign.outcomes import FAULTS, outcome_of
 from campaign.run import CampaignPlan, counted
 from epicyclic.losses import direct
@@ -45,7 +45,7 @@ def stand_in(line, roughness, seeds, heating, settings):
 def test_meshes_of_few_and_of_equal_contacts_can_be_solved_directly(number, monkeypatch):
     """Few positions and segments, spur gears, even loads: contacts at one place of the mesh."""
     monkeypatch.setattr(direct, "_friction", stand_in)
-    case = drawn_case(number).updated({"models.friction": "ehl-direct"})
+    case = drawn_design(number).updated({"models.friction": "ehl-direct"})
     assert outcome_of(case).name == "solved"
     assert "ehl-direct" in " ".join(ep.solve(case).notes)
 
@@ -60,7 +60,7 @@ def test_of_few_contacts_all_are_solved_whatever_the_most_of_many(monkeypatch):
 
     monkeypatch.setattr(direct, "_friction", stand_in_of_all)
     changes = {"models.friction": "ehl-direct", "contact_solver.most_contacts": 12}
-    result = ep.solve(drawn_case(41).updated(changes))
+    result = ep.solve(drawn_design(41).updated(changes))
     (note,) = (note for note in result.notes if "ehl-direct" in note)
     assert "18 contacts" in note
     assert "these are all that differ" in note
