@@ -18,6 +18,7 @@ TABLE = Path(__file__).parents[2] / "docs" / "development" / "campaign.csv"
 
 
 def solved(numbers):
+    numbers = list(numbers)
     plan = CampaignPlan(max(numbers) + 1)
     counts = counted((number, plan.solve(number)) for number in numbers)
     for row in counts.rows():
@@ -32,7 +33,14 @@ def check(counts):
 
 
 def test_a_quick_share_ends_in_results_or_outcomes():
-    check(solved(range(100_001, 100_006)))  # beyond those that the documentation counts
+    # beyond those that the documentation counts: five designs at four points each
+    check(solved(10_000_000 + 30 * design + point for design in range(5) for point in (0, 3, 4, 7)))
+
+
+@pytest.mark.parametrize("number", [11, 17])
+def test_tilted_planets_may_have_a_mesh_without_load(number):
+    """The ring and its mesh turn freely, the sun carries what the bearings resist."""
+    assert outcome_of(drawn_case(number)).name == "solved"
 
 
 def stand_in(line, roughness, seeds, heating, settings):
@@ -71,6 +79,19 @@ def test_of_few_contacts_all_are_solved_whatever_the_most_of_many(monkeypatch):
 @pytest.mark.parametrize("first", [200_000, 201_000])
 def test_a_longer_share_ends_in_results_or_outcomes(first):
     check(solved(range(first, first + 1000)))
+
+
+def test_points_of_a_design_differ_in_operation_only():
+    cases = [drawn_case(number) for number in range(240, 250)]
+    assert len({str(case.given()) for case in cases}) == 10
+    left = ("operation", "surroundings")
+    rest = [{key: it for key, it in case.given().items() if key not in left} for case in cases]
+    assert all(each == rest[0] for each in rest)
+    speeds = {case.operation.speed for case in cases}
+    torques = {case.operation.torque for case in cases}
+    assert 0.0 in speeds
+    assert 0.0 in torques
+    assert len(speeds) < len(torques)
 
 
 def test_a_case_follows_from_its_number_alone():

@@ -332,6 +332,8 @@ def _load_at(tilt: FloatArray, contacts: Contacts, centrifugal: float) -> Planet
 
 def _mesh_moment(duty: MeshDuty) -> float:
     """Moment of the transverse force of a mesh about the middle of its face. Theory (B17). [N m]"""
+    if duty.torque1 == 0:
+        return 0.0
     loaded = elastic_loads(duty)
     height = loaded.lines.face_position - duty.mesh.face_width / 2
     moments = (loaded.line_load * loaded.lines.length * height).sum(axis=(1, 2))
