@@ -5,8 +5,8 @@ Run it from the folder tests:
     python -m campaign.run 100000 --journal cases.partial --table ../docs/development/campaign.csv
 
 It goes on where it was stopped, prints how many cases ended how, and writes the table of the docs.
-Every tenth design has the default resolution and all its losses. ``--shard 2/8`` solves a share, and
-``--seconds 3600`` ends it after the case in which that time is over. Exit code 1: faults.
+Every tenth design has the default resolution and all its losses. ``--shard 2/8`` solves a share,
+and ``--seconds 3600`` ends it after the case in which that time is over. Exit code 1: faults.
 """
 
 from __future__ import annotations

@@ -75,6 +75,12 @@ def test_of_few_contacts_all_are_solved_whatever_the_most_of_many(monkeypatch):
     assert len(solved) == len(set(solved)) == 18
 
 
+@pytest.mark.parametrize("number", [826, 829, 1104, 1881])
+def test_losses_that_alone_load_a_mesh_agree_with_its_load(number):
+    """No torque from outside: the least loss of a mesh changes its load by a multiple."""
+    assert outcome_of(drawn_case(number)).name == "solved"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("first", [200_000, 201_000])
 def test_a_longer_share_ends_in_results_or_outcomes(first):

@@ -37,7 +37,7 @@ LOSS_AGREEMENT = 1e-7
 """Error of foretold losses at which they agree with torques, at most. [1]"""
 NO_POWER = 1e-12
 """Power, relative to the largest one, that is rounding. [1]"""
-MOST_PASSES = 60
+MOST_PASSES = 120
 WHOLE_STEPS, HALF_STEPS = 15, 35
 """Passes up to which loads follow the losses by the whole step, by a half, and then by a fifth:
 losses that rise steeply from no load may throw a small load to and fro. [1]"""
