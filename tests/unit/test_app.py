@@ -11,6 +11,8 @@ from click.testing import CliRunner
 
 pytest.importorskip("nicegui", reason="optional")
 
+from nicegui import ui
+
 import app_tasks
 from epicyclic.app import tasks
 from epicyclic.app.desk import Desk, built_in, opened, received
@@ -90,6 +92,12 @@ def test_gears_of_a_listed_set_stand_beside_what_they_share():
     assert f"sets.{name}.gears.normal_module" in {entry.key for entry in gears.entries}
     assert desk.add(gears.key, "further", {}) == ""
     assert desk.problems_of(f"{gears.key}.further.teeth")
+
+
+def test_captions_are_without_the_marks_of_the_manual():
+    told = {group.about for group in _groups(form_of(ravigneaux()))}
+    assert "What belongs to one mesh of a listed set, [sets.NAME.mesh.GEAR-GEAR]." in told
+    assert not any("`" in text for text in told)
 
 
 def test_each_form_of_a_set_that_is_added_is_the_one_of_its_fields():
@@ -430,6 +438,15 @@ class _Here:
         pass
 
 
+class _Held(_Here):
+    """Computes no chapters beyond the first one."""
+
+    async def do(self, task, *arguments, progress):
+        if task is tasks.answered and arguments[1] == "":
+            await asyncio.Event().wait()
+        return await super().do(task, *arguments, progress=progress)
+
+
 @pytest.fixture
 def simulate(tmp_path):
     from nicegui.testing import user_simulation
@@ -437,10 +454,10 @@ def simulate(tmp_path):
     from epicyclic.app.page import Page, add_assets
     from epicyclic.app.shelves import Shelf
 
-    def run(desk: Desk, script) -> None:
+    def run(desk: Desk, script, *, chapter="", slow=_Here) -> None:
         async def root():
             add_assets()
-            Page(Shelf(desk, tmp_path, _Here(), _Here(), _Here())).build()
+            Page(Shelf(desk, tmp_path, chapter, _Here(), slow(), _Here())).build()
 
         async def visit():
             async with user_simulation(root=root) as user:
@@ -467,6 +484,28 @@ def test_the_page_shows_form_and_losses_and_the_message_beside_a_wrong_field(sim
         assert desk.case is None
 
     simulate(desk, script)
+
+
+@pytest.mark.parametrize(
+    ("chapter", "tab", "shown"),
+    [
+        ("", "Losses", "Where do the watts go?"),
+        ("map", "Losses", "Compute"),
+        ("gears", "Gears", "mesh periods"),
+        ("bearing", "Losses", "Where do the watts go?"),  # of a planet; a pair has none
+    ],
+)
+def test_a_chapter_is_shown_before_the_others_are_known(simulate, chapter, tab, shown):
+    desk = opened("talbot-2012-pair")
+    desk.change("losses.mesh_pocketing.include", False)
+
+    async def script(user):
+        await user.should_see("Compare", retries=200)
+        (tabs,) = user.find(ui.tabs).elements
+        assert [one.props["label"] for one in tabs] == [tab, "Map", "Compare"]
+        await user.should_see(shown, retries=200)
+
+    simulate(desk, script, chapter=chapter, slow=_Held)
 
 
 def test_another_case_is_opened_and_a_group_shows_its_fields_when_it_is_opened(simulate):

@@ -197,10 +197,37 @@ def test_a_copy_that_can_keep_nothing_is_made_once(tmp_path):
     assert hits == "[0, 0, 0]"
 
 
-def printed(program):
-    """What a program prints with a cache folder beside it, but for its first line."""
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere kernels are compiled in place")
+def test_of_programs_that_start_together_one_compiles_a_kernel(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text(TWO.replace("told, copies", "input()\ntold, copies", 1))
+    running = [
+        subprocess.Popen(
+            [sys.executable, str(program)],
+            env=settings_beside(program),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        for _ in range(2)
+    ]
+    for process in running:  # both have imported all that they need, and wait for a line
+        process.stdin.write("\n")
+        process.stdin.flush()
+    told = [int(process.communicate()[0].splitlines()[1]) for process in running]
+    assert sum(told) == 3, told
+
+
+def settings_beside(program):
+    """The environment with a cache folder beside a program."""
     settings = os.environ | {"XDG_CACHE_HOME": str(program.parent / "cache")}
     settings.pop("NUMBA_CACHE_DIR", None)
+    return settings
+
+
+def printed(program):
+    """What a program prints with a cache folder beside it, but for its first line."""
+    settings = settings_beside(program)
     done = subprocess.run(
         [sys.executable, str(program)], env=settings, capture_output=True, text=True, check=False
     )

@@ -13,10 +13,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from rich.console import Console
 
 import epicyclic as ep
+import listed_trains
 from epicyclic.case.template import case_template
 from epicyclic.errors import InputError
 from epicyclic.plots.catalogue import available, figure_of
 from epicyclic.plots.power_flow import SLIDE
+from epicyclic.report.inputs import input_tables
 from epicyclic.report.state_tables import state_tables
 from epicyclic.report.tables import friction_table, result_tables
 from trains import one_set, plus, published, simple, small_axle, turned_round
@@ -295,3 +297,27 @@ def test_a_single_set_has_a_power_flow_too():
     )
     words = [text.get_text() for text in texts(drawn(record))]
     assert {"gear pair", "pinion", "gear"} <= set(words)
+
+
+def test_inputs_of_a_listed_set_stand_side_by_side_as_the_schema_has_them():
+    case = ep.load_case(listed_trains.ravigneaux())
+    inputs = ep.solve(case).inputs
+    found = input_tables(inputs, case.given())
+    tables = {(table.title, table.head[1:-1]): table for table in found}
+    front, rear = ("small sun", "large sun", "short"), ("long front", "long rear", "ring")
+    assert {("S: Gears", front), ("S: Gears", rear)} <= tables.keys()
+    rows = {row[0].text: [cell.text for cell in row[1:-1]] for row in tables["S: Gears", rear].rows}
+    assert rows["teeth"] == ["19", "19", "76"]
+    assert rows["face width"] == ["25 mm", "22 mm", "27 mm"]
+    assert rows["roughness"] == ["0.4 µm"] * 3  # its unit as units are written
+    assert rows["body"] == ["long", "long", ""]
+    assert all(cell.about == "" for cell in tables["S: Gears", rear].rows[0][1:-1])
+    meanings = {row[0].text: row[-1].text for row in tables["S: Gears", rear].rows}
+    assert meanings["body"].startswith("Gears with the same body")
+    shared = {row[0].text for row in tables["S: All gears", ("value",)].rows}
+    assert "helix angle" in shared
+    assert not any("sun" in key for key in shared)
+    meshes = next(table for (title, _), table in tables.items() if title == "S: Mesh")
+    assert meshes.head[1:-1] == ("small sun-short", "short-long front", "large sun-long rear")
+    pairs = next(row for row in tables["S", ("value",)].rows if row[0].text == "meshes")
+    assert pairs[1].text.startswith("small_sun, short; short, long_front; ")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from typing import Protocol
 
 from nicegui import background_tasks, ui
@@ -60,6 +60,7 @@ class Chapters:
         """Show nothing: another case is opened."""
         self._sections, self._sheet = {}, None
         self._tabs.clear()
+        self._tabs.set_value(None)
         self._body.clear()
 
     def age(self, now: Study) -> None:
@@ -85,15 +86,34 @@ class Chapters:
             await self._draw(is_wanted)
 
     async def complete(self, study: Study, is_wanted: Callable[[], bool]) -> None:
-        """Have tabs for all chapters of a study that is shown, the same one open as before."""
+        """Have tabs for all chapters of a study that is shown, the same one open as before.
+
+        Of a case that is new one chapter is shown before the others are known.
+        """
+        if not self._sections:
+            await self._begin(study, is_wanted)
+            return  # what opens the tab wants the others too
         for name in self._sections:  # each by itself, so that the next value need not wait for all
             await self._do(tasks.answered, study, name)
             if not is_wanted():
                 return
         answer = await self._do(tasks.answered, study, "")
-        if self._body.is_deleted or not is_wanted():
-            return
-        sections = {section.name: section for section in answer.sections}
+        if not self._body.is_deleted and is_wanted():
+            self._offer(answer.sections)
+
+    async def _begin(self, study: Study, is_wanted: Callable[[], bool]) -> None:
+        """Show the chapter that was open, or the first one."""
+        chapter = self._shelf.chapter
+        name = tasks.FIRST if chapter in ("", *self._views) else chapter
+        answer = await self._do(tasks.answered, study, name)
+        if not answer.sections[0].items:  # the case has no such chapter
+            answer = await self._do(tasks.answered, study, tasks.FIRST)
+        if not self._body.is_deleted and is_wanted():
+            self._offer(answer.sections)
+
+    def _offer(self, found: Sequence[Section]) -> None:
+        """Have tabs for chapters, and beside the first one for the views."""
+        sections = {section.name: section for section in found}
         if list(sections) != list(self._sections):
             first, *others = [(name, section.title) for name, section in sections.items()]
             views = [(name, view.title) for name, view in self._views.items()]

@@ -190,7 +190,8 @@ class Form:
 
 
 def _choice(entry: Entry) -> ui.select:
-    unset = entry.default if entry.is_required else f"{entry.default} (default)"
+    unset = f"{entry.default} (default)" if entry.default else "not given"
+    unset = entry.default if entry.is_required else unset
     options = {"": unset} | {one: one for one in entry.choices}
     value = entry.text if entry.text in options else ""
     return ui.select(options, value=value, label=entry.name)

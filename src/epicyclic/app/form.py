@@ -217,7 +217,7 @@ def _group(table: type[BaseModel], key: str, name: str, given: Mapping[str, Any]
             groups.append(inner)
     if _MEMBERS in table.model_fields:
         groups = _with_members(table, f"{key}.{_GEARS}", given, groups)
-    about = (table.__doc__ or "").strip().partition("\n")[0]
+    about = _first_line(table)
     return Group(key, name, about, tuple(entries), tuple(groups), bool(given))
 
 
@@ -281,7 +281,7 @@ def _names(key: str, name: str, field: FieldInfo, given: Mapping[str, Any]) -> G
 
 def _kind(table: type[BaseModel], *, is_one: bool) -> Kind:
     """What a table holds at first: what tells it from others."""
-    about = (table.__doc__ or "").strip().partition("\n")[0]
+    about = _first_line(table)
     if is_one:
         return Kind(about, {})
     needed = [name for name, field in table.model_fields.items() if field.is_required()]
@@ -291,6 +291,11 @@ def _kind(table: type[BaseModel], *, is_one: bool) -> Kind:
         for name in needed
     }
     return Kind(about, tables)
+
+
+def _first_line(table: type[BaseModel]) -> str:
+    """What a table holds, without the marks of the manual."""
+    return (table.__doc__ or "").strip().partition("\n")[0].replace("`", "")
 
 
 def _has_tables(table: type[BaseModel], name: str) -> bool:

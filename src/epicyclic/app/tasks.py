@@ -30,6 +30,7 @@ from epicyclic.results.result import in_words
 from epicyclic.sweeps.plan import parse_vary
 
 __all__ = [
+    "FIRST",
     "IN_PAGE",
     "MESH",
     "TURNS",
@@ -48,8 +49,8 @@ STILL = ("gear-set", "teeth")
 """Plots of what turns, where that is shown."""
 MESH = "/"
 """Before the key of a mesh among what turns."""
-TURNS = "gears"
-"""The chapter in which gears turn."""
+FIRST, TURNS = "losses", "gears"
+"""The chapter that every result has, and the one in which gears turn."""
 IN_PAGE = "svg-page"
 """Format of a figure that becomes a part of the page."""
 MOST_KEPT = 6

@@ -109,7 +109,8 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
             return load(sig, target_context) is not None
 
         found = load(sig, target_context)
-        return load(sig, target_context) if found is None and done_apart(is_kept) else found
+        is_new = found is None and done_apart(is_kept, Path(self._cache_path))
+        return load(sig, target_context) if is_new else found
 
     def save_overload(self, sig: Any, data: Any) -> None:
         try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -10,7 +11,8 @@ from typing import Any
 
 from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase
 from epicyclic.case.element_kinds import ELEMENT_KINDS
-from epicyclic.case.fields import locate, quantity_of
+from epicyclic.case.fields import Place, dict_value, locate, quantity_of
+from epicyclic.case.train import form_of_set
 from epicyclic.report.page import Cell, Table
 from epicyclic.units import format_number, unit_text
 
@@ -25,11 +27,13 @@ MOST_VALUES = 12
 """Most values of an array that are shown."""
 WORDS, VALUES = 18, 42
 """Widths of the columns of keys and values, beside their meaning. [%]"""
-MOST_EVEN = 3
-"""Columns of values that have room in this."""
+MOST_BESIDE = 3
+"""Columns of values that have room in this: more parts follow in a table below."""
 _SCHEMAS = {"planetary": PlanetaryCase, "gear_pair": GearPairCase, "train": TrainCase}
 _SHARED = ("models", "numerics", "lubrication")
 """Tables that the sets of a train take from it."""
+_LISTED, _MEMBERS = "gears", "members"
+"""Table of the gears of a listed set in a file, and in the schema."""
 _OF_LOSSES = ("lubrication", "surroundings", "models", "contact_solver", "numerics")
 _TITLES_OF_PARTS = {"bearings": "Shaft bearings", "drags": "Other drags"}
 Path = tuple[str | int, ...]
@@ -77,12 +81,14 @@ def input_tables(
             for key, own in table.items():
                 stated = given["sets"].get(key, {})
                 kept = {k: v for k, v in own.items() if k not in _SHARED or k in stated}
-                tables += _set_tables(source, ("sets", key), kept)
+                schema, _ = form_of_set(own)
+                of_set = _Source(schema, stated, source.used)
+                tables += _set_tables(of_set, (), kept, key)
         elif name in ELEMENT_KINDS:
             title = _TITLES_OF_PARTS.get(name, _title(name))
-            tables.append(_side_by_side(source, title, (name,), table))
+            tables += _side_by_side(source, title, (name,), table)
         else:
-            tables.append(_plain_table(source, (name,), table))
+            tables += _tables(source, (name,), table, _title(name))
     return [table for table in tables if table.rows]
 
 
@@ -93,6 +99,18 @@ class _Source:
     schema: Any
     given: Mapping[str, Any]
     used: Mapping[str, str]
+
+    def place(self, path: Path) -> Place:
+        """Where the schema has what a file has at a path."""
+        found = locate(self.schema, path)
+        if found.annotation is None and path[0] == _LISTED:  # no key that the gears share
+            return locate(self.schema, (_MEMBERS, *path[1:]))
+        return found
+
+    def is_named(self, path: Path) -> bool:
+        """True for a table whose name the user chose."""
+        holder = self.place(path[:-1]).annotation
+        return dict_value(holder) is not None or self.place(path).path[0] == _MEMBERS
 
     def shows(self, path: Path) -> bool:
         """False for a default that has no effect with the models that were used."""
@@ -121,45 +139,71 @@ def _title(name: str) -> str:
     return name.replace("_", " ").capitalize()
 
 
-def _set_tables(source: _Source, place: Path, inputs: Mapping[str, Any]) -> list[Table]:
-    """The tables of a single set, or of a set of a train, which lies at `place`."""
+def _set_tables(
+    source: _Source, place: Path, inputs: Mapping[str, Any], name: str = ""
+) -> list[Table]:
+    """The tables of a single set, or of one of a train with its name."""
     members = [name for name in MEMBERS if name in inputs and isinstance(inputs[name], Mapping)]
-    before = f"{place[-1]}: " if place else ""
+    before = f"{name}: " if name else ""
     tables: list[Table] = []
     single = {}
-    for name, table in inputs.items():
-        if (name in NOT_SHOWN and not place) or name in members[1:]:
+    for key, table in inputs.items():
+        if (key in NOT_SHOWN and not name) or key in members[1:]:
             continue
-        title = before + TITLES.get(name, _title(name))
-        if name in members:
+        title = before + TITLES.get(key, _title(key))
+        if key in members:
             chosen = {member: inputs[member] for member in members}
-            tables.append(_side_by_side(source, title, place, chosen))
-        elif name == "losses":
+            tables += _side_by_side(source, title, place, chosen)
+        elif key == "losses":
             tables += _changed_losses(title, table)
         elif isinstance(table, Mapping) and not _is_datum(table):
-            if table:
-                tables.append(_plain_table(source, (*place, name), table, title))
+            tables += _tables(source, (*place, key), table, title)
         else:
-            single[name] = table
-    if single and place:
-        tables.insert(0, _plain_table(source, place, single, before.removesuffix(": ")))
+            single[key] = table
+    if single and name:
+        tables.insert(0, _plain_table(source, place, single, name))
     return tables
 
 
-def _plain_table(source: _Source, place: Path, table: Any, title: str = "") -> Table:
+def _tables(source: _Source, place: Path, table: Any, title: str) -> list[Table]:
+    """A table of the case, with the tables in it that have names of the user side by side."""
+    named = {
+        name: item
+        for name, item in (table.items() if isinstance(table, Mapping) else ())
+        if isinstance(item, Mapping) and source.is_named((*place, name))
+    }
+    own = {name: item for name, item in table.items() if name not in named} if named else table
+    tables = [_plain_table(source, place, own, title)] if own else []
+    return tables + _side_by_side(source, title.replace(TITLES[_LISTED], "Gears"), place, named)
+
+
+def _plain_table(source: _Source, place: Path, table: Any, title: str) -> Table:
     rows = tuple(
         (
             Cell(_words(path[len(place) :])),
             _cell(source, path, value),
-            _about(source.schema, path),
+            _about(source, path),
         )
         for path, value in _leaves(table, place)
         if source.shows(path)
     )
-    return _with_meaning(("", "value"), rows, title or _title(str(place[-1])))
+    return _with_meaning(("", "value"), rows, title)
 
 
 def _side_by_side(
+    source: _Source, title: str, place: Path, parts: Mapping[str, Mapping[str, Any]]
+) -> list[Table]:
+    """Parts with the same keys, as many beside each other as have room."""
+    names = list(parts)
+    count = math.ceil(len(names) / MOST_BESIDE)
+    ends = [math.ceil(number * len(names) / count) for number in range(count + 1)] if names else []
+    return [
+        _beside(source, title, place, {name: parts[name] for name in names[start:end]})
+        for start, end in itertools.pairwise(ends)
+    ]
+
+
+def _beside(
     source: _Source, title: str, place: Path, parts: Mapping[str, Mapping[str, Any]]
 ) -> Table:
     leaves = {part: dict(_leaves(table, ())) for part, table in parts.items()}
@@ -171,7 +215,7 @@ def _side_by_side(
             for part, values in leaves.items()
         ]
         abouts = [
-            _about(source.schema, (*place, part, *path))
+            _about(source, (*place, part, *path))
             for part, values in leaves.items()
             if path in values
         ]
@@ -185,8 +229,7 @@ def _with_meaning(head: tuple[str, ...], rows: tuple[tuple[Cell, ...], ...], tit
     if not any(row[-1].text for row in rows):
         return Table(head, tuple(row[:-1] for row in rows), title)
     values = len(head) - 1
-    even = (WORDS, *(VALUES // values for _ in range(values)), 100 - WORDS - VALUES)
-    widths = even if values <= MOST_EVEN else ()
+    widths = (WORDS, *(VALUES // values for _ in range(values)), 100 - WORDS - VALUES)
     return Table((*head, "meaning"), rows, title, widths=widths)
 
 
@@ -237,31 +280,32 @@ def _is_given(path: Path, given: Any) -> bool:
 
 def _cell(source: _Source, path: Path, value: Any) -> Cell:
     about = "" if _is_given(path, source.given) else "default"
-    return Cell(_text(source.schema, path, value), about=about)
+    return Cell(_text(source, path, value), about=about)
 
 
-def _text(schema: Any, path: Path, value: Any) -> str:
+def _text(source: _Source, path: Path, value: Any) -> str:
     if isinstance(value, list):
-        shown = ", ".join(_text(schema, path, item) for item in value[:MOST_VALUES])
+        between = "; " if value and isinstance(value[0], list) else ", "
+        shown = between.join(_text(source, path, item) for item in value[:MOST_VALUES])
         return shown if len(value) <= MOST_VALUES else f"{shown}, ... ({len(value)} values)"
     if _is_datum(value):
-        parts = [_text(schema, (*path, "value"), value["value"])]
+        parts = [_text(source, (*path, "value"), value["value"])]
         if "temperature" in value:
-            parts.append(f"at {_text(schema, (*path, 'temperature'), value['temperature'])}")
+            parts.append(f"at {_text(source, (*path, 'temperature'), value['temperature'])}")
         return " ".join(parts) + (f" ({value['source']})" if value.get("source") else "")
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
         return format_number(value)
-    place = locate(schema, path)
+    place = source.place(path)
     dimensional = quantity_of(place.annotation, place.metadata) is not None
     return unit_text(str(value)) if dimensional else str(value)
 
 
-def _about(schema: Any, path: Path) -> Cell:
+def _about(source: _Source, path: Path) -> Cell:
     """What the schema says about a key."""
     names = [part for part in path if isinstance(part, str)]
-    owner = locate(schema, path).owner
+    owner = source.place(path).owner
     field = None if owner is None else owner.model_fields.get(names[-1])
     return Cell((field.description or "") if field is not None else "")
 
