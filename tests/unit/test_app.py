@@ -545,6 +545,17 @@ def test_the_slider_of_what_is_no_number_begins_at_zero(simulate, typed):
     simulate(desk, script)
 
 
+def test_the_name_of_a_state_is_no_number_that_moves(simulate):
+    async def script(user):
+        await user.should_see(marker="tune-operation.torque", retries=50)
+        await user.should_see(marker="operation.state")
+        await user.should_not_see(marker="tune-operation.state")
+
+    desk = opened("train-8hp70")
+    assert desk.current["operation"]["state"] == "1"
+    simulate(desk, script)
+
+
 def test_a_map_without_speeds_is_no_result():
     study = tasks.Study(opened("talbot-2012-pair").case, torque="0:310:3 N*m", is_map=True)
     with pytest.raises(InputError, match=r"operation\.speed: has no values"):

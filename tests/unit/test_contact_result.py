@@ -159,11 +159,13 @@ def test_the_figure_has_a_panel_for_whatever_there_is(rough):
     assert [" ".join(ax.get_ylabel().split()) for ax in rolling.axes] == labels[:2]
 
 
-def test_the_figure_names_the_contact_and_is_no_higher_than_a_slide():
+@pytest.mark.parametrize(("slip", "panels"), [(0.0, 2), (0.3, 3)])
+def test_the_figure_names_the_contact_and_is_no_higher_than_a_slide(slip, panels):
     from epicyclic.plots.contact import contact_figure
 
-    case = {"line_load": None, "hertz_pressure": "0.9 GPa", "slide_to_roll_ratio": 0.0}
+    case = {"line_load": None, "hertz_pressure": "0.9 GPa", "slide_to_roll_ratio": slip}
     figure = contact_figure(solved(contact=case))
+    assert len(figure.axes) == panels
     point = " ".join(figure.get_supxlabel().split())
     assert "Hertz pressure 0.9 GPa" in point
     assert f"{TABLES['lubricant']['oil']} at " in point

@@ -149,7 +149,7 @@ class Form:
                 _icon("edit", "Rename", partial(self._ask_rename, entry.key, entry.name))
                 _icon("close", "Remove", partial(self._remove, entry.key))
             return
-        if not entry.choices and number_in(entry.text) is not None:
+        if not (entry.choices or entry.is_text) and number_in(entry.text) is not None:
             self._movable(entry, field)
 
     def _movable(self, entry: Entry, field: Element) -> None:

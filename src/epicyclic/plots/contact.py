@@ -38,27 +38,29 @@ SHOWN_FILMS = 5.0
 """Height of the film axis, over the central film of the smooth contact. [1]"""
 SHOWN_STRESSES = 10.0
 """Height of the stress axis, over the highest of the smooth contact; touching ones leave it. [1]"""
-PANEL = (6.4, 1.8)
-"""Width and height of one of the Axes: two of them fill a slide. [inch]"""
+TWO, MORE = (6.4, 1.8), (4.8, 2.7)
+"""Width and height of one of two Axes below each other, and of up to four in two columns, which fill
+a slide. [inch]"""
 FRAMES_PER_SECOND = 20
 ANIMATION_DPI = 80
 
 
 def contact_figure(result: ContactResult) -> Figure:
-    """Pressure, film, and shear stress and temperature if there are any, below each other."""
+    """Pressure, film, and shear stress and temperature if there are any."""
     panels = [plot_pressure, plot_film]
     if result.smooth.shear_stress.any():
         panels.append(plot_shear_stress)
     if result.smooth.temperature_rise.any():
         panels.append(plot_temperature)
     title = result.case.title or "Line contact"
-    with styled_figure(len(panels), 1, title, panel=PANEL, caption=_point(result)) as (
-        figure,
-        axes,
-    ):
-        for plot, ax in zip(panels, axes[:, 0], strict=True):
+    columns, panel = (1, TWO) if len(panels) == 2 else (2, MORE)
+    with styled_figure(2, columns, title, panel=panel, caption=_point(result)) as (figure, axes):
+        for ax in axes.flat[len(panels) :]:
+            ax.remove()
+        for plot, ax in zip(panels, axes.flat, strict=False):
             plot(result, ax)
-            ax.label_outer()
+        if columns == 1:
+            axes[0, 0].label_outer()
         if _frames(result):
             axes[0, 0].set_title("rough: the last moment solved", loc="left")
     return figure
@@ -94,7 +96,7 @@ def plot_film(result: ContactResult, ax: Axes) -> Axes:
         where = _touching(result, frames[-1])
         style: dict[str, Any] = {"color": COLOURS[6], "ms": 10, "mew": 2, "clip_on": False}
         ax.plot(_rough_x(result), where, "|", label="touching", **style)
-        ax.legend(handles=ax.lines[-1:], loc="upper right")
+        ax.legend(handles=ax.lines[-1:], loc="upper center")  # at the sides the film rises
     ax.set_ylim(0, SHOWN_FILMS * result.smooth.central_film / MICROMETRE)
     return _over_x(result, ax, "film, µm")
 

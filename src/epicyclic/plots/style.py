@@ -59,7 +59,7 @@ AROUND = 0.95
 """Height that title, ticks and label of the x axis take from a row of Axes. [inch]"""
 SMALL_CHARACTERS, CHARACTERS = 19, 16
 """That fit into an inch of a legend, and of a label."""
-CHARACTER_POINTS = 120
+CHARACTER_POINTS = 132
 """Characters in an inch of a line, times the size of its letters in points."""
 SMALL_POINTS, MEDIUM_POINTS, TITLE_POINTS = 7.5, 9.0, 10.8
 """Sizes of letters."""
