@@ -93,7 +93,7 @@ def test_every_quantity_beyond_the_tested_range_is_flagged():
     result = solved(contact=contact, lubricant=TABLES["lubricant"] | {"temperature": "20 degC"})
     told = {"equivalent radius", "Hertz pressure", "rolling speed", "temperature"}
     assert set(json.loads(result.to_json())["out_of_range"]) == told
-    assert "Out of range: Hertz pressure 4 GPa; range 0.003 to 3 GPa" in " ".join(result.warnings)
+    assert "Out of range: Hertz pressure 4 GPa, range 0.003 to 3 GPa" in " ".join(result.warnings)
 
 
 def test_nothing_is_flagged_within_it():

@@ -10,7 +10,8 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.case.template import case_template
-from epicyclic.report.shown import shown
+from epicyclic.report.result_tables import mesh_tables
+from epicyclic.report.shown import error_text, shown
 from epicyclic.units import unit_text
 
 
@@ -66,3 +67,21 @@ def test_template_shows_how_arrays_nest():
     assert shown_as["micro_geometry.topography.diameter"] == '["... mm", ...]'
     for flank in ("micro_geometry", "micro_geometry_ring_side"):
         assert shown_as[f"{flank}.topography.deviation"] == '[["... um", ...], ...]'
+
+
+@pytest.mark.parametrize(
+    ("share", "told"),
+    [(2.69e-5, "under 0.01 %"), (-3e-5, "under 0.01 %"), (0.0123, "1.23 %"), (math.nan, "-")],
+)
+def test_errors_of_balances_are_told_in_percent(share, told):
+    assert error_text(share) == told
+
+
+def test_figures_of_meshes_tell_how_well_pockets_are_computed_where_that_is_known(talbot_record):
+    told = {
+        row[0].text: [cell.text for cell in row[1:-1]]
+        for table in mesh_tables(talbot_record.result, talbot_record.labels)
+        for row in table.rows
+    }
+    assert told["pocketing loss: error of its energy balance"] == ["under 0.01 %"] * 2
+    assert "pocketing loss: largest error of its interpolation" not in told  # all are solved

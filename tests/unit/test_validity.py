@@ -270,7 +270,7 @@ def test_warnings_are_ranked_by_watts_and_small_ones_share_a_sentence():
         flag_of("large", 0.3, "ring mesh"),
     ]
     told = describe_flags(flags, lambda use: losses[use.where], 900.0)
-    assert [text.split(";")[0] for text in told] == [
+    assert [text.split(", range")[0] for text in told] == [
         "Out of range: large 2.5 to 3.5 mm",
         "Out of range: middle 2.5 to 3.5 mm",
         "Out of range, each for 4 W at most: small 2.5 to 3.5 mm",

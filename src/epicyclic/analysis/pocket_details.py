@@ -393,7 +393,7 @@ def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Vari
         "power_from_flow": (flow.power_from_flow, f"power, {origins[1]}", WATT),
         "power_other_end": (end.power, f"power, other end of the band ({other})", WATT),
         "power_difference": (flow.difference, *FLOW_NUMBERS["difference"]),
-        "mass_error": (flow.mass_error, "mass lost in a period over mass that came in", NUMBER),
+        "mass_error": (flow.mass_error, "mass lost in a period, of what came in", NUMBER),
         "periods": (flow.periods, "mesh periods until the flow repeated", NUMBER),
         "sound_speed": (
             sound_speed(fluids.mixed(oil_in_mesh(duty)), fluids.pressure),

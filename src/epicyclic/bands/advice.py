@@ -121,7 +121,7 @@ def model_remarks(case: Case, result: Result, *, brief: bool = False) -> list[st
 def _warnings(result: Result) -> Iterator[str]:
     flags = sorted(result.flags_with_loss, key=lambda pair: -np.nan_to_num(pair[0], nan=np.inf))
     told = [
-        f"{range_text(group)}, {watts:.0f} W"
+        f"{range_text(group)} ({watts:.0f} W)"
         for watts, group in flags
         if watts >= CONCERNED * result.total
     ]

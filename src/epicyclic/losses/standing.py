@@ -14,7 +14,7 @@ STANDING: dict[str, dict[str, str]] = {
     "friction": {
         "mixed-ehl": "regression of simulated contacts, its error against them not printed; with "
         "it the measured loss of the sets it was made for is predicted 3.5 % low in its slope at "
-        "90 degC (Talbot 2012, Fig. 5.9), lower at 40 and 60 degC",
+        "90 °C (Talbot 2012, Fig. 5.9), lower at 40 and 60 °C",
         "mixed-ehl+pairing": "mixed-ehl where both flanks are equally rough; the effect of a "
         "smoother one is that of the solver of this package, not compared with measurements",
         "xu-2007": "regression of simulated contacts; 24 to 36 % off the measured loss of one "

@@ -257,7 +257,7 @@ def range_text(group: Sequence[ValidityFlag]) -> str:
     texts = format_number(low, 3), format_number(high, 3)
     found = texts[0] if texts[0] == texts[1] else " to ".join(texts)
     unit = f" {first.unit}" if first.unit else ""
-    return f"{first.quantity} {found}{unit}; range {_limits(first)}{unit}"
+    return f"{first.quantity} {found}{unit}, range {_limits(first)}{unit}"
 
 
 def _limits(flag: ValidityFlag) -> str:

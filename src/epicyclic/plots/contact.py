@@ -39,7 +39,7 @@ SHOWN_FILMS = 5.0
 SHOWN_STRESSES = 10.0
 """Height of the stress axis, over the highest of the smooth contact; touching ones leave it. [1]"""
 TWO, MORE = (6.4, 1.8), (4.8, 2.7)
-"""Width and height of one of two Axes below each other, and of up to four in two columns, which fill
+"""Width and height of one of two Axes below each other, and of up to four in two columns: both fill
 a slide. [inch]"""
 FRAMES_PER_SECOND = 20
 ANIMATION_DPI = 80

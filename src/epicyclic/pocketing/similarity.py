@@ -82,7 +82,7 @@ FLOW_NUMBERS: dict[str, tuple[str, Quantity]] = {
     "pressure_max": ("highest pressure in the pockets, above ambient", BAR),
     "pressure_min": ("lowest pressure in the pockets, above ambient", BAR),
     "speed_max": ("fastest flow out of or into a pocket", METRE_PER_SECOND),
-    "difference": ("pocketing loss: energy balance over work, less 1", NUMBER),
+    "difference": ("pocketing loss: error of its energy balance", NUMBER),
 }
 """Label and quantity of the numbers of `FlowFigures`."""
 

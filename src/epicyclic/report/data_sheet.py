@@ -141,7 +141,7 @@ def _oil(case: Case) -> str | None:
     oil = case.lubricant.oil
     law = "by Gold's constants" if isinstance(oil.pressure_viscosity, GoldLaw) else "by Roelands"
     return (
-        f"Oil {oil.name} at {state.temperature - 273.15:.4g} degC: "
+        f"Oil {oil.name} at {state.temperature - 273.15:.4g} °C: "
         f"nu {UM * state.kinematic_viscosity:.4g} mm^2/s, rho {state.density:.4g} kg/m^3, "
         f"alpha {1e9 * state.pressure_viscosity:.4g} 1/GPa {law}."
     )

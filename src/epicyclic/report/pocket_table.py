@@ -13,7 +13,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from epicyclic.report.shown import shown
+from epicyclic.report.shown import error_text, shown
 from epicyclic.report.tables import plain_table
 from epicyclic.results.result import of_gear
 from epicyclic.units import unit_text
@@ -33,6 +33,7 @@ _BALANCE = (
     "oil_fraction",
     "sound_speed",
 )
+_ERRORS = ("power_difference", "mass_error")
 _EXTREMES = (
     ("highest pressure", "pressure", np.nanargmax),
     ("lowest pressure", "pressure", np.nanargmin),
@@ -62,9 +63,9 @@ def pocket_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
 def _balance(mesh: xr.Dataset) -> Table:
     table = _table("Figures", "", "value", "unit")
     for name in _BALANCE:
-        table.add_row(
-            str(mesh[name].attrs["long_name"]), shown(float(mesh[name]), 5), _unit(mesh, name)
-        )
+        value = float(mesh[name])
+        text = error_text(value) if name in _ERRORS else shown(value, 5)
+        table.add_row(str(mesh[name].attrs["long_name"]), text, _unit(mesh, name))
     count = mesh.attrs["meshes"]
     if count > 1:
         total = count * float(mesh["power"])

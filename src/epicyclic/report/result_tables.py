@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from epicyclic.records.contents import Measure, ResultContents, set_of
 from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number
-from epicyclic.report.shown import MISSING
+from epicyclic.report.shown import MISSING, error_text
 from epicyclic.results.result import in_words
 from epicyclic.units import decimals_of, percent, power_unit, unit_text
 
@@ -39,6 +39,8 @@ _ROLES = {
     "bearing": "planet bearing",
     "shaft_bearing": "shaft bearing",
 }
+_ERRORS = ("pocket_power_difference", "pocket_interpolation_error")
+"""Figures of meshes that tell how well others are computed; there are none of what is solved."""
 _NO_CONTACT = f'"{MISSING}": no load or no motion in the mesh.'
 
 
@@ -192,8 +194,16 @@ def _side_by_side(
     for key in keys:
         found = {name: figures[key] for name, figures in parts.items() if key in figures}
         first = next(iter(found))
+        if key in _ERRORS and all(item.value is None for item in found.values()):
+            continue
         cells = (
-            number(found[name].value, f"{place}.{name}.{key}") if name in found else Cell("")
+            number(
+                found[name].value,
+                f"{place}.{name}.{key}",
+                text=error_text(found[name].value or 0.0) if key in _ERRORS else "",
+            )
+            if name in found
+            else Cell("")
             for name in parts
         )
         unit = Cell(unit_text(found[first].unit))

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 
-from epicyclic.units import format_number
+from epicyclic.units import format_number, percent
 
-__all__ = ["MISSING", "shown"]
+__all__ = ["MISSING", "error_text", "shown"]
 
 MISSING = "-"
 """Stands where there is no number."""
 
 _ROUNDING_NOISE = 1e-9
 """What is smaller, in any unit that tables use, is left over from rounding and shown as 0."""
+_SMALLEST_ERROR = 1e-4
+"""Of what is computed, that has digits. [1]"""
 
 
 def shown(value: float, digits: int = 4) -> str:
@@ -20,3 +22,10 @@ def shown(value: float, digits: int = 4) -> str:
     if math.isnan(value):
         return MISSING
     return format_number(0.0 if abs(value) < _ROUNDING_NOISE else value, digits)
+
+
+def error_text(share: float) -> str:
+    """The error of a balance or an interpolation, as a share of one."""
+    if math.isnan(share):
+        return MISSING
+    return percent(share, 2) if abs(share) >= _SMALLEST_ERROR else "under 0.01 %"
