@@ -67,7 +67,7 @@ def test_specific_sliding_is_that_of_the_speeds():
 def test_a_helical_ring_has_no_span_and_columns_line_up():
     text = shown(load_case(changed(ring={"roughness": "Rz 3 um"})))
     assert row(text, "span W_k")[2] == "-"
-    assert row(text, "roughness Rq") == ["0.300", "0.400", "0.627", "um"]
+    assert row(text, "roughness Rq") == ["0.300", "0.400", "0.627", "µm"]
     lines = text.splitlines()
     start = next(k for k, line in enumerate(lines) if "teeth z" in line)
     table = lines[start : start + 15]

@@ -15,6 +15,7 @@ from epicyclic.lubricant.oil import GoldLaw
 from epicyclic.report import page
 from epicyclic.report.shown import MISSING
 from epicyclic.report.tables import as_on_page, titled
+from epicyclic.units import unit_text
 
 __all__ = ["data_sheet"]
 
@@ -125,7 +126,7 @@ def _table(
     return page.Table(
         ("", *names, "unit"),
         tuple(
-            (page.Cell(label), *map(page.aligned, texts), page.Cell(unit))
+            (page.Cell(label), *map(page.aligned, texts), page.Cell(unit_text(unit)))
             for label, unit, texts in filled
             if any(text != MISSING for text in texts)
         ),
@@ -142,6 +143,6 @@ def _oil(case: Case) -> str | None:
     law = "by Gold's constants" if isinstance(oil.pressure_viscosity, GoldLaw) else "by Roelands"
     return (
         f"Oil {oil.name} at {state.temperature - 273.15:.4g} °C: "
-        f"nu {UM * state.kinematic_viscosity:.4g} mm^2/s, rho {state.density:.4g} kg/m^3, "
+        f"nu {UM * state.kinematic_viscosity:.4g} mm²/s, rho {state.density:.4g} kg/m³, "
         f"alpha {1e9 * state.pressure_viscosity:.4g} 1/GPa {law}."
     )
