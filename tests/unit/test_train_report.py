@@ -18,7 +18,10 @@ from epicyclic.case.template import case_template
 from epicyclic.errors import InputError
 from epicyclic.plots.catalogue import available, figure_of
 from epicyclic.plots.power_flow import SLIDE
+from epicyclic.records.record import growing_record
 from epicyclic.report.inputs import input_tables
+from epicyclic.report.page import Row, Table
+from epicyclic.report.result_page import result_section
 from epicyclic.report.state_tables import state_tables
 from epicyclic.report.tables import friction_table, result_tables
 from trains import one_set, plus, published, simple, small_axle, turned_round
@@ -321,3 +324,15 @@ def test_inputs_of_a_listed_set_stand_side_by_side_as_the_schema_has_them():
     assert meshes.head[1:-1] == ("small sun-short", "short-long front", "large sun-long rear")
     pairs = next(row for row in tables["S", ("value",)].rows if row[0].text == "meshes")
     assert pairs[1].text.startswith("small_sun, short; short, long_front; ")
+
+
+def test_the_table_of_many_gears_is_not_beside_a_picture():
+    """Six columns in half a page left one letter a line for the words."""
+    many = growing_record(ep.load_case(listed_trains.ravigneaux()))
+    few = growing_record(ep.load_case("talbot-2012"))
+    below, beside = (result_section(one, {}, "gears").items for one in (many, few))
+    assert [type(item) for item in below] == [Table]
+    assert below[0].head[1:-1] == (
+        "small sun", "large sun", "short", "long front", "long rear", "ring"
+    )  # fmt: skip
+    assert type(beside[0]) is Row

@@ -61,6 +61,8 @@ def result_section(record: ResultRecord, drawings: Drawings, name: str) -> Secti
 
 
 _DIAMETERS = ("reference_diameter", "base_diameter", "tip_diameter", "root_diameter")
+_MOST_BESIDE = 4
+"""Gears whose table has room beside a picture."""
 _POCKET_LEAD = (
     "A pocket is named after the member whose tooth is in a space of the other. Lines from dark "
     "to light are slices across the face."
@@ -180,13 +182,17 @@ def _heat(result: ResultContents, drawings: Drawings) -> tuple[Item, ...]:
     return (*picture, Row(tuple(heat_items(heat))), *ways)
 
 
-def _gears(record: ResultRecord, drawings: Drawings) -> Iterator[Row]:
-    """Each set to scale beside the teeth and diameters of its gears."""
+def _gears(record: ResultRecord, drawings: Drawings) -> Iterator[Item]:
+    """Each set to scale beside the teeth and diameters of its gears, or above those of many."""
     drawn = drawings.get("gear-set", ())
     for number_of, (name, gears) in enumerate(sets_of(record.group("gears")).items()):
         picture = (Gallery((drawn[number_of],)),) if number_of < len(drawn) else ()
         title = f"Gears of {in_words(name)}" if name else "Gears"
-        yield Row((*picture, _gears_table(title, gears)))
+        table = _gears_table(title, gears)
+        if len(gears) <= _MOST_BESIDE:
+            yield Row((*picture, table))
+        else:
+            yield from (*picture, table)
 
 
 def _gears_table(title: str, gears: Mapping[str, xr.Dataset]) -> Table:
@@ -197,7 +203,8 @@ def _gears_table(title: str, gears: Mapping[str, xr.Dataset]) -> Table:
         shown_ones = (number(float(gear[name]), "", 6) for gear in gears.values())
         unit = unit_text(str(next(iter(gears.values()))[name].attrs["units"]))
         rows.append((Cell(name.replace("_", " ")), *shown_ones, Cell(unit)))
-    return Table(("", *gears, "unit"), tuple(rows), title)
+    names = (name.replace("_", " ") for name in gears)
+    return Table(("", *names, "unit"), tuple(rows), title)
 
 
 def _bearings(record: ResultRecord, drawings: Drawings) -> tuple[str, tuple[Item, ...]]:
