@@ -19,7 +19,7 @@ from epicyclic.case.operating import OPERATING, STATE, STATE_KEY
 from epicyclic.case.train import TrainCase
 from epicyclic.errors import ConvergenceError, InputError
 from epicyclic.maps.interpolation_error import further_values
-from epicyclic.units import NEWTON_METRE, format_number
+from epicyclic.units import NEWTON_METRE, format_number, unit_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -120,9 +120,9 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     return {
         "torque_interpolation_error": float(f"{error[worst]:.2g}"),
         "torque_interpolation": "linear in the torque, the total loss is off by "
-        f"{100 * error[worst]:.2g} % at most, at {format_number(float(middles[worst]))} "
-        f"{NEWTON_METRE.display}: {np.isfinite(error).sum()} points between torques solved "
-        f"directly, at {format_number(speed)} rpm",
+        f"{100 * error[worst]:.2g} % at most, at {format_number(float(middles[worst]), 3)} "
+        f"{unit_text(NEWTON_METRE.display)}: {np.isfinite(error).sum()} points between torques "
+        f"solved directly, at {format_number(speed)} rpm",
     }
 
 
