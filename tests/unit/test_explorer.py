@@ -14,11 +14,14 @@ import pytest
 import xarray as xr
 
 import epicyclic as ep
+from epicyclic.plots.catalogue import panels_of
+from epicyclic.plots.loss_map import map_line, shown_panels
 from epicyclic.plots.sweep import LEFT_OUT, MOST_POINTS, thinned
 from epicyclic.report import explorer
 from epicyclic.report.explorer import explorer_items
 from epicyclic.report.page import Explorer, Listing
 from epicyclic.report.pdf import report_pdf
+from epicyclic.units import format_number
 
 VARY = {
     "operation.speed": ["2000 rpm", "5000 rpm", "7000 rpm"],
@@ -290,3 +293,29 @@ def test_a_browser_shows_computed_and_interpolated_values(data, page, tmp_path):
     assert nearest["where"] == "A computed point."
     assert computed["curve"] == 3  # the curve is over the speed
     assert computed["map"] > 100
+
+
+def test_a_map_of_many_temperatures_shows_some_of_them_and_says_so(pair_map):
+    """Each has pictures and tables of its own: a hundred took minutes and megabytes."""
+    celsius = np.linspace(-20.0, 130.0, 31)
+    places = (celsius > 60).astype(int)
+    many = pair_map.isel(temperature=places).assign_coords(
+        temperature=("temperature", celsius, pair_map["temperature"].attrs)
+    )
+    shown = np.round(np.linspace(0, 30, 12)).astype(int)
+    panels = panels_of(many, "loss-map")
+    assert [panel.subject for panel in panels] == [f"{celsius[place]:g} °C" for place in shown]
+    page = ep.report_html(many)
+    assert page.count("shown at 12 of 31 temperatures") >= 2
+    for place in range(31):
+        heading = f"Total loss, W, at {format_number(celsius[place])} °C"
+        assert (heading in page) == (place in shown)
+    assert "shown at" not in map_line(pair_map)
+
+
+def test_of_many_states_and_temperatures_a_page_shows_twelve_panels_at_most(pair_map):
+    states = pair_map.expand_dims(state=[f"gear {number}" for number in range(5)])
+    celsius = np.linspace(-20.0, 130.0, 7)
+    many = states.isel(temperature=[0] * 7).assign_coords(temperature=celsius)
+    assert shown_panels(many) == {"state": [0, 1, 2, 3, 4], "temperature": [0, 6]}
+    assert shown_panels(pair_map) == {"temperature": [0, 1]}

@@ -31,6 +31,7 @@ from epicyclic.plots.loss_map import (
     plot_map,
     plot_map_lines,
     plot_map_parts,
+    shown_panels,
 )
 from epicyclic.plots.losses import plot_loss_sum, plot_losses
 from epicyclic.plots.mesh import (
@@ -191,12 +192,12 @@ def _of_band(
 def _over_plane(
     data: xr.Dataset, draw: Callable[[xr.Dataset], Callable[[Axes], Axes]]
 ) -> list[Panel]:
-    """One panel for each state and temperature of a map, at the first value of further keys."""
+    """One panel for each shown state and temperature, at the first value of further keys."""
     titles = {"state": "state {}", "temperature": "{:g} °C"}
-    names = [name for name in titles if name in data.dims]
+    shown = {name: data[name].values[places] for name, places in shown_panels(data).items()}
     panels = []
-    for point in itertools.product(*(data[name].values.tolist() for name in names)):
-        at = dict(zip(names, point, strict=True))
+    for point in itertools.product(*(values.tolist() for values in shown.values())):
+        at = dict(zip(shown, point, strict=True))
         subject = ", ".join(titles[name].format(value) for name, value in at.items())
         panels.append(Panel(subject, draw(map_at(data, **at))))
     return panels

@@ -21,6 +21,7 @@ from epicyclic.units import format_number, unit_text
 __all__ = [
     "at_temperatures",
     "draw_lines",
+    "left_out_line",
     "limits_of",
     "limits_of_band",
     "limits_of_half_width",
@@ -31,6 +32,7 @@ __all__ = [
     "plot_map",
     "plot_map_lines",
     "plot_map_parts",
+    "shown_panels",
 ]
 
 FloatArray = NDArray[np.float64]
@@ -54,6 +56,8 @@ ROOM = 1.03
 STRETCHED = 0.02
 """Part of the torque axis of an efficiency that is linear, over the largest torque. [1]"""
 MOST_LINES = 5
+MOST_PANELS = 12
+"""States and temperatures with a picture and tables of their own."""
 LOSS_SUMS = ("load_dependent", "load_independent", "total", "input_power")
 """Powers of a map that are no components."""
 
@@ -67,18 +71,49 @@ def map_at(data: xr.Dataset, **values: object) -> xr.Dataset:
     return data.sel(values).isel(others)
 
 
-def at_temperatures(data: xr.Dataset) -> list[xr.Dataset]:
-    """The map over speed and torque at each oil temperature, at the first value of further keys."""
+def shown_panels(data: xr.Dataset) -> dict[str, list[int]]:
+    """Places of the states and temperatures that are shown: `MOST_PANELS` at most, evenly spaced.
+
+    Of few states all are shown, and as many temperatures as there is room for.
+    """
+    room, shown = MOST_PANELS, {}
+    for name in (STATE, "temperature"):
+        if name in data.dims:
+            size = data.sizes[name]
+            count = min(size, room)
+            shown[name] = [int(one) for one in np.linspace(0, size - 1, count).round()]
+            room //= count
+    return shown
+
+
+def left_out_line(data: xr.Dataset) -> str:
+    """How many states and temperatures are shown, if not all are; else empty."""
+    parts = [
+        f"{len(places)} of {data.sizes[name]} {name}s"
+        for name, places in shown_panels(data).items()
+        if len(places) < data.sizes[name]
+    ]
+    return f"shown at {' and '.join(parts)}" if parts else ""
+
+
+def at_temperatures(data: xr.Dataset) -> dict[int, xr.Dataset]:
+    """The map over speed and torque at the shown oil temperatures, each by its number.
+
+    At the first value of further keys.
+    """
     if "temperature" not in data.dims:
-        return [map_at(data)]
-    return [map_at(data, temperature=float(celsius)) for celsius in data["temperature"]]
+        return {0: map_at(data)}
+    places = shown_panels(data)["temperature"]
+    celsius = data["temperature"].to_numpy()
+    return {place: map_at(data, temperature=float(celsius[place])) for place in places}
 
 
 def map_line(data: xr.Dataset) -> str:
     """Which points the map has, in one line."""
     axes = [name for name in AXES if name in data.dims]
     spans = [f"{name} {_span(data[name])}" for name in axes]
-    return f"at the {data.attrs['reference_shaft']}: {', '.join(spans)}"
+    line = f"at the {data.attrs['reference_shaft']}: {', '.join(spans)}"
+    return "; ".join(filter(None, (line, left_out_line(data))))
 
 
 def _span(axis: xr.DataArray) -> str:

@@ -22,7 +22,7 @@ LEAST = 0.02
 
 def map_band_tables(data: xr.Dataset) -> Iterator[Table | Listing]:
     """The band of the total loss over speed and torque at each temperature, and what makes it."""
-    for point in at_temperatures(data):
+    for point in at_temperatures(data).values():
         total = point.sel(result="total").transpose("speed", "torque", ...)
         yield grid_table(point, "95 % band of the total loss, W", _band_of(total))
     yield _drivers(data)

@@ -12,7 +12,7 @@ import xarray as xr
 from epicyclic.analysis.methods import methods_of
 from epicyclic.case.operating import AXES
 from epicyclic.maps.tables import map_case, map_inputs, statements
-from epicyclic.plots.loss_map import at_temperatures, map_at
+from epicyclic.plots.loss_map import at_temperatures, left_out_line, map_at
 from epicyclic.report.explorer import EXPLORER_LEAD, explorer_items
 from epicyclic.report.grids import grid_table
 from epicyclic.report.inputs import input_tables
@@ -98,17 +98,20 @@ def _band(data: xr.Dataset, drawings: Drawings) -> tuple[Item, ...]:
 
 
 def _further(data: xr.Dataset) -> str:
-    """Which values of further keys the tables and figures are for."""
+    """Which values of temperatures and further keys the tables and figures are for."""
+    fewer = left_out_line(data)
+    lead = f"Tables and figures are {fewer}." if fewer else ""
     point = map_at(data)
     further = [f"{name} = {point[name].item()}" for name in data["total"].dims if name not in AXES]
-    return f"Tables and figures are for {', '.join(further)}." if further else ""
+    more = f"Tables and figures are for {', '.join(further)}." if further else ""
+    return " ".join(filter(None, (lead, more)))
 
 
 def _tables(data: xr.Dataset) -> list[Table]:
     """Total loss and efficiency over speed and torque at each temperature."""
     return [
         _grid(point, name, number)
-        for number, point in enumerate(at_temperatures(data))
+        for number, point in at_temperatures(data).items()
         for name in GRIDS
     ]
 
