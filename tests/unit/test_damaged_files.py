@@ -23,6 +23,7 @@ from epicyclic.ehl.profile_file import read_profile
 from epicyclic.exchange.rexs.exporting import rexs_bytes
 from epicyclic.exchange.rexs.importing import read_rexs
 from epicyclic.library import oil_model_file
+from epicyclic.losses.loss_table import read_loss_table
 from epicyclic.maps.cycle import open_cycle
 from epicyclic.measurement.files import read_grid
 from epicyclic.measurement.table import parse_measurements
@@ -30,6 +31,7 @@ from epicyclic.oilmodel.model import read_oil_model
 from epicyclic.pocketing.stored import read_stored
 from epicyclic.records.files import open_map
 from epicyclic.sweeps.dataset import write_dataset
+from epicyclic.sweeps.journal import Journal, Row
 from limits import MOST_MEMORY, is_soon, peak_memory
 
 QUICK, ALL = 40, 1000
@@ -150,12 +152,37 @@ def sound_file(name, binary_files):
         return "".join(f"{0.001 * n:.3f},{np.sin(n):.4f}\n" for n in range(200)).encode()
     if stem == "measured":
         return table_bytes(measurements(), dot + suffix)
+    if name == "drag.csv":
+        return b"speed [rpm],temperature [degC],torque [N*m]\n" + b"".join(
+            b"%d,%d,%.2f\n" % (speed, celsius, 0.1 + speed / celsius / 100)
+            for speed in (0, 900, 2500)
+            for celsius in (35, 95)
+        )
+    if name == "sweep.partial":
+        return stored_file(name, written_journal)
     if stem == "cycle":
         cycle = measurements()[["speed [rpm]", "torque [N*m]"]].assign(**{"time [s]": [0, 1]})
         return table_bytes(cycle, dot + suffix)
     return rexs_bytes(name, ep.solve(ep.load_case("talbot-2012")), None, None)
 
 
+def written_journal(path):
+    journal = Journal(path, FINGERPRINT)
+    for point in range(5):
+        journal.append(
+            point, Row("converged", numbers={"total": 3.5 * point, "ratio": point + 0.5})
+        )
+
+
+def read_journal(path):
+    """Rows that were altered are none: those that are left have the numbers that were written."""
+    found = Journal(path, FINGERPRINT).read()
+    assert all(row.numbers["total"] == 3.5 * point for point, row in found.items())
+    if len(found) < 5:
+        raise ep.InputError([], "some points are computed again")
+
+
+FINGERPRINT = "0123456789ab"
 READERS = {
     "case.toml": ep.load_case,
     "contact.toml": lambda path: contact_model(load_contact_case(path)),
@@ -173,6 +200,8 @@ READERS = {
     "gears.rexs": read_rexs,
     "gears.rexsj": read_rexs,
     "gears.rexsz": read_rexs,
+    "drag.csv": read_loss_table,
+    "sweep.partial": read_journal,
 }
 
 

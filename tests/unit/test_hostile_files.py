@@ -15,12 +15,15 @@ from epicyclic.campaigns.folder import open_folder
 from epicyclic.case.contact import contact_model, load_contact_case
 from epicyclic.ehl.profile_file import read_profile
 from epicyclic.exchange.rexs.importing import read_rexs
+from epicyclic.losses.loss_table import read_loss_table
 from epicyclic.maps.cycle import open_cycle
 from epicyclic.measurement.files import read_grid
 from epicyclic.measurement.table import parse_measurements
 from epicyclic.oilmodel.model import read_oil_model
 from epicyclic.pocketing.stored import read_stored
-from epicyclic.sweeps.journal import Journal
+from epicyclic.records.files import open_map
+from epicyclic.sweeps.journal import Journal, read_heading
+from epicyclic.sweeps.runner import Runner
 from limits import MOST_MEMORY, is_soon, peak_memory
 
 
@@ -40,6 +43,10 @@ def read_journal(path):
     return Journal(path, "0123456789ab").read()
 
 
+def sweep_points(path):
+    return ep.sweep(ep.load_case("talbot-2012"), points=path)
+
+
 READERS = {
     "case.toml": ep.load_case,
     "contact.toml": read_contact,
@@ -51,12 +58,17 @@ READERS = {
     "cycle.csv": open_cycle,
     "cycle.parquet": open_cycle,
     "gears.rexs": read_rexs,
+    "gears.rexsj": read_rexs,
     "gears.rexsz": read_rexs,
+    "drag.csv": read_loss_table,
+    "points.csv": sweep_points,
+    "map.nc": open_map,
     "result.nc": ep.open_result,
     "model.json": read_oil_model,
     "pockets.nc": read_stored,
     "campaign.json": read_campaign,
     "sweep.nc.0123456789ab.partial": read_journal,
+    "sweep.nc.shard-1-of-2": read_heading,
 }
 
 
@@ -163,3 +175,24 @@ def test_what_is_no_file_is_refused(tmp_path, name, kind):
     elif kind == "pipe":
         os.mkfifo(path)
     refusal(READERS[name], path)
+
+
+UPLOADS = [name for name in READERS if name.endswith((".toml", ".rexs", ".rexsj", ".rexsz"))]
+
+
+@pytest.mark.parametrize("name", UPLOADS)
+@pytest.mark.parametrize("content", HOSTILE)
+def test_the_app_refuses_such_an_upload(tmp_path, name, content):
+    desk = pytest.importorskip("epicyclic.app.desk")
+    path = tmp_path / "app"
+    path.mkdir()
+    refusal(lambda folder: desk.received([(name, HOSTILE[content])], folder), path)
+
+
+@pytest.mark.parametrize(
+    "address",
+    ["", " ", "a", "tcp:/", "tcp://", "tcp://h:x", "http://h", "9" * 400, "tcp://127.0.0.1:1"],
+)
+def test_no_address_of_a_cluster_is_refused(address):
+    pytest.importorskip("distributed")
+    refusal(lambda text: Runner(dask=text), address)

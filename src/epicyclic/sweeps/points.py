@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from epicyclic.case.values import parse_value
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
+from epicyclic.sweeps.axes import MOST_POINTS
 from epicyclic.text_file import read_text, refuse
 
 if TYPE_CHECKING:
@@ -49,6 +50,8 @@ def _read(path: Path) -> dict[str, Sequence[Any]]:
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     if len(lines) < 2:
         refuse("has no rows below a header.", "Give a header of keys, and a row for each point.")
+    if len(lines) > MOST_POINTS + 1:  # not worth reading them
+        refuse(f"has more than {MOST_POINTS} rows.", "Give fewer points, or several tables.")
     separator = max(",;\t", key=lines[0].count)
     try:
         cells = pd.read_csv(
