@@ -195,4 +195,4 @@ def test_the_app_refuses_such_an_upload(tmp_path, name, content):
 )
 def test_no_address_of_a_cluster_is_refused(address):
     pytest.importorskip("distributed")
-    refusal(lambda text: Runner(dask=text), address)
+    refusal(lambda text: Runner(dask=text).check(), address)
