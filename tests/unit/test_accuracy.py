@@ -147,10 +147,10 @@ def test_the_data_sheet_shows_both():
     console.print(data_sheet(case))
     text = console.file.getvalue()
     rows = {line.strip()[:20].strip(): line.split() for line in text.splitlines()}
-    assert rows["allowance A_sne"][-3:] == ["-70.0", "-", "um"]
-    assert rows["allowance A_sni"][-3:] == ["-130.0", "-", "um"]
+    assert rows["allowance A_sne"][-3:] == ["-70.0", "-", "µm"]
+    assert rows["allowance A_sni"][-3:] == ["-130.0", "-", "µm"]
     helix = flank_tolerances(6, 3e-3, 37 * 3e-3 / np.cos(np.radians(11)), 29e-3).helix
-    assert rows["total helix F_betaT"][-3:] == ["-", f"{helix * 1e6:.1f}", "um"]
+    assert rows["total helix F_betaT"][-3:] == ["-", f"{helix * 1e6:.1f}", "µm"]
     console = Console(width=80, file=io.StringIO())
     console.print(data_sheet(pair({})))
     assert "A_sne" not in console.file.getvalue()

@@ -10,6 +10,7 @@ import xarray as xr
 from rich.console import Console
 
 import epicyclic as ep
+from epicyclic.machine.answers import NEAR, STEEPEST
 from epicyclic.plots.mesh import mesh_figure
 from epicyclic.report.mesh_table import mesh_tables
 
@@ -46,7 +47,9 @@ def test_friction_power_sums_to_the_sliding_loss(talbot, meshes):
         power = mesh["friction_power"].to_numpy()  # W/mm
         known = power[np.isfinite(power)]
         weight = contacts[key].weight * 1e3  # mm, of the same points in the same order
-        assert 3 * (known * weight).sum() == pytest.approx(losses[f"{key}_sliding"], rel=1e-9)
+        # that of the last loads whose losses were not foretold
+        near = pytest.approx(losses[f"{key}_sliding"], rel=STEEPEST * NEAR)
+        assert 3 * (known * weight).sum() == near
 
 
 def test_nothing_is_known_where_no_tooth_touches(meshes):

@@ -72,7 +72,7 @@ def test_energy_balances_where_no_direction_agrees_with_itself(monkeypatch):
     converged = machine_solve._converged
 
     def spied(*arguments):
-        braking.extend(arguments[5:])
+        braking.extend(arguments[6:])
         return converged(*arguments)
 
     monkeypatch.setattr(machine_solve, "_converged", spied)

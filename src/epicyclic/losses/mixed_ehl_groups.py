@@ -49,7 +49,7 @@ TALBOT_FLUID = RegressionFluid(
 )
 
 _SOURCE = "Talbot (2012), Table 5.1"
-_FLUID_SOURCE = "the fluid of Talbot (2012) at 100 and 25 °C"
+_FLUID_SOURCE = "the fluid of Talbot (2012) at 100 and 25 degC"
 _PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SOURCE)
 _HELD_PRESSURE = replace(_PRESSURE, low=0.25, high=5.0)
 """Where the pressure is held: lightly loaded teeth of the very tests lie below Table 5.1."""

@@ -72,7 +72,10 @@ class Answer:
             if step.size > NEAR:
                 return None
             off += step.error(loss.watts, older) * loss.watts
-            watts = max(0.0, loss.watts + step.part * (loss.watts - older))
+            told = loss.watts + step.part * (loss.watts - older)
+            watts = max(
+                min(0.0, loss.watts), told
+            )  # nothing loses less than nothing by foretelling
             losses[name] = replace(loss, watts=watts) if watts != loss.watts else loss
         if not CAUTION * off <= allowed * sum(loss.watts for loss in losses.values()):
             return None

@@ -221,11 +221,16 @@ def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
         If it cannot be read, or does not say of which study it is.
     """
     try:
+        if path.exists() and not path.is_file():  # a pipe could keep the program waiting
+            raise _error(path, "is not a regular file.")
         with path.open("rb") as file:
-            for _ in range(_MOST_STRANGE_LINES):
-                heading = _parse_heading(file.readline(_LONGEST_LINE))
+            strange = 0
+            while strange <= _MOST_STRANGE_LINES:
+                line = file.readline(_LONGEST_LINE)
+                heading = _parse_heading(line)
                 if heading is not None:
                     return heading.sweep, heading.study
+                strange += 1 + len(line) // _LONG
     except OSError as error:
         raise _error(path, f"cannot be read: {error.strerror}.") from None
     raise _error(path, "does not say of which study it holds points.")

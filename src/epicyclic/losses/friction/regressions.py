@@ -80,7 +80,7 @@ _VISCOSITY = Range(
     5.0,
     180.0,
     MILLIPASCAL_SECOND,
-    "none is in print; a 75W-90 gear oil from 150 to 25 °C",
+    "none is in print; a 75W-90 gear oil from 150 to 25 degC",
 )
 _ROUGHNESS = Range(
     "composite_roughness", "composite rms roughness", None, 1.0, MICROMETRE, OF_THIS_PACKAGE
