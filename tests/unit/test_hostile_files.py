@@ -166,9 +166,11 @@ def test_a_huge_file_is_refused(tmp_path, name):
     refusal(READERS[name], path)
 
 
-@pytest.mark.parametrize("name", [name for name in READERS if not name.endswith(".partial")])
+@pytest.mark.parametrize("name", READERS)
 @pytest.mark.parametrize("kind", ["missing", "folder", "pipe"])
 def test_what_is_no_file_is_refused(tmp_path, name, kind):
+    if name.endswith(".partial") and kind == "missing":
+        pytest.skip("a journal begins with its first point")
     path = tmp_path / name
     if kind == "folder":
         path.mkdir()

@@ -16,15 +16,7 @@ from epicyclic.machine.forces import forces_of
 from epicyclic.machine.kinematics import speeds_of
 from epicyclic.machine.machine import Machine, Operation
 
-__all__ = [
-    "LOSS_AGREEMENT",
-    "Solution",
-    "Start",
-    "effects_of",
-    "lossless_state",
-    "solve_machine",
-    "start_of",
-]
+__all__ = ["Solution", "Start", "effects_of", "lossless_state", "solve_machine", "start_of"]
 
 AGREEMENT = 5e-10
 """Relative change of each load from one pass to the next at which torques and losses agree. [1]"""
@@ -34,12 +26,12 @@ FORETOLD = 0.1
 """Error of a foretold loss over the change of the loads from one pass to the next, at most: losses
 are small beside powers, so that the error leaves less of the change than a pass does. [1]"""
 LOSS_AGREEMENT = 1e-7
-"""Error of foretold losses at which they agree with torques, at most. [1]"""
+"""Error of foretold losses, at most, however little losses move the loads. [1]"""
 NO_POWER = 1e-12
 """Power, relative to the largest one, that is rounding. [1]"""
 MOST_PASSES = 120
-WHOLE_STEPS, HALF_STEPS = 15, 35
-"""Passes up to which loads follow the losses by the whole step, by a half, and then by a fifth:
+SHARES = {15: 1.0, 35: 0.5, MOST_PASSES: 0.2}
+"""By the last pass to which it belongs: share of a step by which loads follow the losses, because
 losses that rise steeply from no load may throw a small load to and fro. [1]"""
 MOST_TORQUE = 1e15
 """Torque at a mesh, far above what a case can state, from which losses and torques only drive each
@@ -351,9 +343,9 @@ def _converged(
 
 def _towards(new: Balance, found: Balance, passes: int) -> Balance:
     """The loads of the next pass."""
-    if passes < WHOLE_STEPS:
+    share = next(share for last, share in SHARES.items() if passes <= last)
+    if share == 1:
         return new
-    share = 0.5 if passes < HALF_STEPS else 0.2
     meshes, powers = (
         {key: old[key] + share * (value - old[key]) for key, value in those.items()}
         for old, those in ((found.meshes, new.meshes), (found.powers, new.powers))

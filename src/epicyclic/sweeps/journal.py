@@ -14,7 +14,7 @@ import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -143,7 +143,7 @@ class Journal:
         """The same one by one, so that they need not all be held."""
         own = strange = 0
         try:
-            with self.path.open("rb") as file:
+            with _opened(self.path) as file:
                 while line := file.readline(_LONGEST_LINE):
                     record = _parse(line.rstrip(b"\n"))
                     if record is not None and record.sweep == self.fingerprint:
@@ -165,7 +165,7 @@ class Journal:
         heading = {"sweep": self.fingerprint, "study": content}
         line = json.dumps(heading, separators=(",", ":")).encode()
         try:
-            with self.path.open("rb") as file:
+            with _opened(self.path) as file:
                 there = any(file.readline(_LONGEST_LINE).strip() == line for _ in range(2))
         except FileNotFoundError:
             there = False
@@ -212,6 +212,13 @@ class Journal:
         return _error(self.path, allowed)
 
 
+def _opened(path: Path) -> BinaryIO:
+    """The file to read, if it is one: a pipe could keep the program waiting for ever."""
+    if path.exists() and not path.is_file():
+        raise _error(path, "is not a regular file.")
+    return path.open("rb")
+
+
 def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
     """Fingerprint and content of the study of which a file holds points.
 
@@ -221,9 +228,7 @@ def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
         If it cannot be read, or does not say of which study it is.
     """
     try:
-        if path.exists() and not path.is_file():  # a pipe could keep the program waiting
-            raise _error(path, "is not a regular file.")
-        with path.open("rb") as file:
+        with _opened(path) as file:
             strange = 0
             while strange <= _MOST_STRANGE_LINES:
                 line = file.readline(_LONGEST_LINE)
