@@ -208,7 +208,7 @@ def test_a_file_of_something_else_is_refused(case, tmp_path, content):
 
 
 def test_a_folder_is_no_journal(case, tmp_path):
-    with pytest.raises(ep.InputError, match="cannot be read"):
+    with pytest.raises(ep.InputError, match="is not a regular file"):
         ep.sweep(case, {"planet.count": [3, 5]}, journal=tmp_path)
 
 
