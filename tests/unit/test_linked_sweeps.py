@@ -15,7 +15,7 @@ from epicyclic.cli.main import main
 from epicyclic.cli.options import parse_changes
 from epicyclic.sweeps.dataset import to_dataset, to_table
 from epicyclic.sweeps.expression import parse_expression
-from epicyclic.sweeps.journal import Rows
+from epicyclic.sweeps.journal import Row, Rows
 from epicyclic.sweeps.plan import SweepPlan, make_plan, parse_links, parse_together
 from epicyclic.sweeps.points import columns_of
 from epicyclic.sweeps.runner import fingerprint
@@ -121,6 +121,14 @@ def test_linked_keys_are_coordinates_of_what_they_follow(plan):
     table = to_table(data)
     assert list(table["ring.teeth"]) == [102, 102, 125, 125, 152, 152]
     assert "ring_teeth" not in table
+
+
+def test_texts_of_a_dataset_are_those_of_the_rows(plan):
+    """A map of ten thousand points has tens of megabytes of warnings."""
+    rows = Rows(plan.size)
+    rows.add(1, Row("converged", warnings="of point 1"))
+    data = to_dataset(plan, rows)
+    assert data["warnings"].values.ravel()[1] is rows.warnings[1]
 
 
 def test_the_plan_of_a_journal_is_the_same(case, plan):

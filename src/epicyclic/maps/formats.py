@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from epicyclic.case.operating import AXES, PLANE, STATE
 from epicyclic.errors import InputError, Problem
 from epicyclic.maps import fmu, simscape, simulation, tables, workbook
+from epicyclic.sweeps.dataset import write_netcdf
 from epicyclic.whole_file import check_place, whole_file
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ class Format:
 _SPACE = (*AXES, STATE)
 
 FORMATS = {
-    "netcdf": Format(".nc", "NetCDF", tables.write_netcdf),
+    "netcdf": Format(".nc", "NetCDF", write_netcdf),
     "csv": Format(".csv", "table of all points", tables.write_csv),
     "parquet": Format(".parquet", "table of all points", tables.write_parquet),
     "excel": Format(".xlsx", "Excel workbook", workbook.write_workbook, workbook.workbook_problems),

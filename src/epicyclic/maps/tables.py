@@ -29,7 +29,6 @@ __all__ = [
     "stated",
     "statements",
     "write_csv",
-    "write_netcdf",
     "write_parquet",
 ]
 
@@ -167,11 +166,6 @@ def check_gaps(data: xr.Dataset) -> None:
     allowed = f"is missing at {int(gaps.sum())} points; all are needed.{reason}"
     problem = Problem("torque_loss", "", allowed, "Leave these points out.")
     raise InputError([problem], "the map")
-
-
-def write_netcdf(data: xr.Dataset, path: Path) -> None:
-    """All variables, units and attributes."""
-    data.to_netcdf(path, engine="netcdf4")
 
 
 def write_csv(data: xr.Dataset, path: Path) -> None:

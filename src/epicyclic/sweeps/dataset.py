@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Container, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -32,6 +33,7 @@ __all__ = [
     "to_dataset",
     "to_table",
     "write_dataset",
+    "write_netcdf",
 ]
 
 FORMATS = (".nc", ".csv", ".parquet")
@@ -70,7 +72,23 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
     for key, (label, values) in texts.items():
         column = np.array(values, dtype=object).reshape(plan.shape)
         variables[key] = (dims, column, _about(label, ""))
-    return xr.Dataset(variables, coords, _attributes(plan, rows))
+    with _texts_not_copied():
+        return xr.Dataset(variables, coords, _attributes(plan, rows))
+
+
+@contextmanager
+def _texts_not_copied() -> Iterator[None]:
+    """Keep texts the strings they are: pandas would copy them for pyarrow, and back, each time."""
+    import pandas as pd
+
+    with pd.option_context("mode.string_storage", "python"):
+        yield
+
+
+def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
+    """All variables, units and attributes."""
+    with _texts_not_copied():
+        dataset.to_netcdf(path, engine="netcdf4")
 
 
 def _coordinates(plan: SweepPlan) -> Iterator[tuple[str, tuple[str, ...], Any, str]]:
@@ -158,7 +176,7 @@ def write_dataset(dataset: xr.Dataset, path: Path) -> None:
     """Write `dataset` to `path` in the format its suffix names, whole or not at all."""
     with whole_file(path) as temporary:
         if path.suffix == ".nc":
-            dataset.to_netcdf(temporary, engine="netcdf4")
+            write_netcdf(dataset, temporary)
         elif path.suffix == ".csv":
             csv_safe(to_table(dataset)).to_csv(temporary, index=False)
         else:
