@@ -23,6 +23,7 @@ ENERGY = 1e-9
 UNSOLVED = {
     "the flow does not converge": "the flow through pockets is not found",
     "runs away": "it runs away: no temperature at which its heat would leave",
+    "more heat is taken away": "it freezes: coolers take more heat than arises",
     "no planet loads balance": "the floating member gives way",
     "do not agree after": "losses grow with the torques that they cause",
     "load distribution of the planet bearing": "the loads of the rollers are not found",

@@ -75,10 +75,33 @@ def test_of_few_contacts_all_are_solved_whatever_the_most_of_many(monkeypatch):
     assert len(solved) == len(set(solved)) == 18
 
 
-@pytest.mark.parametrize("number", [826, 829, 1104, 1881])
+@pytest.mark.parametrize("number", [826, 829, 1104, 1881, 1884, 5248, 11481, 19179])
 def test_losses_that_alone_load_a_mesh_agree_with_its_load(number):
-    """No torque from outside: the least loss of a mesh changes its load by a multiple."""
+    """No torque from outside: the least loss of a mesh changes its load by a multiple.
+
+    Or each pass brings the load but a third nearer to where it stays.
+    """
     assert outcome_of(drawn_case(number)).name == "solved"
+
+
+@pytest.mark.parametrize("number", [3228, 17535])
+def test_planets_share_next_to_no_torque(number):
+    """A force of 1e-14 N presses rollers by less than the rounding of their clearance."""
+    assert outcome_of(drawn_case(number)).name == "solved"
+
+
+def test_parts_that_rest_are_as_warm_as_the_oil():
+    """Nothing heats them, nothing cools them."""
+    case = drawn_case(3742)
+    assert case.operation.speed == 0
+    found = ep.solve(case).heat.temperatures
+    assert found["pinion"] == found["gear"] == pytest.approx(found["oil"], rel=1e-12)
+
+
+@pytest.mark.parametrize("number", [10183, 21469])
+def test_losses_beyond_all_bounds_end_as_such(number):
+    """Formulas that are extrapolated to cold oil give more than a number can hold."""
+    assert outcome_of(drawn_case(number)).name == "losses grow with the torques that they cause"
 
 
 @pytest.mark.slow

@@ -211,6 +211,15 @@ def test_a_gearbox_that_runs_away_says_how_hot_it_gets():
         ep.solve(case)
 
 
+@pytest.mark.parametrize("power", ["200 kW", "1 MW"])
+def test_a_cooler_that_takes_more_than_there_is_is_told(power):
+    case = ep.load_case(TALBOT).updated(
+        FLOW | {"thermal.cooler_power": power, "thermal.housing.area": "1 m^2"}
+    )
+    with pytest.raises(ep.ConvergenceError, match=r"more heat is taken away.*colder than -73"):
+        ep.solve(case)
+
+
 def test_oil_outside_its_data_is_told_with_the_temperature():
     result = ep.solve(ep.load_case(TALBOT).updated(FLOW))
     told = [text for text in result.warnings if "data of this oil" in text]

@@ -73,6 +73,8 @@ TOLERANCE = 1e-9
 MAX_ITERATIONS = 100
 STIFFNESS_STEP = 0.01
 """Relative step of the force in `radial_stiffness`. [1]"""
+LEAST_FORCE = 1e-9
+"""Force there, at least: what smaller ones press is rounding beside the clearance. [N]"""
 FIRST_APPROACH = 1e-5
 """Displacement beyond the clearance at which the iteration starts. [m]"""
 
@@ -374,7 +376,8 @@ def tilting_moments(
 
 def radial_stiffness(bearing: RollerBearing, force: float) -> float:
     """Stiffness dF/ddelta of a bearing under `force` without moment. Theory (S7). [N/m]"""
-    low, high = ((1 + sign * STIFFNESS_STEP) * force for sign in (-1, 1))
+    middle = max(force, LEAST_FORCE)
+    low, high = ((1 + sign * STIFFNESS_STEP) * middle for sign in (-1, 1))
     closer, farther = (
         roller_loads(bearing, load, 0.0, 0.0, 0.0).displacement[0] for load in (low, high)
     )

@@ -44,6 +44,8 @@ SAME = 1e-13
 """Relative error of the temperature of the housing. [1]"""
 WALLS = (1.0, 1e7)
 """Between which the housing may be while temperatures settle. [K]"""
+AT_REST = 1.0
+"""Conductance that makes a part without heat as warm as the oil. [W/K]"""
 LEAST_SHARE = 0.01
 """Oil for a part without heat over that for one with all the heat: an estimate. [1]"""
 SMALLEST_HEAT = 1e-6
@@ -270,7 +272,7 @@ class NetworkModel:
         """
         heat = self._heat(solution)
         fixed = self._fixed_links(temperatures[OIL], solution, heat)
-        network = self._with_wall(fixed, self._wall(fixed, heat))
+        network = self._with_wall(fixed, heat, self._wall(fixed, heat))
         found = network.steady(heat)
         flows = network.flows(found)
         whole = max(sum(map(abs, heat.values())), *map(abs, flows.values()))
@@ -285,8 +287,8 @@ class NetworkModel:
 
     def network(self, temperature: float, solution: Solution) -> Network:
         """The network with oil and housing at one temperature. [K]"""
-        fixed = self._fixed_links(temperature, solution, self._heat(solution))
-        return self._with_wall(fixed, temperature)
+        heat = self._heat(solution)
+        return self._with_wall(self._fixed_links(temperature, solution, heat), heat, temperature)
 
     def _heat(self, solution: Solution) -> dict[str, float]:
         """That arises at each node, less the power of a cooler. [W]"""
@@ -304,12 +306,16 @@ class NetworkModel:
             return math.nan
 
         def off(wall: float) -> float:
-            return self._with_wall(fixed, wall).steady(heat)[HOUSING] - wall
+            return self._with_wall(fixed, heat, wall).steady(heat)[HOUSING] - wall
 
         # the warmer the wall is taken to be, the better it is cooled: one temperature fits
-        return float(brentq(off, *WALLS, xtol=SAME, rtol=SAME))
+        coldest, hottest = WALLS
+        for end, beyond in ((coldest, off(coldest) < 0), (hottest, off(hottest) > 0)):
+            if beyond:  # there is no equilibrium, which those who ask for one tell
+                return end
+        return float(brentq(off, coldest, hottest, xtol=SAME, rtol=SAME))
 
-    def _with_wall(self, fixed: Sequence[Link], wall: float) -> Network:
+    def _with_wall(self, fixed: Sequence[Link], heat: Mapping[str, float], wall: float) -> Network:
         """The network with the housing at a temperature, as far as conductances depend on it."""
         own = self.settings
         outside = () if own.housing is None else own.housing.links(wall, own.ambient)
@@ -319,6 +325,10 @@ class NetworkModel:
         network = Network(
             self.nodes, {node: value for node, value in given.items() if node in met}, links
         )
+        left = network.cut_off()
+        if left and not {OIL, *(node for node, watts in heat.items() if watts)} & {*left}:
+            # parts at rest, which nothing heats or cools, are as warm as the oil
+            network = replace(network, links=(*links, *map(_as_the_oil, left)))
         self._check(network)
         return network
 
@@ -463,6 +473,10 @@ class NetworkModel:
                     )
                 ]
             )
+
+
+def _as_the_oil(node: str) -> Link:
+    return Link(f"{node}-oil", node, OIL, AT_REST, "at rest", "any conductance serves")
 
 
 def _wetted_nodes(own: GearSet) -> Iterator[str]:

@@ -25,7 +25,7 @@ AGREEMENT = 3e-5
 """Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
 MOST_PASSES = 40
 COLDEST, HOTTEST = 200.0, 770.0
-"""Between which losses are computed; beyond the hottest no gearbox is left to compute. [K]"""
+"""Between which losses are computed; beyond them no gearbox is left to compute. [K]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,11 +135,32 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
                 change, start, alpha=1.0, f_tol=AGREEMENT, maxiter=MOST_PASSES, line_search=None
             )
     except NoConvergence:
-        raise _runaway(found[-1][1].temperatures, found) from None
+        raise _no_equilibrium(found) from None
     solution, answer = found[-1]
-    if max(answer.temperatures.values()) > HOTTEST:
-        raise _runaway(answer.temperatures, found)
+    temperatures = answer.temperatures.values()
+    if min(temperatures) < COLDEST or max(temperatures) > HOTTEST:
+        raise _no_equilibrium(found)
     return Settled(solution, answer, len(found))
+
+
+def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
+    """What to say of temperatures beyond all bounds, or that do not settle."""
+    for _, answer in found:  # the first to leave the bounds tells on which side they are left
+        coldest, hottest = (end(answer.temperatures.values()) for end in (min, max))
+        if coldest < COLDEST:
+            return _overcooled(answer.temperatures)
+        if hottest > HOTTEST:
+            break
+    return _runaway(found[-1][1].temperatures, found)
+
+
+def _overcooled(temperatures: Mapping[str, float]) -> ConvergenceError:
+    coldest = min(temperatures, key=lambda node: temperatures[node])
+    return ConvergenceError(
+        f"more heat is taken away than arises: the {coldest.replace('_', ' ')} would be colder "
+        f"than {CELSIUS.text(COLDEST, 4)}, down to which losses are computed. Give a smaller "
+        "thermal.cooler_power, or thermal.cooler_conductance, which takes no more than there is."
+    )
 
 
 def _runaway(

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
 
 from epicyclic.elements.base import LOAD_DEPENDENT, Element, ElementResult, Loss, State
 from epicyclic.elements.fluids import Fluids
@@ -18,6 +23,8 @@ from epicyclic.machine.machine import Machine, Operation
 
 __all__ = ["Solution", "Start", "effects_of", "lossless_state", "solve_machine", "start_of"]
 
+FloatArray = NDArray[np.float64]
+
 AGREEMENT = 5e-10
 """Relative change of each load from one pass to the next at which torques and losses agree. [1]"""
 ROUNDING = 1e-14
@@ -29,10 +36,11 @@ LOSS_AGREEMENT = 1e-7
 """Error of foretold losses, at most, however little losses move the loads. [1]"""
 NO_POWER = 1e-12
 """Power, relative to the largest one, that is rounding. [1]"""
-MOST_PASSES = 120
-SHARES = {15: 1.0, 35: 0.5, MOST_PASSES: 0.2}
-"""By the last pass to which it belongs: share of a step by which loads follow the losses, because
-losses that rise steeply from no load may throw a small load to and fro. [1]"""
+PLAIN_PASSES, SECANTS = 15, 40
+"""Passes in which loads follow the losses, and after them passes of a method of secants."""
+SMALL_STEPS = ((0.5, 20), (0.2, 85))
+"""Share of a step by which loads follow the losses after that, and for how many passes: losses
+that rise steeply from no load may throw a small load to and fro. [1]"""
 MOST_TORQUE = 1e15
 """Torque at a mesh, far above what a case can state, from which losses and torques only drive each
 other up. [N m]"""
@@ -197,7 +205,7 @@ def solve_machine(
     Raises
     ------
     ConvergenceError
-        If losses and torques do not agree after `MOST_PASSES`.
+        If losses and torques do not agree.
     """
     if start is None:
         start = start_of(machine, operation)
@@ -208,11 +216,12 @@ def solve_machine(
     known = _Known()
     while drives not in tried and len(tried) < MOST_BRANCHES:
         tried.append(drives)
-        last = _converged(machine, operation, start, drives, fluids, known)
+        last = _converged(_Branch(machine, operation, start, fluids, known, drives))
         drives = drives_first(last.balance.powers, drives)
     floating = frozenset(key for key, first in drives.items() if first != last.drives[key])
     if floating:
-        last = _converged(machine, operation, start, last.drives, fluids, known, floating)
+        branch = _Branch(machine, operation, start, fluids, known, last.drives, floating)
+        last = _converged(branch)
     if last.efficiencies != efficiencies and not directions.jammed:
         directions = find_directions(machine, operation, speeds, lossless, last.efficiencies)
     return Solution(
@@ -252,6 +261,11 @@ class _Known:
     results: dict[str, ElementResult] = field(default_factory=dict[str, ElementResult])
     loads: dict[str, Mapping[str, float]] = field(default_factory=dict[str, Mapping[str, float]])
 
+    @property
+    def loss(self) -> float:
+        """Of all elements. [W]"""
+        return sum(loss.watts for it in self.results.values() for loss in it.losses.values())
+
     def follow(self, elements: Iterable[Element], state: State, allowed: float) -> bool:
         """Have the elements answer to a state; False if none sees other loads than before.
 
@@ -285,72 +299,177 @@ class _Pass:
     state: State
 
 
-def _converged(
-    machine: Machine,
-    operation: Operation,
-    start: Start,
-    drives: Mapping[str, bool],
-    fluids: Fluids | None,
-    known: _Known,
-    braking: Collection[str] = (),
-) -> _Pass:
-    """Torques and losses that agree, with these directions of the rolling powers.
+@dataclass
+class _Branch:
+    """One choice of the directions of the rolling powers.
 
-    Losses of the meshes `braking` are friction, whichever gear drives.
+    Attributes
+    ----------
+    machine, operation, start, fluids, known
+        As everywhere here.
+    drives : mapping of str to bool
+        For each mesh, True if its first gear drives it.
+    braking : collection of str
+        Meshes whose losses are friction, whichever gear drives.
+    passes : int
+        So far.
     """
-    rows = {row.key: row.efficiency for row in machine.rows}
-    speeds, found = start.speeds, start.lossless
-    if any(efficiency < 1 for efficiency in rows.values()):
-        found = balance(machine, operation, speeds, drives, rows)
-    unlost = found.meshes
-    if known.results:
-        effects = effects_of(machine, found.powers, known.results.values(), braking)
-        found = balance(machine, operation, speeds, drives, *effects)
-    passes = 0
-    while passes < MOST_PASSES:
-        passes += 1
+
+    machine: Machine
+    operation: Operation
+    start: Start
+    fluids: Fluids | None
+    known: _Known
+    drives: Mapping[str, bool]
+    braking: Collection[str] = ()
+    passes: int = 0
+
+    @cached_property
+    def given(self) -> Mapping[str, float]:
+        """Efficiencies of the meshes that the case gives."""
+        return {row.key: row.efficiency for row in self.machine.rows}
+
+    @cached_property
+    def unlost(self) -> Balance:
+        """Torques with no losses but given ones."""
+        if all(efficiency == 1 for efficiency in self.given.values()):
+            return self.start.lossless
+        return self._balance(self.given)
+
+    def begin(self) -> Balance:
+        """Torques with the losses that are known so far."""
+        found = self.unlost
+        return self._balance(*self._effects(found)) if self.known.results else found
+
+    def under(self, found: Balance, meshes: Mapping[str, float]) -> Balance:
+        """`found` with other loads of the meshes."""
+        speeds = self.start.speeds
+        powers = {
+            row.key: meshes[row.key] * (speeds[row.first] - speeds[row.carrier])
+            for row in self.machine.rows
+        }
+        return replace(found, meshes=meshes, powers=powers)
+
+    def follow(self, found: Balance) -> Balance | _Pass:
+        """Torques with the losses that those of `found` lead to; a `_Pass` if they agree.
+
+        Raises
+        ------
+        ConvergenceError
+            If losses or torques grow beyond all bounds.
+        """
+        self.passes += 1
+        known, elements = self.known, self.machine.elements
         state = State(
-            speeds,
+            self.start.speeds,
             found.meshes,
-            forces_of(machine.layouts, found.meshes),
-            cast(Fluids, fluids),
+            forces_of(self.machine.layouts, found.meshes),
+            cast(Fluids, self.fluids),
             lossless=not known.results,
-            drives=drives,
+            drives=self.drives,
             idle=known.idle,
         )
         if not known.idle:
-            known.idle.update({element.key: element.idle(state) for element in machine.elements})
-        allowed = _allowed(distance(unlost, found.meshes))
-        changed = known.follow(machine.elements, state, allowed)
-        effects = effects_of(machine, found.powers, known.results.values(), braking)
+            known.idle.update({element.key: element.idle(state) for element in elements})
+        allowed = _allowed(distance(self.unlost.meshes, found.meshes))
+        changed = known.follow(elements, state, allowed)
+        if not math.isfinite(known.loss):
+            raise self.disagreement()
+        effects = self._effects(found)
         efficiencies, _ = effects
-        if not changed and efficiencies == rows:  # friction alone: the balance has all of it
-            return _Pass(found, drives, efficiencies, state)
-        new = balance(machine, operation, speeds, drives, *effects)
+        if not changed and efficiencies == self.given:  # friction alone: the balance has all of it
+            return _Pass(found, self.drives, efficiencies, state)
+        new = self._balance(*effects)
         if _agrees(found.meshes, new.meshes):
-            return _Pass(new, drives, efficiencies, state)
+            return _Pass(new, self.drives, efficiencies, state)
         if not max(map(abs, new.meshes.values()), default=0.0) < MOST_TORQUE:
-            break
-        found = _towards(new, found, passes)
-    raise ConvergenceError(
-        f"losses and torques do not agree after {passes} passes: the losses grow with the "
-        "torques that they cause. Either the gears are next to self-locking in this direction of "
-        "power: they can turn only with smaller losses, or with power the other way. Or a formula "
-        "gives far too much outside its range: choose another models.friction or models.rolling, "
-        'or models.oil_beyond_range = "held".'
-    )
-
-
-def _towards(new: Balance, found: Balance, passes: int) -> Balance:
-    """The loads of the next pass."""
-    share = next(share for last, share in SHARES.items() if passes <= last)
-    if share == 1:
+            raise self.disagreement()
         return new
-    meshes, powers = (
-        {key: old[key] + share * (value - old[key]) for key, value in those.items()}
-        for old, those in ((found.meshes, new.meshes), (found.powers, new.powers))
-    )
-    return replace(new, meshes=meshes, powers=powers)
+
+    def disagreement(self) -> ConvergenceError:
+        """What to say if losses and torques do not agree."""
+        return ConvergenceError(
+            f"losses and torques do not agree after {self.passes} passes: the losses grow with the "
+            "torques that they cause. Either the gears are next to self-locking in this direction "
+            "of power: they can turn only with smaller losses, or with power the other way. Or a "
+            "formula gives far too much outside its range: choose another models.friction or "
+            'models.rolling, or models.oil_beyond_range = "held".'
+        )
+
+    def _effects(self, found: Balance) -> tuple[dict[str, float], list[Friction]]:
+        return effects_of(self.machine, found.powers, self.known.results.values(), self.braking)
+
+    def _balance(
+        self, efficiencies: Mapping[str, float], frictions: Iterable[Friction] = ()
+    ) -> Balance:
+        speeds = self.start.speeds
+        return balance(self.machine, self.operation, speeds, self.drives, efficiencies, frictions)
+
+
+def _converged(branch: _Branch) -> _Pass:
+    """Torques and losses that agree, with these directions of the rolling powers.
+
+    Nearly always plain repetition finds them. Loads that follow their losses slowly are left to
+    secants, those that steep losses throw to and fro to steps that become smaller.
+    """
+    found = _repeated(branch, branch.begin(), 1.0, PLAIN_PASSES)
+    found = _by_secants(branch, found)
+    for share, passes in SMALL_STEPS:
+        found = _repeated(branch, found, share, passes)
+    if isinstance(found, _Pass):
+        return found
+    raise branch.disagreement()
+
+
+def _repeated(
+    branch: _Branch, found: Balance | _Pass, share: float, passes: int
+) -> Balance | _Pass:
+    """After so many passes, or when losses and torques agree; loads go that share of each step."""
+    for _ in range(passes):
+        if isinstance(found, _Pass):
+            return found
+        new = branch.follow(found)
+        if isinstance(new, Balance) and share < 1:
+            meshes = {
+                key: old + share * (new.meshes[key] - old) for key, old in found.meshes.items()
+            }
+            new = branch.under(new, meshes)
+        found = new
+    return found
+
+
+def _by_secants(branch: _Branch, found: Balance | _Pass) -> Balance | _Pass:
+    """By Broyden's method on the loads of the meshes; as `found` where that leads nowhere."""
+    from scipy.optimize import NoConvergence, broyden1
+
+    if isinstance(found, _Pass):
+        return found
+    first = found
+    last: Balance | _Pass = found
+    start = np.array(list(first.meshes.values()))
+    size = np.where(start, np.abs(start), 1.0)
+
+    def change(values: FloatArray) -> FloatArray:
+        nonlocal last
+        if not np.isfinite(values).all():
+            raise branch.disagreement()
+        tried = branch.under(first, dict(zip(first.meshes, map(float, values * size), strict=True)))
+        last = branch.follow(tried)
+        new = last.balance if isinstance(last, _Pass) else last
+        step: FloatArray = np.array(list(new.meshes.values())) / size - values
+        return step
+
+    def left(_: FloatArray) -> float:
+        return 0.0 if isinstance(last, _Pass) else 1.0
+
+    try:
+        broyden1(
+            change, start / size, alpha=1.0, f_tol=0.5, tol_norm=left, maxiter=SECANTS,
+            line_search=None,
+        )  # fmt: skip
+    except (NoConvergence, ConvergenceError):
+        return first
+    return last
 
 
 def _allowed(moved: float) -> float:
