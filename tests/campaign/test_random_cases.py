@@ -98,6 +98,11 @@ def test_parts_that_rest_are_as_warm_as_the_oil():
     assert found["pinion"] == found["gear"] == pytest.approx(found["oil"], rel=1e-12)
 
 
+def test_a_turning_ring_gives_heat_to_the_mixture():
+    """No gear dips, and the oil that flows meets none."""
+    assert outcome_of(drawn_case(24883)).name == "solved"
+
+
 @pytest.mark.parametrize("number", [10183, 21469])
 def test_losses_beyond_all_bounds_end_as_such(number):
     """Formulas that are extrapolated to cold oil give more than a number can hold."""

@@ -118,15 +118,15 @@ def _gear_to_oil(
 ) -> Iterator[Link]:
     gear = one.gear
     yield from _jet(one.node, wetting)
-    inner = 0.0
+    outer = max(gear.tip_radius, gear.root_radius)
+    inner = gear.tip_radius if gear.internal else 0.0
     if planet is not None and planet.bearing is not None:
         inner = planet.bearing.bearing.outer_diameter / 2
     if wetting.bath:
         conductance, how = _in_bath(gear, speed, inner, wetting), (BATH, BATH_SOURCE)
-    elif speed and not gear.internal and gear.tip_radius > inner:
-        coefficient = disc_coefficient(wetting.around, speed, gear.tip_radius, inner)
-        conductance = coefficient * _faces(gear.tip_radius, inner)
-        how = FACES, DISC_SOURCE
+    elif speed and outer > inner:
+        coefficient = disc_coefficient(wetting.around, speed, outer, inner)
+        conductance, how = coefficient * _faces(outer, inner), (FACES, DISC_SOURCE)
     else:
         return
     yield Link(f"{one.node}-oil", one.node, OIL, one.count * conductance, *how)
@@ -135,8 +135,6 @@ def _gear_to_oil(
 def _in_bath(gear: Gear, speed: float, inner: float, wetting: Wetting) -> float:
     """Conductance of faces and flanks that dip; at rest they are splashed like walls. [W/K]"""
     outer = max(gear.tip_radius, gear.root_radius)
-    if gear.internal:
-        inner = gear.tip_radius
     flanks = 2 * gear.teeth * abs(gear.tip_radius - gear.root_radius) * gear.face_width
     coefficient = max(dipped_disc(wetting.around, speed, 2 * outer), SPLASHED_WALL)
     return wetting.bath * coefficient * (_faces(outer, min(inner, outer)) + flanks)
