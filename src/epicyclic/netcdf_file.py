@@ -9,19 +9,27 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from epicyclic.errors import InputError, printable
 from epicyclic.text_file import refuse
 
 if TYPE_CHECKING:
+    import netCDF4
     import xarray as xr
 
-__all__ = ["LARGEST", "read_attribute", "read_groups"]
+__all__ = ["LARGEST", "read_attribute", "read_groups", "texts_not_copied"]
 
 LARGEST = 400_000_000
 """A result takes a few megabytes, a map of a million points less than this. [bytes]"""
 MOST_VARIABLES = 2000
+LONG = 1000
+"""Texts of more points than this are read apart: xarray makes all as long as the longest one."""
+POINTER = 8
+"""Of a text, which is known only when it is read. [bytes]"""
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """First bytes of HDF5, in which NetCDF 4 files are kept."""
 _LONGEST_REASON = 120
@@ -36,19 +44,63 @@ def read_groups(path: Path) -> dict[str, xr.Dataset]:
     InputError
         If it is no NetCDF file, is damaged, or holds too much.
     """
+    import netCDF4
     import xarray as xr
 
     _check(path)
-    with _damage_told(), xr.open_datatree(path, engine="netcdf4", decode_times=False) as tree:
-        sizes = [data.nbytes for node in tree.subtree for data in node.variables.values()]
-        if len(sizes) > MOST_VARIABLES or sum(sizes) > LARGEST:
-            refuse("holds more than a result or a map does.", "Name one of these.")
-        tree.load()
-        return {
-            node.path.strip("/"): node.to_dataset(inherit=False)
-            for node in tree.subtree
-            if node.path == "/" or node.has_data
+    with _damage_told(), netCDF4.Dataset(path) as file, texts_not_copied():
+        groups = list(_groups(file))
+        left_out = {name for group in groups for name in _long_texts(group)}
+        texts = {
+            group.path: {name: group[name] for name in left_out & group.variables.keys()}
+            for group in groups
         }
+        with xr.open_datatree(
+            path, engine="netcdf4", decode_times=False, drop_variables=left_out
+        ) as tree:
+            sizes = [data.nbytes for node in tree.subtree for data in node.variables.values()]
+            sizes += [POINTER * text.size for own in texts.values() for text in own.values()]
+            if len(sizes) > MOST_VARIABLES or sum(sizes) > LARGEST:
+                refuse("holds more than a result or a map does.", "Name one of these.")
+            tree.load()
+            return {
+                node.path.strip("/"): node.to_dataset(inherit=False).assign(
+                    {name: _text(text) for name, text in texts[node.path].items()}
+                )
+                for node in tree.subtree
+                if node.path == "/" or node.has_data
+            }
+
+
+def _groups(group: netCDF4.Dataset) -> Iterator[netCDF4.Dataset]:
+    """A group and all in it."""
+    yield group
+    for inner in group.groups.values():
+        yield from _groups(inner)
+
+
+def _long_texts(group: netCDF4.Dataset) -> set[str]:
+    """Names of texts over many points, axes and what stands beside them left out."""
+    listed = [getattr(own, "coordinates", "") for own in (group, *group.variables.values())]
+    axes = {*group.dimensions, *" ".join(map(str, listed)).split()}
+    long = {name for name, own in group.variables.items() if own.dtype is str and own.size > LONG}
+    return long - axes
+
+
+def _text(variable: netCDF4.Variable[Any]) -> tuple[tuple[str, ...], NDArray[Any], dict[str, Any]]:
+    """Dimensions, values and attributes."""
+    names = set(variable.ncattrs()) - {"coordinates"}  # which xarray writes, and takes away
+    about = {name: variable.getncattr(name) for name in names}
+    return variable.dimensions, np.asarray(variable[...], dtype=object), about
+
+
+@contextmanager
+def texts_not_copied() -> Iterator[None]:
+    """Keep texts the strings they are: pandas would copy them for pyarrow, and back, each time."""
+    import pandas as pd
+
+    with pd.option_context("mode.string_storage", "python"):
+        yield
 
 
 def read_attribute(path: Path, name: str) -> str:

@@ -8,9 +8,11 @@ import sys
 import netCDF4
 import numpy as np
 import pytest
+import xarray as xr
 
 import epicyclic as ep
 from epicyclic.cli.main import main
+from epicyclic.netcdf_file import read_groups
 from epicyclic.pocketing.stored import read_stored
 from epicyclic.records.files import open_map
 
@@ -45,6 +47,11 @@ def bomb(data):
     data.createVariable("huge", "f8", ("many",), zlib=True, chunksizes=(10**6,))
 
 
+def bomb_of_texts(data):
+    data.createDimension("many", 4 * 10**9)
+    data.createVariable("huge", str, ("many",))
+
+
 HOSTILE = {
     "gained power": (changed("total", (1, 1, 0), -3.0), "total: must not be below 0."),
     "gained torque": (changed("torque_loss", (1, 1, 0), -2.0), "torque_loss: must not be below 0."),
@@ -60,6 +67,7 @@ HOSTILE = {
     "junk case": (with_attribute("", "case", "{}"), "must name the kind of the case"),
     "no json": (with_attribute("", "case", "junk"), "case: "),
     "bomb": (bomb, "holds more than"),
+    "bomb of texts": (bomb_of_texts, "holds more than"),
 }
 
 
@@ -93,6 +101,27 @@ def test_a_dataset_in_memory_is_checked_as_well(pair_map):
         backwards = pair_map.isel({axis: slice(None, None, -1)})
         with pytest.raises(ep.InputError, match=f"{axis}: must rise"):
             ep.duty_cycle(backwards, cycle, ["60 degC"])
+
+
+def test_texts_of_many_points_are_as_long_as_each_is(tmp_path):
+    shape = (40, 30)
+    numbers = np.arange(1200.0).reshape(shape)
+    notes = np.array([f"point {number}" for number in range(1200)], dtype=object).reshape(shape)
+    notes[7, 3] = "x" * 50_000  # of which xarray makes 240 MB
+    written = xr.Dataset(
+        {"total": (("a", "b"), numbers), "warnings": (("a", "b"), notes, {"long_name": "words"})},
+        {
+            "a": np.linspace(1, 5, 40),
+            "material": ("a", [f"steel {number}" for number in range(40)]),
+            "place": (("a", "b"), [[f"{i} of {j}" for j in range(30)] for i in range(40)]),
+        },
+        {"title": "one"},
+    )
+    written.to_netcdf(tmp_path / "many.nc")
+    read = read_groups(tmp_path / "many.nc")[""]
+    xr.testing.assert_identical(read, written)
+    assert read["warnings"].dtype == object
+    assert list(read.coords) == ["a", "material", "place"]
 
 
 def test_a_result_is_no_map(talbot_record, tmp_path):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Container, Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +13,7 @@ import numpy as np
 from epicyclic.builders.build import layout_of
 from epicyclic.case.operating import axis_name
 from epicyclic.errors import InputError, Problem
+from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.results.result import number_fields, versions
 from epicyclic.sweeps.axes import ROW, unit_of
 from epicyclic.sweeps.journal import Rows
@@ -72,22 +72,13 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
     for key, (label, values) in texts.items():
         column = np.array(values, dtype=object).reshape(plan.shape)
         variables[key] = (dims, column, _about(label, ""))
-    with _texts_not_copied():
+    with texts_not_copied():
         return xr.Dataset(variables, coords, _attributes(plan, rows))
-
-
-@contextmanager
-def _texts_not_copied() -> Iterator[None]:
-    """Keep texts the strings they are: pandas would copy them for pyarrow, and back, each time."""
-    import pandas as pd
-
-    with pd.option_context("mode.string_storage", "python"):
-        yield
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
     """All variables, units and attributes."""
-    with _texts_not_copied():
+    with texts_not_copied():
         dataset.to_netcdf(path, engine="netcdf4")
 
 
