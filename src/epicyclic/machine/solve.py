@@ -372,7 +372,8 @@ class _Branch:
         if not known.idle:
             known.idle.update({element.key: element.idle(state) for element in elements})
         allowed = _allowed(distance(self.unlost.meshes, found.meshes))
-        changed = known.follow(elements, state, allowed)
+        with np.errstate(over="ignore"):  # a loss may be too large for a number
+            changed = known.follow(elements, state, allowed)
         if not math.isfinite(known.loss):
             raise self.disagreement()
         effects = self._effects(found)
@@ -454,7 +455,8 @@ def _by_secants(branch: _Branch, found: Balance | _Pass) -> Balance | _Pass:
         if not np.isfinite(values).all():
             raise branch.disagreement()
         tried = branch.under(first, dict(zip(first.meshes, map(float, values * size), strict=True)))
-        last = branch.follow(tried)
+        with np.errstate(divide="warn", invalid="warn"):
+            last = branch.follow(tried)
         new = last.balance if isinstance(last, _Pass) else last
         step: FloatArray = np.array(list(new.meshes.values())) / size - values
         return step
@@ -463,10 +465,11 @@ def _by_secants(branch: _Branch, found: Balance | _Pass) -> Balance | _Pass:
         return 0.0 if isinstance(last, _Pass) else 1.0
 
     try:
-        broyden1(
-            change, start / size, alpha=1.0, f_tol=0.5, tol_norm=left, maxiter=SECANTS,
-            line_search=None,
-        )  # fmt: skip
+        with np.errstate(divide="ignore", invalid="ignore"):  # secants through one point
+            broyden1(
+                change, start / size, alpha=1.0, f_tol=0.5, tol_norm=left, maxiter=SECANTS,
+                line_search=None,
+            )  # fmt: skip
     except (NoConvergence, ConvergenceError):
         return first
     return last
