@@ -92,3 +92,20 @@ def test_a_plan_grows_until_no_more_is_allowed():
     assert next_plan(full, 0.01, 0.1, 64) == Plan(64, 64 * 32)
     nothing = Estimate(0.0, own=0.0, aid=0.0, blocks=6, aid_blocks=0)
     assert next_plan(nothing, 0.02, 0.1, 1024).blocks == 9
+
+
+def test_an_average_beyond_the_most_blocks_is_given_up_at_once():
+    """The fine grid alone scatters by 6 % after all its blocks; looks at it cost more than blocks."""
+    estimate = Estimate(1.0, own=1.7, aid=4.9, blocks=512, aid_blocks=5600)
+    assert next_plan(estimate, 0.04, 0.023, 512) == Plan(512, 5600)
+
+
+def test_looks_at_the_error_are_few():
+    plan, looks = Plan(8, 8), 0
+    while True:
+        own = 0.3 * (1 + 0.2 / plan.blocks)  # of a scatter that is found to be less and less
+        estimate = Estimate(1.0, own, 2.0, *plan)
+        if estimate.within(0.02):
+            break
+        looks, plan = looks + 1, next_plan(estimate, 0.02, 0.05, 1024)
+    assert looks < 60

@@ -22,6 +22,8 @@ FloatArray = NDArray[np.float64]
 GROWTH = 1.5
 """Largest growth of the number of fine blocks between looks at the error: an early look tells
 little of how many it takes. [1]"""
+SOME_MORE = 1.05
+"""Growth of both numbers where the error is hardly larger than wanted. [1]"""
 LAGS = 2
 """Blocks that follow one another and are alike: a ridge stays for that long. [1]"""
 RUN, FEWEST_RUNS = 8, 16
@@ -161,10 +163,13 @@ def next_plan(estimate: Estimate, tolerance: float, cost: float, most: int) -> P
     if aid == 0:
         return Plan(more, 0)
     left = wanted - own / more
+    if blocks == most and left <= 0:  # no series on the coarse grid is long enough
+        return Plan(blocks, aid_blocks)
     # towards numbers not reached yet both grow in the cheapest proportion
     needed = more * math.sqrt(aid / (cost * own)) if more < cheapest else aid / left
     highest = MOST_AID * more
     aided = math.ceil(min(max(needed, more, aid_blocks), highest))
     if more == blocks and aided == aid_blocks:  # the scatter of a small sample stands in the way
-        return Plan(min(most, blocks + 1), min(aid_blocks + 1, highest))
+        longer, aided = (math.ceil(SOME_MORE * number) for number in (blocks, aid_blocks))
+        return Plan(min(most, longer), min(aided, highest))
     return Plan(more, aided)
