@@ -95,7 +95,7 @@ def test_a_plan_grows_until_no_more_is_allowed():
 
 
 def test_an_average_beyond_the_most_blocks_is_given_up_at_once():
-    """The fine grid alone scatters by 6 % after all its blocks; looks at it cost more than blocks."""
+    """The fine grid alone scatters by 6 % after all its blocks, and looks cost more than blocks."""
     estimate = Estimate(1.0, own=1.7, aid=4.9, blocks=512, aid_blocks=5600)
     assert next_plan(estimate, 0.04, 0.023, 512) == Plan(512, 5600)
 
