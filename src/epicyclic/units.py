@@ -76,17 +76,20 @@ __all__ = [
     "format_number",
     "from_pint",
     "in_unit",
+    "known_text",
+    "large_unit",
     "one_of",
     "percent",
     "power_unit",
     "pure_number",
     "range_remedy",
     "registry",
+    "torque_text",
     "with_unit",
 ]
 
-KILOWATTS = 10_000.0
-"""Powers from which on they are shown in kW: no more digits than are known. [W]"""
+KILO = 10_000.0
+"""Watts and newton metres are shown in thousands from here on: no more digits than are known."""
 PLAIN_NUMBERS = 1e7
 """Numbers from here on are shown with a power of ten."""
 
@@ -148,9 +151,32 @@ def decimals_of(total: float) -> int:
     return min(3, max(0, 2 - math.floor(math.log10(total)))) if total > 0 else 0
 
 
+def large_unit(largest: float, unit: str) -> tuple[str, float]:
+    """The unit in print for values in `unit` up to the `largest`, and its size.
+
+    Watts and newton metres have a prefix once they are many.
+    """
+    many = unit in ("W", "N*m") and abs(largest) >= KILO
+    return (f"k{unit_text(unit)}", 1e3) if many else (unit_text(unit), 1.0)
+
+
 def power_unit(power: float) -> tuple[str, float]:
     """The unit in which a `power` is shown, and its size. [W]"""
-    return ("kW", 1e3) if abs(power) >= KILOWATTS else ("W", 1.0)
+    return large_unit(power, WATT.display)
+
+
+def known_text(*values: float, unit: str = "W", joint: str = " to ") -> str:
+    """Losses as a sentence has them, with the unit and the decimals of the largest of them."""
+    largest = max(map(abs, values))
+    shown_unit, size = large_unit(largest, unit)
+    decimals = decimals_of(largest / size)
+    return f"{joint.join(f'{value / size:z.{decimals}f}' for value in values)} {shown_unit}"
+
+
+def torque_text(torque: float, digits: int = 6) -> str:
+    """A `torque` with its unit, for sentences and pictures. [N*m]"""
+    unit, size = large_unit(torque, NEWTON_METRE.display)
+    return f"{format_number(torque / size, digits)} {unit}"
 
 
 def describe_range(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -11,6 +13,7 @@ from matplotlib.text import Text
 import epicyclic as ep
 import listed_trains
 from epicyclic.analysis.shapes import gear_shapes
+from epicyclic.case.operating import operating_line
 from epicyclic.cli.output import parse_size
 from epicyclic.plots.bearing import plot_roller_loads
 from epicyclic.plots.catalogue import figure_of
@@ -29,11 +32,11 @@ from epicyclic.plots.style import styled_figure
 from epicyclic.records.record import sets_of
 from epicyclic.report.drawings import draw
 from epicyclic.report.page import Cell, Table
-from epicyclic.report.result_tables import key_figures
+from epicyclic.report.result_tables import key_figures, members_table
 from epicyclic.report.uncertainty_tables import _shown
 from epicyclic.report.validation_page import MOST_ROWS, _items
 from epicyclic.results.result import of_gear
-from epicyclic.units import decimals_of, format_number, power_unit
+from epicyclic.units import decimals_of, format_number, known_text, power_unit
 from epicyclic.validation.compare import compare_published
 
 
@@ -226,6 +229,31 @@ def test_long_labels_beside_low_axes_are_broken():
 @pytest.mark.parametrize(("power", "unit"), [(0.0, "W"), (9999.0, "W"), (10_007.0, "kW")])
 def test_large_powers_are_in_kilowatts(power, unit):
     assert power_unit(power)[0] == power_unit(-power)[0] == unit
+
+
+def test_losses_of_one_sentence_share_unit_and_decimals():
+    assert known_text(8380.4, 15235.3, 25624.9) == "8.4 to 15.2 to 25.6 kW"
+    assert known_text(96.24, 8380.4) == "96 to 8380 W"
+    assert known_text(23450.6, unit="kJ") == "23451 kJ"
+    assert known_text(math.nan) == "nan W"
+
+
+def test_the_operating_point_is_written_like_the_power():
+    point = {"speed": "13 rpm", "torque": "2000000 N*m"}
+    assert operating_line(point) == "13 rpm, 2000 kN·m"
+    assert operating_line(point | {"torque": "-0.75 MN*m"}) == "13 rpm, -750 kN·m"
+    assert operating_line(point | {"torque": "9999.5 N*m"}) == "13 rpm, 9999.5 N·m"
+    assert operating_line(point | {"torque": "varied torque"}) == "13 rpm, varied torque"
+
+
+def test_columns_of_torque_and_power_are_in_the_unit_of_their_largest(talbot_record):
+    result = talbot_record.result
+    sun = result.members["sun"]
+    large = sun.model_copy(update={"torque": sun.torque.model_copy(update={"value": -12345.6})})
+    table = members_table(result.model_copy(update={"members": result.members | {"sun": large}}))
+    assert table.head[2] == "torque, kN·m"
+    (row,) = (cells for cells in table.rows if cells[0].text == "sun")
+    assert (row[2].text, row[2].value) == ("-12.3456", -12345.6)
 
 
 def test_key_figures_have_no_false_digits(talbot_record):

@@ -47,8 +47,8 @@ def test_names_of_a_case_are_its_own(case):
 
 def test_a_result_in_one_line(result):
     assert repr(result) == (
-        f"<Result 'A <set> & more': total loss {result.total:.1f} W of "
-        f"{result.input_power / 1e3:.2f} kW, efficiency {100 * result.efficiency:.3f} %, "
+        f"<Result 'A <set> & more': total loss {result.total:.0f} W of "
+        f"{result.input_power / 1e3:.0f} kW, efficiency {100 * result.efficiency:.3f} %, "
         f"{len(result.warnings)} warnings>"
     )
 

@@ -17,7 +17,7 @@ from epicyclic.case.uncertain_values import MODEL_FORM
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.validity import range_text
 from epicyclic.results.result import Result
-from epicyclic.units import percent
+from epicyclic.units import known_text, percent
 
 __all__ = ["Limit", "Measurement", "limits_of", "measurements_of", "model_remarks"]
 
@@ -121,7 +121,7 @@ def model_remarks(case: Case, result: Result, *, brief: bool = False) -> list[st
 def _warnings(result: Result) -> Iterator[str]:
     flags = sorted(result.flags_with_loss, key=lambda pair: -np.nan_to_num(pair[0], nan=np.inf))
     told = [
-        f"{range_text(group)} ({watts:.0f} W)"
+        f"{range_text(group)} ({known_text(watts)})"
         for watts, group in flags
         if watts >= CONCERNED * result.total
     ]

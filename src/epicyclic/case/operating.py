@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from epicyclic.units import CELSIUS, NEWTON_METRE, RPM, Quantity, unit_text
+from epicyclic.units import CELSIUS, NEWTON_METRE, RPM, Quantity, torque_text, unit_text
 
 __all__ = [
     "AXES",
@@ -60,7 +60,10 @@ def axis_name(key: str) -> str:
 
 def operating_line(operation: Mapping[str, Any]) -> str:
     """The operating point, the table ``operation`` of a case, in one line."""
-    words = [f"{operation['speed']}, {operation['torque']}"]
+    torque = operation["torque"]
+    if not torque.startswith("varied"):
+        torque = torque_text(NEWTON_METRE.parse(torque))
+    words = [f"{operation['speed']}, {torque}"]
     if "output" in operation:
         words.insert(0, f"{operation['input']} to {operation['output']}")
     elif "input" in operation:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.units import WATT, Quantity, format_number, percent
+from epicyclic.units import WATT, Quantity, format_number, known_text, percent
 
 __all__ = [
     "OF_THIS_PACKAGE",
@@ -238,7 +238,7 @@ def _unknown_first(pair: tuple[float, object]) -> float:
 
 def _sentence(watts: float, group: list[ValidityFlag]) -> str:
     models = ", ".join(f"{flag.use} {share_text(flag.share)}" for flag in group)
-    size = "" if math.isnan(watts) else f"; {WATT.text(watts, 3)} in all"
+    size = "" if math.isnan(watts) else f"; {known_text(watts)} in all"
     return f"{range_left(group)} Share of the loss: {models}{size}."
 
 

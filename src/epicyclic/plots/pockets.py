@@ -27,7 +27,7 @@ from epicyclic.plots.style import (
     styled_figure,
 )
 from epicyclic.results.result import in_words, of_gear
-from epicyclic.units import WATT
+from epicyclic.units import known_text
 
 __all__ = [
     "plot_areas",
@@ -149,7 +149,7 @@ def plot_power(mesh: xr.Dataset, ax: Axes) -> Axes:
     angles, powers = mesh["period_angle"].to_numpy(), mesh["instant_power"].to_numpy()
     ax.plot(*closed_period(angles, powers, angles.size * float(angles[1] - angles[0])))
     mean = float(mesh["power"])
-    ax.axhline(mean, color="black", ls="--", lw=0.8, label=f"mean {WATT.text(mean, 3)}")
+    ax.axhline(mean, color="black", ls="--", lw=0.8, label=f"mean {known_text(mean)}")
     legend_below(ax)
     ax.set(
         title="Power of the pockets over one mesh period",

@@ -16,7 +16,7 @@ from matplotlib.patches import FancyBboxPatch, Polygon, Rectangle
 from epicyclic.plots.style import COLOURS
 from epicyclic.records.contents import ResultContents
 from epicyclic.records.power_flow import Line, Link, TrainFlow, power_flow
-from epicyclic.units import NEWTON_METRE, RPM, format_number, unit_text
+from epicyclic.units import RPM, format_number, known_text, torque_text, unit_text
 
 __all__ = ["SLIDE", "plot_power_flow"]
 
@@ -136,12 +136,11 @@ def _shown(value: float, digits: int = 4) -> str:
 
 
 def _power(watts: float) -> str:
-    large = abs(watts) >= 1e3
-    return f"{_shown(abs(watts) / (1e3 if large else 1), 3)} {'kW' if large else 'W'}"
+    return known_text(abs(watts))
 
 
 def _torque(value: float) -> str:
-    return f"{_shown(abs(value), 4)} {unit_text(NEWTON_METRE.display)}"
+    return torque_text(0.0 if abs(value) < NO_POWER else abs(value), 4)
 
 
 # --- where everything stands ----------------------------------------------------------------------

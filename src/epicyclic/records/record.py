@@ -19,6 +19,7 @@ from epicyclic.case.case import Case
 from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.records.contents import ResultContents, contents_of, set_of
 from epicyclic.results.result import Result
+from epicyclic.units import known_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -56,7 +57,7 @@ class ResultRecord:
 
     def __repr__(self) -> str:
         fields = ", ".join(self.fields)
-        total = f"total loss {self.result.total:z.1f} W"
+        total = f"total loss {known_text(self.result.total)}"
         return f"<ResultRecord {self.title!r}: {total}, {self.created}; fields {fields}>"
 
     @property

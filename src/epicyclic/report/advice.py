@@ -12,7 +12,7 @@ from epicyclic.bands.known import Known
 from epicyclic.case.uncertain_values import MODEL_FORM
 from epicyclic.report.page import Listing
 from epicyclic.results.result import Result, in_words
-from epicyclic.units import format_number, percent
+from epicyclic.units import known_text, percent
 
 __all__ = ["advice_texts", "band_texts", "driver_name", "result_json"]
 
@@ -30,7 +30,7 @@ def band_texts(known: Known | None) -> list[str | Listing]:
     if known is None:
         return []
     low, high = known.ends["total"]
-    text = f"95 % band: total loss {low:.0f} to {high:.0f} W"
+    text = f"95 % band: total loss {known_text(low, high)}"
     low, high = (100 * end for end in known.ends["efficiency"])
     if math.isfinite(low):
         text += f", efficiency {low:.2f} to {high:.2f} %"
@@ -49,9 +49,9 @@ def advice_texts(known: Known, *, brief: bool = False) -> Iterator[str]:
 
     With `brief` only the most important ones.
     """
-    unit = known.unit
     for limit in limits_of(known)[: FEW if brief else None]:
-        yield f"{limit.name}: {format_number(limit.width, 3)} {unit} of the band; {limit.advice}."
+        width = known_text(limit.width, unit=known.unit)
+        yield f"{limit.name}: {width} of the band; {limit.advice}."
     yield from _measurements(known)
     if known.remarks:
         yield from [" ".join(known.remarks)] if brief else known.remarks
@@ -59,12 +59,13 @@ def advice_texts(known: Known, *, brief: bool = False) -> Iterator[str]:
 
 def _measurements(known: Known) -> Iterator[str]:
     """The part of the loss, and the input, whose measurement narrows the band most."""
-    unit = known.unit
     found = [it for it in measurements_of(known) if it.width < WORTH * known.width]
     best = [next((it for it in found if it.is_input is own), None) for own in (False, True)]
-    parts = [f"{it.name} to {format_number(it.width, 3)} {unit}" for it in best if it is not None]
+    parts = [
+        f"{it.name} to {known_text(it.width, unit=known.unit)}" for it in best if it is not None
+    ]
     if parts:
-        before = f"{format_number(known.width, 3)} {unit}"
+        before = known_text(known.width, unit=known.unit)
         lead = "" if best[0] is not None else "of the inputs "
         text = "; of the inputs ".join(parts)
         yield f"Measured, this would narrow the band of {before} most: {lead}{text}."

@@ -6,13 +6,14 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from epicyclic.records.contents import Measure, ResultContents, set_of
 from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number
-from epicyclic.report.shown import MISSING, error_text
+from epicyclic.report.shown import MISSING, error_text, shown
 from epicyclic.results.result import in_words
-from epicyclic.units import decimals_of, percent, power_unit, unit_text
+from epicyclic.units import known_text, large_unit, percent, unit_text
 
 __all__ = [
     "Labels",
     "bearing_tables",
+    "flow_units",
     "key_figures",
     "label_of",
     "losses_table",
@@ -20,11 +21,14 @@ __all__ = [
     "mesh_tables",
     "oil_table",
     "planets_table",
+    "scaled",
     "share_row",
     "standing_items",
     "users_text",
 ]
 
+Unit = tuple[str, float]
+"""Its name in print and its size."""
 Labels = Mapping[str, str]
 """What every number of a result is called, by its key."""
 _FLOW_NOTE = (
@@ -63,9 +67,7 @@ def key_figures(result: ResultContents) -> list[KeyFigure]:
 
 def _power(label: str, watts: float, key: str) -> KeyFigure:
     """With three significant digits, four of watts: no more are known."""
-    unit, scale = power_unit(watts)
-    shown_power = watts / scale
-    text = f"{shown_power:z.{decimals_of(abs(shown_power))}f}"
+    text, _, unit = known_text(watts).partition(" ")
     return KeyFigure(label, number(watts, key, text=text), unit)
 
 
@@ -104,23 +106,34 @@ def losses_table(result: ResultContents) -> Table:
     return Table(head, tuple(rows), "Losses", frozenset(strong))
 
 
+def flow_units(result: ResultContents) -> tuple[str, Unit, Unit]:
+    """The units of speeds, torques and powers of all members in print."""
+    members = result.members.values()
+    torque, power = (
+        large_unit(max(abs(one.value or 0.0) for one in own), own[0].unit)
+        for own in ([one.torque for one in members], [one.power for one in members])
+    )
+    return unit_text(next(iter(members)).speed.unit), torque, power
+
+
+def scaled(value: float | None, key: str, unit: Unit, digits: int = 6) -> Cell:
+    """A cell of a column in `unit`."""
+    return number(value, key, text="" if value is None else shown(value / unit[1], digits))
+
+
 def members_table(result: ResultContents) -> Table:
     """Speeds, torques and powers of the members of a single set."""
+    speed, torque, power = flow_units(result)
     rows = tuple(
         (
             Cell(name),
             number(member.speed.value, f"members.{name}.speed", 6),
-            number(member.torque.value, f"members.{name}.torque", 6),
-            number(member.power.value, f"members.{name}.power", 7),
+            scaled(member.torque.value, f"members.{name}.torque", torque),
+            scaled(member.power.value, f"members.{name}.power", power, 7),
         )
         for name, member in result.members.items()
     )
-    first = next(iter(result.members.values()))
-    units = (first.speed.unit, first.torque.unit, first.power.unit)
-    heads = (
-        f"{name}, {unit_text(unit)}"
-        for name, unit in zip(("speed", "torque", "power"), units, strict=True)
-    )
+    heads = (f"speed, {speed}", f"torque, {torque[0]}", f"power, {power[0]}")
     return Table(("", *heads), rows, "Power flow", note=_FLOW_NOTE)
 
 

@@ -8,7 +8,7 @@ from epicyclic.analysis.train_losses import LOSS_KINDS, loss_sums
 from epicyclic.records.contents import Measure, ResultContents
 from epicyclic.records.power_flow import power_flow
 from epicyclic.report.page import Cell, Table, aligned, number
-from epicyclic.report.result_tables import Labels, label_of, share_row
+from epicyclic.report.result_tables import Labels, flow_units, label_of, scaled, share_row
 from epicyclic.report.shown import shown
 from epicyclic.results.result import in_words
 from epicyclic.units import percent, unit_text
@@ -81,6 +81,7 @@ def sums_table(result: ResultContents) -> Table:
 def shafts_table(result: ResultContents) -> Table:
     """Speeds, torques and powers of all shafts, and what each passes on."""
     lines = power_flow(result).lines.values()
+    speed, torque, power = flow_units(result)
     rows = []
     for name, member in result.members.items():
         line = next(line for line in lines if name in line.shafts)
@@ -91,21 +92,19 @@ def shafts_table(result: ResultContents) -> Table:
             (
                 Cell(in_words(name)),
                 number(member.speed.value, f"members.{name}.speed", 6),
-                number(member.torque.value, f"members.{name}.torque", 6),
-                number(member.power.value, f"members.{name}.power", 7),
-                number(line.passed, "", 6),
+                scaled(member.torque.value, f"members.{name}.torque", torque),
+                scaled(member.power.value, f"members.{name}.power", power, 7),
+                scaled(line.passed, "", torque),
                 Cell(", ".join(filter(None, (role, joined)))),
             )
         )
-    first = next(iter(result.members.values()))
-    units = [unit_text(one.unit) for one in (first.speed, first.torque, first.power)]
-    heads = (f"speed, {units[0]}", f"torque, {units[1]}", f"power, {units[2]}")
+    heads = (f"speed, {speed}", f"torque, {torque[0]}", f"power, {power[0]}")
     note = (
         "Speeds are positive in one common sense of rotation; torque and power are those from "
         "outside, positive power enters; what a shaft passes on comes from sets, clutches and "
         "outside."
     )
-    head = ("", *heads, f"passes on, {units[1]}", "")
+    head = ("", *heads, f"passes on, {torque[0]}", "")
     return Table(head, tuple(rows), "Shafts", note=note)
 
 

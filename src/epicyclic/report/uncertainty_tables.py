@@ -16,7 +16,7 @@ from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, numb
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import as_on_page, titled
 from epicyclic.results.result import in_words
-from epicyclic.units import percent, unit_text
+from epicyclic.units import known_text, percent, unit_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -72,8 +72,9 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
     total = data.sel(result="total")
     notes = [
         f"Shared: {data.attrs['shared'] or 'nothing'}.",
-        f"Total loss: u of the difference {float(total['standard_uncertainty']):.1f} W; of two "
-        f"results that know nothing of each other {float(total['unpaired_uncertainty']):.1f} W.",
+        f"Total loss: u of the difference {known_text(float(total['standard_uncertainty']))}; of "
+        "two results that know nothing of each other "
+        f"{known_text(float(total['unpaired_uncertainty']))}.",
     ]
     if data.attrs["failed"]:
         notes.append(f"{data.attrs['failed']} of {data.attrs['pairs']} pairs have no result.")

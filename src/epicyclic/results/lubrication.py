@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from epicyclic.units import WATT
+from epicyclic.units import known_text
 
 __all__ = ["OilSupply"]
 
@@ -52,7 +52,7 @@ class OilSupply:
     @property
     def comparison(self) -> str:
         """Churning after each model in words; empty if nothing dips."""
-        return ", ".join(f"{name} {WATT.text(watts, 3)}" for name, watts in self.churning.items())
+        return ", ".join(f"{name} {known_text(watts)}" for name, watts in self.churning.items())
 
     def to_dict(self) -> dict[str, Any]:
         """As plain numbers and text."""

@@ -26,7 +26,7 @@ from epicyclic.results.heat import HeatBalance
 from epicyclic.results.lubrication import OilSupply
 from epicyclic.results.views import Views
 from epicyclic.status import Status
-from epicyclic.units import CELSIUS, DEGREE, NEWTON_METRE, RPM, WATT, percent
+from epicyclic.units import CELSIUS, DEGREE, NEWTON_METRE, RPM, WATT, known_text, percent
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -289,7 +289,7 @@ class Result(Views):
 
     def __repr__(self) -> str:
         title = self.title or in_words(self.kind)
-        words = [f"total loss {self.total:z.1f} W of {self.input_power / 1e3:z.2f} kW"]
+        words = [f"total loss {known_text(self.total)} of {known_text(self.input_power)}"]
         if self.efficiency is not None:
             words.append(f"efficiency {percent(self.efficiency, 3)}")
         words.append(f"{len(self.warnings)} warnings")
