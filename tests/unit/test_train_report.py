@@ -6,7 +6,7 @@ import io
 import json
 import math
 import re
-from itertools import combinations
+from itertools import combinations, product
 
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -248,6 +248,17 @@ def test_the_power_flow_is_a_slide_without_overlapping_words(axle, wolfrom):
         for (one, first), (two, second) in combinations(boxes, 2):
             small = first.expanded(0.9, 0.8).overlaps(second.expanded(0.9, 0.8))
             assert not small, (name, one, two)
+
+
+def test_words_on_cards_stand_beside_the_bars(axle, wolfrom, gearbox):
+    many = ep.record(ep.load_case(listed_trains.ravigneaux()), groups=())
+    for record in (axle, wolfrom, gearbox, many):
+        figure = drawn(record)
+        bars = [patch for patch in figure.axes[0].patches if patch.get_alpha() is not None]
+        assert bars
+        assert all(text.get_fontsize() > 8 for text in texts(figure))  # to be read on a slide
+        for text, bar in product(texts(figure), bars):
+            assert not text.get_window_extent().overlaps(bar.get_window_extent()), text.get_text()
 
 
 def test_the_power_flow_shows_shafts_members_and_brakes(gearbox):

@@ -16,7 +16,7 @@ from matplotlib.patches import FancyBboxPatch, Polygon, Rectangle
 from epicyclic.plots.style import COLOURS
 from epicyclic.records.contents import ResultContents
 from epicyclic.records.power_flow import Line, Link, TrainFlow, power_flow
-from epicyclic.units import RPM, format_number, known_text, torque_text, unit_text
+from epicyclic.units import RPM, format_number, known_text, percent, torque_text, unit_text
 
 __all__ = ["SLIDE", "plot_power_flow"]
 
@@ -32,6 +32,8 @@ TOP, LOWEST, GROUNDS, LEGEND = 6.85, 1.75, 1.45, 0.25
 """Upper edge of the cards of the sets; lower edge of the shafts; brakes; legend."""
 HEAD, ROW = 0.36, 0.24
 """Heights of the name on a card, and of each of its meshes."""
+CHARACTER, WORDS = 0.0085, 0.75
+"""Width of a character, and part of a card for words beside its bars at most. [inch/point, 1]"""
 WIDEST, THINNEST, SHORTEST = 0.6, 0.02, 0.55
 """Widths of arrows, whatever the power; length below which they have no label."""
 NO_POWER = 1e-9
@@ -455,7 +457,7 @@ def _draw_boxes(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
 
 def _fit(text: str, room: float, size: float) -> float:
     """The size of a font at which `text` fits into `room`. [point]"""
-    return min(size, size * room / (0.0085 * size * max(1, len(text))))
+    return min(size, room / (CHARACTER * max(1, len(text))))
 
 
 def _box(ax: Axes, corner: tuple[float, float], size: tuple[float, float]) -> None:
@@ -477,7 +479,7 @@ def _draw_card(ax: Axes, layout: _Layout, stage: str, x: float, entering: float)
     """Name of a set, the rolling power of its meshes, its loss."""
     own = layout.flow.stages[stage]
     rows = len(own.rolling)
-    half = min(1.3, 0.5 * layout.width - 0.08)
+    half = min(1.7, 0.5 * layout.width - 0.08)
     height = HEAD + ROW * rows
     _box(ax, (x - half, TOP - height), (2 * half, height))
     name = stage.replace("_", " ")
@@ -497,9 +499,15 @@ def _draw_card(ax: Axes, layout: _Layout, stage: str, x: float, entering: float)
         default=0.0,
     )
     room = 2 * half - 0.16
-    for number, (mesh, power) in enumerate(own.rolling.items()):
+    names = [mesh.removesuffix("_mesh").replace("_", " ") for mesh in own.rolling]
+    powers = [_power(power) for power in own.rolling.values()]
+    longest = [max(map(len, column), default=0) + 2 for column in (names, powers)]
+    size = min(10, WORDS * room / (CHARACTER * sum(longest)))
+    before, after = (CHARACTER * size * count for count in longest)
+    left = x - half + 0.08 + before  # words stand beside the bars, whose ends would cross them
+    scale = (room - before - after) / max(most, entering) if rows else 0.0
+    for number, (words, power) in enumerate(zip(names, own.rolling.values(), strict=True)):
         low = TOP - HEAD - ROW * (number + 1) + 0.04
-        scale = room / max(most, entering)
         inside = min(abs(power), entering) * scale
         for start, length, colour in (
             (0.0, inside, THROUGH),
@@ -507,7 +515,7 @@ def _draw_card(ax: Axes, layout: _Layout, stage: str, x: float, entering: float)
         ):
             ax.add_patch(
                 Rectangle(
-                    (x - half + 0.08 + start, low),
+                    (left + start, low),
                     length,
                     0.19,
                     color=colour,
@@ -516,11 +524,9 @@ def _draw_card(ax: Axes, layout: _Layout, stage: str, x: float, entering: float)
                     zorder=6,
                 )
             )
-        words = mesh.removesuffix("_mesh").replace("_", " ")
-        size = _fit(f"{words}  {_power(power)}", room, 10)
-        ax.text(x - half + 0.12, low + 0.09, words, va="center", fontsize=size, color=INK, zorder=7)
+        ax.text(x - half + 0.08, low + 0.09, words, va="center", fontsize=size, color=INK, zorder=7)
         ax.text(
-            x + half - 0.12,
+            x + half - 0.08,
             low + 0.09,
             _power(power),
             ha="right",
@@ -529,11 +535,11 @@ def _draw_card(ax: Axes, layout: _Layout, stage: str, x: float, entering: float)
             color=INK,
             zorder=7,
         )
-    share = f" ({100 * own.loss / entering:.2f} %)" if entering and own.loss else ""
-    aside = 0.14 + own.loss * layout.scale / 2
-    ax.text(
-        x + aside, TOP + 0.26, f"{_power(own.loss)}{share}", va="center", fontsize=11, color=LOST
-    )
+    if own.loss:
+        share = f" ({percent(own.loss / entering, 2)})" if entering else ""
+        aside = x + 0.14 + own.loss * layout.scale / 2
+        lost = f"{_power(own.loss)}{share}"
+        ax.text(aside, TOP + 0.26, lost, va="center", fontsize=11, color=LOST)
 
 
 def _draw_grounds(ax: Axes, layout: _Layout, stage: str, x: float) -> None:

@@ -277,8 +277,7 @@ def _gears_chapter(record: ResultRecord, drawings: Drawings) -> Section:
 def _load_chapter(record: ResultRecord, drawings: Drawings) -> Section:
     items: tuple[Item, ...] = (
         *mesh_tables(record.result, record.labels),
-        *gallery(drawings, "line-load", "pressure", "pair-load"),
-        *gallery(drawings, "transmission-error", "stiffness"),
+        *gallery(drawings, "line-load", "pressure", "pair-load", "transmission-error", "stiffness"),
     )
     return Section("load", "Load on the teeth", items)
 
