@@ -27,6 +27,7 @@ from epicyclic.case.case import build_case
 from epicyclic.case.fields import all_keys
 from epicyclic.case.operating import OPERATING
 from epicyclic.errors import InputError
+from epicyclic.library import minimal_case
 from listed_trains import ravigneaux
 
 TOKEN, HOST = "the-token", "127.0.0.1:4711"
@@ -222,6 +223,17 @@ def test_a_case_with_names_of_the_user_comes_back_from_its_command_and_its_file(
     file = tmp_path / "saved.toml"
     file.write_text(desk.text(), encoding="utf-8")
     assert opened(str(file)).case == desk.case
+
+
+@pytest.mark.parametrize("kind", ["gear_pair", "planetary", "train"])
+def test_saved_cases_keep_what_is_stated_in_short(tmp_path, kind):
+    """An oil by grade and kind, and all else that the short files state."""
+    short, saved = tmp_path / "short.toml", tmp_path / "saved.toml"
+    short.write_text(minimal_case(kind), encoding="utf-8")
+    desk = opened(str(short))
+    assert desk.case is not None
+    saved.write_text(desk.text(), encoding="utf-8")
+    assert opened(str(saved)).case == desk.case
 
 
 def _with_other_names(tables, old, new):

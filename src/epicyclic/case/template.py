@@ -164,7 +164,13 @@ class TableWriter:
         full = f"{prefix}{name}"
         about = self.about.get(f"{key}.{full}", _about(field))
         given = values.get(name)
-        if given is not None and not (isinstance(given, Mapping) and name in _SPELT_OUT):
+        spelt_out = (
+            name in _SPELT_OUT
+            and subtable is not None
+            and isinstance(given, Mapping)
+            and given.keys() <= subtable.model_fields.keys()  # an oil by its grade has others
+        )
+        if given is not None and not spelt_out:
             return [_line(f"{full} = {toml_value(given)}", about)]
         if subtable is None:
             return [_line(f"# {full} = {_default(field)}", about)]
