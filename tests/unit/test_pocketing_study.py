@@ -208,3 +208,15 @@ def test_figures_have_a_panel_for_each_level(study):
     assert [ax.get_xlabel() for ax in figure.axes] == ["speed of the pinion, rpm"] * 2
     titles = [ax.get_title(loc="left") for ax in study_figure(study["helix-angle"]).axes]
     assert titles == [f"face width {width} mm" for width in (15, 25, 35)]
+
+
+def test_figures_tell_the_oil_beside_their_legend(pair, study):
+    for figure in (
+        study_figure(study["helix-angle"], published_study(pair)),
+        study_figure(study["speed"]),
+    ):
+        (caption,) = [text for text in figure.texts if "oil at" in text.get_text()]
+        assert caption.get_text() == "pocketing incompressible, oil at 90 °C"
+        figure.draw_without_rendering()
+        legend = figure.legends[0].get_window_extent()
+        assert not caption.get_window_extent().overlaps(legend)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 from collections.abc import Mapping
 
 import numpy as np
@@ -45,7 +46,8 @@ def study_figure(study: xr.Dataset, published: PublishedStudy | None = None) -> 
     count = len(places) + exponents
     columns = count if count <= MOST_COLUMNS else 2
     rows = -(-count // columns)
-    with styled_figure(rows, columns, str(study.attrs["title"])) as (figure, axes):
+    title = str(study.attrs["title"])
+    with styled_figure(rows, columns, title, caption=_held(study)) as (figure, axes):
         flat = axes.ravel()
         for ax, place in zip(flat, places, strict=False):
             _plot_loss(study.isel(dict(zip(panels, place, strict=True))), ax, published)
@@ -56,6 +58,12 @@ def study_figure(study: xr.Dataset, published: PublishedStudy | None = None) -> 
         curves = study[study["pocketing_loss"].dims[-2]]
         legend_of_figure(figure, flat[: len(places)], str(curves.attrs["long_name"]))
     return figure
+
+
+def _held(study: xr.Dataset) -> str:
+    """What all points of a study have in common beside the gears."""
+    oil = json.loads(study.attrs["case"])["operation"]["oil_inlet_temperature"]
+    return unit_text(f"pocketing {study.attrs['model']}, oil at {oil}")
 
 
 def _plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) -> None:
