@@ -10,6 +10,7 @@ from itertools import combinations, product
 
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
 from rich.console import Console
 
 import epicyclic as ep
@@ -259,6 +260,22 @@ def test_words_on_cards_stand_beside_the_bars(axle, wolfrom, gearbox):
         assert all(text.get_fontsize() > 8 for text in texts(figure))  # to be read on a slide
         for text, bar in product(texts(figure), bars):
             assert not text.get_window_extent().overlaps(bar.get_window_extent()), text.get_text()
+
+
+def test_titles_end_before_the_labels_of_scales():
+    record = ep.record(ep.load_case("train-eaxle"), groups=["pockets"])
+    figure = figure_of(record, "pocket-pressure")
+    figure.draw_without_rendering()
+    titles = [
+        text
+        for ax in figure.axes
+        for text in ax.get_children()
+        if isinstance(text, Text) and text.get_text()
+    ]
+    assert len(titles) == 6
+    for title, ax in product(titles, figure.axes):
+        label = ax.yaxis.label.get_window_extent()
+        assert not title.get_window_extent().overlaps(label), title.get_text()
 
 
 def test_the_power_flow_shows_shafts_members_and_brakes(gearbox):

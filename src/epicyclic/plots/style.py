@@ -65,8 +65,8 @@ SMALL_POINTS, MEDIUM_POINTS, TITLE_POINTS = 7.5, 9.0, 10.8
 """Sizes of letters."""
 TITLE_SHARE, CAPTION_SHARE = 1.1, 0.85
 """Points of title and caption for an inch of a wide figure: it is made smaller on a slide."""
-TITLE_CHARACTERS = 13
-"""That fit into an inch of the title of Axes."""
+TITLE_CHARACTERS = 11
+"""Those of a title for an inch of the room of its Axes, which start beside their ticks. [1/inch]"""
 SHORT_SPAN = 300
 """Largest over smallest value of an axis with logarithms on which 2 and 5 have labels too. [1]"""
 SHORTEST = 12
