@@ -165,12 +165,15 @@ def power_unit(power: float) -> tuple[str, float]:
     return large_unit(power, WATT.display)
 
 
-def known_text(*values: float, unit: str = "W", joint: str = " to ") -> str:
-    """Losses as a sentence has them, with the unit and the decimals of the largest of them."""
-    largest = max(map(abs, values))
+def known_text(*values: float, unit: str = "W", beside: float = 0.0) -> str:
+    """Losses as a sentence has them, with the unit and the decimals of the largest of them.
+
+    One that stands `beside` them counts too.
+    """
+    largest = max(abs(beside), *map(abs, values))
     shown_unit, size = large_unit(largest, unit)
     decimals = decimals_of(largest / size)
-    return f"{joint.join(f'{value / size:z.{decimals}f}' for value in values)} {shown_unit}"
+    return f"{' to '.join(f'{value / size:z.{decimals}f}' for value in values)} {shown_unit}"
 
 
 def torque_text(torque: float, digits: int = 6) -> str:

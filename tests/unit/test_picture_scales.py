@@ -235,6 +235,7 @@ def test_losses_of_one_sentence_share_unit_and_decimals():
     assert known_text(8380.4, 15235.3, 25624.9) == "8.4 to 15.2 to 25.6 kW"
     assert known_text(96.24, 8380.4) == "96 to 8380 W"
     assert known_text(23450.6, unit="kJ") == "23451 kJ"
+    assert known_text(8380.4, beside=10390.2) == "8.4 kW"
     assert known_text(math.nan) == "nan W"
 
 

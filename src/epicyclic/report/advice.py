@@ -50,7 +50,7 @@ def advice_texts(known: Known, *, brief: bool = False) -> Iterator[str]:
     With `brief` only the most important ones.
     """
     for limit in limits_of(known)[: FEW if brief else None]:
-        width = known_text(limit.width, unit=known.unit)
+        width = known_text(limit.width, unit=known.unit, beside=known.width)
         yield f"{limit.name}: {width} of the band; {limit.advice}."
     yield from _measurements(known)
     if known.remarks:
@@ -62,7 +62,9 @@ def _measurements(known: Known) -> Iterator[str]:
     found = [it for it in measurements_of(known) if it.width < WORTH * known.width]
     best = [next((it for it in found if it.is_input is own), None) for own in (False, True)]
     parts = [
-        f"{it.name} to {known_text(it.width, unit=known.unit)}" for it in best if it is not None
+        f"{it.name} to {known_text(it.width, unit=known.unit, beside=known.width)}"
+        for it in best
+        if it is not None
     ]
     if parts:
         before = known_text(known.width, unit=known.unit)
