@@ -24,6 +24,9 @@ FloatArray = NDArray[np.float64]
 AGREEMENT = 3e-5
 """Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
 MOST_PASSES = 40
+SCATTERING_FROM, SCATTER = 15, 0.02
+"""Passes after which a larger change is agreement [K]: that of the losses of a flow through pockets
+that does not repeat, which scatter."""
 COLDEST, HOTTEST = 200.0, 770.0
 """Between which losses are computed; beyond them no gearbox is left to compute. [K]"""
 
@@ -128,12 +131,17 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
         found.append((solution, answer))
         return np.array([answer.temperatures[node] for node in nodes]) - values
 
+    def left(changes: FloatArray) -> float:
+        largest = float(np.abs(changes).max())
+        return largest if len(found) <= SCATTERING_FROM else largest * AGREEMENT / SCATTER
+
     start = np.array([model.start[node] for node in nodes])
     try:
         with np.errstate(invalid="ignore"):  # its first check divides infinity by infinity
             broyden1(
-                change, start, alpha=1.0, f_tol=AGREEMENT, maxiter=MOST_PASSES, line_search=None
-            )
+                change, start, alpha=1.0, f_tol=AGREEMENT, tol_norm=left, maxiter=MOST_PASSES,
+                line_search=None,
+            )  # fmt: skip
     except NoConvergence:
         raise _no_equilibrium(found) from None
     solution, answer = found[-1]
