@@ -441,10 +441,10 @@ def _repeated(
 
 def _by_secants(branch: _Branch, found: Balance | _Pass) -> Balance | _Pass:
     """By Broyden's method on the loads of the meshes; as `found` where that leads nowhere."""
-    from scipy.optimize import NoConvergence, broyden1
-
     if isinstance(found, _Pass):
         return found
+    from scipy.optimize import NoConvergence, broyden1  # takes a third of a second, rarely needed
+
     first = found
     last: Balance | _Pass = found
     start = np.array(list(first.meshes.values()))
