@@ -52,7 +52,7 @@ def read_groups(path: Path) -> dict[str, xr.Dataset]:
         groups = list(_groups(file))
         left_out = {name for group in groups for name in _long_texts(group)}
         texts = {
-            group.path: {name: group[name] for name in left_out & group.variables.keys()}
+            group.path: {name: own for name, own in group.variables.items() if name in left_out}
             for group in groups
         }
         with xr.open_datatree(
@@ -89,8 +89,8 @@ def _long_texts(group: netCDF4.Dataset) -> set[str]:
 
 def _text(variable: netCDF4.Variable[Any]) -> tuple[tuple[str, ...], NDArray[Any], dict[str, Any]]:
     """Dimensions, values and attributes."""
-    names = set(variable.ncattrs()) - {"coordinates"}  # which xarray writes, and takes away
-    about = {name: variable.getncattr(name) for name in names}
+    about = {name: variable.getncattr(name) for name in variable.ncattrs()}
+    about.pop("coordinates", None)  # which xarray writes, and takes away
     return variable.dimensions, np.asarray(variable[...], dtype=object), about
 
 

@@ -109,7 +109,12 @@ def test_texts_of_many_points_are_as_long_as_each_is(tmp_path):
     notes = np.array([f"point {number}" for number in range(1200)], dtype=object).reshape(shape)
     notes[7, 3] = "x" * 50_000  # of which xarray makes 240 MB
     written = xr.Dataset(
-        {"total": (("a", "b"), numbers), "warnings": (("a", "b"), notes, {"long_name": "words"})},
+        {
+            "total": (("a", "b"), numbers),
+            "message": (("a", "b"), notes + "!"),
+            "status": (("a", "b"), notes + "?"),
+            "warnings": (("a", "b"), notes, {"long_name": "words", "units": "1"}),
+        },
         {
             "a": np.linspace(1, 5, 40),
             "material": ("a", [f"steel {number}" for number in range(40)]),
@@ -121,6 +126,7 @@ def test_texts_of_many_points_are_as_long_as_each_is(tmp_path):
     read = read_groups(tmp_path / "many.nc")[""]
     xr.testing.assert_identical(read, written)
     assert read["warnings"].dtype == object
+    assert list(read.data_vars) == ["total", "message", "status", "warnings"]
     assert list(read.coords) == ["a", "material", "place"]
 
 
