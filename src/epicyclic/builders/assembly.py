@@ -23,7 +23,7 @@ from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.standing import standing
 from epicyclic.losses.validity import SomeFlags, ValidityFlag
 from epicyclic.machine.flow import stage_torques
-from epicyclic.machine.settle import Answer, Settled, heat_of
+from epicyclic.machine.settle import AGREEMENT, Answer, Settled, heat_of
 from epicyclic.machine.solve import Solution
 from epicyclic.results.heat import HeatBalance, HeatWay
 from epicyclic.results.lubrication import OilSupply
@@ -74,6 +74,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
             *general_notes(terms, flow.input_power, flow.efficiency),
             *_train_notes(case, solution),
             *_floating_notes(solution),
+            *_heat_notes(settled),
             *_set_notes(case, built, solution),
         ),
         load_methods={key: title for key, (title, _) in methods.items()},
@@ -232,6 +233,14 @@ def _train_notes(case: Case, solution: Solution) -> Iterator[str]:
         yield (
             "Some members share their load in more than one possible way (brakes, clutches or "
             "meshes in parallel): of all torques in balance, the smallest are shown."
+        )
+
+
+def _heat_notes(settled: Settled) -> Iterator[str]:
+    if settled.change > AGREEMENT:
+        yield (
+            f"Temperatures and losses agree to {settled.change:.1g} K only: a loss scatters from "
+            "one evaluation to the next, as that of a flow through pockets that does not repeat."
         )
 
 

@@ -310,10 +310,12 @@ class NetworkModel:
 
         # the warmer the wall is taken to be, the better it is cooled: one temperature fits
         coldest, hottest = WALLS
-        for end, beyond in ((coldest, off(coldest) < 0), (hottest, off(hottest) > 0)):
-            if beyond:  # there is no equilibrium, which those who ask for one tell
-                return end
-        return float(brentq(off, coldest, hottest, xtol=SAME, rtol=SAME))
+        try:
+            return float(brentq(off, coldest, hottest, xtol=SAME, rtol=SAME))
+        except InputError:
+            raise
+        except ValueError:  # there is no equilibrium, which those who ask for one tell
+            return coldest if off(coldest) < 0 else hottest
 
     def _with_wall(self, fixed: Sequence[Link], heat: Mapping[str, float], wall: float) -> Network:
         """The network with the housing at a temperature, as far as conductances depend on it."""
@@ -325,12 +327,12 @@ class NetworkModel:
         network = Network(
             self.nodes, {node: value for node, value in given.items() if node in met}, links
         )
+        self._check_names(network)
         left = network.cut_off()
-        if left and not {OIL, *(node for node, watts in heat.items() if watts)} & {*left}:
-            # parts at rest, which nothing heats or cools, are as warm as the oil
-            network = replace(network, links=(*links, *map(_as_the_oil, left)))
-        self._check(network)
-        return network
+        if any(node == OIL or heat.get(node) for node in left):
+            raise _no_way_out(left)
+        # parts at rest, which nothing heats or cools, are as warm as the oil
+        return replace(network, links=(*links, *map(_as_the_oil, left))) if left else network
 
     def _fixed_links(
         self, around: float, solution: Solution, heat: Mapping[str, float]
@@ -450,8 +452,8 @@ class NetworkModel:
         change = self.settings.changes.get(link.key)
         return link if change is None else replace(link, conductance=change(link.conductance))
 
-    def _check(self, network: Network) -> None:
-        """Names of the case that are not known here, and heat without a way out, are errors."""
+    def _check_names(self, network: Network) -> None:
+        """Names of the case that are not known here are errors."""
         strangers = set(self.settings.jet_shares) - set(self.wetted)
         if strangers:
             raise _no_such("thermal.jet_shares", "part", strangers, self.wetted)
@@ -459,20 +461,15 @@ class NetworkModel:
         unknown = set(self.settings.changes) - set(known)
         if unknown:
             raise _no_such("thermal.conductances", "way of the heat", unknown, known)
-        left = network.cut_off()
-        if left:
-            raise InputError(
-                [
-                    Problem(
-                        "thermal",
-                        "",
-                        f"the heat of {', '.join(left)} has no way out.",
-                        "Give thermal.oil_flow or thermal.oil_outlet_temperature, "
-                        "[thermal.housing] or thermal.cooler_conductance; for single parts "
-                        "thermal.jet_shares or thermal.conductances.",
-                    )
-                ]
-            )
+
+
+def _no_way_out(nodes: Iterable[str]) -> InputError:
+    allowed = f"the heat of {', '.join(nodes)} has no way out."
+    remedy = (
+        "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] or "
+        "thermal.cooler_conductance; for single parts thermal.jet_shares or thermal.conductances."
+    )
+    return InputError([Problem("thermal", "", allowed, remedy)])
 
 
 def _as_the_oil(node: str) -> Link:

@@ -17,7 +17,7 @@ from epicyclic.machine.solve import Solution, solve_machine, start_of
 from epicyclic.thermal.network import Link
 from epicyclic.units import CELSIUS
 
-__all__ = ["Answer", "Settled", "ThermalModel", "heat_of", "isothermal", "settle"]
+__all__ = ["AGREEMENT", "Answer", "Settled", "ThermalModel", "heat_of", "isothermal", "settle"]
 
 FloatArray = NDArray[np.float64]
 
@@ -80,11 +80,14 @@ class Settled:
     answer : Answer
     evaluations : int
         Evaluations of the losses.
+    change : float
+        Largest change of a temperature in the last of them. [K]
     """
 
     solution: Solution
     answer: Answer
     evaluations: int
+    change: float = 0.0
 
 
 def isothermal(solution: Solution) -> Settled:
@@ -122,6 +125,7 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     nodes = tuple(model.start)
     unheated = start_of(machine, operation)
     found: list[tuple[Solution, Answer]] = []
+    steps: list[float] = []
 
     def change(values: FloatArray) -> FloatArray:
         at = dict(zip(nodes, map(float, np.clip(values, COLDEST, HOTTEST)), strict=True))
@@ -129,17 +133,18 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
             solution = solve_machine(machine, operation, model.fluids(at), unheated)
             answer = model.answer(at, solution)
         found.append((solution, answer))
-        return np.array([answer.temperatures[node] for node in nodes]) - values
+        step: FloatArray = np.array([answer.temperatures[node] for node in nodes]) - values
+        steps.append(float(np.abs(step).max()))
+        return step
 
-    def left(changes: FloatArray) -> float:
-        largest = float(np.abs(changes).max())
-        return largest if len(found) <= SCATTERING_FROM else largest * AGREEMENT / SCATTER
+    def left(_: FloatArray) -> float:
+        return steps[-1] / (AGREEMENT if len(steps) <= SCATTERING_FROM else SCATTER)
 
     start = np.array([model.start[node] for node in nodes])
     try:
         with np.errstate(invalid="ignore"):  # its first check divides infinity by infinity
             broyden1(
-                change, start, alpha=1.0, f_tol=AGREEMENT, tol_norm=left, maxiter=MOST_PASSES,
+                change, start, alpha=1.0, f_tol=1.0, tol_norm=left, maxiter=MOST_PASSES,
                 line_search=None,
             )  # fmt: skip
     except NoConvergence:
@@ -148,7 +153,7 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     temperatures = answer.temperatures.values()
     if min(temperatures) < COLDEST or max(temperatures) > HOTTEST:
         raise _no_equilibrium(found)
-    return Settled(solution, answer, len(found))
+    return Settled(solution, answer, len(found), steps[-1])
 
 
 def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
