@@ -50,7 +50,7 @@ __all__ = ["main"]
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="epicyclic")
 def cli() -> None:
-    """Power losses of planetary gear sets and gear pairs: how much, where, and why.
+    """Power losses of gear pairs, planetary sets and gearboxes: how much, where, and why.
 
     CASE is a TOML or REXS file or the name of a built-in case (epicyclic cases).
 

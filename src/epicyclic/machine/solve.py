@@ -266,12 +266,8 @@ class _Known:
         """Of all elements. [W]"""
         return sum(loss.watts for it in self.results.values() for loss in it.losses.values())
 
-    def follow(self, elements: Iterable[Element], state: State, allowed: float) -> bool:
-        """Have the elements answer to a state; False if none sees other loads than before.
-
-        `allowed` is the error of foretold losses, relative.
-        """
-        changed = False
+    def follow(self, elements: Iterable[Element], state: State, allowed: float) -> None:
+        """Have the elements answer to a state; `allowed`: relative error of foretold losses."""
         for element in elements:
             key, loads = element.key, element.loads(state)
             if key in self.loads and _agrees(self.loads[key], loads):
@@ -285,8 +281,6 @@ class _Known:
                 told = element.evaluate(state)
                 self.answers[key] = last.followed_by(loads, told) if last else Answer(loads, told)
             self.results[key], self.loads[key] = told, loads
-            changed = True
-        return changed
 
 
 @dataclass(frozen=True, slots=True)
@@ -373,14 +367,11 @@ class _Branch:
             known.idle.update({element.key: element.idle(state) for element in elements})
         allowed = _allowed(distance(self.unlost.meshes, found.meshes))
         with np.errstate(over="ignore"):  # a loss may be too large for a number
-            changed = known.follow(elements, state, allowed)
+            known.follow(elements, state, allowed)
         if not math.isfinite(known.loss):
             raise self.disagreement()
-        effects = self._effects(found)
-        efficiencies, _ = effects
-        if not changed and efficiencies == self.given:  # friction alone: the balance has all of it
-            return _Pass(found, self.drives, efficiencies, state)
-        new = self._balance(*effects)
+        efficiencies, frictions = self._effects(found)
+        new = self._balance(efficiencies, frictions)
         if _agrees(found.meshes, new.meshes):
             return _Pass(new, self.drives, efficiencies, state)
         if not max(map(abs, new.meshes.values()), default=0.0) < MOST_TORQUE:
@@ -472,6 +463,10 @@ def _by_secants(branch: _Branch, found: Balance | _Pass) -> Balance | _Pass:
             )  # fmt: skip
     except (NoConvergence, ConvergenceError):
         return first
+    except ValueError as problem:
+        if "Jacobian" in str(problem):  # no step leaves a load at which the losses jump
+            return first
+        raise
     return last
 
 
