@@ -67,6 +67,14 @@ _BOUNDED = (
     "another method, which changes its loss where no void forms by up to 2 % at the default "
     "resolution, and by up to 4.4 % at coarser ones."
 )
+_SMALLER = (
+    "The flow through the pockets of a pair takes its time steps from the smaller gear; it took "
+    "them from the gear that the case names first, which changed its loss by up to 1.3 %."
+)
+_STARTED = (
+    "The loads along the lines of contact start from those of the pass before, which changes "
+    "losses within the tolerance of those loads, by up to 3 in a billion."
+)
 _INCOMPRESSIBLE = """
     pair-001 pair-020 pair-031 pair-040 pair-049 pair-069 pair-082 pair-096 pair-099
     planetary-009 planetary-016 planetary-028 planetary-041 planetary-060 planetary-066
@@ -97,6 +105,8 @@ EXCEPTIONS: dict[str, str] = {
     "planetary-095/*": _EMPTY_PLANET,  # planet 1 carries nothing, and the set coasts
     **{f"{case}/*": _PINION for case in _GEAR_1_IS_LARGER.split()},  # friction niemann-winter
     **{f"{case}/*": _BOUNDED for case in _INCOMPRESSIBLE.split()},
+    **{f"pair-{number}/*": _SMALLER for number in ("037", "083")},
+    "planetary-038/*ring_mesh_sliding": _STARTED,
 }
 """Places where results were changed on purpose, as patterns of `fnmatch`, each with its reason in
 the words of CHANGELOG.md. A place reads "planetary-004/result/losses/sun_drag"."""
