@@ -23,8 +23,8 @@ __all__ = ["PlanetContact", "PlanetLoad", "planet_load", "tilt_planet"]
 FloatArray = NDArray[np.float64]
 
 TILT_TOLERANCE = 1e-9
-"""Imbalance over the tilt at which the latter counts as found: under next to no load, teeth give way
-by less than a thousandth of what the planet moves in its play. [1]"""
+"""Imbalance over the tilt at which the latter counts as found: under next to no load, teeth give
+way by less than a thousandth of what the planet moves in its play. [1]"""
 SMALL_TILT = 1e-6
 """A tilt as small as this counts as that size in `TILT_TOLERANCE`: 0.02 um across 20 mm. [rad]"""
 NEWTON_MOST = 40
