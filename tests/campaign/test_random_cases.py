@@ -75,11 +75,12 @@ def test_of_few_contacts_all_are_solved_whatever_the_most_of_many(monkeypatch):
     assert len(solved) == len(set(solved)) == 18
 
 
-@pytest.mark.parametrize("number", [826, 829, 1104, 1881, 1884, 5248, 11481, 19179])
+@pytest.mark.parametrize("number", [826, 829, 1104, 1881, 1884, 5248, 11481, 19179, 56103])
 def test_losses_that_alone_load_a_mesh_agree_with_its_load(number):
     """No torque from outside: the least loss of a mesh changes its load by a multiple.
 
-    Or each pass brings the load but a third nearer to where it stays.
+    Or each pass brings the load but a third nearer to where it stays, or planets tilt in their play
+    by far more than their teeth give way (56103).
     """
     assert outcome_of(drawn_case(number)).name == "solved"
 
