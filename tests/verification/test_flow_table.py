@@ -15,7 +15,12 @@ from epicyclic.elements.pocket_flow import flow_family, flow_request
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing import network
 from epicyclic.pocketing.memory import FlowMemory
-from epicyclic.pocketing.similarity import LEAST_NUMBER, flow_figures, scaled_figures
+from epicyclic.pocketing.similarity import (
+    LEAST_NUMBER,
+    FlowFigures,
+    flow_figures,
+    scaled_figures,
+)
 from epicyclic.pocketing.table import make_tables
 
 COARSE = {
@@ -161,6 +166,24 @@ def test_memory_gives_what_is_solved():
             memory.add(family, *state, solved)
         assert read == 2
         assert memory.figures(family, 1.1 * speed, mixture, pressure) is None
+
+
+def test_a_flow_that_does_not_repeat_serves_those_near_it(case):
+    """The first that is known, by its scaled power, so that nothing jumps between two of them."""
+    built = build(case)
+    duty = built.mean_duties()["mesh"]
+    family, speed, mixture, pressure = flow_request(duty, built.fluids)
+    memory = FlowMemory()
+    for factor, power in ((1.0, 311.0), (1.004, 327.0)):
+        figures = FlowFigures(power, 0.013, 2.3e5, -0.7e5, 41.0, periods=60, periodic=False)
+        memory.add(family, speed * factor, mixture, pressure, figures)
+    near = memory.figures(family, 1.003 * speed, mixture, pressure)
+    assert near.power == pytest.approx(311.0 * 1.003**3, rel=1e-12)
+    assert near.speed_max == pytest.approx(41.0 * 1.003, rel=1e-12)
+    assert (near.periods, near.periodic) == (60, False)
+    beyond = memory.figures(family, 1.008 * speed, mixture, pressure)
+    assert beyond.power == pytest.approx(327.0 * (1.008 / 1.004) ** 3, rel=1e-12)
+    assert memory.figures(family, 1.01 * speed, mixture, pressure) is None
 
 
 def test_a_flow_without_voids_serves_all_speeds_oils_and_shares(monkeypatch):
