@@ -25,7 +25,7 @@ from epicyclic.losses.planet_bearing import (
     roller_loads,
     roller_loads_next_to,
 )
-from epicyclic.losses.validity import SomeFlags
+from epicyclic.losses.validity import Flags, SomeFlags
 from epicyclic.losses.viscous import (
     VISCOUS_METHOD,
     VISCOUS_SOURCE,
@@ -168,7 +168,7 @@ def _palmgren(
 ) -> BearingLoss:
     bearing = own.bearing
     watts = palmgren_loss(own.palmgren_coefficient, load.force, bearing.pitch_diameter, speed)
-    return BearingLoss(watts, palmgren_flags(bearing, loads, speed))
+    return BearingLoss(watts, Flags(partial(palmgren_flags, bearing, loads, speed)))
 
 
 def _bearing_figures(

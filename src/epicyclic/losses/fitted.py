@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.contact import LineContacts
+from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.fit_tables import RaceContacts, tabulated
 from epicyclic.losses.mixed_ehl_groups import beyond_data
 from epicyclic.losses.validity import Range, RegressionFluid
 from epicyclic.oilmodel.model import OilModel
@@ -69,7 +71,7 @@ class FittedFriction:
 
     def coefficient(self, contact: LineContacts) -> FloatArray:
         """See the class. [1]"""
-        return self.model.value(self.quantity, contact, self.form)
+        return _fitted(self, contact)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +112,14 @@ class FittedRolling:
     def loss_density(self, contact: LineContacts) -> FloatArray:
         """See the class. [W/m]"""
         held = contact.held(self.model.fits[self.quantity].domain)
-        return self.model.value(self.quantity, contact, self.form) * beyond_data(contact, held)
+        return _fitted(self, contact) * beyond_data(contact, held)
+
+
+def _fitted(fit: FittedFriction | FittedRolling, contact: LineContacts) -> FloatArray:
+    """The quantity of a fit at every contact."""
+    if isinstance(contact, MeshContact | RaceContacts):
+        return tabulated(fit.model, fit.quantity, fit.form, contact)
+    return fit.model.value(fit.quantity, contact, fit.form)
 
 
 def _source(model: OilModel) -> str:

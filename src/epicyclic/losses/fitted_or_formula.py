@@ -57,14 +57,14 @@ def weight_of_fit(model: OilModel, quantity: str, contacts: LineContacts) -> Flo
     """
     domain = model.fits[quantity].domain
     modulus = contacts.flanks.equivalent_modulus / model.equivalent_modulus
-    beyond = np.full(contacts.line_load.shape, max(1.0, modulus, 1 / modulus) / MODULUS_SLACK)
-    for name in CONDITIONS:
+    beyond: float | FloatArray = max(1.0, modulus, 1 / modulus) / MODULUS_SLACK
+    for name in CONDITIONS:  # numbers first take less time than arrays of one number each
         value = getattr(contacts, name)
         low, high = domain[name]
         if high > 0:
-            np.maximum(beyond, value / high, out=beyond)
+            beyond = np.maximum(beyond, value / high)
         if low > 0 and name != NO_LEAST:
-            np.maximum(beyond, low / value, out=beyond)
+            beyond = np.maximum(beyond, low / value)
     t = np.clip(np.log(beyond) / math.log(REACH), 0.0, 1.0)
     weight: FloatArray = 1 - t * t * (3 - 2 * t)
     return weight

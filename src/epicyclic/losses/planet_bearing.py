@@ -7,18 +7,18 @@ first roller stands under the load, as in Talbot (2012), Fig. 3.1.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.contact import Flanks, LineContacts
+from epicyclic.contact import Flanks
 from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.line_contact import hertz_pressure
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss_at
 from epicyclic.kernels.roller_bearing import solve_roller_loads
+from epicyclic.losses.fit_tables import RaceContacts
 from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.fitted_or_formula import weight_of_fit
 from epicyclic.losses.mixed_ehl_groups import (
@@ -457,30 +457,39 @@ def fitted_rolling_loss(
     total = float(local.sum())
     if beyond is None:
         use = ModelUse("bearing", model.name, "planet bearing")
-        return BearingLoss(total, check_contacts(use, model.ranges, contacts, local))
+        return BearingLoss(
+            total, Flags(partial(check_contacts, use, model.ranges, contacts, local))
+        )
     within = float((weight_of_fit(model.model, model.quantity, contacts) * local).sum())
     use = ModelUse("bearing", FITTED_OR_PALMGREN, "planet bearing", instead="palmgren")
-    flags = check_contacts(use, model.ranges, contacts, local)
+    flags = Flags(partial(check_contacts, use, model.ranges, contacts, local))
     if within == total:
         return BearingLoss(total, flags)
-    return BearingLoss(within + (1 - within / total) * beyond.loss, (*flags, *beyond.flags))
+    return BearingLoss(within + (1 - within / total) * beyond.loss, flags + beyond.flags)
 
 
 def _contacts(
-    bearing: RollerBearing, loads: RollerLoads, speed: float, oil: OilState, radii: Sequence[float]
-) -> LineContacts | None:
+    bearing: RollerBearing,
+    loads: RollerLoads,
+    speed: float,
+    oil: OilState,
+    radii: tuple[float, ...],
+) -> RaceContacts | None:
     """The loaded slices with races of some equivalent radii; None without load or motion."""
     intensity = loads.intensity[loads.intensity > 0]
     if intensity.size == 0 or speed == 0:
         return None
     load = np.tile(intensity, len(radii))
-    return LineContacts(
+    rolling = bearing.rolling_speed(speed)
+    return RaceContacts(
         line_load=load,
         radius=np.repeat(radii, intensity.size),
-        rolling_speed=np.full_like(load, bearing.rolling_speed(speed)),
+        rolling_speed=np.full_like(load, rolling),
         sliding_speed=np.zeros_like(load),
         flanks=Flanks(bearing.equivalent_modulus, bearing.race_roughness, bearing.roller_roughness),
         oil=oil,
+        races=radii,
+        speed=rolling,
     )
 
 

@@ -133,15 +133,19 @@ class _Step:
         """Estimate of the error of a loss on the line from `older` to `watts`, relative.
 
         The loss goes with some power of its load, the slope of which bends the line, and which
-        changes a little itself. Of what changed more than any power would nothing is foretold.
+        changes a little itself. What changed more than any power would follows something else too:
+        its whole step may be wrong.
         """
         if not self.before:
             return STEEPEST * self.size
         if watts == older:
             return 0.0
-        power = abs(watts - older) / watts / self.before if watts else math.inf
-        if power > STEEPEST:
+        if not watts:
             return math.inf
+        change = abs(watts - older) / watts
+        power = change / self.before
+        if power > STEEPEST:
+            return change * abs(self.part) + STEEPEST * self.size
         bend = power * abs(power - 1) / 2 + BENT
         return bend * self.size * (self.before + self.size) + STEEPEST * self.aside
 

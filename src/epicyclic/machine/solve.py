@@ -211,9 +211,9 @@ def solve_machine(
         start = start_of(machine, operation)
     speeds, lossless, directions = start.speeds, start.lossless, start.directions
     efficiencies: Mapping[str, float] = {row.key: row.efficiency for row in machine.rows}
-    drives = directions.drives
-    tried: list[Mapping[str, bool]] = []
     known = _Known()
+    drives = _led(_Branch(machine, operation, start, fluids, known, directions.drives))
+    tried: list[Mapping[str, bool]] = []
     while drives not in tried and len(tried) < MOST_BRANCHES:
         tried.append(drives)
         last = _converged(_Branch(machine, operation, start, fluids, known, drives))
@@ -396,6 +396,18 @@ class _Branch:
     ) -> Balance:
         speeds = self.start.speeds
         return balance(self.machine, self.operation, speeds, self.drives, efficiencies, frictions)
+
+
+def _led(branch: _Branch) -> Mapping[str, bool]:
+    """Directions of the branch; of meshes that pass no power without losses those of one pass."""
+    drives, powers = branch.drives, branch.start.lossless.powers
+    one, other = (drives_first(powers, dict.fromkeys(powers, first)) for first in (True, False))
+    undecided = {key for key in powers if one[key] != other[key]}
+    if not undecided:
+        return drives
+    found = branch.follow(branch.begin())
+    led = drives_first((found.balance if isinstance(found, _Pass) else found).powers, drives)
+    return {key: led[key] if key in undecided else first for key, first in drives.items()}
 
 
 def _converged(branch: _Branch) -> _Pass:

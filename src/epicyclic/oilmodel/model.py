@@ -182,6 +182,10 @@ class OilModel(_Data):
     equivalent_modulus: float = Field(gt=0)
     fits: dict[str, QuantityFit]
 
+    def __hash__(self) -> int:
+        # of a few fields: all of them take longer than what is looked up by it
+        return hash((self.version, self.seed, self.command, self.equivalent_modulus))
+
     @model_validator(mode="after")
     def _check_fits(self) -> OilModel:
         try:
