@@ -113,7 +113,7 @@ def map_seconds() -> float:
 
 SETS = {"P1": (4, 1.5), "P2": (4, 1.5), "P3": (4, 1.5), "P4": (4, 1.75)}
 """Planets and normal module [mm] that are put to the tooth numbers of a published gearbox."""
-GEARBOX_MAP = ("--speed", "500:5000:10 rpm", "--torque", "-300:400:20 N*m")
+GEARBOX_MAP = ("--speed", "500:5000:10 rpm", "--torque", "-300:400:20 N*m", "--even-torques")
 """200 points of each of nine states."""
 
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgetrf, dgetrs
 
 from epicyclic.elements.base import HOUSING
 from epicyclic.machine.machine import Machine, MeshRow, Operation, Terms
@@ -150,10 +150,9 @@ def _lossy_terms(row: MeshRow, first: bool, efficiency: float) -> Terms:
 def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
     """The smallest solution of a linear system, and whether it is the only one."""
     if matrix.shape[0] == matrix.shape[1]:
-        factors, pivots, singular = dgetrf(matrix)
-        if not singular:
-            found = np.asarray(dgetrs(factors, pivots, known)[0], float)
-            found += dgetrs(factors, pivots, known - matrix @ found)[0]
+        with suppress(np.linalg.LinAlgError):  # singular
+            found = np.asarray(np.linalg.solve(matrix, known), float)
+            found += np.linalg.solve(matrix, known - matrix @ found)
             size = float(np.abs(known).max(initial=0.0))
             if float(np.abs(found).max(initial=0.0)) <= LARGEST_FACTOR * size:
                 return found, True

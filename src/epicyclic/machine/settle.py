@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -23,6 +23,8 @@ FloatArray = NDArray[np.float64]
 
 AGREEMENT = 3e-5
 """Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
+QUICK = 0.15
+"""A step of the temperatures over the one before, up to which plain repetition is as quick. [1]"""
 MOST_PASSES = 40
 SCATTERING_FROM, SCATTER = 15, 0.02
 """Passes after which a larger change is agreement [K]: that of the losses of a flow through pockets
@@ -112,16 +114,14 @@ def _losses(solution: Solution) -> list[Loss]:
 def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settled:
     """Temperatures and losses that agree. Theory (W27).
 
-    Broyden's method on the temperatures, which starts as the plain repetition of losses and
-    temperatures.
+    Plain repetition of losses and temperatures as long as that is quick, as where nothing but the
+    gears gets warm; else Broyden's method on the temperatures.
 
     Raises
     ------
     ConvergenceError
         If there is no equilibrium, or only one that no gearbox survives.
     """
-    from scipy.optimize import NoConvergence, broyden1
-
     nodes = tuple(model.start)
     unheated = start_of(machine, operation)
     found: list[tuple[Solution, Answer]] = []
@@ -140,7 +140,29 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     def left(_: FloatArray) -> float:
         return steps[-1] / (AGREEMENT if len(steps) <= SCATTERING_FROM else SCATTER)
 
-    start = np.array([model.start[node] for node in nodes])
+    at = np.array([model.start[node] for node in nodes])
+    for _ in range(2):
+        at = at + change(at)
+    while AGREEMENT < steps[-1] <= QUICK * steps[-2]:
+        at = at + change(at)
+    if not steps[-1] <= AGREEMENT:
+        _by_secants(change, at, left, found)
+    solution, answer = found[-1]
+    temperatures = answer.temperatures.values()
+    if min(temperatures) < COLDEST or max(temperatures) > HOTTEST:
+        raise _no_equilibrium(found)
+    return Settled(solution, answer, len(found), steps[-1])
+
+
+def _by_secants(
+    change: Callable[[FloatArray], FloatArray],
+    start: FloatArray,
+    left: Callable[[FloatArray], float],
+    found: list[tuple[Solution, Answer]],
+) -> None:
+    """Broyden's method from temperatures on."""
+    from scipy.optimize import NoConvergence, broyden1  # takes a sixth of a second
+
     try:
         with np.errstate(invalid="ignore"):  # its first check divides infinity by infinity
             broyden1(
@@ -149,11 +171,6 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
             )  # fmt: skip
     except NoConvergence:
         raise _no_equilibrium(found) from None
-    solution, answer = found[-1]
-    temperatures = answer.temperatures.values()
-    if min(temperatures) < COLDEST or max(temperatures) > HOTTEST:
-        raise _no_equilibrium(found)
-    return Settled(solution, answer, len(found), steps[-1])
 
 
 def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
