@@ -1,11 +1,14 @@
 """NetCDF files that users give: the only door through which the package reads them.
 
 A file is opened only if it is a regular file of HDF5 and not too large, and is read only if what it
-declares is not too much either: a few kilobytes can declare terabytes. Times are not decoded.
+declares is not too much either: a few kilobytes can declare terabytes. Times are not decoded. Texts
+lie in heaps without a checksum, over which HDF5 loops for ever where a size in them is damaged.
 """
 
 from __future__ import annotations
 
+import mmap
+import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -32,6 +35,11 @@ POINTER = 8
 """Of a text, which is known only when it is read. [bytes]"""
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """First bytes of HDF5, in which NetCDF 4 files are kept."""
+_HEAP = struct.Struct("<4sB3xQ")
+"""Head of a heap: signature, version, size of all of it. HDF5 File Format 3.0, III.E."""
+_HEAP_OBJECT = struct.Struct("<H6xQ")
+"""Head of what lies in a heap: number, 0 for the free rest, and size."""
+_HEAP_SIGNATURE, _HEAP_VERSION = b"GCOL", 1
 _LONGEST_REASON = 120
 _MAKE_AGAIN = "Make it again."
 
@@ -129,6 +137,33 @@ def _check(path: Path) -> None:
         refuse(f"cannot be read: {getattr(error, 'strerror', None) or error}.", "Check the path.")
     if signature != _SIGNATURE:
         refuse("is no NetCDF 4 file.", _MAKE_AGAIN)
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        if not all(_ends(data, place) for place in _heaps(data)):
+            refuse("is damaged: a heap of texts has no end.", _MAKE_AGAIN)
+
+
+def _heaps(data: mmap.mmap) -> Iterator[int]:
+    """Where what looks like the head of a heap is."""
+    place = data.find(_HEAP_SIGNATURE)
+    while place >= 0:
+        if place + _HEAP.size <= len(data):
+            _, version, size = _HEAP.unpack_from(data, place)
+            if version == _HEAP_VERSION and place + size <= len(data):
+                yield place
+        place = data.find(_HEAP_SIGNATURE, place + 1)
+
+
+def _ends(data: mmap.mmap, heap: int) -> bool:
+    """Whether one goes on in a heap from each object to the next until its end."""
+    end = heap + _HEAP.unpack_from(data, heap)[2]
+    place = heap + _HEAP.size
+    while place + _HEAP_OBJECT.size <= end:
+        number, size = _HEAP_OBJECT.unpack_from(data, place)
+        step = size if number == 0 else _HEAP_OBJECT.size + -(-size // 8) * 8
+        if not 0 < step <= end - place:
+            return False
+        place += step
+    return True
 
 
 @contextmanager

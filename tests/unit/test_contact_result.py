@@ -78,7 +78,7 @@ def test_a_solution_that_broke_down_says_so_in_json():
         "shear_law": "carreau", "shear_stress": "5 MPa", "shear_exponent": 0.5,
     }  # fmt: skip
     result = solved(
-        contact={"hertz_pressure": "10 GPa", "rolling_speed": "5 m/s"},
+        contact={"hertz_pressure": "12 GPa", "rolling_speed": "5 m/s"},
         lubricant={"oil": "atf-talbot-2012", "temperature": "25 degC"} | law,
         surface1={"roughness": "1 um"},
     )

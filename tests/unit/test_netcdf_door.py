@@ -134,3 +134,29 @@ def test_a_result_is_no_map(talbot_record, tmp_path):
     ep.save_result(talbot_record, tmp_path / "result.nc")
     with pytest.raises(ep.InputError, match="is a stored result"):
         open_map(tmp_path / "result.nc")
+
+
+@pytest.mark.parametrize("damage", ["no rest", "too long", "endless"])
+def test_a_heap_without_an_end_is_refused(tmp_path, damage):
+    """HDF5 itself never comes back from the first one."""
+    path = tmp_path / "texts.nc"
+    with netCDF4.Dataset(path, "w") as data:
+        data.createDimension("place", 3)
+        data.createVariable("text", str, ("place",))[:] = np.array(["one", "three", "five"], object)
+    assert read_groups(path)[""]["text"].values.tolist() == ["one", "three", "five"]
+    content = bytearray(path.read_bytes())
+    heap = content.index(b"GCOL")
+    first = heap + 16
+    size = int.from_bytes(content[first + 8 : first + 16], "little")
+    rest = first
+    while content[rest : rest + 2] != b"\0\0":
+        rest += 16 + -(-int.from_bytes(content[rest + 8 : rest + 16], "little") // 8) * 8
+    at, wrong = {
+        "no rest": (rest + 8, 0),
+        "too long": (first + 8, size + 4096),
+        "endless": (first + 8, 2**64 - 16),
+    }[damage]
+    content[at : at + 8] = wrong.to_bytes(8, "little")
+    path.write_bytes(content)
+    with pytest.raises(ep.InputError, match="a heap of texts has no end"):
+        read_groups(path)

@@ -38,8 +38,6 @@ BAND = 4
 """Nodes to either side whose deflection the banded matrix holds."""
 KRYLOV = 12
 """Largest number of GMRES steps of one linear solution."""
-LINEAR_TOLERANCE = 0.1
-"""Residual at which a linear solution stops, over that at its start. [1]"""
 LEAST_DIAGONAL = 0.1
 """Least diagonal by which a residual is divided, over the compliance of a node. [1]"""
 
@@ -66,6 +64,23 @@ def space_for(n: int) -> Space:
 
 
 @kernel
+def add_one(a: float, row: FloatArray, out: FloatArray) -> None:
+    """Add a row times a number. Indices from 0 only, so that the loop is vectorised."""
+    for i in range(out.size):
+        out[i] += a * row[i]
+
+
+@kernel
+def add_four(
+    a: float, row_a: FloatArray, b: float, row_b: FloatArray, c: float, row_c: FloatArray,
+    d: float, row_d: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """Add four rows at once, which saves three of four passes over `out`."""
+    for i in range(out.size):
+        out[i] += a * row_a[i] + b * row_b[i] + c * row_c[i] + d * row_d[i]
+
+
+@kernel
 def deflect(kernel_row: FloatArray, pressure: FloatArray, out: FloatArray) -> None:
     """Deflection by the pressures of an even grid into `out`. Theory (H9).
 
@@ -75,24 +90,20 @@ def deflect(kernel_row: FloatArray, pressure: FloatArray, out: FloatArray) -> No
     n = pressure.size
     out[:] = 0.0
     last = n - 1
-    j = 1
-    while j < last:
-        # four columns at once save three of four passes over `out`; indices from 0 only, so that
+    whole = 1 + (last - 1) // 8 * 8
+    for j in range(1, whole, 8):
+        # eight columns at once save seven of eight passes over `out`; indices from 0 only, so that
         # the loop is vectorised
-        count = min(4, last - j)
-        a, row_a = pressure[j], kernel_row[last - j : 2 * n - 1 - j]
-        if count == 4:
-            b, row_b = pressure[j + 1], kernel_row[last - j - 1 : 2 * n - 2 - j]
-            c, row_c = pressure[j + 2], kernel_row[last - j - 2 : 2 * n - 3 - j]
-            d, row_d = pressure[j + 3], kernel_row[last - j - 3 : 2 * n - 4 - j]
-            if a != 0.0 or b != 0.0 or c != 0.0 or d != 0.0:
-                for i in range(n):
-                    out[i] += row_a[i] * a + row_b[i] * b + row_c[i] * c + row_d[i] * d
-            j += 4
-        else:
+        a, b, c, d = pressure[j], pressure[j + 1], pressure[j + 2], pressure[j + 3]
+        e, f, g, h = pressure[j + 4], pressure[j + 5], pressure[j + 6], pressure[j + 7]
+        if max(a, b, c, d, e, f, g, h) > 0.0 or min(a, b, c, d, e, f, g, h) < 0.0:
+            row = kernel_row[last - j - 7 : last - j + n]
             for i in range(n):
-                out[i] += row_a[i] * a
-            j += 1
+                out[i] += (
+                    (row[i + 7] * a + row[i + 6] * b) + (row[i + 5] * c + row[i + 4] * d)
+                ) + ((row[i + 3] * e + row[i + 2] * f) + (row[i + 1] * g + row[i] * h))
+    for j in range(whole, last):
+        add_one(pressure[j], kernel_row[last - j : last - j + n], out)
 
 
 @kernel
@@ -115,7 +126,7 @@ def apply_rows(
 def factor_band(
     local: FloatArray, by_film: FloatArray, near: FloatArray, active: BoolArray, band: FloatArray
 ) -> None:
-    """LU of the banded matrix, in place in `band`, shape (n, 2 width + 1)."""
+    """LU of the banded matrix, in place in `band`, shape (n, 2 width + 1), pivots inverted."""
     n, width = band.shape[0], band.shape[1] // 2
     reach = near.size - 1
     band[:] = 0.0
@@ -135,7 +146,7 @@ def factor_band(
                     value += local[i, k + 1]
                 band[i, width + k] = value
     for i in range(n):
-        pivot = 1.0 / band[i, width]
+        pivot = band[i, width] = 1.0 / band[i, width]
         for k in range(1, min(width, n - 1 - i) + 1):
             factor = band[i + k, width - k] * pivot
             if factor != 0.0:
@@ -159,12 +170,12 @@ def solve_band(band: FloatArray, x: FloatArray) -> None:
     for i in range(n - 1, n - 1 - BAND, -1):
         for k in range(1, n - i):
             x[i] -= band[i, BAND + k] * x[i + k]
-        x[i] /= band[i, BAND]
+        x[i] *= band[i, BAND]
     for i in range(n - 1 - BAND, -1, -1):
         x[i] = (
             x[i] - band[i, 8] * x[i + 4] - band[i, 7] * x[i + 3] - band[i, 6] * x[i + 2]
             - band[i, 5] * x[i + 1]
-        ) / band[i, 4]  # fmt: skip
+        ) * band[i, 4]  # fmt: skip
 
 
 @kernel
@@ -194,14 +205,19 @@ def coarse_matrix(
     n, groups = active.size, grouped.shape[0]
     matrix = np.zeros((groups + 1, groups + 1))
     flow = np.zeros(groups * GROUP)
+    inner = flow[1 : n - 1]
+    left, here = by_film[1 : n - 1, 0].copy(), by_film[1 : n - 1, 1].copy()
+    right = by_film[1 : n - 1, 2].copy()
     for g in range(groups):
         film = grouped[g]
-        for i in range(1, n - 1):  # all nodes at once, and then their sums, is vectorised
-            flow[i] = (
-                by_film[i, 0] * film[i - 1] + by_film[i, 1] * film[i] + by_film[i, 2] * film[i + 1]
-            )  # fmt: skip
+        before, at, after = film[: n - 2], film[1 : n - 1], film[2:]
+        for i in range(n - 2):  # all nodes at once, and then their sums, is vectorised
+            inner[i] = left[i] * before[i] + here[i] * at[i] + right[i] * after[i]
         for row in range(groups):
-            matrix[row, g] = flow[row * GROUP : (row + 1) * GROUP].sum()
+            total = 0.0
+            for i in range(row * GROUP, (row + 1) * GROUP):
+                total += flow[i]
+            matrix[row, g] = total
     for i in range(1, n - 1):
         row = i // GROUP
         if active[i]:
@@ -218,8 +234,11 @@ def coarse_matrix(
 
 
 @kernel
-def factor_dense(matrix: FloatArray, order: NDArray[np.int64]) -> None:
-    """LU with row exchanges, in place; `order` becomes the order of the rows."""
+def factor_dense(matrix: FloatArray, order: NDArray[np.int64]) -> FloatArray:
+    """LU with row exchanges, transposed; `order` becomes the order of the rows.
+
+    Overwrites `matrix`.
+    """
     n = matrix.shape[0]
     for i in range(n):
         order[i] = i
@@ -232,31 +251,24 @@ def factor_dense(matrix: FloatArray, order: NDArray[np.int64]) -> None:
             order[k], order[best] = order[best], order[k]
             for j in range(n):
                 matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
-        upper = matrix[k]
+        pivot, upper = matrix[k, k], matrix[k, k + 1 :]
         for i in range(k + 1, n):
-            row = matrix[i]
-            factor = row[k] / upper[k]
-            row[k] = factor
-            if factor != 0.0:
-                for j in range(k + 1, n):
-                    row[j] -= factor * upper[j]
+            if matrix[i, k] != 0.0:
+                matrix[i, k] /= pivot
+                add_one(-matrix[i, k], upper, matrix[i, k + 1 :])
+    return matrix.T.copy()
 
 
 @kernel
-def solve_dense(matrix: FloatArray, order: NDArray[np.int64], right: FloatArray) -> FloatArray:
-    """Solve with the factors of `factor_dense`."""
-    n = matrix.shape[0]
-    x = np.empty(n)
-    for i in range(n):
-        value = right[order[i]]
-        for j in range(i):
-            value -= matrix[i, j] * x[j]
-        x[i] = value
-    for i in range(n - 1, -1, -1):
-        value = x[i]
-        for j in range(i + 1, n):
-            value -= matrix[i, j] * x[j]
-        x[i] = value / matrix[i, i]
+def solve_dense(factors: FloatArray, order: NDArray[np.int64], right: FloatArray) -> FloatArray:
+    """Solve with the factors of `factor_dense`, by columns: sums along rows are not vectorised."""
+    n = factors.shape[0]
+    x = right[order]
+    for j in range(n - 1):
+        add_one(-x[j], factors[j, j + 1 :], x[j + 1 :])
+    for j in range(n - 1, -1, -1):
+        x[j] /= factors[j, j]
+        add_one(-x[j], factors[j, :j], x[:j])
     return x
 
 
@@ -276,11 +288,14 @@ def precondition(
     sums = solve_dense(coarse, rows, sums)
     out[n] = sums[groups]
     film[:] = sums[groups]
-    for g in range(groups):
-        row = grouped[g]
-        value = sums[g]
-        for i in range(n):
-            film[i] += value * row[i]
+    whole = groups // 4 * 4
+    for g in range(0, whole, 4):
+        add_four(
+            sums[g], grouped[g], sums[g + 1], grouped[g + 1], sums[g + 2], grouped[g + 2],
+            sums[g + 3], grouped[g + 3], film,
+        )  # fmt: skip
+    for g in range(whole, groups):
+        add_one(sums[g], grouped[g], film)
     for i in range(n):
         out[i] = sums[i // GROUP] if active[i] else 0.0
     apply_rows(local, by_film, out[:n], film, work)
@@ -296,7 +311,7 @@ def precondition(
 def solve_linear(
     right: FloatArray, kernel_row: FloatArray, coarse: FloatArray, rows: NDArray[np.int64],
     grouped: FloatArray, local: FloatArray, by_film: FloatArray, band: FloatArray,
-    active: BoolArray, weight: float, space: Space, solution: FloatArray,
+    active: BoolArray, weight: float, tolerance: float, space: Space, solution: FloatArray,
     bend: FloatArray,
 ) -> int:  # fmt: skip
     """GMRES with `precondition` on the right; returns its steps.
@@ -304,6 +319,7 @@ def solve_linear(
     The change of the film that goes with `solution` is put into `bend`.
 
     Residuals are measured over the diagonal, as pressures, lest a few stiff nodes hide the others.
+    It stops where that is `tolerance` times the one at the start.
     """
     n = active.size
     bends, work, scale, unscaled, basis, ahead, hessenberg = space
@@ -360,7 +376,7 @@ def solve_linear(
         rest[k + 1] = -sine[k] * rest[k]
         rest[k] *= cosine[k]
         steps = k + 1
-        if abs(rest[k + 1]) <= LINEAR_TOLERANCE * norm:
+        if abs(rest[k + 1]) <= tolerance * norm:
             break
     for k in range(steps - 1, -1, -1):
         for m in range(k + 1, steps):

@@ -178,7 +178,7 @@ def solve_step(
     pressure: FloatArray, film: FloatArray, approach: float,
     kernel_row: FloatArray, order: FloatArray, history: FloatArray, fluid: ScaledFluid, dx: float,
     load: float, active: BoolArray, grouped: FloatArray, included: BoolArray, held: float,
-    tolerance: float, max_iterations: int, space: Space,
+    tolerance: float, linear_tolerance: float, max_iterations: int, space: Space,
 ) -> tuple[float, int, float]:  # fmt: skip
     """Pressure and film after one time step, in place.
 
@@ -203,6 +203,8 @@ def solve_step(
     tolerance : float
         Largest change of a pressure in the last step, over the largest or p_h, and largest
         relative lack of load.
+    linear_tolerance : float
+        As `tolerance` for `solve_linear`.
     max_iterations : int
     space : Space
         As for `solve_linear`.
@@ -236,8 +238,7 @@ def solve_step(
         if iteration == 1 or linear > REFRESH:
             update_groups(kernel_row, active, grouped, included)
             factor_band(local, by_film, near, active, band)
-            coarse = coarse_matrix(local, by_film, grouped, active, dx)
-            factor_dense(coarse, rows)
+            coarse = factor_dense(coarse_matrix(local, by_film, grouped, active, dx), rows)
         linear = solve_linear(
             lack,
             kernel_row,
@@ -249,6 +250,7 @@ def solve_step(
             band,
             active,
             dx,
+            linear_tolerance,
             space,
             change,
             bend,
@@ -367,8 +369,8 @@ def march(
     kernel_row: FloatArray, grouped: FloatArray, included: BoolArray, heights1: FloatArray,
     heights2: FloatArray, shift1: float, shift2: float, stride: int, center: int, first: int,
     growth: int, fluid: ScaledFluid, thinned: FloatArray, dx: float, load: float,
-    contact_film: float, boundary_friction: float, tolerance: float, max_iterations: int,
-    records: FloatArray,
+    contact_film: float, boundary_friction: float, tolerance: float, linear_tolerance: float,
+    max_iterations: int, records: FloatArray,
 ) -> float:  # fmt: skip
     """Time steps, as many as `records` has rows; state arrays change in place.
 
@@ -442,7 +444,7 @@ def march(
             tries = max_iterations * (1 + attempt)
             result = solve_step(
                 pressure, film, approach, kernel_row, order, history, fluid, dx, load,
-                active, grouped, included, HELD[attempt], tolerance, tries, space,
+                active, grouped, included, HELD[attempt], tolerance, linear_tolerance, tries, space,
             )  # fmt: skip
             iterations += result[1]
             if result[2] < tolerance or attempt == 1:
