@@ -130,16 +130,15 @@ def _check(path: Path) -> None:
         if path.stat().st_size > LARGEST:
             refuse(f"is larger than {LARGEST // 10**6} MB.", "Name a smaller one.")
         with path.open("rb") as file:
-            signature = file.read(len(_SIGNATURE))
+            if file.read(len(_SIGNATURE)) != _SIGNATURE:
+                refuse("is no NetCDF 4 file.", _MAKE_AGAIN)
+            with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+                if not all(_ends(data, place) for place in _heaps(data)):
+                    refuse("is damaged: a heap of texts has no end.", _MAKE_AGAIN)
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
             raise
         refuse(f"cannot be read: {getattr(error, 'strerror', None) or error}.", "Check the path.")
-    if signature != _SIGNATURE:
-        refuse("is no NetCDF 4 file.", _MAKE_AGAIN)
-    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-        if not all(_ends(data, place) for place in _heaps(data)):
-            refuse("is damaged: a heap of texts has no end.", _MAKE_AGAIN)
 
 
 def _heaps(data: mmap.mmap) -> Iterator[int]:

@@ -46,6 +46,16 @@ def test_a_kink_is_not_foretold():
     assert answer.foretold({"mesh": 98.8999}, 1e-6) is None
 
 
+def test_what_scatters_is_foretold_within_its_scatter():
+    """Two answers to nearly the same load differ by more than the load explains."""
+    answer = answers(100.0, 99.0).followed_by({"mesh": 99.0 * (1 + 1e-11)}, result(2.48 + 1.24e-9))
+    answer = answer.followed_by({"mesh": 99.0 * (1 + 2e-11)}, result(2.48))
+    load = {"mesh": 99.0 * (1 + 3e-11)}
+    assert answer.foretold(load, 0.4e-9) is None  # less than the scatter of 5e-10, doubled
+    told = answer.foretold(load, 1.2e-9)
+    assert told.losses["sliding"].watts == pytest.approx(2.48, rel=1.2e-9)
+
+
 @pytest.mark.parametrize(
     ("load", "mesh"), [(-98.9, "S.mesh"), (98.9, "")], ids=["other direction", "other place"]
 )

@@ -30,7 +30,7 @@ NODES = 512
 """Nodes by default: some 125 in a half-width."""
 TOLERANCE = 1e-2
 """Largest change of a pressure in the last Newton step of a time step, over the largest pressure or
-p_h; what is left is its square. [1]"""
+p_h; what is left is its square, or the share of it that the linear system leaves. [1]"""
 LINEAR_TOLERANCE, COARSE_LINEAR_TOLERANCE = 0.1, 0.3
 """Residual of the linear system of a Newton step over its start. 0.3 raises the friction on the
 fine grid by up to 0.7 %; on the coarse one, an aid to the averages, that does not matter. [1]"""
@@ -344,8 +344,9 @@ def solve_rough(
     run = _Simulation(smooth, surfaces, nodes, asperities, frame_interval, heating, frozen)
     coarse = _coarse_nodes(run, surfaces)
     aid = _Simulation(
-        smooth, surfaces, coarse, asperities, None, heating, frozen, COARSE_LINEAR_TOLERANCE
-    )
+        smooth, surfaces, coarse, asperities, None, heating, frozen,
+        linear_tolerance=COARSE_LINEAR_TOLERANCE,
+    )  # fmt: skip
     series = _Series(run), _Series(aid)
     most = math.ceil(most_blocks / BLOCK)
     plan = Plan(fewest := min(FEWEST_BLOCKS, most), fewest)

@@ -96,14 +96,7 @@ def along_path(
         place = math.log1p(math.expm1(crowding[side]) * share) / crowding[side] * (points - 1)
         m = _cubic(place, points, along)
         k = _cubic((math.log(pressure[i]) - low) * level, levels, over)
-        total = 0.0
+        found[i] = 0.0
         for a in range(4):
-            row = values[side, m + a]
-            total += along[a] * (
-                over[0] * row[k]
-                + over[1] * row[k + 1]
-                + over[2] * row[k + 2]
-                + over[3] * row[k + 3]
-            )
-        found[i] = total
+            found[i] += along[a] * _weighted(over, values[side, m + a], k)
     return found

@@ -133,8 +133,8 @@ class _Step:
         """Estimate of the error of a loss on the line from `older` to `watts`, relative.
 
         The loss goes with some power of its load, the slope of which bends the line, and which
-        changes a little itself. What changed more than any power would follows something else too:
-        its whole step may be wrong.
+        changes a little itself. What changed more than any power would, because it scatters or
+        follows something else too, may change by as much again.
         """
         if not self.before:
             return STEEPEST * self.size
@@ -145,7 +145,7 @@ class _Step:
         change = abs(watts - older) / watts
         power = change / self.before
         if power > STEEPEST:
-            return change * abs(self.part) + STEEPEST * self.size
+            return change + STEEPEST * self.size
         bend = power * abs(power - 1) / 2 + BENT
         return bend * self.size * (self.before + self.size) + STEEPEST * self.aside
 
