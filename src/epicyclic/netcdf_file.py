@@ -36,9 +36,10 @@ POINTER = 8
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """First bytes of HDF5, in which NetCDF 4 files are kept."""
 _HEAP = struct.Struct("<4sB3xQ")
-"""Head of a heap: signature, version, size of all of it. HDF5 File Format 3.0, III.E."""
+"""Head of a heap: signature, version, size of all of it. HDF5 File Format Specification, "Global
+Heap", second hand. [bytes]"""
 _HEAP_OBJECT = struct.Struct("<H6xQ")
-"""Head of what lies in a heap: number, 0 for the free rest, and size."""
+"""Head of what lies in a heap: number, 0 for the free rest, and size. [bytes]"""
 _HEAP_SIGNATURE, _HEAP_VERSION = b"GCOL", 1
 _LONGEST_REASON = 120
 _MAKE_AGAIN = "Make it again."
