@@ -6,6 +6,7 @@ once: nothing has been begun, and libraries may swallow or wrap an exception.
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 from typing import NoReturn
@@ -14,13 +15,20 @@ from epicyclic.cli.exit_codes import EXIT_INTERRUPTED
 
 __all__ = ["main"]
 
+NEW_OBJECTS = 100_000
+"""So many make Python look for garbage. Imports make several times as many, all of them to stay."""
+
 
 def main() -> None:
     """Run the command."""
     signal.signal(signal.SIGINT, _end)
+    gc.set_threshold(NEW_OBJECTS)
     from epicyclic.cli.main import main as run
 
-    run()
+    try:
+        run()
+    finally:
+        gc.freeze()  # the process ends: to look through its memory once more would free nothing
 
 
 def _end(number: int, frame: object) -> NoReturn:
