@@ -216,7 +216,7 @@ def test_two_level_solver_solves_the_full_equations():
     local[~active], by_film[~active] = 0, 0
     grouped = np.zeros((-(-n // ehl_linear.GROUP), n))
     ehl_linear.update_groups(row, active, grouped, np.zeros(n, dtype=bool))
-    band = np.empty((n, 2 * ehl_linear.BAND + 1))
+    band = np.empty((n + ehl_linear.BAND, 2 * ehl_linear.BAND + 1))
     ehl_linear.factor_band(local, by_film, ehl_linear.near_coefficients(row), active, band)
     coarse = ehl_linear.coarse_matrix(local, by_film, grouped, active, 0.1)
     order = np.empty(coarse.shape[0], dtype=np.int64)

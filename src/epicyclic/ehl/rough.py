@@ -212,17 +212,20 @@ class _Simulation:
         self.included = np.zeros(nodes, dtype=np.bool_)
         spacing = self.dx * contact.half_width
         self.roughness_kept = min(surface.kept(spacing) for surface in surfaces)
-        self.heights = [surface.resampled(spacing) / contact.film_scale for surface in surfaces]
+        heights = [surface.resampled(spacing) / contact.film_scale for surface in surfaces]
+        self.heights = [  # longer than their period, as the kernel wants them
+            np.take(row, np.arange(-1, row.size + nodes + 1), mode="wrap") for row in heights
+        ]
         self.shifts = [
             (not frozen)
             * self.stride
             * speed
             / contact.rolling_speed
-            * heights.size
+            * row.size
             * spacing
             / surface.length
-            for speed, heights, surface in zip(
-                (contact.speed1, contact.speed2), self.heights, surfaces, strict=True
+            for speed, row, surface in zip(
+                (contact.speed1, contact.speed2), heights, surfaces, strict=True
             )
         ]
         self.steps = self.unsolved = 0

@@ -126,39 +126,58 @@ def apply_rows(
 def factor_band(
     local: FloatArray, by_film: FloatArray, near: FloatArray, active: BoolArray, band: FloatArray
 ) -> None:
-    """LU of the banded matrix, in place in `band`, shape (n, 2 width + 1), pivots inverted."""
-    n, width = band.shape[0], band.shape[1] // 2
-    reach = near.size - 1
-    band[:] = 0.0
+    """LU of the banded matrix, pivots inverted, in `band`, shape (n + BAND, 2 BAND + 1).
+
+    With rows of ones below, all loops have their full length.
+    """
+    fill_band(local, by_film, near, active, band)
+    for i in range(active.size):
+        row = band[i]
+        pivot = row[BAND] = 1.0 / row[BAND]
+        for k in range(1, BAND + 1):
+            below = band[i + k]
+            factor = below[BAND - k] * pivot
+            below[BAND - k] = factor
+            for m in range(1, BAND + 1):
+                below[BAND - k + m] -= factor * row[BAND + m]
+
+
+@kernel
+def fill_band(
+    local: FloatArray, by_film: FloatArray, near: FloatArray, active: BoolArray, band: FloatArray
+) -> None:
+    """The banded matrix of active nodes, with ones on the diagonal for all other rows."""
+    n = active.size
+    bends = np.zeros((3, 2 * BAND + 1))  # of the nodes i - 1, i, i + 1 by the pressures of the band
+    for side in range(3):
+        for k in range(2 * BAND + 1):
+            distance = abs(k - BAND + 1 - side)
+            if distance <= BAND:
+                bends[side, k] = near[distance]
+    left, here, right = bends
+    counts = np.zeros(n + 2 * BAND)
+    counts[BAND : n + BAND] = active
     for i in range(n):
-        if not active[i]:
-            band[i, width] = 1.0
-            continue
-        for k in range(-width, width + 1):
-            j = i + k
-            if 0 <= j < n and active[j]:
-                value = 0.0
-                for side in range(3):
-                    distance = abs(k + 1 - side)
-                    if distance <= reach:
-                        value += by_film[i, side] * near[distance]
-                if -1 <= k <= 1:
-                    value += local[i, k + 1]
-                band[i, width + k] = value
-    for i in range(n):
-        pivot = band[i, width] = 1.0 / band[i, width]
-        for k in range(1, min(width, n - 1 - i) + 1):
-            factor = band[i + k, width - k] * pivot
-            if factor != 0.0:
-                band[i + k, width - k] = factor
-                for m in range(1, width + 1):
-                    band[i + k, width - k + m] -= factor * band[i, width + m]
+        row = band[i]
+        if active[i]:
+            a, b, c = by_film[i, 0], by_film[i, 1], by_film[i, 2]
+            for k in range(2 * BAND + 1):
+                row[k] = a * left[k] + b * here[k] + c * right[k]
+            for side in range(3):
+                row[BAND - 1 + side] += local[i, side]
+            for k in range(2 * BAND + 1):
+                row[k] *= counts[i + k]
+        else:
+            row[:] = 0.0
+            row[BAND] = 1.0
+    band[n:] = 0.0
+    band[n:, BAND] = 1.0
 
 
 @kernel
 def solve_band(band: FloatArray, x: FloatArray) -> None:
     """Solve with the factors of `factor_band`; `x` holds the right side and then the solution."""
-    n = band.shape[0]
+    n = x.size
     for i in range(BAND):
         for k in range(1, i + 1):
             x[i] -= band[i, BAND - k] * x[i - k]
@@ -209,6 +228,8 @@ def coarse_matrix(
     left, here = by_film[1 : n - 1, 0].copy(), by_film[1 : n - 1, 1].copy()
     right = by_film[1 : n - 1, 2].copy()
     for g in range(groups):
+        if not active[g * GROUP : (g + 1) * GROUP].any():
+            continue
         film = grouped[g]
         before, at, after = film[: n - 2], film[1 : n - 1], film[2:]
         for i in range(n - 2):  # all nodes at once, and then their sums, is vectorised
@@ -333,7 +354,7 @@ def solve_linear(
     rest = np.zeros(KRYLOV + 1)
     solution[:] = bend[:] = 0.0
     basis[0] = right * scale
-    norm = math.sqrt((basis[0] * basis[0]).sum())
+    norm = math.sqrt(np.dot(basis[0], basis[0]))
     if norm == 0.0:
         return 0
     basis[0] /= norm
@@ -355,14 +376,9 @@ def solve_linear(
             total += ahead[k, i]
         new[n] = weight * total
         for m in range(k + 1):
-            product = 0.0
-            old = basis[m]
-            for i in range(n + 1):
-                product += new[i] * old[i]
-            hessenberg[m, k] = product
-            for i in range(n + 1):
-                new[i] -= product * old[i]
-        size = math.sqrt((new * new).sum())
+            hessenberg[m, k] = np.dot(new, basis[m])
+            add_one(-hessenberg[m, k], basis[m], new)
+        size = math.sqrt(np.dot(new, new))
         hessenberg[k + 1, k] = size
         if size > 0.0:
             new /= size

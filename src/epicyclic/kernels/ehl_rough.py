@@ -222,7 +222,7 @@ def solve_step(
     local, by_film = np.empty((n, 3)), np.empty((n, 3))
     lack, change = np.zeros(n + 1), np.zeros(n + 1)
     bend, kept, back = np.empty(n), np.zeros(n), np.zeros(n)
-    band = np.empty((n, 2 * BAND + 1))
+    band = np.empty((n + BAND, 2 * BAND + 1))
     groups = grouped.shape[0]
     coarse, rows = np.empty((groups + 1, groups + 1)), np.empty(groups + 1, dtype=np.int64)
     near = near_coefficients(kernel_row)
@@ -280,19 +280,22 @@ def solve_step(
 
 
 @kernel
-def height_at(heights: FloatArray, position: float) -> float:
-    """Height of a periodic profile between its points, by the cubic through four of them."""
-    n = heights.size
-    whole = math.floor(position)
-    f = position - whole
-    i = int(whole) % n
-    height: float = (
-        -f * (1.0 - f) * (2.0 - f) / 6.0 * heights[i - 1]
-        + (1.0 + f) * (1.0 - f) * (2.0 - f) / 2.0 * heights[i]
-        + (1.0 + f) * f * (2.0 - f) / 2.0 * heights[(i + 1) % n]
-        - (1.0 + f) * f * (1.0 - f) / 6.0 * heights[(i + 2) % n]
-    )
-    return height
+def lower_by(heights: FloatArray, start: float, amplitude: float, gap: FloatArray) -> None:
+    """Take the heights at `start`, `start` + 1, ... off the gap: a cubic through four points.
+
+    `heights` is the periodic profile with its last point before it and, after it, as many more of
+    its points as the gap has, and one.
+    """
+    period = heights.size - gap.size - 2
+    whole = math.floor(start)
+    f = start - whole
+    a = -amplitude * f * (1.0 - f) * (2.0 - f) / 6.0
+    b = amplitude * (1.0 + f) * (1.0 - f) * (2.0 - f) / 2.0
+    c = amplitude * (1.0 + f) * f * (2.0 - f) / 2.0
+    d = -amplitude * (1.0 + f) * f * (1.0 - f) / 6.0
+    row = heights[int(whole) % period :]
+    for i in range(gap.size):
+        gap[i] -= (a * row[i] + b * row[i + 1]) + (c * row[i + 2] + d * row[i + 3])
 
 
 @kernel
@@ -392,7 +395,7 @@ def march(
     kernel_row, grouped, included : ndarray
         As for `deflect` and `update_groups`.
     heights1, heights2 : ndarray, shape (m1,), (m2,)
-        Periodic profiles with the spacing of the nodes.
+        Profiles with the spacing of the nodes, as for `lower_by`.
     shift1, shift2 : float
         Nodes by which each surface moves in a step, `stride` times u_k/u_r.
     stride : int
@@ -424,10 +427,9 @@ def march(
     for t in range(records.shape[0]):
         step = first + t + 1
         amplitude = min(1.0, max(0.0, step / growth))
-        for i in range(n):
-            gap[i] = base[i] - amplitude * (
-                height_at(heights1, i - step * shift1) + height_at(heights2, i - step * shift2)
-            )
+        gap[:] = base
+        lower_by(heights1, -step * shift1, amplitude, gap)
+        lower_by(heights2, -step * shift2, amplitude, gap)
         for i in range(n - 2, stride, -1):  # what the roughness adds moves with the oil
             pressure[i] = max(0.0, smooth[i] + pressure[i - stride] - smooth[i - stride])
             active[i] = active[i - stride]
