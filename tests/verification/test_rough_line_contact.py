@@ -13,7 +13,7 @@ from epicyclic.ehl.conditions import ContactOil, LineContact, Roelands
 from epicyclic.ehl.rough import AsperityContact, solve_rough
 from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, sinusoidal_profile
 from epicyclic.ehl.steady import solve_smooth
-from epicyclic.kernels import ehl_linear
+from epicyclic.kernels import ehl_linear, ehl_rough
 from epicyclic.kernels.ehl_rough import Column
 from epicyclic.status import Status
 
@@ -319,3 +319,19 @@ def unsolved_share(number):
         if low < film_ratio < high and run.roughness_kept >= FEWEST_KEPT:
             records = run.march(250)
             return (records[:, Column.ERROR] >= rough.TOLERANCE).mean()
+
+
+def test_profiles_pass_the_grid_at_any_shift_and_come_round_again():
+    """A profile shorter than the grid, at a shift of many periods: a cubic is met exactly."""
+    period, nodes, amplitude, start = 7, 12, 0.3, -1234.625
+    heights = np.array([0.4, -1.1, 2.3, 0.7, -0.2, 1.9, -3.1])
+    padded = np.take(heights, np.arange(-1, period + nodes + 1), mode="wrap")
+    gap = np.linspace(5.0, 9.0, nodes)
+    found = gap.copy()
+    ehl_rough.lower_by(padded, start, amplitude, found)
+    for i in range(nodes):
+        whole = math.floor(start + i)
+        points = [heights[(whole + offset) % period] for offset in range(-1, 3)]
+        cubic = np.polynomial.Polynomial.fit(range(-1, 3), points, 3)
+        expected = gap[i] - amplitude * cubic(start + i - whole)
+        assert found[i] == pytest.approx(expected, rel=1e-12)
