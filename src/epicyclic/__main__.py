@@ -12,17 +12,15 @@ import signal
 from typing import NoReturn
 
 from epicyclic.cli.exit_codes import EXIT_INTERRUPTED
+from epicyclic.garbage import look_seldom
 
 __all__ = ["main"]
-
-NEW_OBJECTS = 100_000
-"""So many make Python look for garbage. Imports make several times as many, all of them to stay."""
 
 
 def main() -> None:
     """Run the command."""
     signal.signal(signal.SIGINT, _end)
-    gc.set_threshold(NEW_OBJECTS)
+    look_seldom()
     from epicyclic.cli.main import main as run
 
     try:

@@ -233,12 +233,20 @@ class LineContacts:
 
     def held(self, limits: Mapping[str, tuple[float | None, float | None]]) -> LineContacts:
         """With the conditions that have `limits` held within them. Theory (F5), (O2)."""
-        held = {name: np.clip(getattr(self, name), *pair) for name, pair in limits.items()}
+        held = {name: _between(getattr(self, name), *pair) for name, pair in limits.items()}
         if "slide_to_roll_ratio" in held:
             held["slide_to_roll_ratio"] = np.copysign(
                 held["slide_to_roll_ratio"], self.sliding_speed
             )
         return self.changed(**held)
+
+
+def _between(value: Any, low: float | None, high: float | None) -> Any:
+    """`value`, an array or a number, held between limits."""
+    if isinstance(value, np.ndarray):
+        return np.clip(value, low, high)
+    value = value if low is None else max(value, low)
+    return value if high is None else min(value, high)
 
 
 def contacts_at(

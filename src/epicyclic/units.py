@@ -299,6 +299,12 @@ def _wrong_angle(number: float, unit: str, si: str) -> _UnitError:
     )
 
 
+@lru_cache(maxsize=4096)
+def _parsed_text(quantity: Quantity, text: str) -> float:
+    """A text that `quantity` reads: the cases of a sweep have most of theirs in common."""
+    return quantity._parsed(text)
+
+
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """A kind of dimensional value: its units, its range, and how to read it.
@@ -332,6 +338,9 @@ class Quantity:
         PydanticCustomError
             With the allowed form and range, when `value` is not such a quantity.
         """
+        return _parsed_text(self, value) if isinstance(value, str) else self._parsed(value)
+
+    def _parsed(self, value: object) -> float:
         number, unit = self._split(value)
         result = self._converted(number, unit)
         self._check_range(self.to_display(result))

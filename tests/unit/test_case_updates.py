@@ -54,6 +54,27 @@ def test_inputs_of_values_with_many_digits_make_the_same_case_again(case):
     assert read_case(changed.inputs()) == changed
 
 
+@pytest.mark.parametrize("name", sorted(library.case_files()))
+def test_what_stays_as_it_was_is_read_as_if_for_the_first_time(name):
+    case = read_case(name)
+    ways = [{"operation.torque": "321 N*m"}, {"models.friction": "schlenk"}, {"title": "another"}]
+    if "gears" in case.given():
+        ways += [{"gears.dedendum_coefficient": 1.31}]
+    for changes in ways:
+        changed = case.updated(changes).updated({"operation.speed": "1234 rpm"})
+        first = read_case(changed.given())
+        assert changed == first
+        assert changed.found == first.found
+        assert changed.inputs() == first.inputs()
+
+
+def test_a_case_does_not_follow_what_was_taken_from_it(case):
+    taken = case.given()
+    taken["operation"]["torque"] = "1 N*m"
+    assert case.given() != taken
+    assert case.updated({}) == case
+
+
 def test_updating_with_every_input_changes_nothing(case):
     assert case.updated(case.inputs()) == case
     assert case.updated({}) == case

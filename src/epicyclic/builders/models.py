@@ -51,14 +51,14 @@ __all__ = [
 
 def resolve_models(case: SetCase) -> dict[str, str]:
     """The models of a case by key, ``auto`` replaced by what it stands for."""
-    automatic = {
-        "friction": _automatic(case, "friction", FittedOrSchlenk.name, "schlenk"),
-        "rolling": _automatic(case, "rolling_loss", FittedOrGoksem.name, "goksem-hargreaves"),
-        "pocketing": automatic_pocketing(oil_share(case).share),
+    found: dict[str, str] = {
+        "friction": _friction_name(case),
+        "rolling": _rolling_name(case),
+        "load_distribution": case.models.load_distribution,
+        "mesh": case.models.mesh,
+        "pocketing": pocketing_of(case),
+        "drag": case.models.drag,
     }
-    keys = ["friction", "rolling", "load_distribution", "mesh", "pocketing", "drag"]
-    chosen = {key: str(getattr(case.models, key)) for key in keys}
-    found = {key: automatic[key] if choice == "auto" else choice for key, choice in chosen.items()}
     if case.lubrication is not None:
         found["lubrication"] = case.lubrication.method
         if case.lubrication.method == "dip":
@@ -80,6 +80,20 @@ def bearing_model(case: PlanetaryCase | ListedCase, bearing: PlanetBearing | Non
     if bearing is not None and bearing.cage != "caged":
         return "palmgren"
     return _automatic(case, "bearing_rolling_loss", FITTED_OR_PALMGREN, "palmgren")
+
+
+def _friction_name(case: SetCase) -> str:
+    chosen = case.models.friction
+    if chosen != "auto":
+        return chosen
+    return _automatic(case, "friction", FittedOrSchlenk.name, "schlenk")
+
+
+def _rolling_name(case: SetCase) -> str:
+    chosen = case.models.rolling
+    if chosen != "auto":
+        return chosen
+    return _automatic(case, "rolling_loss", FittedOrGoksem.name, "goksem-hargreaves")
 
 
 def _automatic(case: SetCase, quantity: str, fitted: str, formula: str) -> str:
@@ -119,7 +133,7 @@ def friction_settings(case: SetCase) -> FrictionSettings:
 
 def friction_of(case: SetCase) -> FrictionModel:
     """The friction model of a case."""
-    name = resolve_models(case)["friction"]
+    name = _friction_name(case)
     if name in (FittedFriction.name, FittedOrSchlenk.name):
         fitted = FittedFriction(_given_oil_model(case), case.models.fitted_form)
         return fitted if name == FittedFriction.name else FittedOrSchlenk(fitted)
@@ -151,7 +165,7 @@ def _direct_settings(case: SetCase) -> DirectSettings:
 
 def rolling_of(case: SetCase) -> RollingModel:
     """The rolling-loss model of a case."""
-    name = resolve_models(case)["rolling"]
+    name = _rolling_name(case)
     if name in (FittedRolling.name, FittedOrGoksem.name):
         fitted = fitted_rolling(case, "rolling_loss")
         return fitted if name == FittedRolling.name else FittedOrGoksem(fitted)

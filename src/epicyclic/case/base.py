@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import PrivateAttr
@@ -30,7 +31,15 @@ if TYPE_CHECKING:
     from epicyclic.case.lubrication_tables import LubricationTable
     from epicyclic.case.operation_tables import Surroundings
 
-__all__ = ["FILE_KEYS", "CaseTable", "as_given", "owner_without_keys", "with_changes", "with_sizes"]
+__all__ = [
+    "FILE_KEYS",
+    "CaseTable",
+    "as_given",
+    "owner_without_keys",
+    "stated",
+    "with_changes",
+    "with_sizes",
+]
 
 
 FILE_KEYS = ("oil_model", "pocketing_table", "file")
@@ -50,6 +59,8 @@ class CaseTable(Table):
     _tables: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: str = PrivateAttr(default="")
     _found: tuple[Found, ...] = PrivateAttr(default=())
+    _sound: Mapping[str, Table] = PrivateAttr(default_factory=dict)
+    """What became of each of `_tables` by itself: those that stay need not be read again."""
 
     @property
     def found(self) -> tuple[Found, ...]:
@@ -85,12 +96,18 @@ class CaseTable(Table):
         InputError
             With every problem of the changed case.
         """
-        tables, problems = with_changes(type(self), self.given(), changes)
-        return type(self).from_tables(tables, self._source, problems)
+        own = self._tables or self.given()
+        tables, problems = with_changes(type(self), own, changes)
+        same = {key: table for key, table in self._sound.items() if tables.get(key) is own.get(key)}
+        return type(self).from_tables(tables, self._source, problems, same)
 
     @classmethod
     def from_tables(
-        cls, tables: dict[str, Any], source: str, problems: Sequence[Problem] = ()
+        cls,
+        tables: dict[str, Any],
+        source: str,
+        problems: Sequence[Problem] = (),
+        sound: Mapping[str, Table] = MappingProxyType({}),
     ) -> Self:
         """The case of `tables`, plain values, checked by themselves and against each other.
 
@@ -101,13 +118,16 @@ class CaseTable(Table):
             The file or built-in case that they come from.
         problems : sequence of Problem
             Found before.
+        sound : mapping of str to Table
+            Those of the tables that were read before.
 
         Raises
         ------
         InputError
             With `problems` and every other one.
         """
-        validation, told = with_sizes(validate(cls, tables), tables)
+        valid = validate(cls, tables, sound)
+        validation, told = with_sizes(valid, tables)
         known = {problem.key for problem in problems}
         found = [
             *problems,
@@ -118,7 +138,7 @@ class CaseTable(Table):
             ),
         ]
         made = cls._made(validation.case, tables, source, found)
-        made._found = told
+        made._found, made._sound = told, stated(valid.sections, tables)
         return made
 
     @classmethod
@@ -139,7 +159,8 @@ class CaseTable(Table):
 
     def given(self) -> dict[str, Any]:
         """The case as nested tables of the keys that were given, without defaults."""
-        return self._tables or plain(self.inputs())
+        tables: dict[str, Any] = plain(self._tables or self.inputs())
+        return tables
 
     def inputs(self) -> dict[str, Any]:
         """The case as nested tables of text and numbers, defaults included, as a file has them.
@@ -167,6 +188,11 @@ class CaseTable(Table):
 
     def __hash__(self) -> int:
         return hash(tuple(it for it in self.__dict__.values() if not isinstance(it, dict)))
+
+
+def stated(sections: Mapping[str, Table], tables: Mapping[str, Any]) -> dict[str, Table]:
+    """Those of the sections that stand in `tables` with their keys."""
+    return {name: it for name, it in sections.items() if isinstance(tables.get(name), dict)}
 
 
 def with_sizes(

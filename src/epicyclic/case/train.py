@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from types import GenericAlias
+from types import GenericAlias, MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self, cast
 
 from pydantic import Field, PrivateAttr, create_model
 
-from epicyclic.case.base import CaseTable, as_given, with_sizes
+from epicyclic.case.base import CaseTable, as_given, stated, with_sizes
 from epicyclic.case.checks import cross_check
 from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.gear_sizes import Found, told_oil
@@ -158,14 +158,18 @@ class _TrainTables(CaseTable):
 
     @classmethod
     def from_tables(
-        cls, tables: dict[str, Any], source: str, problems: Sequence[Problem] = ()
+        cls,
+        tables: dict[str, Any],
+        source: str,
+        problems: Sequence[Problem] = (),
+        sound: Mapping[str, Table] = MappingProxyType({}),
     ) -> Self:
         """The train of `tables`; parameters and errors as of every case."""
         folder = Path(source).parent
         given = tables.get("sets")
         raw_sets: dict[str, Any] = given if isinstance(given, dict) else {}
         named = tuple(raw_sets)
-        whole = validate(_top(cls), {k: v for k, v in tables.items() if k != "sets"})
+        whole = validate(_top(cls), {k: v for k, v in tables.items() if k != "sets"}, sound)
         found = [*problems]
         known = {problem.key for problem in problems}
         found += [problem for problem in whole.problems if problem.key not in known]
@@ -206,6 +210,7 @@ class _TrainTables(CaseTable):
         values = {key: getattr(case, key) for key in type(case).model_fields}
         train = cls.model_construct(**values, sets=sets)
         train._source, train._found = source, (*sizes, *told_oil(tables))
+        train._sound = stated(whole.sections, tables)
         known_shapes = not found
         train._shape, wrong = shape_of_train(shapes, train.shafts)
         found += wrong

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from functools import cache, partial
+from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
 from pydantic import ValidationError
@@ -42,13 +43,17 @@ class Validation(Generic[AnyCase]):
     problems: list[Problem]
 
 
-def validate(kind: type[AnyCase], raw: dict[str, Any]) -> Validation[AnyCase]:
+def validate(
+    kind: type[AnyCase], raw: dict[str, Any], sound: Mapping[str, Table] = MappingProxyType({})
+) -> Validation[AnyCase]:
     """Hold `raw`, plain values, against the schema of a `kind` of case.
+
+    Of the tables that are `sound`, what became of them is known.
 
     A misspelt key counts as the key that was meant, and a key that cannot be used is replaced where
     no other check depends on it, so that one mistake hides no other.
     """
-    case, details = _try(kind, raw)
+    case, details = _try(kind, raw | dict(sound))
     problems = list(control_problems(raw))
     while unknown := _unknown_keys(kind, details):
         # repeated, as a table that was misspelt itself may have unknown keys of its own
@@ -130,7 +135,7 @@ def _rename(new: Mapping[str, str], table: dict[str, Any]) -> dict[str, Any]:
 def _check_alternatives(kind: type[Table], raw: dict[str, Any]) -> list[Problem]:
     """One of each group of alternatives must be given, and that one whole."""
     problems = []
-    for name, table in tables_of(kind).items():
+    for name, table in _tables_of_choices(kind).items():
         given = {name: raw.get(name)}
         if _holds_names(kind, name) and isinstance(raw.get(name), dict):
             given = {f"{name}.{dotted([key])}": item for key, item in raw[name].items()}
@@ -143,6 +148,14 @@ def _check_alternatives(kind: type[Table], raw: dict[str, Any]) -> list[Problem]
     return problems
 
 
+@cache
+def _tables_of_choices(kind: type[Table]) -> dict[str, type[Table]]:
+    """Those of the tables that have alternatives."""
+    tables = tables_of(kind).items()
+    return {name: table for name, table in tables if table.EXACTLY_ONE or table.AT_MOST_ONE}
+
+
+@cache
 def _holds_names(kind: type[Table], name: str) -> bool:
     """True if the tables stand below names of the user's, ``[states.NAME]``."""
     return dict_value(kind.model_fields[name].annotation) is not None

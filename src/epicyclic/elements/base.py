@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from epicyclic.elements.fluids import Fluids
 from epicyclic.losses.shaft_bearing import BearingLoad
@@ -71,8 +71,7 @@ class State:
     idle: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
-@dataclass(frozen=True, slots=True)
-class Loss:
+class Loss(NamedTuple):
     """Power that an element loses, or why it loses none.
 
     Attributes

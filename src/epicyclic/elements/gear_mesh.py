@@ -36,6 +36,7 @@ from epicyclic.losses.mesh import (
     local_loss,
     loss_factor_loss,
     loss_factor_notes,
+    mean_friction,
     ohlendorf_loss_factor,
 )
 from epicyclic.losses.mesh_warmth import heat_share1, mesh_warmth
@@ -281,7 +282,7 @@ def solve_mesh(
     if contact is not None and isinstance(friction, EhlDirect):
         friction = friction.solved_for(contact)
     if contact is None:
-        loss = MeshLoss(0.0, 0.0, math.nan)
+        loss = MeshLoss(0.0, 0.0)
     elif duty.models.by_loss_factor:
         loss = loss_factor_loss(contact, friction)
     else:
@@ -334,11 +335,11 @@ def _pocketing(settings: PocketSettings, flow: MeshFlow, count: int) -> Loss:
     )
 
 
-def _largest(values: FloatArray, weight: FloatArray) -> float:
-    """The value that `PEAK_SHARE` of the contact exceeds. Theory (D5)."""
+def _largest(values: FloatArray, weight: FloatArray) -> int:
+    """Where the value is that `PEAK_SHARE` of the contact exceeds. Theory (D5)."""
     order = np.argsort(values)
     below = np.cumsum(weight[order])
-    return float(values[order][np.searchsorted(below, (1 - PEAK_SHARE) * below[-1])])
+    return int(order[np.searchsorted(below, (1 - PEAK_SHARE) * below[-1])])
 
 
 def _resistance(contact: MeshContact, loss: MeshLoss) -> float:
@@ -362,6 +363,12 @@ def _mesh_figures(
         abs(speed1 * rho1 - speed1 / mesh.ratio * mesh.curvature2(rho1))
         for rho1 in (mesh.path_start, mesh.path_end)
     )
+    line_load, pressure, flattening = math.nan, math.nan, 0.0
+    if contact is not None:
+        line_load = float(contact.line_load[_largest(contact.line_load, contact.weight)])
+        place = _largest(contact.hertz_pressure, contact.weight)  # flattest there, too
+        pressure = float(contact.hertz_pressure[place])
+        flattening = float(contact.flattening[place])
     return MeshFigures(
         pressure_angle=mesh.operating_pressure_angle,
         transverse_contact_ratio=mesh.transverse_contact_ratio,
@@ -370,20 +377,16 @@ def _mesh_figures(
         misalignment=duty.misalignment,
         pitch_line_speed=speed1 * mesh.operating_radius1,
         sliding_speed_max=sliding,
-        line_load_max=(
-            math.nan if contact is None else _largest(contact.line_load, contact.weight)
-        ),
-        hertz_pressure_max=(
-            math.nan if contact is None else _largest(contact.hertz_pressure, contact.weight)
-        ),
-        flattening=0.0 if contact is None else _largest(contact.flattening, contact.weight),
+        line_load_max=line_load,
+        hertz_pressure_max=pressure,
+        flattening=flattening,
         resistance=0.0 if contact is None else _resistance(contact, loss),
         contact_share=(
             math.nan if contact is None else float(contact.weight.sum()) / mesh.mean_contact_length
         ),
         film_ratio_min=math.nan if contact is None else float(contact.film_ratio.min()),
         film_ratio_max=math.nan if contact is None else float(contact.film_ratio.max()),
-        friction_mean=loss.mean_friction,
+        friction_mean=(math.nan if contact is None else mean_friction(contact, loss.friction)),
         loss_factor=ohlendorf_loss_factor(mesh),
         transmission_error_range=math.nan if elastic is None else elastic.transmission_error_range,
         mesh_stiffness=math.nan if elastic is None else elastic.mean(elastic.tangent_stiffness),

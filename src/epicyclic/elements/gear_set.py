@@ -479,31 +479,31 @@ class GearSet:
         follows = (duty.key,) if self._parts_apart else ()
         if self.reference is not None:
             return {
-                name: replace(self._inside(loss), follows=follows) for name, loss in losses.items()
+                name: self._inside(loss)._replace(follows=follows) for name, loss in losses.items()
             }
         mesh = duty.gears
         halves = tuple((body, self.carrier, 0.5) for body in mesh.bodies)
         sliding, own = f"{mesh.key}_sliding", f"{self.key}.{mesh.key}"
         return {
-            name: replace(loss, brakes=halves, mesh=own if name == sliding else "", follows=follows)
+            name: loss._replace(brakes=halves, mesh=own if name == sliding else "", follows=follows)
             for name, loss in losses.items()
         }
 
     def _in_bearing(self, loss: Loss, planet: Planet) -> Loss:
         """A loss of a planet bearing where it acts; that of the rollers heats planet and pin."""
         between = (planet.body, self.carrier) if self.reference is None else self.reference.between
-        placed = replace(loss, brakes=((*between, 1.0),))
+        placed = loss._replace(brakes=((*between, 1.0),))
         if loss.group == LOAD_INDEPENDENT:
             return placed
         if planet.bearing is not None and self._parts_apart:
-            placed = replace(placed, follows=(planet.key,))
-        return replace(placed, heat=tuple((node, 0.5) for node in planet.nodes))
+            placed = placed._replace(follows=(planet.key,))
+        return placed._replace(heat=tuple((node, 0.5) for node in planet.nodes))
 
     def _inside(self, loss: Loss) -> Loss:
         """A loss between moving parts of the set where the set has all of them act."""
         if self.reference is None:
             return loss
-        return replace(loss, brakes=((*self.reference.between, 1.0),), mesh="")
+        return loss._replace(brakes=((*self.reference.between, 1.0),), mesh="")
 
     def _placed(self, loss: Loss) -> Loss:
         """Friction inside the set acts where all its losses do, and so do both discs of a pair."""
@@ -518,7 +518,7 @@ def _with_choice(loss: Loss, choice: LossChoice) -> Loss:
         return Loss(loss.group, left_out=reason)
     if choice.factor == 1:
         return loss
-    return replace(loss, watts=choice.factor * loss.watts, factor=choice.factor)
+    return loss._replace(watts=choice.factor * loss.watts, factor=choice.factor)
 
 
 def _summed(branches: Sequence[_Branch]) -> dict[str, Loss]:
@@ -526,8 +526,7 @@ def _summed(branches: Sequence[_Branch]) -> dict[str, Loss]:
     if len(branches) == 1:
         return branches[0].losses
     return {
-        name: replace(
-            loss,
+        name: loss._replace(
             watts=sum(branch.losses[name].watts for branch in branches),
             heat=_mean_heat([branch.losses[name] for branch in branches]),
         )

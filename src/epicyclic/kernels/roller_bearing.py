@@ -76,12 +76,17 @@ def slice_stiffness(loaded_length: float) -> float:
 
 
 @kernel
+def approach_of_races(d: FloatArray, psi: float) -> tuple[float, float]:
+    """Approach of the races at an azimuth: in the middle, and by the tilt at the end. [m]"""
+    cos, sin = np.cos(psi), np.sin(psi)
+    return d[0] * cos + d[1] * sin, d[2] * cos + d[3] * sin
+
+
+@kernel
 def slice_deflection(
-    d: FloatArray, psi: float, y_over_l: float, clearance: float, crown: float
+    radial: float, tilt: float, y_over_l: float, clearance: float, crown: float
 ) -> float:
     """Deflection of one contact of a slice; negative where there is a gap. Theory (B8). [m]"""
-    radial = d[0] * np.cos(psi) + d[1] * np.sin(psi)
-    tilt = d[2] * np.cos(psi) + d[3] * np.sin(psi)
     delta: float = 0.5 * (radial + y_over_l * tilt - 0.5 * clearance) - crown
     return delta
 
@@ -106,25 +111,32 @@ def potential(
     energy = 0.0
     gradient[:] = -load
     hessian[:] = 0.0
-    shape = np.empty(4)
+    along = np.empty(2)
     rows, slices = y_over_l.shape
     for z in range(psi.size):
+        along[0], along[1] = np.cos(psi[z]), np.sin(psi[z])
+        radial, tilt = approach_of_races(d, psi[z])
+        forces = np.zeros(2)  # moments of order 0 and 1 along the rollers at this azimuth
+        slopes = np.zeros(3)  # of order 0 to 2
         for row in range(rows):
             for k in range(slices):
-                delta = slice_deflection(d, psi[z], y_over_l[row, k], clearance, crown[k])
+                y = y_over_l[row, k]
+                delta = slice_deflection(radial, tilt, y, clearance, crown[k])
                 if delta <= 0.0:
                     continue
                 slope = width * stiffness[row, z] * delta**LENGTH_EXPONENT
                 force = slope * delta
-                shape[0] = np.cos(psi[z])
-                shape[1] = np.sin(psi[z])
-                shape[2] = y_over_l[row, k] * shape[0]
-                shape[3] = y_over_l[row, k] * shape[1]
                 energy += 2.0 * force * delta / (DEFLECTION_EXPONENT + 1.0)
-                for i in range(4):
-                    gradient[i] += force * shape[i]
-                    for j in range(4):
-                        hessian[i, j] += 0.5 * DEFLECTION_EXPONENT * slope * shape[i] * shape[j]
+                forces[0] += force
+                forces[1] += force * y
+                slopes[0] += slope
+                slopes[1] += slope * y
+                slopes[2] += slope * y * y
+        for i in range(4):
+            gradient[i] += forces[i // 2] * along[i % 2]
+            for j in range(4):
+                turned = 0.5 * DEFLECTION_EXPONENT * along[i % 2] * along[j % 2]
+                hessian[i, j] += slopes[i // 2 + j // 2] * turned
     for i in range(4):
         energy -= load[i] * d[i]
     return energy
@@ -151,9 +163,10 @@ def loaded_lengths(
     rows, slices = y_over_l.shape
     delta = np.empty(slices)
     for z in range(psi.size):
+        radial, tilt = approach_of_races(d, psi[z])
         for row in range(rows):
             for k in range(slices):
-                delta[k] = slice_deflection(d, psi[z], y_over_l[row, k], clearance, crown[k])
+                delta[k] = slice_deflection(radial, tilt, y_over_l[row, k], clearance, crown[k])
             count = 0.5 * ((1.0 if delta[0] > 0.0 else 0.0) + (1.0 if delta[-1] > 0.0 else 0.0))
             for k in range(slices - 1):
                 a, b = delta[k], delta[k + 1]
@@ -350,9 +363,10 @@ def solve_roller_loads(
     if not converged:
         return q, d, -1
     for z in range(psi.size):
+        radial, tilt = approach_of_races(d, psi[z])
         for row in range(rows):
             for k in range(slices):
-                delta = slice_deflection(d, psi[z], y_over_l[row, k], clearance, crown[k])
+                delta = slice_deflection(radial, tilt, y_over_l[row, k], clearance, crown[k])
                 if delta > 0.0:
                     q[row, z, k] = stiffness[row, z] * delta**DEFLECTION_EXPONENT
     return q, d, total

@@ -28,6 +28,7 @@ __all__ = [
     "MeshLoss",
     "local_loss",
     "loss_factor_loss",
+    "mean_friction",
     "ohlendorf_closed_form",
     "ohlendorf_loss_factor",
 ]
@@ -47,8 +48,6 @@ class MeshLoss:
     ----------
     sliding, rolling : float
         [W]
-    mean_friction : float
-        Coefficient of friction, weighted with the sliding power of the load. [1]
     friction : ndarray, shape (n,)
         Coefficient of friction at every point. [1]
     flags : Flags or tuple of ValidityFlag
@@ -56,7 +55,6 @@ class MeshLoss:
 
     sliding: float
     rolling: float
-    mean_friction: float
     friction: FloatArray = field(default_factory=lambda: np.zeros(0))
     flags: SomeFlags = ()
 
@@ -74,7 +72,6 @@ def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingMo
     return MeshLoss(
         sliding=float(local_sliding.sum()),
         rolling=float(local_rolling.sum()),
-        mean_friction=_mean_friction(contact, coefficient),
         friction=coefficient,
         flags=Flags(
             partial(_flags, "friction", friction, own, local_sliding),
@@ -83,7 +80,7 @@ def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingMo
     )
 
 
-def _mean_friction(contact: MeshContact, coefficient: FloatArray) -> float:
+def mean_friction(contact: MeshContact, coefficient: FloatArray) -> float:
     """Mean over the sliding power of the load, from its shares: powers may be too small. [1]"""
     share = contact.weight
     for part in (contact.line_load, np.abs(contact.sliding_speed)):
@@ -103,11 +100,10 @@ def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
     own = contact.seen_by(friction)
     coefficient = friction.coefficient(own)
     local_sliding = coefficient * sliding_power
-    mean = _mean_friction(contact, coefficient)
+    mean = mean_friction(contact, coefficient)
     return MeshLoss(
         sliding=contact.input_power * mean * ohlendorf_loss_factor(contact.mesh),
         rolling=0.0,
-        mean_friction=mean,
         friction=coefficient,
         flags=Flags(partial(_flags, "friction", friction, own, local_sliding)),
     )

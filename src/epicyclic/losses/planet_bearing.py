@@ -301,13 +301,13 @@ def _loaded(
 ) -> RollerLoads:
     """The bearing under forces and moments over its half-width, from the displacements `start`."""
     half_width = bearing.half_width
-    azimuth = np.arange(bearing.rollers_per_row) * 2 * math.pi / bearing.rollers_per_row
+    azimuth, positions, crown = _slices(bearing)
     intensity, state, iterations = solve_roller_loads(
         load,
         start,
         azimuth,
-        bearing.slice_positions() / half_width,
-        bearing.crown(),
+        positions / half_width,
+        crown,
         bearing.slice_width,
         bearing.diametral_clearance,
         TOLERANCE,
@@ -323,9 +323,17 @@ def _loaded(
             "check roller length and clearance, or use the bearing model 'palmgren'."
         )
     state[2:] /= half_width
+    azimuth = azimuth.copy()
     for array in (azimuth, intensity, state):
         array.flags.writeable = False
     return RollerLoads(azimuth, intensity, state, iterations)
+
+
+@lru_cache(maxsize=64)
+def _slices(bearing: RollerBearing) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Azimuth of each roller [rad], axial position of the slices and drop of their profile [m]."""
+    azimuth = np.arange(bearing.rollers_per_row) * 2 * math.pi / bearing.rollers_per_row
+    return azimuth, bearing.slice_positions(), bearing.crown()
 
 
 def tilting_moments(
@@ -350,14 +358,13 @@ def tilting_moments(
     load = np.array([force, 0.0, 0.0, 0.0])
     start = _start(bearing, load)
     start[2:] = tilt_x * half_width, tilt_y * half_width
-    azimuth = np.arange(bearing.rollers_per_row) * 2 * math.pi / bearing.rollers_per_row
-    positions = bearing.slice_positions()
+    azimuth, positions, crown = _slices(bearing)
     intensity, _, iterations = solve_roller_loads(
         load,
         start,
         azimuth,
         positions / half_width,
-        bearing.crown(),
+        crown,
         bearing.slice_width,
         bearing.diametral_clearance,
         TOLERANCE,

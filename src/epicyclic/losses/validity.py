@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -44,7 +44,7 @@ OF_THIS_PACKAGE = "limit of this package; none is in print"
 """Source of a range that no publication states."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Range:
     """Range of one quantity in which a model was made.
 
@@ -71,16 +71,25 @@ class Range:
     source: str
     of: Callable[[Any], FloatArray | float] | None = None
 
-    def found_in(self, conditions: object) -> FloatArray:
+    def found_in(self, conditions: object) -> FloatArray | float:
         """The quantity in `conditions`, in SI."""
         found = getattr(conditions, self.name) if self.of is None else self.of(conditions)
-        return np.asarray(found, dtype=float)
+        return found if isinstance(found, float) else np.asarray(found, dtype=float)
 
     def limits(self) -> tuple[float | None, float | None]:
         """`low` and `high` in SI."""
         scale, offset = self.unit.scale_and_offset()
         low = None if self.low is None else (self.low - offset) / scale
         high = None if self.high is None else (self.high - offset) / scale
+        return low, high
+
+    @cached_property
+    def bounds(self) -> tuple[float, float]:
+        """`limits`, infinite where there is none, with room for rounding."""
+        slack = 1e-9 * max(abs(limit) for limit in (self.low, self.high) if limit is not None)
+        scale, offset = self.unit.scale_and_offset()
+        low = -math.inf if self.low is None else (self.low - slack - offset) / scale
+        high = math.inf if self.high is None else (self.high + slack - offset) / scale
         return low, high
 
 
@@ -296,34 +305,8 @@ def check_ranges(
     part : float
         Part of the whole loss that the model is asked for here. [1]
     """
-    flags = []
-    for item in ranges:
-        value = np.atleast_1d(np.asarray(values[item.name], dtype=float))
-        if _holds(item, value):
-            continue
-        low, high = _bounds(item)
-        outside = (value < low) | (value > high)
-        if not outside.any():  # no numbers
-            continue
-        scale, offset = item.unit.scale_and_offset()
-        shown = value * scale + offset
-        weights = np.broadcast_to(np.asarray(weight, dtype=float), value.shape)
-        total = float(weights.sum())
-        share = float(weights[outside].sum()) / total if total > 0 else 1.0
-        flags.append(
-            ValidityFlag(
-                use,
-                item.label,
-                float(shown.min()),
-                float(shown.max()),
-                item.low,
-                item.high,
-                item.unit.display,
-                part * min(share, 1.0),
-                item.source,
-            )
-        )
-    return tuple(flags)
+    flags = (_flag(use, item, values[item.name], weight, part) for item in ranges)
+    return tuple(flag for flag in flags if flag is not None)
 
 
 def check_contacts(
@@ -334,28 +317,56 @@ def check_contacts(
     part: float = 1.0,
 ) -> tuple[ValidityFlag, ...]:
     """`check_ranges` of line contacts; local quantities count with the loss where they occur."""
-    flags: tuple[ValidityFlag, ...] = ()
+    flags = []
     for item in ranges:
         values = item.found_in(contacts)
-        if not _holds(item, values):
-            local = values.shape == weight.shape
-            flags += check_ranges(use, (item,), {item.name: values}, weight if local else 1.0, part)
-    return flags
+        local = np.shape(values) == weight.shape
+        flags.append(_flag(use, item, values, weight if local else 1.0, part))
+    return tuple(flag for flag in flags if flag is not None)
 
 
-def _holds(item: Range, values: FloatArray) -> bool:
-    """True if all values lie in the range."""
-    low, high = _bounds(item)
-    if values.ndim == 0:
-        return low <= float(values) <= high
-    return not values.size or bool(low <= values.min() and values.max() <= high)
-
-
-@lru_cache(maxsize=1024)
-def _bounds(item: Range) -> tuple[float, float]:
-    """Limits of a range in SI, with room for rounding."""
-    slack = 1e-9 * max(abs(limit) for limit in (item.low, item.high) if limit is not None)
+def _flag(
+    use: ModelUse,
+    item: Range,
+    values: FloatArray | float,
+    weight: FloatArray | float,
+    part: float,
+) -> ValidityFlag | None:
+    """The flag of a quantity; None if all its values that are numbers lie in the range."""
+    least, most = _ends(values)
+    low, high = item.bounds
+    if low <= least and most <= high:
+        return None
+    outside = (values < low) | (values > high)
+    if not np.any(outside):  # no numbers
+        return None
     scale, offset = item.unit.scale_and_offset()
-    low = -math.inf if item.low is None else (item.low - slack - offset) / scale
-    high = math.inf if item.high is None else (item.high + slack - offset) / scale
-    return low, high
+    return ValidityFlag(
+        use,
+        item.label,
+        least * scale + offset,
+        most * scale + offset,
+        item.low,
+        item.high,
+        item.unit.display,
+        part * _share(outside, weight),
+        item.source,
+    )
+
+
+def _ends(values: FloatArray | float) -> tuple[float, float]:
+    """The smallest and the largest one."""
+    if not isinstance(values, np.ndarray):
+        return float(values), float(values)
+    if not values.size:
+        return math.inf, -math.inf
+    return float(values.min()), float(values.max())
+
+
+def _share(outside: NDArray[np.bool_] | bool, weight: FloatArray | float) -> float:
+    """Share of the weight of all values that those `outside` have. [1]"""
+    if not isinstance(outside, np.ndarray):
+        return 1.0
+    weights = np.broadcast_to(np.asarray(weight, dtype=float), outside.shape)
+    total = float(weights.sum())
+    return min(float(weights[outside].sum()) / total, 1.0) if total > 0 else 1.0

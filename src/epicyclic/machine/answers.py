@@ -76,7 +76,7 @@ class Answer:
             watts = max(
                 min(0.0, loss.watts), told
             )  # nothing loses less than nothing by foretelling
-            losses[name] = replace(loss, watts=watts) if watts != loss.watts else loss
+            losses[name] = loss._replace(watts=watts) if watts != loss.watts else loss
         if not CAUTION * off <= allowed * sum(loss.watts for loss in losses.values()):
             return None
         return replace(self.result, losses=losses)

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.elements.base import HOUSING
+from epicyclic.machine.linear import solution_of
 from epicyclic.machine.machine import Machine, MeshRow, Operation, Terms
 
 __all__ = ["Balance", "Friction", "balance", "drives_first"]
@@ -150,12 +150,10 @@ def _lossy_terms(row: MeshRow, first: bool, efficiency: float) -> Terms:
 def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
     """The smallest solution of a linear system, and whether it is the only one."""
     if matrix.shape[0] == matrix.shape[1]:
-        with suppress(np.linalg.LinAlgError):  # singular
-            found = np.asarray(np.linalg.solve(matrix, known), float)
-            found += np.linalg.solve(matrix, known - matrix @ found)
-            size = float(np.abs(known).max(initial=0.0))
-            if float(np.abs(found).max(initial=0.0)) <= LARGEST_FACTOR * size:
-                return found, True
+        only = solution_of(matrix, known)
+        size = float(np.abs(known).max(initial=0.0))
+        if only is not None and float(np.abs(only).max(initial=0.0)) <= LARGEST_FACTOR * size:
+            return only, True
     least, _, rank, _ = np.linalg.lstsq(matrix, known, rcond=SINGULAR)
     found = np.asarray(least, float)
     found += np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR)[0]

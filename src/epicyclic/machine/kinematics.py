@@ -5,6 +5,7 @@ Speeds are positive in one common sense of rotation.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.elements.base import HOUSING
+from epicyclic.machine.linear import solution_of
 from epicyclic.machine.machine import Machine
 
 __all__ = ["Freedom", "freedom", "implied", "speeds_of"]
@@ -89,12 +91,10 @@ def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
     known = np.zeros(len(matrix))
     if given:
         known[-len(given) :] = list(given.values())
-    if matrix.shape[0] == matrix.shape[1]:  # they determine all: the checks of the case say so
-        found = np.linalg.solve(matrix, known)
-        found += np.linalg.solve(matrix, known - matrix @ found)
-    else:
-        found, *_ = np.linalg.lstsq(matrix, known, rcond=SINGULAR)
-        found += np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR)[0]
+    found = solution_of(matrix, known) if matrix.shape[0] == matrix.shape[1] else None
+    if found is None:
+        least = np.linalg.lstsq(matrix, known, rcond=SINGULAR)[0]
+        found = least + np.linalg.lstsq(matrix, known - matrix @ least, rcond=SINGULAR)[0]
     speeds = dict(zip(bodies, map(float, found), strict=True))
     return dict.fromkeys(machine.resting, 0.0) | _joined(speeds | dict(given))
 
@@ -122,7 +122,7 @@ def _matrix(machine: Machine, given: Sequence[str]) -> FloatArray:
         for body, coefficient in terms:
             if body != HOUSING:
                 row[place[body]] += coefficient
-        length = np.linalg.norm(row)
+        length = math.hypot(*row)
         rows.append(row / length if length else row)
     rows += [_unit(machine.bodies, body) for body in given]
     return np.array(rows).reshape(len(rows), len(place))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -131,6 +132,7 @@ class RegressionGroups(NamedTuple):
     lam: FloatArray
 
 
+@lru_cache(maxsize=2)  # friction and rolling of a mesh ask for the same ones
 def regression_groups(states: LineContacts) -> RegressionGroups:
     """The groups of every contact."""
     flanks = states.flanks

@@ -347,29 +347,40 @@ class Result(Views):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Everything the user should know before trusting the numbers."""
-        return (*self.notes, *describe_flags(self.flags, self._loss_of, self.total))
+        return (*self.notes, *describe_flags(self.flags, self._losses_of(), self.total))
 
     @property
     def flags_with_loss(self) -> list[tuple[float, list[ValidityFlag]]]:
         """Ranges that models leave, with the loss that each concerns; NaN if unknown. [W]"""
-        return flags_with_loss(self.flags, self._loss_of)
+        return flags_with_loss(self.flags, self._losses_of())
 
-    def _loss_of(self, use: ModelUse) -> float:
-        """Loss that a model was used for, or of which it is a part; NaN if there is none. [W]"""
-        last = LOSSES_OF_ROLES.get(use.role, use.role)
-        stage, colon, _ = use.where.rpartition(": ")
-        names = (f"{use.where} {last}", f"{stage}{colon}{last}")  # the drag of both gears of a pair
+    def _losses_of(self) -> Callable[[ModelUse], float]:
+        """What finds the loss that a model was used for, or of which it is a part; else NaN. [W]"""
         losses = {in_words(term.name): term.watts for term in self.terms}
-        return next((losses[name] for name in names if name in losses), math.nan)
+
+        def loss_of(use: ModelUse) -> float:
+            last = LOSSES_OF_ROLES.get(use.role, use.role)
+            stage, colon, _ = use.where.rpartition(": ")
+            whole = f"{stage}{colon}{last}"  # the drag of both gears of a pair
+            return losses.get(f"{use.where} {last}", losses.get(whole, math.nan))
+
+        return loss_of
 
     def numbers(self) -> Iterator[Figure]:
         """Every number of the result with key, label and unit, as sweeps store them.
 
         The keys are those of every result of this kind; NaN stands where there is no such number.
         """
+        values = self.values()
         for field in number_fields(self.layout):
-            value = field.read(self) + 0.0  # no -0.0
-            yield Figure(field.key, field.label, value, field.unit)
+            yield Figure(field.key, field.label, values[field.key], field.unit)
+
+    def values(self) -> dict[str, float]:
+        """The `numbers` alone, by their keys."""
+        return {
+            field.key: field.read(self) + 0.0  # no -0.0
+            for field in number_fields(self.layout)
+        }
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers and text, in W and in the units stated beside them."""

@@ -117,7 +117,7 @@ class CasePlan(Plan):
         return Row(
             status=str(result.status),
             warnings=" | ".join(result.warnings),
-            numbers={item.key: item.value for item in result.numbers()},
+            numbers=result.values(),
         )
 
 

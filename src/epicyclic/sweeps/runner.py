@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import Any, ClassVar, Self
 
 from epicyclic.errors import EpicyclicError, InputError, Problem, is_interrupt
+from epicyclic.garbage import look_seldom
 from epicyclic.status import Status
 from epicyclic.sweeps.journal import Journal, Row, Rows
 from epicyclic.whole_file import make_folder
@@ -278,15 +279,19 @@ def _leftovers_removed_quietly() -> Iterator[None]:
 def _solve_in_worker(
     parent: int, plan: Plan, indices: Sequence[int], journal: Journal | None
 ) -> Batch:
-    _end_with(parent)
+    _belong_to(parent)
     return _solve_batch(plan, indices, journal)
 
 
 @cache
-def _end_with(parent: int) -> None:
-    """Let this process, if it is a child of `parent`, end soon after it, even in compiled code."""
+def _belong_to(parent: int) -> None:
+    """Make this process, if it is a child of `parent`, one of the program.
+
+    It ends soon after its parent, even in compiled code.
+    """
     if os.getppid() != parent:
         return  # a thread, or a worker of another backend of joblib
+    look_seldom()
 
     def watch() -> None:
         while os.getppid() == parent:
