@@ -288,7 +288,7 @@ def solve_mesh(
     else:
         loss = local_loss(contact, friction, rolling)
     materials = duty.gears.materials
-    share1 = 0.5 if contact is None else heat_share1(contact, loss.friction, materials)
+    share1 = 0.5 if contact is None else heat_share1(contact, loss.heat, materials)
     method, source = friction.title, friction.source
     halves = _heat(duty.gears.nodes, 0.5)
     rolling_loss = Loss(

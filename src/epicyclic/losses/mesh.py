@@ -50,12 +50,15 @@ class MeshLoss:
         [W]
     friction : ndarray, shape (n,)
         Coefficient of friction at every point. [1]
+    heat : ndarray, shape (n,)
+        Heat of sliding friction at every point, averaged over the mesh period. [W]
     flags : Flags or tuple of ValidityFlag
     """
 
     sliding: float
     rolling: float
     friction: FloatArray = field(default_factory=lambda: np.zeros(0))
+    heat: FloatArray = field(default_factory=lambda: np.zeros(0))
     flags: SomeFlags = ()
 
 
@@ -73,6 +76,7 @@ def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingMo
         sliding=float(local_sliding.sum()),
         rolling=float(local_rolling.sum()),
         friction=coefficient,
+        heat=local_sliding,
         flags=Flags(
             partial(_flags, "friction", friction, own, local_sliding),
             partial(_flags, "rolling", rolling, contact, local_rolling),
@@ -105,6 +109,7 @@ def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
         sliding=contact.input_power * mean * ohlendorf_loss_factor(contact.mesh),
         rolling=0.0,
         friction=coefficient,
+        heat=local_sliding,
         flags=Flags(partial(_flags, "friction", friction, own, local_sliding)),
     )
 

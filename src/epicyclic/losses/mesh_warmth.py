@@ -53,14 +53,17 @@ def mesh_warmth(
     )
 
 
-def heat_share1(
-    contact: MeshContact, friction: FloatArray, materials: tuple[Solid, Solid]
-) -> float:
+def heat_share1(contact: MeshContact, heat: FloatArray, materials: tuple[Solid, Solid]) -> float:
     """Share of the heat of sliding that gear 1 takes up. Theory (W2). [1]
 
-    Parameters as of `mesh_warmth`.
+    Parameters
+    ----------
+    contact : MeshContact
+    heat : ndarray, shape (n,)
+        Of sliding friction at every point. [W]
+    materials : tuple of Solid
+        Materials of both gears.
     """
-    heat = friction * (contact.line_load * contact.weight) * np.abs(contact.sliding_speed)
     total = float(heat.sum())
     if not total > 0:
         return 0.5

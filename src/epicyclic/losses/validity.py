@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -44,7 +44,7 @@ OF_THIS_PACKAGE = "limit of this package; none is in print"
 """Source of a range that no publication states."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Range:
     """Range of one quantity in which a model was made.
 
@@ -318,11 +318,19 @@ def check_contacts(
 ) -> tuple[ValidityFlag, ...]:
     """`check_ranges` of line contacts; local quantities count with the loss where they occur."""
     flags = []
-    for item in ranges:
-        values = item.found_in(contacts)
+    for item, values in _not_within(tuple(ranges), contacts):
         local = np.shape(values) == weight.shape
         flags.append(_flag(use, item, values, weight if local else 1.0, part))
     return tuple(flag for flag in flags if flag is not None)
+
+
+@lru_cache(maxsize=2)  # friction and rolling of a mesh ask about the same contacts
+def _not_within(
+    ranges: tuple[Range, ...], contacts: object
+) -> tuple[tuple[Range, FloatArray | float], ...]:
+    """The ranges that not all contacts keep, with the quantities."""
+    found = [(item, item.found_in(contacts)) for item in ranges]
+    return tuple((item, values) for item, values in found if not _holds(item, values))
 
 
 def _flag(
@@ -333,10 +341,10 @@ def _flag(
     part: float,
 ) -> ValidityFlag | None:
     """The flag of a quantity; None if all its values that are numbers lie in the range."""
+    if _holds(item, values):
+        return None
     least, most = _ends(values)
     low, high = item.bounds
-    if low <= least and most <= high:
-        return None
     outside = (values < low) | (values > high)
     if not np.any(outside):  # no numbers
         return None
@@ -352,6 +360,13 @@ def _flag(
         part * _share(outside, weight),
         item.source,
     )
+
+
+def _holds(item: Range, values: FloatArray | float) -> bool:
+    """True if all values lie in the range."""
+    low, high = item.bounds
+    least, most = _ends(values)
+    return low <= least and most <= high
 
 
 def _ends(values: FloatArray | float) -> tuple[float, float]:
