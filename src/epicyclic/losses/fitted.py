@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import lru_cache
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,30 +44,50 @@ _LABELS: dict[str, tuple[str, Quantity]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class FittedFriction:
-    """Coefficients fitted to the simulated contacts of one oil.
+class _Fit:
+    """What friction and rolling loss share that are fitted to the simulated contacts of one oil.
 
-    Theory (O9).
+    Attributes
+    ----------
+    model : OilModel
+    form : str
     """
 
     name: ClassVar = "fitted"
     title: ClassVar = "fit to simulated contacts of the oil"
     made_for: ClassVar[RegressionFluid | None] = None
-    takes_oil_temperature: ClassVar[bool] = False
-    quantity: ClassVar = "friction"
 
     model: OilModel
     form: str
 
+    if TYPE_CHECKING:
+
+        @property
+        def quantity(self) -> str:
+            """Which of the fits of the model."""
+
     @property
     def source(self) -> str:
         """What was simulated."""
-        return _source(self.model)
+        simulated = self.model.simulations.get("simulated", 0)
+        title, version = self.model.oil.title, self.model.version
+        return f"{simulated} contacts of {title} simulated with epicyclic {version}"
 
     @property
     def ranges(self) -> tuple[Range, ...]:
         """The domain of the fit."""
-        return tuple(domain_ranges(self.model, self.quantity))
+        return domain_ranges(self.model, self.quantity)
+
+
+@dataclass(frozen=True, slots=True)
+class FittedFriction(_Fit):
+    """Coefficients fitted to the simulated contacts of one oil.
+
+    Theory (O9).
+    """
+
+    takes_oil_temperature: ClassVar[bool] = False
+    quantity: ClassVar = "friction"
 
     def coefficient(self, contact: LineContacts) -> FloatArray:
         """See the class. [1]"""
@@ -75,7 +95,7 @@ class FittedFriction:
 
 
 @dataclass(frozen=True, slots=True)
-class FittedRolling:
+class FittedRolling(_Fit):
     """Rolling loss fitted to the simulated contacts of one oil.
 
     Theory (O9).
@@ -85,29 +105,11 @@ class FittedRolling:
 
     Attributes
     ----------
-    model : OilModel
-    form : str
     quantity : str
         ``"rolling_loss"`` of gear teeth or ``"bearing_rolling_loss"``.
     """
 
-    name: ClassVar = "fitted"
-    title: ClassVar = "fit to simulated contacts of the oil"
-    made_for: ClassVar[RegressionFluid | None] = None
-
-    model: OilModel
-    form: str
     quantity: str = "rolling_loss"
-
-    @property
-    def source(self) -> str:
-        """What was simulated."""
-        return _source(self.model)
-
-    @property
-    def ranges(self) -> tuple[Range, ...]:
-        """The domain of the fit."""
-        return tuple(domain_ranges(self.model, self.quantity))
 
     def loss_density(self, contact: LineContacts) -> FloatArray:
         """See the class. [W/m]"""
@@ -122,18 +124,14 @@ def _fitted(fit: FittedFriction | FittedRolling, contact: LineContacts) -> Float
     return fit.model.value(fit.quantity, contact, fit.form)
 
 
-def _source(model: OilModel) -> str:
-    return (
-        f"{model.simulations.get('simulated', 0)} contacts of {model.oil.title} simulated with "
-        f"epicyclic {model.version}"
-    )
-
-
-def domain_ranges(model: OilModel, quantity: str) -> Iterator[Range]:
+@lru_cache(maxsize=64)
+def domain_ranges(model: OilModel, quantity: str) -> tuple[Range, ...]:
     """The domain of a fit."""
     source = f"the simulations of {model.oil.name}"
+    ranges = []
     for name, (label, unit) in _LABELS.items():
         limits = model.fits[quantity].domain[name]
         shown = (unit.to_display(value) if unit.si else value for value in limits)
         low, high = (float(f"{value:.4g}") for value in shown)
-        yield Range(name, label, low, high, unit, source)
+        ranges.append(Range(name, label, low, high, unit, source))
+    return tuple(ranges)

@@ -301,20 +301,7 @@ def _loaded(
 ) -> RollerLoads:
     """The bearing under forces and moments over its half-width, from the displacements `start`."""
     half_width = bearing.half_width
-    azimuth, positions, crown = _slices(bearing)
-    intensity, state, iterations = solve_roller_loads(
-        load,
-        start,
-        azimuth,
-        positions / half_width,
-        crown,
-        bearing.slice_width,
-        bearing.diametral_clearance,
-        TOLERANCE,
-        MAX_ITERATIONS,
-        held=False,
-        near=near,
-    )
+    azimuth, intensity, state, iterations = _solved(bearing, load, start, near=near)
     if iterations < 0:
         raise ConvergenceError(
             "the load distribution of the planet bearing was not found under "
@@ -327,6 +314,32 @@ def _loaded(
     for array in (azimuth, intensity, state):
         array.flags.writeable = False
     return RollerLoads(azimuth, intensity, state, iterations)
+
+
+def _solved(
+    bearing: RollerBearing,
+    load: FloatArray,
+    start: FloatArray,
+    *,
+    held: bool = False,
+    near: bool = False,
+) -> tuple[FloatArray, FloatArray, FloatArray, int]:
+    """Azimuth of each roller, and what `solve_roller_loads` finds."""
+    azimuth, positions, crown = _slices(bearing)
+    found = solve_roller_loads(
+        load,
+        start,
+        azimuth,
+        positions / bearing.half_width,
+        crown,
+        bearing.slice_width,
+        bearing.diametral_clearance,
+        TOLERANCE,
+        MAX_ITERATIONS,
+        held=held,
+        near=near,
+    )
+    return azimuth, *found
 
 
 @lru_cache(maxsize=64)
@@ -358,25 +371,14 @@ def tilting_moments(
     load = np.array([force, 0.0, 0.0, 0.0])
     start = _start(bearing, load)
     start[2:] = tilt_x * half_width, tilt_y * half_width
-    azimuth, positions, crown = _slices(bearing)
-    intensity, _, iterations = solve_roller_loads(
-        load,
-        start,
-        azimuth,
-        positions / half_width,
-        crown,
-        bearing.slice_width,
-        bearing.diametral_clearance,
-        TOLERANCE,
-        MAX_ITERATIONS,
-        True,
-    )
+    azimuth, intensity, _, iterations = _solved(bearing, load, start, held=True)
     if iterations < 0:
         raise ConvergenceError(
             "the load distribution of the planet bearing was not found under "
             f"{NEWTON.text(force, 4)} with tilts of {tilt_x:.4g} and {tilt_y:.4g} rad; "
             "check roller length and clearance."
         )
+    positions = bearing.slice_positions()
     turning = (intensity * bearing.slice_width * positions[:, None, :]).sum(axis=(0, 2))
     return float(turning @ np.cos(azimuth)), float(turning @ np.sin(azimuth))
 
