@@ -6,6 +6,7 @@ import math
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,9 @@ MAX_ITERATIONS = 40
 STILL, GROWTH, SETTLING = 2.0, 1.0, 2.0
 """Times b/u_r in which the smooth contact settles on the grid, in which the roughness grows, and
 until averages begin. [1]"""
+LEAD = 1.0
+"""Last part of these times in which the fine grid settles, from what roughness adds on the coarse
+one. [1]"""
 BLOCK, FEWEST_BLOCKS, MOST_BLOCKS = 0.5, 8, 1024
 """Time of a block in b/u_r, fewest blocks of an average, most times b/u_r of one."""
 FEWEST_COARSE_NODES, COARSE_SPACING = 96, 0.3
@@ -155,6 +159,14 @@ class RoughSolution:
     frames: Sequence[Frame] = field(default_factory=list)
 
 
+class _State(NamedTuple):
+    """Scaled pressure and mass at each node, and the approach."""
+
+    pressure: FloatArray
+    mass: FloatArray
+    approach: float
+
+
 class _Simulation:
     """State of a simulation between calls of the kernel, in scaled units."""
 
@@ -165,7 +177,7 @@ class _Simulation:
         linear_tolerance: float = LINEAR_TOLERANCE,
     ) -> None:  # fmt: skip
         contact = smooth.contact
-        self.linear_tolerance = linear_tolerance
+        self.linear_tolerance, self.frozen = linear_tolerance, frozen
         self.smooth = smooth
         self.contact, self.asperities = contact, asperities
         self.boundary_friction = asperities.friction if contact.sliding_speed else 0.0
@@ -228,7 +240,7 @@ class _Simulation:
                 (contact.speed1, contact.speed2), heights, surfaces, strict=True
             )
         ]
-        self.steps = self.unsolved = 0
+        self.steps = self.tried = self.unsolved = 0
         self.frames: deque[Frame] = deque(maxlen=MOST_FRAMES)
         self.center = int(np.argmin(np.abs(self.x)))
         self.steps_to_frame = 0
@@ -238,6 +250,7 @@ class _Simulation:
         self.still = self.step_count(STILL)
         self.time = 0.0
         self.smooth_power = float(self.march(self.still)[-1, Column.FLOW_POWER])
+        self.smooth_state = _State(self.pressure.copy(), self.now.copy(), self.approach)
 
     def advance(self, time: float) -> FloatArray:
         """Records of a `time` in b/u_r, shape (steps, 10); keeps frames if they are asked for.
@@ -255,6 +268,20 @@ class _Simulation:
                 self.frames.append(self.frame())
         return np.concatenate(parts)
 
+    def go_on_from(self, other: _Simulation) -> None:
+        """Take what roughness adds on another grid; the smooth state stays that of this one."""
+        self.time = other.time
+        self.steps = self.still + self.step_count(self.time)
+        smooth, its = self.smooth_state, other.smooth_state
+        added = np.interp(self.x, other.x, other.pressure - its.pressure)
+        self.pressure[:] = np.maximum(smooth.pressure + added, 0.0)
+        self.pressure[0], self.pressure[-1] = smooth.pressure[0], 0.0
+        self.active[:] = self.pressure > 0
+        self.active[0] = False
+        self.now[:] = smooth.mass * np.interp(self.x, other.x, other.now / its.mass)
+        self.before[:] = self.now
+        self.approach = smooth.approach + other.approach - its.approach
+
     def march(self, steps: int) -> FloatArray:
         """Records of `steps` more time steps, shape (steps, 10)."""
         records = np.zeros((steps, len(Column)))
@@ -269,6 +296,7 @@ class _Simulation:
             MAX_ITERATIONS, records,
         )  # fmt: skip
         self.steps += steps
+        self.tried += steps
         self.unsolved += int((~(records[:, Column.ERROR] < TOLERANCE)).sum())
         return records
 
@@ -350,6 +378,7 @@ def solve_rough(
         smooth, surfaces, coarse, asperities, None, heating, frozen,
         linear_tolerance=COARSE_LINEAR_TOLERANCE,
     )  # fmt: skip
+    _settle(run, aid)
     series = _Series(run), _Series(aid)
     most = math.ceil(most_blocks / BLOCK)
     plan = Plan(fewest := min(FEWEST_BLOCKS, most), fewest)
@@ -377,6 +406,17 @@ def _coarse_nodes(run: _Simulation, surfaces: Sequence[Profile]) -> int:
     return min(max(wanted, FEWEST_COARSE_NODES), run.x.size // 2)
 
 
+def _settle(run: _Simulation, aid: _Simulation) -> None:
+    """Up to where averages begin, on the fine grid and on the coarse one."""
+    aid.advance(GROWTH + SETTLING - LEAD)
+    if run.frozen:  # the end is wanted, not an average
+        run.advance(GROWTH + SETTLING - LEAD)
+    else:
+        run.go_on_from(aid)
+    for each in (run, aid):
+        each.advance(LEAD)
+
+
 class _Series:
     """Records of a simulation, and their means over blocks."""
 
@@ -384,7 +424,6 @@ class _Series:
         self.run = run
         self.records: list[FloatArray] = []
         self.means: list[FloatArray] = []
-        run.advance(GROWTH + SETTLING)
 
     def extend(self) -> None:
         """Another block."""
@@ -423,9 +462,9 @@ def _failure(run: _Simulation, judged: Estimate, tolerance: float) -> str:
     if not judged.within(tolerance):
         what = "friction" if run.contact.sliding_speed else "rolling loss"
         share = judged.error / abs(judged.value)
-        return f"{what} is known to {percent(share)} only after {run.steps} time steps"
-    if unsolved > LARGEST_UNSOLVED_SHARE * run.steps:
-        return f"{unsolved} of {run.steps} time steps did not converge"
+        return f"{what} is known to {percent(share)} only after {run.tried} time steps"
+    if unsolved > LARGEST_UNSOLVED_SHARE * run.tried:
+        return f"{unsolved} of {run.tried} time steps did not converge"
     return ""
 
 
@@ -461,7 +500,7 @@ def _solution(run: _Simulation, series: _Series, means: _Means, message: str) ->
         rolling_loss=means.rolling.value,
         rolling_loss_error=means.rolling.error,
         roughness_kept=run.roughness_kept,
-        steps=run.steps,
+        steps=run.tried,
         unsolved_steps=run.unsolved,
         newton_steps=float(records[:, Column.NEWTON_STEPS].mean()),
         frames=list(run.frames),

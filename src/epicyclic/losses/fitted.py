@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -43,7 +43,7 @@ _LABELS: dict[str, tuple[str, Quantity]] = {
 """Label and unit of each condition that spans a domain."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class _Fit:
     """What friction and rolling loss share that are fitted to the simulated contacts of one oil.
 
@@ -73,13 +73,13 @@ class _Fit:
         title, version = self.model.oil.title, self.model.version
         return f"{simulated} contacts of {title} simulated with epicyclic {version}"
 
-    @property
+    @cached_property
     def ranges(self) -> tuple[Range, ...]:
         """The domain of the fit."""
         return domain_ranges(self.model, self.quantity)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FittedFriction(_Fit):
     """Coefficients fitted to the simulated contacts of one oil.
 
@@ -94,7 +94,7 @@ class FittedFriction(_Fit):
         return _fitted(self, contact)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FittedRolling(_Fit):
     """Rolling loss fitted to the simulated contacts of one oil.
 
@@ -124,7 +124,6 @@ def _fitted(fit: FittedFriction | FittedRolling, contact: LineContacts) -> Float
     return fit.model.value(fit.quantity, contact, fit.form)
 
 
-@lru_cache(maxsize=64)
 def domain_ranges(model: OilModel, quantity: str) -> tuple[Range, ...]:
     """The domain of a fit."""
     source = f"the simulations of {model.oil.name}"
