@@ -134,6 +134,34 @@ def test_friction_of_touching_surfaces_follows_their_coefficient(mixed):
     assert slippery.friction_coefficient < result.friction_coefficient
 
 
+def test_a_fine_grid_takes_from_a_coarse_one_only_what_roughness_adds():
+    contact = contact_of(20, 8, slip=0.2, eyring_stress=5e6)
+    smooth = solve_smooth(contact)
+    fine, coarse, rougher = (
+        rough._Simulation(smooth, surfaces, nodes, AsperityContact())
+        for surfaces, nodes in (
+            ((SMOOTH, SMOOTH), 512),
+            ((SMOOTH, SMOOTH), 128),
+            (rough_pair(smooth.minimum_film / 2), 128),
+        )
+    )
+    alone = fine.smooth_state
+    coarse.advance(2.0)
+    fine.go_on_from(coarse)
+    # behind the centre a coarse grid takes longer to settle
+    assert fine.pressure == pytest.approx(alone.pressure, abs=0.01)
+    assert fine.now == pytest.approx(alone.mass, rel=0.025)
+    assert np.interp(fine.x, coarse.x, coarse.now) != pytest.approx(alone.mass, rel=0.03)
+    rougher.advance(2.0)
+    fine.go_on_from(rougher)
+    at = np.linspace(-0.6, 0.6, 7)
+    added = np.interp(at, fine.x, fine.pressure - alone.pressure)
+    wanted = np.interp(at, rougher.x, rougher.pressure - rougher.smooth_state.pressure)
+    assert added == pytest.approx(wanted, abs=5e-3)
+    assert np.abs(wanted).max() > 0.05
+    assert fine.steps == fine.still + fine.step_count(2.0)
+
+
 def test_power_of_the_flow_is_steady_before_there_is_roughness():
     for contact in (contact_of(20, 8), contact_of(50, 8), contact_of(200, 10)):
         run = rough._Simulation(solve_smooth(contact), (SMOOTH, SMOOTH), 512, AsperityContact())
