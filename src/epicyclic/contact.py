@@ -244,7 +244,7 @@ class LineContacts:
 def _between(value: Any, low: float | None, high: float | None) -> Any:
     """`value`, an array or a number, held between limits."""
     if isinstance(value, np.ndarray):
-        return np.clip(value, low, high)
+        return np.clip(value, low, high)  # of a number it takes ten times as long as what follows
     value = value if low is None else max(value, low)
     return value if high is None else min(value, high)
 

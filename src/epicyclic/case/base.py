@@ -31,15 +31,7 @@ if TYPE_CHECKING:
     from epicyclic.case.lubrication_tables import LubricationTable
     from epicyclic.case.operation_tables import Surroundings
 
-__all__ = [
-    "FILE_KEYS",
-    "CaseTable",
-    "as_given",
-    "owner_without_keys",
-    "stated",
-    "with_changes",
-    "with_sizes",
-]
+__all__ = ["FILE_KEYS", "CaseTable", "as_given", "owner_without_keys", "with_changes", "with_sizes"]
 
 
 FILE_KEYS = ("oil_model", "pocketing_table", "file")
@@ -98,7 +90,11 @@ class CaseTable(Table):
         """
         own = self._tables or self.given()
         tables, problems = with_changes(type(self), own, changes)
-        same = {key: table for key, table in self._sound.items() if tables.get(key) is own.get(key)}
+        same = {
+            key: table
+            for key, table in self._sound.items()
+            if key in own and tables.get(key) is own[key]
+        }
         return type(self).from_tables(tables, self._source, problems, same)
 
     @classmethod
@@ -138,7 +134,7 @@ class CaseTable(Table):
             ),
         ]
         made = cls._made(validation.case, tables, source, found)
-        made._found, made._sound = told, stated(valid.sections, tables)
+        made._found, made._sound = told, valid.sections
         return made
 
     @classmethod
@@ -188,11 +184,6 @@ class CaseTable(Table):
 
     def __hash__(self) -> int:
         return hash(tuple(it for it in self.__dict__.values() if not isinstance(it, dict)))
-
-
-def stated(sections: Mapping[str, Table], tables: Mapping[str, Any]) -> dict[str, Table]:
-    """Those of the sections that stand in `tables` with their keys."""
-    return {name: it for name, it in sections.items() if isinstance(tables.get(name), dict)}
 
 
 def with_sizes(

@@ -80,12 +80,12 @@ class LoadSharing(Table):
         idle = [key for key in (*elastic, "mesh_load_factor") if key not in needed]
         if self.method in ("closed-form", "direct") and self.floating_member == "none":
             idle.append("support_stiffness")
-        given = [key for key in type(self).model_fields if key in self.model_fields_set]
-        if not given:
+        if not self.model_fields_set:
             return ()
+        fields = type(self).model_fields
         defaults = type(self)()
         return tuple(
-            key for key in given if key in idle and getattr(self, key) != getattr(defaults, key)
+            key for key in fields if key in idle and getattr(self, key) != getattr(defaults, key)
         )
 
 

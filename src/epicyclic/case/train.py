@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, cast
 
 from pydantic import Field, PrivateAttr, create_model
 
-from epicyclic.case.base import CaseTable, as_given, stated, with_sizes
+from epicyclic.case.base import CaseTable, as_given, with_sizes
 from epicyclic.case.checks import cross_check
 from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.gear_sizes import Found, told_oil
@@ -210,7 +210,7 @@ class _TrainTables(CaseTable):
         values = {key: getattr(case, key) for key in type(case).model_fields}
         train = cls.model_construct(**values, sets=sets)
         train._source, train._found = source, (*sizes, *told_oil(tables))
-        train._sound = stated(whole.sections, tables)
+        train._sound = whole.sections
         known_shapes = not found
         train._shape, wrong = shape_of_train(shapes, train.shafts)
         found += wrong

@@ -17,23 +17,14 @@ __all__ = ["one_thread"]
 
 def one_thread() -> AbstractContextManager[object]:
     """A context in which matrix products and decompositions use one thread."""
-    if _has_one_thread():
-        return nullcontext()
-    context: AbstractContextManager[object] = _controller().limit(limits=1, user_api="blas")
+    blas = _blas()
+    if all(library.num_threads == 1 for library in blas.lib_controllers):
+        return nullcontext()  # as in workers: to set limits takes a tenth of a solution
+    context: AbstractContextManager[object] = blas.limit(limits=1)
     return context
 
 
 @cache
-def _has_one_thread() -> bool:
-    """True in a process that was started so, as workers are: limits take a tenth of a solution."""
-    return all(
-        library["num_threads"] == 1
-        for library in _controller().info()
-        if library["user_api"] == "blas"
-    )
-
-
-@cache
-def _controller() -> ThreadpoolController:
+def _blas() -> ThreadpoolController:
     import_module("scipy.linalg")  # compiled kernels call its library, which must be there first
-    return ThreadpoolController()
+    return ThreadpoolController().select(user_api="blas")

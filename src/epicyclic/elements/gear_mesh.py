@@ -386,7 +386,7 @@ def _mesh_figures(
         ),
         film_ratio_min=math.nan if contact is None else float(contact.film_ratio.min()),
         film_ratio_max=math.nan if contact is None else float(contact.film_ratio.max()),
-        friction_mean=(math.nan if contact is None else mean_friction(contact, loss.friction)),
+        friction_mean=math.nan if contact is None else mean_friction(contact, loss.friction),
         loss_factor=ohlendorf_loss_factor(mesh),
         transmission_error_range=math.nan if elastic is None else elastic.transmission_error_range,
         mesh_stiffness=math.nan if elastic is None else elastic.mean(elastic.tangent_stiffness),

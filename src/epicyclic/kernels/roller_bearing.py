@@ -76,9 +76,8 @@ def slice_stiffness(loaded_length: float) -> float:
 
 
 @kernel
-def approach_of_races(d: FloatArray, psi: float) -> tuple[float, float]:
+def approach_of_races(d: FloatArray, cos: float, sin: float) -> tuple[float, float]:
     """Approach of the races at an azimuth: in the middle, and by the tilt at the end. [m]"""
-    cos, sin = np.cos(psi), np.sin(psi)
     return d[0] * cos + d[1] * sin, d[2] * cos + d[3] * sin
 
 
@@ -115,7 +114,7 @@ def potential(
     rows, slices = y_over_l.shape
     for z in range(psi.size):
         along[0], along[1] = np.cos(psi[z]), np.sin(psi[z])
-        radial, tilt = approach_of_races(d, psi[z])
+        radial, tilt = approach_of_races(d, along[0], along[1])
         forces = np.zeros(2)  # moments of order 0 and 1 along the rollers at this azimuth
         slopes = np.zeros(3)  # of order 0 to 2
         for row in range(rows):
@@ -163,7 +162,7 @@ def loaded_lengths(
     rows, slices = y_over_l.shape
     delta = np.empty(slices)
     for z in range(psi.size):
-        radial, tilt = approach_of_races(d, psi[z])
+        radial, tilt = approach_of_races(d, np.cos(psi[z]), np.sin(psi[z]))
         for row in range(rows):
             for k in range(slices):
                 delta[k] = slice_deflection(radial, tilt, y_over_l[row, k], clearance, crown[k])
@@ -363,7 +362,7 @@ def solve_roller_loads(
     if not converged:
         return q, d, -1
     for z in range(psi.size):
-        radial, tilt = approach_of_races(d, psi[z])
+        radial, tilt = approach_of_races(d, np.cos(psi[z]), np.sin(psi[z]))
         for row in range(rows):
             for k in range(slices):
                 delta = slice_deflection(radial, tilt, y_over_l[row, k], clearance, crown[k])

@@ -109,9 +109,9 @@ def mesh_contact(
     around : OilState, optional
         Oil around the gears, if its temperature differs.
     """
-    loaded = np.flatnonzero((lines.length > 0) & (line_load > 0))
+    loaded = (lines.length > 0) & (line_load > 0)
     speed2 = speed1 / mesh.ratio
-    rho1, rho2 = lines.curvature1.ravel()[loaded], lines.curvature2.ravel()[loaded]
+    rho1, rho2 = lines.curvature1[loaded], lines.curvature2[loaded]
     u1, u2 = speed1 * rho1, speed2 * rho2
     return MeshContact(
         mesh=mesh,
@@ -120,8 +120,8 @@ def mesh_contact(
         force=force,
         speed1=speed1,
         speed2=speed2,
-        weight=(lines.weight[:, None, None] * lines.length).ravel()[loaded],
-        line_load=line_load.ravel()[loaded],
+        weight=(lines.weight[:, None, None] * lines.length)[loaded],
+        line_load=line_load[loaded],
         path=rho1 - mesh.pitch_point,
         radius=mesh.equivalent_radius(rho1),
         rolling_speed=(u1 + u2) / 2,

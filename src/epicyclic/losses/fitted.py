@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +51,8 @@ class _Fit:
     ----------
     model : OilModel
     form : str
+    quantity : str
+        Which of the fits of the model.
     """
 
     name: ClassVar = "fitted"
@@ -59,12 +61,7 @@ class _Fit:
 
     model: OilModel
     form: str
-
-    if TYPE_CHECKING:
-
-        @property
-        def quantity(self) -> str:
-            """Which of the fits of the model."""
+    quantity: str
 
     @property
     def source(self) -> str:
@@ -78,6 +75,12 @@ class _Fit:
         """The domain of the fit."""
         return domain_ranges(self.model, self.quantity)
 
+    def fitted(self, contact: LineContacts) -> FloatArray:
+        """The quantity at every contact."""
+        if isinstance(contact, MeshContact | RaceContacts):
+            return tabulated(self.model, self.quantity, self.form, contact)
+        return self.model.value(self.quantity, contact, self.form)
+
 
 @dataclass(frozen=True)
 class FittedFriction(_Fit):
@@ -87,11 +90,12 @@ class FittedFriction(_Fit):
     """
 
     takes_oil_temperature: ClassVar[bool] = False
-    quantity: ClassVar = "friction"
+
+    quantity: str = "friction"
 
     def coefficient(self, contact: LineContacts) -> FloatArray:
         """See the class. [1]"""
-        return _fitted(self, contact)
+        return self.fitted(contact)
 
 
 @dataclass(frozen=True)
@@ -114,14 +118,7 @@ class FittedRolling(_Fit):
     def loss_density(self, contact: LineContacts) -> FloatArray:
         """See the class. [W/m]"""
         held = contact.held(self.model.fits[self.quantity].domain)
-        return _fitted(self, contact) * beyond_data(contact, held)
-
-
-def _fitted(fit: FittedFriction | FittedRolling, contact: LineContacts) -> FloatArray:
-    """The quantity of a fit at every contact."""
-    if isinstance(contact, MeshContact | RaceContacts):
-        return tabulated(fit.model, fit.quantity, fit.form, contact)
-    return fit.model.value(fit.quantity, contact, fit.form)
+        return self.fitted(contact) * beyond_data(contact, held)
 
 
 def domain_ranges(model: OilModel, quantity: str) -> tuple[Range, ...]:

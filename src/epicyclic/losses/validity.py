@@ -305,8 +305,8 @@ def check_ranges(
     part : float
         Part of the whole loss that the model is asked for here. [1]
     """
-    flags = (_flag(use, item, values[item.name], weight, part) for item in ranges)
-    return tuple(flag for flag in flags if flag is not None)
+    left = [(item, values[item.name]) for item in ranges if not _holds(item, values[item.name])]
+    return tuple(_flag(use, item, value, weight, part) for item, value in left)
 
 
 def check_contacts(
@@ -317,11 +317,10 @@ def check_contacts(
     part: float = 1.0,
 ) -> tuple[ValidityFlag, ...]:
     """`check_ranges` of line contacts; local quantities count with the loss where they occur."""
-    flags = []
-    for item, values in _not_within(tuple(ranges), contacts):
-        local = np.shape(values) == weight.shape
-        flags.append(_flag(use, item, values, weight if local else 1.0, part))
-    return tuple(flag for flag in flags if flag is not None)
+    return tuple(
+        _flag(use, item, values, weight if np.shape(values) == weight.shape else 1.0, part)
+        for item, values in _not_within(tuple(ranges), contacts)
+    )
 
 
 @lru_cache(maxsize=2)  # friction and rolling of a mesh ask about the same contacts
@@ -339,15 +338,11 @@ def _flag(
     values: FloatArray | float,
     weight: FloatArray | float,
     part: float,
-) -> ValidityFlag | None:
-    """The flag of a quantity; None if all its values that are numbers lie in the range."""
-    if _holds(item, values):
-        return None
+) -> ValidityFlag:
+    """The flag of a quantity that leaves its range."""
     least, most = _ends(values)
     low, high = item.bounds
     outside = (values < low) | (values > high)
-    if not np.any(outside):  # no numbers
-        return None
     scale, offset = item.unit.scale_and_offset()
     return ValidityFlag(
         use,
@@ -363,10 +358,10 @@ def _flag(
 
 
 def _holds(item: Range, values: FloatArray | float) -> bool:
-    """True if all values lie in the range."""
+    """True if all values that are numbers lie in the range."""
     low, high = item.bounds
     least, most = _ends(values)
-    return low <= least and most <= high
+    return (low <= least and most <= high) or not np.any((values < low) | (values > high))
 
 
 def _ends(values: FloatArray | float) -> tuple[float, float]:

@@ -91,8 +91,10 @@ def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
     known = np.zeros(len(matrix))
     if given:
         known[-len(given) :] = list(given.values())
-    found = solution_of(matrix, known) if matrix.shape[0] == matrix.shape[1] else None
-    if found is None:
+    if matrix.shape[0] == matrix.shape[1]:
+        found = solution_of(matrix, known)
+        assert found is not None, "they determine all: the checks of the case say so"
+    else:
         least = np.linalg.lstsq(matrix, known, rcond=SINGULAR)[0]
         found = least + np.linalg.lstsq(matrix, known - matrix @ least, rcond=SINGULAR)[0]
     speeds = dict(zip(bodies, map(float, found), strict=True))
