@@ -6,14 +6,17 @@ import doctest
 import itertools
 import json
 
+import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import epicyclic as ep
 from epicyclic.analysis import heat as analysis
 from epicyclic.analysis.heat import beyond_range
-from epicyclic.analysis.solve import solve
+from epicyclic.analysis.solve import mesh_contacts, solve
+from epicyclic.builders.build import build
 from epicyclic.errors import InputError
+from epicyclic.losses.friction.regressions import MixedEhl
 from epicyclic.plots.catalogue import available, figure_of
 from epicyclic.plots.heat_network import heat_figure
 from epicyclic.records.contents import Heat
@@ -33,6 +36,22 @@ EVERYTHING = {**FLOW, **HOUSING, "thermal.cooler_power": "37 W", "models.tempera
 
 def pair(changes):
     return ep.load_case("talbot-2012-pair", {**RUNNING, **changes})
+
+
+def test_heat_of_sliding_is_shared_where_it_arises():
+    """Weights are the heat at each point, not the friction: they give another share."""
+    case = pair({})
+    losses = build(case).solve().solution.results[""].losses
+    (contact,) = mesh_contacts(case).values()
+    friction = MixedEhl().coefficient(contact)
+    speed1, speed2 = (np.sqrt(np.abs(speed)) for speed in contact.surface_speeds)
+    share = speed1 / (speed1 + speed2)  # both of steel: Blok
+    heat = friction * contact.line_load * np.abs(contact.sliding_speed) * contact.weight
+    (first, own), (second, rest) = losses["mesh_sliding"].heat
+    assert (first, second) == ("pinion", "gear")
+    assert own == pytest.approx(np.average(share, weights=heat), rel=1e-9)
+    assert own + rest == pytest.approx(1.0, rel=1e-12)
+    assert own != pytest.approx(np.average(share, weights=friction), rel=1e-3)
 
 
 @pytest.fixture(scope="module")

@@ -159,6 +159,9 @@ def test_a_fine_grid_takes_from_a_coarse_one_only_what_roughness_adds():
     wanted = np.interp(at, rougher.x, rougher.pressure - rougher.smooth_state.pressure)
     assert added == pytest.approx(wanted, abs=5e-3)
     assert np.abs(wanted).max() > 0.05
+    sunk = rougher.approach - rougher.smooth_state.approach
+    assert fine.approach - alone.approach == pytest.approx(sunk, rel=1e-9)
+    assert abs(sunk) > 0.01
     assert fine.steps == fine.still + fine.step_count(2.0)
 
 
