@@ -245,11 +245,11 @@ def test_two_level_solver_solves_the_full_equations():
     local[:, 1] = diffusion[:-1] + diffusion[1:]
     by_film = np.tile([-0.05, 1.5, 0.05], (n, 1))
     local[~active], by_film[~active] = 0, 0
-    grouped = np.zeros((-(-n // ehl_linear.GROUP), n))
-    ehl_linear.update_groups(row, active, grouped, np.zeros(n, dtype=bool))
+    groups = ehl_linear.groups_for(n)
+    ehl_linear.update_groups(row, active, groups)
     band = np.empty((n + ehl_linear.BAND, 2 * ehl_linear.BAND + 1))
     ehl_linear.factor_band(local, by_film, ehl_linear.near_coefficients(row), active, band)
-    coarse = ehl_linear.coarse_matrix(local, by_film, grouped, active, 0.1)
+    coarse = ehl_linear.coarse_matrix(local, by_film, groups.across, active, 0.1)
     order = np.empty(coarse.shape[0], dtype=np.int64)
     coarse = ehl_linear.factor_dense(coarse, order)
     right = np.append(np.where(active, rng.standard_normal(n), 0.0), 0.3)
@@ -260,7 +260,7 @@ def test_two_level_solver_solves_the_full_equations():
         row,
         coarse,
         order,
-        grouped,
+        groups.bends,
         local,
         by_film,
         band,

@@ -17,7 +17,7 @@ from epicyclic.ehl.conditions import LineContact
 from epicyclic.ehl.heating import Heating, flow_easing, thinning
 from epicyclic.ehl.roughness import SMOOTH, Profile
 from epicyclic.ehl.steady import SmoothSolution, expected_film, solve_smooth
-from epicyclic.kernels.ehl_linear import GROUP
+from epicyclic.kernels.ehl_linear import groups_for
 from epicyclic.kernels.ehl_rough import Column, march, masses
 from epicyclic.kernels.ehl_steady import deflection_matrix
 from epicyclic.status import Status
@@ -220,8 +220,7 @@ class _Simulation:
         self.now = np.empty(nodes)
         masses(self.pressure, self.film, self.fluid, self.now)
         self.before = self.now.copy()
-        self.grouped = np.zeros((-(-nodes // GROUP), nodes))
-        self.included = np.zeros(nodes, dtype=np.bool_)
+        self.groups = groups_for(nodes)
         spacing = self.dx * contact.half_width
         self.roughness_kept = min(surface.kept(spacing) for surface in surfaces)
         heights = [surface.resampled(spacing) / contact.film_scale for surface in surfaces]
@@ -288,7 +287,7 @@ class _Simulation:
         scale = self.contact.film_scale
         self.approach = march(
             self.pressure, self.film, self.now, self.before, self.active, self.approach,
-            self.smooth_pressure, self.base, self.kernel_row, self.grouped, self.included,
+            self.smooth_pressure, self.base, self.kernel_row, self.groups,
             self.heights[0], self.heights[1], self.shifts[0], self.shifts[1], self.stride,
             self.center, self.steps - self.still, self.step_count(GROWTH), self.fluid, self.thinned,
             self.dx, self.load,

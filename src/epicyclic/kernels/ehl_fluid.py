@@ -123,9 +123,9 @@ def two_slopes(
 @kernel
 def density_ratio(pressure: float, fluid: ScaledFluid) -> tuple[float, float]:
     """Density ratio and its derivative at P: Dowson and Higginson. Theory (H8)."""
-    below = 1.0 + fluid.packing * pressure
-    ratio = (1.0 + fluid.stiffening * pressure) / below
-    return ratio, (fluid.stiffening - fluid.packing) / (below * below)
+    part = 1.0 / (1.0 + fluid.packing * pressure)
+    ratio = (1.0 + fluid.stiffening * pressure) * part
+    return ratio, (fluid.stiffening - fluid.packing) * (part * part)
 
 
 @kernel
@@ -144,22 +144,18 @@ def flow_work(pressure: float, fluid: ScaledFluid) -> float:
 def mean_fluidity(
     log_left: float, log_right: float, root_left: float, root_right: float
 ) -> tuple[float, float, float]:
-    """Mean of 1/mu between two nodes and its derivatives in ln(mu) of each. Theory (H13).
+    """Mean of 1/mu between two nodes, and derivatives of its ln in ln(mu) of each. Theory (H13).
 
     The logarithmic mean: exact for a flow through a cell in which mu is exponential in p. `root_*`
     is mu^-1/2 of each node.
     """
-    half = 0.5 * (log_right - log_left)
-    level = root_left * root_right
-    if abs(half) < 1e-3:  # series, where the closed form loses its digits
-        ratio = 1.0 + half * half / 6.0
-        slope = half / 3.0
-    else:
-        growth = root_left / root_right
-        ratio = 0.5 * (growth - 1.0 / growth) / half
-        slope = (0.5 * (growth + 1.0 / growth) - ratio) / half
-    mean = level * ratio
-    return mean, -0.5 * mean - 0.5 * level * slope, -0.5 * mean + 0.5 * level * slope
+    rise = log_right - log_left
+    if abs(rise) < 2e-3:  # series, where the closed form loses its digits
+        by_left = -0.5 - rise / 12.0
+        return root_left * root_right * (1.0 + rise * rise / 24.0), by_left, -1.0 - by_left
+    left, fall = root_left * root_left, root_left * root_left - root_right * root_right
+    by_left = 1.0 / rise - left / fall
+    return fall / rise, by_left, -1.0 - by_left
 
 
 @kernel
@@ -180,9 +176,9 @@ def thinning_factor(
     """
     if fluid.shear_law == NEWTONIAN:
         return 1.0, 0.0, 0.0
-    stress = fluid.stress + fluid.stress_slope * pressure
-    sigma = viscosity * fluid.sliding / (film * stress)
-    softening = -fluid.stress_slope / stress
+    part = 1.0 / (film * (fluid.stress + fluid.stress_slope * pressure))
+    sigma = viscosity * fluid.sliding * part
+    softening = -fluid.stress_slope * film * part
     if fluid.shear_law == LIMITING:
         held = 1.0 / (1.0 + sigma / PLUG_SHEAR)
         return math.exp(sigma * held), sigma * held * held, softening
@@ -194,7 +190,8 @@ def thinning_factor(
         return factor, exponent, softening
     if sigma > LARGE_SHEAR:  # sigma squared may overflow
         return sigma, 1.0, softening
-    return math.sqrt(1.0 + sigma * sigma), sigma * sigma / (1.0 + sigma * sigma), softening
+    square = 1.0 + sigma * sigma
+    return math.sqrt(square), 1.0 - 1.0 / square, softening
 
 
 @kernel

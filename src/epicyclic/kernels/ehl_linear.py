@@ -16,13 +16,14 @@ from epicyclic.kernels._jit import kernel
 
 __all__ = [
     "BAND",
-    "GROUP",
+    "Groups",
     "Space",
     "apply_rows",
     "coarse_matrix",
     "deflect",
     "factor_band",
     "factor_dense",
+    "groups_for",
     "near_coefficients",
     "solve_linear",
     "space_for",
@@ -54,6 +55,29 @@ class Space(NamedTuple):
     hessenberg: FloatArray
 
 
+class Groups(NamedTuple):
+    """Deflection by unit pressure on the `included` nodes of each group; see `update_groups`.
+
+    Attributes
+    ----------
+    bends : ndarray, shape (groups, n)
+    across : ndarray, shape (n, groups)
+        The same by nodes, to be read in rows too.
+    included : ndarray of bool, shape (n,)
+    """
+
+    bends: FloatArray
+    across: FloatArray
+    included: BoolArray
+
+
+@kernel
+def groups_for(n: int) -> Groups:
+    """No node is included yet."""
+    groups = (n + GROUP - 1) // GROUP
+    return Groups(np.zeros((groups, n)), np.zeros((n, groups)), np.zeros(n, dtype=np.bool_))
+
+
 @kernel
 def space_for(n: int) -> Space:
     """Arrays for systems of n nodes."""
@@ -71,13 +95,17 @@ def add_one(a: float, row: FloatArray, out: FloatArray) -> None:
 
 
 @kernel
-def add_four(
-    a: float, row_a: FloatArray, b: float, row_b: FloatArray, c: float, row_c: FloatArray,
-    d: float, row_d: FloatArray, out: FloatArray,
-) -> None:  # fmt: skip
-    """Add four rows at once, which saves three of four passes over `out`."""
-    for i in range(out.size):
-        out[i] += a * row_a[i] + b * row_b[i] + c * row_c[i] + d * row_d[i]
+def add_rows(factors: FloatArray, rows: FloatArray, out: FloatArray) -> None:
+    """Add rows times numbers, four at once, which saves three of four passes over `out`."""
+    count = factors.size
+    whole = count // 4 * 4
+    for k in range(0, whole, 4):
+        a, b, c, d = factors[k], factors[k + 1], factors[k + 2], factors[k + 3]
+        row_a, row_b, row_c, row_d = rows[k], rows[k + 1], rows[k + 2], rows[k + 3]
+        for i in range(out.size):
+            out[i] += a * row_a[i] + b * row_b[i] + c * row_c[i] + d * row_d[i]
+    for k in range(whole, count):
+        add_one(factors[k], rows[k], out)
 
 
 @kernel
@@ -198,47 +226,34 @@ def solve_band(band: FloatArray, x: FloatArray) -> None:
 
 
 @kernel
-def update_groups(
-    kernel_row: FloatArray, active: BoolArray, grouped: FloatArray, included: BoolArray
-) -> None:
-    """Bring `grouped`, shape (groups, n), up to date with the active nodes.
-
-    It holds the deflection of every node by unit pressure on the `included` nodes of each group.
-    """
+def update_groups(kernel_row: FloatArray, active: BoolArray, groups: Groups) -> None:
+    """Bring `groups` up to date with the active nodes."""
     n = active.size
     for j in range(n):
-        if active[j] != included[j]:
-            included[j] = active[j]
+        if active[j] != groups.included[j]:
+            groups.included[j] = active[j]
             sign = 1.0 if active[j] else -1.0
-            group = grouped[j // GROUP]
-            row = kernel_row[n - 1 - j : 2 * n - 1 - j]
-            for i in range(n):
-                group[i] += sign * row[i]
+            group = j // GROUP
+            bends = groups.bends[group]
+            add_one(sign, kernel_row[n - 1 - j : 2 * n - 1 - j], bends)
+            groups.across[:, group] = bends
 
 
 @kernel
 def coarse_matrix(
-    local: FloatArray, by_film: FloatArray, grouped: FloatArray, active: BoolArray, weight: float
+    local: FloatArray, by_film: FloatArray, across: FloatArray, active: BoolArray, weight: float
 ) -> FloatArray:
     """Matrix of the coarse level: groups, then the approach and the load."""
-    n, groups = active.size, grouped.shape[0]
+    n, groups = across.shape
     matrix = np.zeros((groups + 1, groups + 1))
-    flow = np.zeros(groups * GROUP)
-    inner = flow[1 : n - 1]
-    left, here = by_film[1 : n - 1, 0].copy(), by_film[1 : n - 1, 1].copy()
-    right = by_film[1 : n - 1, 2].copy()
+    weights = np.zeros(groups * GROUP + 2)  # of the films of a group, and of its neighbours
     for g in range(groups):
-        if not active[g * GROUP : (g + 1) * GROUP].any():
-            continue
-        film = grouped[g]
-        before, at, after = film[: n - 2], film[1 : n - 1], film[2:]
-        for i in range(n - 2):  # all nodes at once, and then their sums, is vectorised
-            inner[i] = left[i] * before[i] + here[i] * at[i] + right[i] * after[i]
-        for row in range(groups):
-            total = 0.0
-            for i in range(row * GROUP, (row + 1) * GROUP):
-                total += flow[i]
-            matrix[row, g] = total
+        first, last = max(1, g * GROUP), min(n - 1, (g + 1) * GROUP)
+        weights[first - 1 : last + 1] = 0.0
+        for i in range(first, last):
+            for side in range(3):
+                weights[i - 1 + side] += by_film[i, side]
+        add_rows(weights[first - 1 : last + 1], across[first - 1 : last + 1], matrix[g, :groups])
     for i in range(1, n - 1):
         row = i // GROUP
         if active[i]:
@@ -258,26 +273,46 @@ def coarse_matrix(
 def factor_dense(matrix: FloatArray, order: NDArray[np.int64]) -> FloatArray:
     """LU with row exchanges, transposed; `order` becomes the order of the rows.
 
-    Overwrites `matrix`.
+    Overwrites `matrix`. Four columns at a time, so that the rest is passed over once for them.
     """
     n = matrix.shape[0]
     for i in range(n):
         order[i] = i
-    for k in range(n - 1):
-        best = k
-        for i in range(k + 1, n):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
-                best = i
-        if best != k:
-            order[k], order[best] = order[best], order[k]
-            for j in range(n):
-                matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
-        pivot, upper = matrix[k, k], matrix[k, k + 1 :]
-        for i in range(k + 1, n):
-            if matrix[i, k] != 0.0:
-                matrix[i, k] /= pivot
-                add_one(-matrix[i, k], upper, matrix[i, k + 1 :])
+    for first in range(0, n, 4):
+        last = min(first + 4, n)
+        for k in range(first, last):
+            factor_column(matrix, order, k, last)
+            for m in range(first, k):
+                add_one(-matrix[k, m], matrix[m, last:], matrix[k, last:])
+        if last < n:
+            row_a, row_b = matrix[first, last:], matrix[first + 1, last:]
+            row_c, row_d = matrix[first + 2, last:], matrix[first + 3, last:]
+            for i in range(last, n):
+                row = matrix[i, last:]
+                a, b = matrix[i, first], matrix[i, first + 1]
+                c, d = matrix[i, first + 2], matrix[i, first + 3]
+                for j in range(row.size):
+                    row[j] -= a * row_a[j] + b * row_b[j] + c * row_c[j] + d * row_d[j]
     return matrix.T.copy()
+
+
+@kernel
+def factor_column(matrix: FloatArray, order: NDArray[np.int64], k: int, last: int) -> None:
+    """Eliminate column k, in those before `last` only."""
+    n = matrix.shape[0]
+    best = k
+    for i in range(k + 1, n):
+        if abs(matrix[i, k]) > abs(matrix[best, k]):
+            best = i
+    if best != k:
+        order[k], order[best] = order[best], order[k]
+        for j in range(n):
+            matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+    turned = 1.0 / matrix[k, k]
+    for i in range(k + 1, n):
+        matrix[i, k] *= turned
+        for j in range(k + 1, last):
+            matrix[i, j] -= matrix[i, k] * matrix[k, j]
 
 
 @kernel
@@ -309,14 +344,7 @@ def precondition(
     sums = solve_dense(coarse, rows, sums)
     out[n] = sums[groups]
     film[:] = sums[groups]
-    whole = groups // 4 * 4
-    for g in range(0, whole, 4):
-        add_four(
-            sums[g], grouped[g], sums[g + 1], grouped[g + 1], sums[g + 2], grouped[g + 2],
-            sums[g + 3], grouped[g + 3], film,
-        )  # fmt: skip
-    for g in range(whole, groups):
-        add_one(sums[g], grouped[g], film)
+    add_rows(sums[:groups], grouped, film)
     for i in range(n):
         out[i] = sums[i // GROUP] if active[i] else 0.0
     apply_rows(local, by_film, out[:n], film, work)

@@ -25,6 +25,7 @@ from epicyclic.kernels.ehl_fluid import (
 )
 from epicyclic.kernels.ehl_linear import (
     BAND,
+    Groups,
     Space,
     coarse_matrix,
     deflect,
@@ -83,6 +84,7 @@ def face_terms(
     P_i, P_i+1, H_i, H_i+1.
     """
     n = pressure.size
+    pull = fluid.poiseuille / dx
     log_left, slope_left = log_viscosity_ratio(pressure[0], fluid)
     root_left = math.exp(-0.5 * log_left)
     rho[0], d_rho[0] = density_ratio(pressure[0], fluid)
@@ -95,28 +97,28 @@ def face_terms(
         terms[i, :] = 0.0
         if left > 0.0 and right > 0.0:
             fluidity, by_left, by_right = mean_fluidity(log_left, log_right, root_left, root_right)
-            sum_ = left + right
-            cube = 2.0 * (left * right) ** 2 / sum_
-            mean_film = 0.5 * sum_
+            product, part = left * right, 1.0 / (left + right)
+            mean_film = 0.5 * (left + right)
             ease, exponent, softening = thinning_factor(
                 1.0 / (root_left * root_right), mean_film, 0.5 * (pressure[i] + pressure[i + 1]),
                 fluid,
             )  # fmt: skip
             soft = 0.5 * exponent * softening
-            density = 0.5 * (rho[i] + rho[i + 1])
-            g = fluid.poiseuille * density * cube * fluidity * ease / dx
+            density = rho[i] + rho[i + 1]  # twice its mean
+            g = pull * density * product * product * part * fluidity * ease
             conductance[i] = g
             flow = g * (pressure[i + 1] - pressure[i])
-            terms[i, 0] = -g + flow * (
-                0.5 * d_rho[i] / density + soft + (by_left / fluidity + 0.5 * exponent) * slope_left
+            packed = flow / density
+            terms[i, 0] = -g + (
+                packed * d_rho[i] + flow * (soft + (by_left + 0.5 * exponent) * slope_left)
             )
-            terms[i, 1] = g + flow * (
-                0.5 * d_rho[i + 1] / density
-                + soft
-                + (by_right / fluidity + 0.5 * exponent) * slope_right
+            terms[i, 1] = g + (
+                packed * d_rho[i + 1] + flow * (soft + (by_right + 0.5 * exponent) * slope_right)
             )
-            terms[i, 2] = flow * (2.0 / left - (1.0 + exponent) / sum_)
-            terms[i, 3] = flow * (2.0 / right - (1.0 + exponent) / sum_)
+            shared = (1.0 + exponent) * part
+            doubled = 2.0 / product
+            terms[i, 2] = flow * (doubled * right - shared)
+            terms[i, 3] = flow * (doubled * left - shared)
         log_left, slope_left, root_left = log_right, slope_right, root_right
 
 
@@ -177,8 +179,8 @@ def hold_back(
 def solve_step(
     pressure: FloatArray, film: FloatArray, approach: float,
     kernel_row: FloatArray, order: FloatArray, history: FloatArray, fluid: ScaledFluid, dx: float,
-    load: float, active: BoolArray, grouped: FloatArray, included: BoolArray, held: float,
-    tolerance: float, linear_tolerance: float, max_iterations: int, space: Space,
+    load: float, active: BoolArray, groups: Groups, held: float, tolerance: float,
+    linear_tolerance: float, max_iterations: int, space: Space,
 ) -> tuple[float, int, float]:  # fmt: skip
     """Pressure and film after one time step, in place.
 
@@ -196,7 +198,7 @@ def solve_step(
         Factor of the mass now, and what earlier masses contribute.
     active : ndarray of bool, shape (n,)
         Nodes with a full film, changed to the solution.
-    grouped, included : ndarray
+    groups : Groups
         As for `update_groups`.
     held : float
         As for `hold_back`, over the compliance of a node to its own pressure.
@@ -223,8 +225,8 @@ def solve_step(
     lack, change = np.zeros(n + 1), np.zeros(n + 1)
     bend, kept, back = np.empty(n), np.zeros(n), np.zeros(n)
     band = np.empty((n + BAND, 2 * BAND + 1))
-    groups = grouped.shape[0]
-    coarse, rows = np.empty((groups + 1, groups + 1)), np.empty(groups + 1, dtype=np.int64)
+    size = groups.bends.shape[0] + 1
+    coarse, rows = np.empty((size, size)), np.empty(size, dtype=np.int64)
     near = near_coefficients(kernel_row)
     error = np.inf
     iteration = linear = 0
@@ -236,15 +238,15 @@ def solve_step(
         tridiagonals(film, rho, d_rho, terms, order, active, local, by_film)
         hold_back(order, rho, by_film, active, held * kernel_row[n - 1], local)
         if iteration == 1 or linear > REFRESH:
-            update_groups(kernel_row, active, grouped, included)
+            update_groups(kernel_row, active, groups)
             factor_band(local, by_film, near, active, band)
-            coarse = factor_dense(coarse_matrix(local, by_film, grouped, active, dx), rows)
+            coarse = factor_dense(coarse_matrix(local, by_film, groups.across, active, dx), rows)
         linear = solve_linear(
             lack,
             kernel_row,
             coarse,
             rows,
-            grouped,
+            groups.bends,
             local,
             by_film,
             band,
@@ -369,8 +371,8 @@ def measure(
 def march(
     pressure: FloatArray, film: FloatArray, now: FloatArray, before: FloatArray,
     active: BoolArray, approach: float, smooth: FloatArray, base: FloatArray,
-    kernel_row: FloatArray, grouped: FloatArray, included: BoolArray, heights1: FloatArray,
-    heights2: FloatArray, shift1: float, shift2: float, stride: int, center: int, first: int,
+    kernel_row: FloatArray, groups: Groups, heights1: FloatArray, heights2: FloatArray,
+    shift1: float, shift2: float, stride: int, center: int, first: int,
     growth: int, fluid: ScaledFluid, thinned: FloatArray, dx: float, load: float,
     contact_film: float, boundary_friction: float, tolerance: float, linear_tolerance: float,
     max_iterations: int, records: FloatArray,
@@ -392,7 +394,7 @@ def march(
         Pressure of the smooth contact; what exceeds it is expected to move with the oil.
     base : ndarray, shape (n,)
         Smooth gap, with the deflection by the pressure outside the grid.
-    kernel_row, grouped, included : ndarray
+    kernel_row, groups
         As for `deflect` and `update_groups`.
     heights1, heights2 : ndarray, shape (m1,), (m2,)
         Profiles with the spacing of the nodes, as for `lower_by`.
@@ -446,7 +448,7 @@ def march(
             tries = max_iterations * (1 + attempt)
             result = solve_step(
                 pressure, film, approach, kernel_row, order, history, fluid, dx, load,
-                active, grouped, included, HELD[attempt], tolerance, linear_tolerance, tries, space,
+                active, groups, HELD[attempt], tolerance, linear_tolerance, tries, space,
             )  # fmt: skip
             iterations += result[1]
             if result[2] < tolerance or attempt == 1:

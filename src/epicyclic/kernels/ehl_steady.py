@@ -130,11 +130,10 @@ def _flows(
         d_film[i, 1] -= by_film
         d_film[i, 2] -= by_film
         soft = 0.5 * exponent * softening
-        by_left = 0.5 * d_rho[i] / density + (d_left / fluidity + 0.5 * exponent) * d_log_mu[i]
+        by_left = 0.5 * d_rho[i] / density + soft + (d_left + 0.5 * exponent) * d_log_mu[i]
         by_right = (
-            0.5 * d_rho[i + 1] / density + (d_right / fluidity + 0.5 * exponent) * d_log_mu[i + 1]
+            0.5 * d_rho[i + 1] / density + soft + (d_right + 0.5 * exponent) * d_log_mu[i + 1]
         )
-        by_left, by_right = by_left + soft, by_right + soft
         d_pressure[i, 1] -= poiseuille * by_left - conductance / dx
         d_pressure[i, 2] -= poiseuille * by_right + conductance / dx
     return flow, d_film, d_pressure
