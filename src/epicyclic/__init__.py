@@ -15,32 +15,43 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from epicyclic.analysis.heat import heat_balance, solve_for
-    from epicyclic.analysis.mesh_details import mesh_details
-    from epicyclic.analysis.pocket_details import pocket_details
-    from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
-    from epicyclic.bands.pairs import compare_cases
-    from epicyclic.bands.run import uncertainty
-    from epicyclic.campaigns.fit import characterise_oil
-    from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema
-    from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Problem
-    from epicyclic.exchange.load import load_case
-    from epicyclic.exchange.rexs.exporting import write_rexs
-    from epicyclic.exchange.rexs.importing import RexsImport, read_rexs
-    from epicyclic.maps.compute import loss_map
-    from epicyclic.maps.duty import duty_cycle
-    from epicyclic.maps.formats import write_map
-    from epicyclic.maps.lumped import with_temperature_state
-    from epicyclic.maps.warm_up import warm_up
-    from epicyclic.measurement.compare import compare_measured
-    from epicyclic.measurement.comparison import MeasuredComparison
-    from epicyclic.records.files import open_result, save_result
-    from epicyclic.records.record import ResultRecord, record
-    from epicyclic.report.html import report_html
-    from epicyclic.results.result import Result
-    from epicyclic.sweeps.pocketing_study import pocketing_study
-    from epicyclic.sweeps.pocketing_table import pocketing_table
-    from epicyclic.sweeps.run import sweep
+    from epicyclic.analysis.heat import heat_balance as heat_balance
+    from epicyclic.analysis.heat import solve_for as solve_for
+    from epicyclic.analysis.mesh_details import mesh_details as mesh_details
+    from epicyclic.analysis.pocket_details import pocket_details as pocket_details
+    from epicyclic.analysis.solve import loaded_meshes as loaded_meshes
+    from epicyclic.analysis.solve import mesh_contacts as mesh_contacts
+    from epicyclic.analysis.solve import solve as solve
+    from epicyclic.bands.pairs import compare_cases as compare_cases
+    from epicyclic.bands.run import uncertainty as uncertainty
+    from epicyclic.campaigns.fit import characterise_oil as characterise_oil
+    from epicyclic.case.case import GearPairCase as GearPairCase
+    from epicyclic.case.case import PlanetaryCase as PlanetaryCase
+    from epicyclic.case.case import case_schema as case_schema
+    from epicyclic.errors import ConvergenceError as ConvergenceError
+    from epicyclic.errors import EpicyclicError as EpicyclicError
+    from epicyclic.errors import InputError as InputError
+    from epicyclic.errors import Problem as Problem
+    from epicyclic.exchange.load import load_case as load_case
+    from epicyclic.exchange.rexs.exporting import write_rexs as write_rexs
+    from epicyclic.exchange.rexs.importing import RexsImport as RexsImport
+    from epicyclic.exchange.rexs.importing import read_rexs as read_rexs
+    from epicyclic.maps.compute import loss_map as loss_map
+    from epicyclic.maps.duty import duty_cycle as duty_cycle
+    from epicyclic.maps.formats import write_map as write_map
+    from epicyclic.maps.lumped import with_temperature_state as with_temperature_state
+    from epicyclic.maps.warm_up import warm_up as warm_up
+    from epicyclic.measurement.compare import compare_measured as compare_measured
+    from epicyclic.measurement.comparison import MeasuredComparison as MeasuredComparison
+    from epicyclic.records.files import open_result as open_result
+    from epicyclic.records.files import save_result as save_result
+    from epicyclic.records.record import ResultRecord as ResultRecord
+    from epicyclic.records.record import record as record
+    from epicyclic.report.html import report_html as report_html
+    from epicyclic.results.result import Result as Result
+    from epicyclic.sweeps.pocketing_study import pocketing_study as pocketing_study
+    from epicyclic.sweeps.pocketing_table import pocketing_table as pocketing_table
+    from epicyclic.sweeps.run import sweep as sweep
 
 _HOME = {
     "ConvergenceError": "epicyclic.errors",
@@ -51,24 +62,24 @@ _HOME = {
     "PlanetaryCase": "epicyclic.case.case",
     "Problem": "epicyclic.errors",
     "Result": "epicyclic.results.result",
-    "RexsImport": "epicyclic.exchange.rexs.importing",
     "ResultRecord": "epicyclic.records.record",
+    "RexsImport": "epicyclic.exchange.rexs.importing",
     "case_schema": "epicyclic.case.case",
     "characterise_oil": "epicyclic.campaigns.fit",
-    "heat_balance": "epicyclic.analysis.heat",
-    "load_case": "epicyclic.exchange.load",
     "compare_cases": "epicyclic.bands.pairs",
     "compare_measured": "epicyclic.measurement.compare",
     "duty_cycle": "epicyclic.maps.duty",
+    "heat_balance": "epicyclic.analysis.heat",
+    "load_case": "epicyclic.exchange.load",
     "loaded_meshes": "epicyclic.analysis.solve",
     "loss_map": "epicyclic.maps.compute",
     "mesh_contacts": "epicyclic.analysis.solve",
     "mesh_details": "epicyclic.analysis.mesh_details",
+    "open_result": "epicyclic.records.files",
     "pocket_details": "epicyclic.analysis.pocket_details",
     "pocketing_study": "epicyclic.sweeps.pocketing_study",
     "pocketing_table": "epicyclic.sweeps.pocketing_table",
     "read_rexs": "epicyclic.exchange.rexs.importing",
-    "open_result": "epicyclic.records.files",
     "record": "epicyclic.records.record",
     "report_html": "epicyclic.report.html",
     "save_result": "epicyclic.records.files",
@@ -82,45 +93,7 @@ _HOME = {
     "write_rexs": "epicyclic.exchange.rexs.exporting",
 }
 
-__all__ = [
-    "ConvergenceError",
-    "EpicyclicError",
-    "GearPairCase",
-    "InputError",
-    "MeasuredComparison",
-    "PlanetaryCase",
-    "Problem",
-    "Result",
-    "ResultRecord",
-    "RexsImport",
-    "case_schema",
-    "characterise_oil",
-    "compare_cases",
-    "compare_measured",
-    "duty_cycle",
-    "heat_balance",
-    "load_case",
-    "loaded_meshes",
-    "loss_map",
-    "mesh_contacts",
-    "mesh_details",
-    "open_result",
-    "pocket_details",
-    "pocketing_study",
-    "pocketing_table",
-    "read_rexs",
-    "record",
-    "report_html",
-    "save_result",
-    "solve",
-    "solve_for",
-    "sweep",
-    "uncertainty",
-    "warm_up",
-    "with_temperature_state",
-    "write_map",
-    "write_rexs",
-]
+__all__ = sorted(_HOME)
 
 
 def __getattr__(name: str) -> Any:

@@ -14,6 +14,7 @@ from epicyclic.cli.options import (
     journal_option,
     json_option,
     load_with,
+    output_option,
     plot_option,
     runner_options,
     set_option,
@@ -63,13 +64,7 @@ __all__ = ["compare", "comparison_writer"]
     help="Points that the fit must not see: where a column has a value, or a random share.",
 )
 @click.option("--seed", type=click.IntRange(0), default=0, help="Of that share; default 0.")
-@click.option(
-    "-o",
-    "--output",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Write the calibrated case (.toml).",
-)
+@output_option("Write the calibrated case (.toml).", "FILE")
 @plot_option("Draw parity and residuals to .png, .svg or .pdf.")
 @json_option
 @journal_option
@@ -104,7 +99,7 @@ def compare(
     from epicyclic.report.measured_table import measured_tables
 
     keys = [key.strip() for key in (fit or "").split(",") if key.strip()]
-    _check_outputs(output, plot, keys)
+    _check_output(output, keys)
     if runner.shard is not None:
         _check_shard(json_file, {"--fit": fit, "--hold-out": hold_out, "--journal": journal})
     loaded = load_with(case, changes)
@@ -188,9 +183,7 @@ def _check_shard(json_file: str | None, others: Mapping[str, object]) -> None:
         raise InputError(problems, "the command")
 
 
-def _check_outputs(output: Path | None, plot: Path | None, keys: list[str]) -> None:
-    if plot is not None:
-        check_ending("--plot", plot)
+def _check_output(output: Path | None, keys: list[str]) -> None:
     if output is None:
         return
     check_ending("-o", output, (".toml",))

@@ -10,7 +10,7 @@ import click
 
 from epicyclic.cli.exit_codes import EXIT_NO_SOLUTION
 from epicyclic.cli.options import contact_set_option, json_option, parse_changes, plot_option
-from epicyclic.cli.output import PICTURES, check_ending, picture_bytes, show
+from epicyclic.cli.output import PICTURES, picture_bytes, show
 from epicyclic.status import Status
 from epicyclic.whole_file import write_file
 
@@ -45,7 +45,8 @@ def contact_options(command: Any) -> Any:
 @contact_set_option
 @json_option
 @plot_option(
-    "Draw pressure, film, shear stress (.png, .svg, .pdf); a rough contact moves in a .gif."
+    "Draw pressure, film, shear stress (.png, .svg, .pdf); a rough contact moves in a .gif.",
+    (*PICTURES, ANIMATION),
 )
 def contact(
     file: Path | None,
@@ -75,8 +76,6 @@ def contact(
         for name, text in options.items()
         if text is not None
     }
-    if plot is not None:
-        check_ending("--plot", plot, (*PICTURES, ANIMATION))
     case = load_contact_case(file or {}, given | parse_changes(changes))
     moments = plot is not None or json_file is not None
     with progress_bar("percent") as percent:  # of a number that changes

@@ -13,6 +13,7 @@ from epicyclic.cli.options import (
     journal_option,
     json_option,
     load_with,
+    output_option,
     runner_options,
     set_option,
     shard_option,
@@ -55,9 +56,7 @@ _JSON = ".json"
     type=click.Path(path_type=Path),
     help="Keep the map that is computed for a CASE, in a .nc file.",
 )
-@click.option(
-    "-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="Write .nc or .csv."
-)
+@output_option("Write .nc or .csv.", "FILE")
 @json_option
 @journal_option
 @shard_option

@@ -16,7 +16,7 @@ from epicyclic.cli.options import (
     point_of,
     set_option,
 )
-from epicyclic.cli.output import check_ending, draw, show
+from epicyclic.cli.output import draw, show
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -67,8 +67,6 @@ def heat(
     from epicyclic.analysis.solve import solve
     from epicyclic.cli.progress import progress_bar
 
-    if plot is not None:
-        check_ending("--plot", plot)
     _check_target(quantity, target)
     stated = load_with(case, changes)
     found = None

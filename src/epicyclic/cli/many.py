@@ -17,6 +17,7 @@ from epicyclic.cli.exit_codes import EXIT_FAILED_POINTS
 from epicyclic.cli.options import (
     case_argument,
     load_with,
+    output_option,
     runner_options,
     set_option,
     shard_option,
@@ -25,6 +26,7 @@ from epicyclic.cli.options import (
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
+    from epicyclic.case.case import Case
     from epicyclic.maps.compute import MapPlan
     from epicyclic.sweeps.journal import Journal, Rows
     from epicyclic.sweeps.plan import SweepPlan
@@ -37,6 +39,7 @@ __all__ = [
     "finish",
     "loss_map",
     "map_writer",
+    "parse_axes",
     "sweep",
     "sweep_writer",
 ]
@@ -75,9 +78,7 @@ SHOWN_FAILURES = 10
     multiple=True,
     help='A key that follows from others, as in "ring.teeth = sun.teeth + 2 * planet.teeth".',
 )
-@click.option(
-    "-o", "--output", required=True, type=click.Path(path_type=Path), help=".nc, .csv or .parquet"
-)
+@output_option(".nc, .csv or .parquet", required=True)
 @shard_option
 @runner_options
 def sweep(
@@ -143,9 +144,7 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
 @click.option(
     "--vary", metavar="KEY=VALUES", multiple=True, help='Further keys, as in "planet.count=3,4".'
 )
-@click.option(
-    "-o", "--output", required=True, type=click.Path(path_type=Path), help="File of the map."
-)
+@output_option("File of the map.", required=True)
 @click.option("--format", "name", metavar="NAME", help="Default: by the ending of the file.")
 @click.option(
     "--even-torques",
@@ -193,7 +192,6 @@ def loss_map(
         )
         convert(Path(case), output, name, heated=heated)
         return
-    from epicyclic.case.operating import AXES
     from epicyclic.maps.compute import coordinates, map_plan, states_left_out
     from epicyclic.maps.lumped import check_axis, lumped
     from epicyclic.maps.near_zero import resolving_texts
@@ -206,12 +204,11 @@ def loss_map(
     own = lumped(loaded) if heated else None
     if heated:  # the map holds the losses of a gearbox that is as hot as its oil
         loaded = loaded.updated({"models.temperatures": "inlet"})
-    axes = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]
-    given, further = parse_vary(loaded, axes), parse_vary(loaded, vary)
-    speed, torque = given[AXES["speed"]], given[AXES["torque"]]
+    given, further = parse_axes(loaded, values), parse_vary(loaded, vary)
+    speed, torque = given["speed"], given["torque"]
     if ":" in (values["torque"] or "") and not even_torques:
         torque = resolving_texts(torque)
-    plan = map_plan(loaded, speed, torque, given.get(AXES["temperature"]), further, chosen)
+    plan = map_plan(loaded, speed, torque, given.get("temperature"), further, chosen)
     for state, reason in ({} if chosen else states_left_out(loaded)).items():
         click.echo(f"State {state} is left out: it {reason}", err=True)
     if heated:
@@ -270,6 +267,16 @@ def check_values(values: Mapping[str, str | None]) -> None:
     ]
     if problems:
         raise InputError(problems, "the command")
+
+
+def parse_axes(case: Case, values: Mapping[str, str | None]) -> dict[str, list[Any]]:
+    """The values of speed, torque and temperature, as far as they are given."""
+    from epicyclic.case.operating import AXES
+    from epicyclic.sweeps.plan import parse_vary
+
+    texts = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]
+    found = parse_vary(case, texts)
+    return {axis: found[key] for axis, key in AXES.items() if key in found}
 
 
 def compute(

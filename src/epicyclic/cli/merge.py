@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -11,34 +12,18 @@ from epicyclic.cli.compare import comparison_writer
 from epicyclic.cli.duty import duty_writer
 from epicyclic.cli.many import Write, finish, map_writer, sweep_writer
 from epicyclic.cli.oil import campaign_writer
+from epicyclic.cli.options import output_option
 from epicyclic.cli.pockets import study_writer
 from epicyclic.cli.pockets_table import table_writer
 
 __all__ = ["merge"]
-
-WRITERS: dict[str, Callable[..., Write]] = {
-    "sweep": sweep_writer,
-    "map": map_writer,
-    "study": study_writer,
-    "pockets-table": table_writer,
-    "oil": campaign_writer,
-    "comparison": comparison_writer,
-    "duty": duty_writer,
-}
-"""What writes the rows of each kind of plan."""
 
 
 @click.command()
 @click.argument(
     "files", metavar="FILE...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(path_type=Path),
-    help="File, or folder of a study or campaign.",
-)
+@output_option("File, or folder of a study or campaign.", required=True)
 def merge(files: tuple[Path, ...], output: Path) -> None:
     """Put shards together, as if one command had computed them.
 
@@ -58,6 +43,14 @@ def merge(files: tuple[Path, ...], output: Path) -> None:
     from epicyclic.sweeps.pocketing_table import TablePlan
     from epicyclic.sweeps.shards import gather
 
-    plans = (SweepPlan, MapPlan, StudyPlan, TablePlan, Campaign, ComparisonPlan, DutyPlan)
-    plan, rows, how = gather(files, {plan.kind: plan for plan in plans})
-    finish(plan, rows, WRITERS[plan.kind](plan, output, **how))
+    writers: dict[Any, Callable[..., Write]] = {
+        SweepPlan: sweep_writer,
+        MapPlan: map_writer,
+        StudyPlan: study_writer,
+        TablePlan: table_writer,
+        Campaign: campaign_writer,
+        ComparisonPlan: comparison_writer,
+        DutyPlan: duty_writer,
+    }
+    plan, rows, how = gather(files, {kind.kind: kind for kind in writers})
+    finish(plan, rows, writers[type(plan)](plan, output, **how))

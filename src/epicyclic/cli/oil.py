@@ -12,12 +12,13 @@ import click
 from epicyclic.cli.many import Write, compute
 from epicyclic.cli.options import (
     contact_set_option,
+    output_option,
     parse_changes,
     plot_option,
     runner_options,
     shard_option,
 )
-from epicyclic.cli.output import check_ending, draw
+from epicyclic.cli.output import draw
 
 if TYPE_CHECKING:
     from epicyclic.campaigns.campaign import Campaign
@@ -38,14 +39,7 @@ def oil() -> None:
 
 @oil.command(short_help="Simulate contacts of an OIL and fit models.")
 @click.argument("source", metavar="OIL")
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    metavar="DIR",
-    type=click.Path(path_type=Path),
-    help="Folder of simulations and models.",
-)
+@output_option("Folder of simulations and models.", "DIR", required=True)
 @click.option(
     "--size",
     type=click.IntRange(1),
@@ -92,8 +86,6 @@ def characterise(
     from epicyclic.campaigns.folder import SIMULATIONS, CampaignFolder
     from epicyclic.cli.progress import progress_bar
 
-    if plot is not None:
-        check_ending("--plot", plot)
     campaign = make_campaign(
         source,
         size=size,
@@ -141,13 +133,7 @@ def campaign_writer(campaign: Campaign, output: Path) -> Write:
 @click.argument(
     "folders", metavar="DIR...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
-@click.option(
-    "-o",
-    "--output",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="The models; default: model.json in DIR; needed for more than one.",
-)
+@output_option("The models; default: model.json in DIR; needed for more than one.", "FILE")
 @plot_models
 def fit(folders: tuple[Path, ...], output: Path | None, plot: Path | None) -> None:
     """Fit models again to the simulations in DIR, or to those in several folders together.
@@ -156,8 +142,6 @@ def fit(folders: tuple[Path, ...], output: Path | None, plot: Path | None) -> No
     """
     from epicyclic.campaigns.folder import open_folder
 
-    if plot is not None:
-        check_ending("--plot", plot)
     if output is None and len(folders) > 1:
         raise click.UsageError("For more than one DIR give the FILE of the models with -o.")
     campaigns = [open_folder(folder) for folder in folders]

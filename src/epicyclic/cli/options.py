@@ -10,6 +10,7 @@ from typing import Any
 
 import click
 
+from epicyclic.cli.output import PICTURES, check_ending
 from epicyclic.errors import InputError, Problem
 
 __all__ = [
@@ -19,7 +20,9 @@ __all__ = [
     "journal_option",
     "json_option",
     "load_with",
+    "output_option",
     "parse_changes",
+    "picture_option",
     "plot_option",
     "runner_options",
     "set_option",
@@ -91,9 +94,29 @@ set_option = set_option_for("the case", "operation.torque=500 N*m")
 contact_set_option = set_option_for("the contact", "lubricant.eyring_stress=8 MPa")
 
 
-def plot_option(text: str) -> Callable[[Any], Any]:
-    """The option --plot, with its help."""
-    return click.option("--plot", metavar="FILE", type=click.Path(path_type=Path), help=text)
+def plot_option(text: str, endings: Sequence[str] = PICTURES) -> Callable[[Any], Any]:
+    """The option --plot, with its help, of a file that must end so."""
+
+    def checked(context: click.Context, option: click.Parameter, path: Path | None) -> Path | None:
+        if path is not None:
+            check_ending("--plot", path, endings)
+        return path
+
+    kind = click.Path(path_type=Path)
+    return click.option("--plot", metavar="FILE", type=kind, callback=checked, help=text)
+
+
+def output_option(
+    text: str, metavar: str | None = None, required: bool = False
+) -> Callable[[Any], Any]:
+    """The option -o, with its help."""
+    kind = click.Path(path_type=Path)
+    return click.option("-o", "--output", required=required, metavar=metavar, type=kind, help=text)
+
+
+picture_option = click.option(
+    "--picture", type=click.Choice([ending[1:] for ending in PICTURES]), default="png"
+)
 
 
 def point_of(case: Any) -> str:

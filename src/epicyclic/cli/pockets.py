@@ -11,13 +11,15 @@ from epicyclic.cli.many import Write, compute
 from epicyclic.cli.options import (
     case_argument,
     load_with,
+    output_option,
+    picture_option,
     plot_option,
     point_of,
     runner_options,
     set_option,
     shard_option,
 )
-from epicyclic.cli.output import PICTURES, beside, check_ending, draw, picture_bytes
+from epicyclic.cli.output import beside, check_ending, draw, picture_bytes
 from epicyclic.whole_file import make_folder, write_file
 
 if TYPE_CHECKING:
@@ -49,8 +51,6 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
     from epicyclic.report.pocket_table import pocket_tables
     from epicyclic.report.tables import terminal
 
-    if plot is not None:
-        check_ending("--plot", plot)
     if animate is not None:
         check_ending("--animate", animate, (ANIMATION,))
     loaded = load_with(case, changes)
@@ -99,10 +99,8 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
     help='Curves and panels of the other studies, as in "speed=2000,4000 rpm".',
 )
 @click.option("--mesh", metavar="MESH", help="sun_mesh (default) or ring_mesh of a planetary set.")
-@click.option("--picture", type=click.Choice([kind[1:] for kind in PICTURES]), default="png")
-@click.option(
-    "-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder of the results."
-)
+@picture_option
+@output_option("Folder of the results.", required=True)
 @shard_option
 @runner_options
 def study(

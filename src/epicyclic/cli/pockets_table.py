@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.many import Write, check_values, compute
+from epicyclic.cli.many import Write, check_values, compute, parse_axes
 from epicyclic.cli.options import (
     case_argument,
     load_with,
+    output_option,
     runner_options,
     set_option,
     shard_option,
@@ -36,13 +37,7 @@ FORMATS = (".nc", ".csv")
     "--speed", metavar="VALUES", required=True, help='Of the input member, as in "500:5000:10 rpm".'
 )
 @temperature_option
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(path_type=Path),
-    help=".nc, to be used, or .csv",
-)
+@output_option(".nc, to be used, or .csv", required=True)
 @shard_option
 @runner_options
 def pockets_table(
@@ -53,16 +48,13 @@ def pockets_table(
     VALUES are a,b,c or start:stop:count with a unit. A case whose models.pocketing_table names the
     .nc file reads its pocketing losses from there.
     """
-    from epicyclic.case.operating import AXES
-    from epicyclic.sweeps.plan import parse_vary
-    from epicyclic.sweeps.pocketing_table import SPEED, TEMPERATURE, make_table_plan
+    from epicyclic.sweeps.pocketing_table import make_table_plan
 
     loaded = load_with(case, changes)
     check_ending("-o", output, FORMATS)
     check_values(values)
-    axes = [f"{AXES[name]}={text}" for name, text in values.items() if text is not None]
-    given = parse_vary(loaded, axes)
-    plan = make_table_plan(loaded, given[SPEED], given.get(TEMPERATURE))
+    given = parse_axes(loaded, values)
+    plan = make_table_plan(loaded, given["speed"], given.get("temperature"))
     compute(plan, output, runner, table_writer(plan, output), "tables")
 
 

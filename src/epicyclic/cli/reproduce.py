@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.options import runner_options
-from epicyclic.cli.output import PICTURES, picture_bytes, write_page
+from epicyclic.cli.options import output_option, picture_option, runner_options
+from epicyclic.cli.output import picture_bytes, write_page
 from epicyclic.errors import InputError, Problem
 from epicyclic.whole_file import make_folder, write_file
 
@@ -30,10 +30,8 @@ PAGE = "index.html"
     multiple=True,
     help="Only this figure, as in 3.5; may be given again. Default: all of the chapter.",
 )
-@click.option("--picture", type=click.Choice([kind[1:] for kind in PICTURES]), default="png")
-@click.option(
-    "-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder of the results."
-)
+@picture_option
+@output_option("Folder of the results.", required=True)
 @runner_options
 def reproduce(
     chapter: str, chosen: tuple[str, ...], picture: str, output: Path, runner: Runner

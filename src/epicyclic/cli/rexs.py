@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from epicyclic.cli.exit_codes import EXIT_INCOMPLETE
-from epicyclic.cli.options import case_argument, from_rexs, load_with, parse_changes, set_option
+from epicyclic.cli.options import (
+    case_argument,
+    from_rexs,
+    load_with,
+    output_option,
+    parse_changes,
+    set_option,
+)
 from epicyclic.errors import InputError, Problem
 from epicyclic.whole_file import write_file
 
@@ -30,12 +37,8 @@ def rexs() -> None:
 
 @rexs.command("import")
 @click.argument("file")
-@click.option(
-    "-o",
-    "--output",
-    metavar="CASE.toml",
-    type=click.Path(path_type=Path),
-    help="The case file to write. Default: FILE with the ending .toml, in this folder.",
+@output_option(
+    "The case file to write. Default: FILE with the ending .toml, in this folder.", "CASE.toml"
 )
 @component_option
 @click.option("--load-case", type=int, metavar="ID", help="A load case of the load spectrum.")
@@ -82,14 +85,7 @@ def import_(
 @rexs.command()
 @case_argument
 @click.argument("original", required=False)
-@click.option(
-    "-o",
-    "--output",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    required=True,
-    help="The file to write: .rexs, .rexsj or .rexsz.",
-)
+@output_option("The file to write: .rexs, .rexsj or .rexsz.", "FILE", required=True)
 @component_option
 @set_option
 def export(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.options import load_with, set_option
+from epicyclic.cli.options import load_with, output_option, set_option
 from epicyclic.cli.output import PICTURES, check_ending, check_page, draw, parse_size, write_page
 from epicyclic.errors import InputError, Problem
 
@@ -23,9 +23,7 @@ stored_argument = click.argument("source", metavar="CASE|FILE.nc")
 @click.command()
 @stored_argument
 @set_option
-@click.option(
-    "-o", "--output", required=True, type=click.Path(path_type=Path), help=".html, or .pdf."
-)
+@output_option(".html, or .pdf.", required=True)
 @click.option("--size", metavar="SIZE", help='Of every figure, as in "160x90 mm".')
 def report(source: str, changes: tuple[str, ...], output: Path, size: str | None) -> None:
     """Write a report as one file that needs nothing else: a page, or print.
@@ -48,12 +46,7 @@ def report(source: str, changes: tuple[str, ...], output: Path, size: str | None
 @stored_argument
 @click.argument("what", required=False)
 @set_option
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help=f"The picture, {', '.join(PICTURES)}; default: WHAT.png.",
-)
+@output_option(f"The picture, {', '.join(PICTURES)}; default: WHAT.png.")
 @click.option("--size", metavar="SIZE", help='As in "160x90 mm"; default: that of a slide.')
 @click.option(
     "--dpi",

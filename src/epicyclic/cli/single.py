@@ -19,7 +19,7 @@ from epicyclic.cli.options import (
     point_of,
     set_option,
 )
-from epicyclic.cli.output import beside, check_ending, draw, show
+from epicyclic.cli.output import beside, draw, show
 from epicyclic.status import Status
 
 if TYPE_CHECKING:
@@ -118,8 +118,6 @@ def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     from epicyclic.analysis.compare import compare_friction
     from epicyclic.report.tables import friction_table, terminal
 
-    if plot is not None:
-        check_ending("--plot", plot)
     loaded = load_with(case, changes)
     with telling_contacts(loaded):
         rows = compare_friction(loaded)
@@ -140,8 +138,6 @@ def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     from epicyclic.report.mesh_table import mesh_tables
     from epicyclic.report.tables import terminal
 
-    if plot is not None:
-        check_ending("--plot", plot)
     loaded = load_with(case, changes)
     meshes = mesh_details(loaded)
     terminal().print(mesh_tables(meshes))

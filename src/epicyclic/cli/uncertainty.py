@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.many import check_values, compute
+from epicyclic.cli.many import check_values, compute, parse_axes
 from epicyclic.cli.options import (
     load_with,
+    output_option,
     plot_option,
     runner_options,
     set_option,
@@ -56,9 +57,7 @@ seed_option = click.option(
     help="Points of the CYCLE that stand for all; default: 16.",
 )
 @seed_option
-@click.option(
-    "-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="Write a .nc file."
-)
+@output_option("Write a .nc file.", "FILE")
 @plot_option("Draw the drivers and the band to FILE-drivers.png and FILE-band.png.")
 @runner_options
 def uncertainty(
@@ -84,9 +83,10 @@ def uncertainty(
     from epicyclic.report.uncertainty_tables import uncertainty_tables
     from epicyclic.whole_file import check_place
 
-    for option, path, endings in (("-o", output, ((".nc",),)), ("--plot", plot, ())):
+    if output is not None:
+        check_ending("-o", output, (MAP_SUFFIX,))
+    for path in (output, plot):
         if path is not None:
-            check_ending(option, path, *endings)
             check_place(path)
     check_values(values)
     _check_use(source, cycle, changes, points, values)
@@ -148,10 +148,8 @@ def _study(
     from epicyclic.bands.plan import check_samples
     from epicyclic.bands.study import uncertainty_study
     from epicyclic.case.case import Case
-    from epicyclic.case.operating import AXES
     from epicyclic.cli.progress import progress_bar
     from epicyclic.maps.compute import checked_map, map_plan
-    from epicyclic.sweeps.plan import parse_vary
 
     if samples is not None:
         check_samples(samples)
@@ -159,9 +157,8 @@ def _study(
         return map_study(source, samples, seed)
     if values["speed"] is None:
         return uncertainty_study(source, samples, seed)
-    axes = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]
-    given = {axis: parse_vary(source, axes).get(key) for axis, key in AXES.items()}
-    plan = map_plan(source, given["speed"] or (), given["torque"] or (), given["temperature"])
+    given = parse_axes(source, values)
+    plan = map_plan(source, given["speed"], given["torque"], given.get("temperature"))
     with progress_bar("points of the map") as progress:
         data = checked_map(plan, replace(runner, progress=progress).run(plan))
     return map_study(data, samples, seed)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from epicyclic.cli.options import output_option
 from epicyclic.cli.output import check_page, write_page
 from epicyclic.errors import InputError, Problem
 
@@ -30,13 +31,7 @@ __all__ = ["validate"]
     is_flag=True,
     help="The measured figures only, with the 95 % bands of the computed ones: a minute.",
 )
-@click.option(
-    "-o",
-    "--output",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="A page with pictures and tables in place of the table: .html, or .pdf.",
-)
+@output_option("A page with pictures and tables in place of the table: .html, or .pdf.", "FILE")
 def validate(temperatures: bool, bands: bool, output: Path | None) -> None:
     """Compare with published figures: published, computed, difference, verdict."""
     from epicyclic.report.tables import terminal

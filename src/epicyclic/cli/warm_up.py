@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.options import case_argument, load_with, plot_option, point_of, set_option
+from epicyclic.cli.options import (
+    case_argument,
+    load_with,
+    output_option,
+    plot_option,
+    point_of,
+    set_option,
+)
 from epicyclic.cli.output import check_ending, draw
 
 if TYPE_CHECKING:
@@ -33,13 +40,7 @@ OUTPUTS = (".nc", ".csv", ".parquet")
     metavar="CYCLE",
     help="A .csv or .parquet file as for 'epicyclic duty', repeated; default: the operating point.",
 )
-@click.option(
-    "-o",
-    "--output",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Write .nc, .csv or .parquet.",
-)
+@output_option("Write .nc, .csv or .parquet.", "FILE")
 @plot_option("Draw temperatures and loss over time to a .png, .svg or .pdf file.")
 def warm_up(
     case: str,
@@ -61,9 +62,10 @@ def warm_up(
     from epicyclic.report.warm_up_table import warm_up_tables
     from epicyclic.whole_file import check_place
 
-    for option, path, endings in (("-o", output, OUTPUTS), ("--plot", plot, None)):
+    if output is not None:
+        check_ending("-o", output, OUTPUTS)
+    for path in (output, plot):
         if path is not None:
-            check_ending(option, path, *(() if endings is None else (endings,)))
             check_place(path)
     loaded = load_with(case, changes)
     with progress_bar("warming up") as progress:

@@ -13,6 +13,7 @@ from epicyclic.plots.style import (
     COLOUR_MAP,
     COLOURS,
     LINE_STYLES,
+    MARKERS,
     label_of,
     legend_of_figure,
     styled_figure,
@@ -22,7 +23,6 @@ from epicyclic.validation.chapters import Family, Mark
 
 __all__ = ["SOURCE", "branch_figure", "family_figure", "roller_figure"]
 
-MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 STARS = ("*", "P", "X")
 """Markers of published numbers."""
 SOURCE = "Talbot (2012)"

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.animation import FuncAnimation
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -16,7 +14,7 @@ from numpy.typing import NDArray
 from epicyclic.analysis.contact import FRAMES, ContactResult
 from epicyclic.case.fields import to_inputs
 from epicyclic.ehl.rough import Frame
-from epicyclic.plots.style import COLOURS, styled_figure
+from epicyclic.plots.style import COLOURS, gif_bytes, styled_figure
 from epicyclic.units import unit_text
 
 __all__ = [
@@ -140,10 +138,7 @@ def contact_animation(result: ContactResult) -> bytes:
         return [line for line, _ in moving]
 
     animation = FuncAnimation(figure, show, frames=len(frames))
-    with tempfile.TemporaryDirectory() as folder:  # the writer of frames takes a path only
-        path = Path(folder) / "contact.gif"
-        animation.save(path, writer=PillowWriter(fps=FRAMES_PER_SECOND), dpi=ANIMATION_DPI)
-        return path.read_bytes()
+    return gif_bytes(animation, FRAMES_PER_SECOND, ANIMATION_DPI)
 
 
 def _frames(result: ContactResult) -> Sequence[Frame]:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from epicyclic.analysis.compare import FrictionComparison, recommended
-from epicyclic.plots.style import COLOURS, legend_below, styled_figure
+from epicyclic.plots.style import COLOURS, legend_below, styled_figure, write_beside
 from epicyclic.units import decimals_of
 
 __all__ = ["friction_figure", "plot_friction_models"]
@@ -55,15 +55,9 @@ def plot_friction_models(rows: Sequence[FrictionComparison], ax: Axes) -> Axes:
             )
             if holds
         ]
-        ax.annotate(
-            ", ".join([f"{row.sliding:.{digits}f} W", *marks]),
-            (row.sliding, place),
-            xytext=(3, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize="small",
-            fontweight="bold" if row.chosen else "normal",
-        )
+        text = ", ".join([f"{row.sliding:.{digits}f} W", *marks])
+        weight = "bold" if row.chosen else "normal"
+        write_beside(ax, text, (row.sliding, place), fontweight=weight)
     ax.set_yticks(range(len(rows)), [row.name for row in rows])
     ax.invert_yaxis()
     ax.grid(visible=False, axis="y")

@@ -8,14 +8,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.colors import Colormap
 from matplotlib.figure import Figure
-from matplotlib.patches import FancyBboxPatch, Polygon, Rectangle
+from matplotlib.patches import Polygon, Rectangle
 
 from epicyclic.elements.base import HOUSING, OIL
+from epicyclic.plots.flow_shapes import INK, SOFT, Arrow, draw_box, fit
 from epicyclic.plots.power_flow import SLIDE
 from epicyclic.plots.style import styled_figure
 from epicyclic.results.heat import HeatBalance
@@ -24,7 +26,7 @@ from epicyclic.units import CELSIUS, format_number, unit_text
 
 __all__ = ["heat_figure", "plot_heat_network"]
 
-INK, SOFT, FLOW, PAPER = "#1a1d21", "#5b6470", "#5b7fa6", "#ffffff"
+FLOW, PAPER = "#5b7fa6", "#ffffff"
 COLOURS = "YlOrRd"
 DARKEST = 0.62
 """Darkest shade of the colour scale on which words stay readable. [1]"""
@@ -49,6 +51,8 @@ SHAFT = "_shaft"
 """Ends the names of shafts."""
 LETTER = 0.0082
 """Mean width of a letter over its size. [inch/point]"""
+_ARROW = Arrow(reach=(0.07, 0.8), length=(0.13, 0.6), share=0.45)
+_fit = partial(fit, LETTER)
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,9 +264,8 @@ def _outside(layout: _Layout) -> dict[str, tuple[float, float]]:
 # --- boxes ----------------------------------------------------------------------------------------
 
 
-def _fit(text: str, room: float, size: float) -> float:
-    """The size of a font at which `text` fits into `room`. [point]"""
-    return min(size, room / (LETTER * max(1, len(text))))
+def _write(ax: Axes, x: float, y: float, text: str, size: float, **style: Any) -> None:
+    ax.text(x, y, text, va="center", fontsize=size, color=INK, **style)
 
 
 def _box(
@@ -275,19 +278,8 @@ def _box(
     """A part with its name, temperature, and the heat of its losses."""
     (x, y), (width, height) = middle, half
     is_outside = node not in layout.heat.temperatures
-    ax.add_patch(
-        FancyBboxPatch(
-            (x - width + 0.04, y - height + 0.04),
-            2 * width - 0.08,
-            2 * height - 0.08,
-            boxstyle="round,pad=0.04",
-            fc=layout.colour(node),
-            ec=SOFT,
-            ls="--" if is_outside else "-",
-            lw=0.9,
-            zorder=5,
-        )
-    )
+    style = {"fc": layout.colour(node), "ls": "--" if is_outside else "-"}
+    draw_box(ax, (x - width, y - height), (2 * width, 2 * height), **style)
     lines = list(_lines(layout, node))
     step = min(0.25, 2 * (height - 0.05) / len(lines))
     alike = layout.columns if node in layout.columns else (node,)
@@ -298,17 +290,8 @@ def _box(
             for other, wanted, _ in _lines(layout, each)
             if wanted == size
         )
-        ax.text(
-            x,
-            y + (len(lines) / 2 - place - 0.5) * step,
-            text,
-            ha="center",
-            va="center",
-            fontsize=size,
-            fontweight=weight,
-            color=INK,
-            zorder=7,
-        )
+        at = y + (len(lines) / 2 - place - 0.5) * step
+        _write(ax, x, at, text, size, ha="center", fontweight=weight, zorder=7)
 
 
 def _lines(layout: _Layout, node: str) -> Iterator[tuple[str, float, str]]:
@@ -330,25 +313,16 @@ def _lines(layout: _Layout, node: str) -> Iterator[tuple[str, float, str]]:
 def _rail(ax: Axes, layout: _Layout, node: str, ends: tuple[float, float], y: float) -> None:
     """A node that many others meet, as a bar."""
     left, right = ends
-    colour, size = layout.colour(node), (right - left, 2 * FLAT)
-    ax.add_patch(Rectangle((left, y - FLAT), *size, fc=colour, ec=SOFT, lw=0.9, zorder=2))
+    colour, sides = layout.colour(node), (right - left, 2 * FLAT)
+    ax.add_patch(Rectangle((left, y - FLAT), *sides, fc=colour, ec=SOFT, lw=0.9, zorder=2))
     value = layout.temperature(node)
     watts = layout.heat.brought.get(node, 0.0)
     losses = f"   + {_power(watts)}" if watts >= SMALLEST else ""
     text = f"{in_words(node)}   {value:.1f} {unit_text(CELSIUS.display)}{losses}"
     # ways to the housing lead through the rail of the oil
     start = layout.edge if node == OIL and layout.has_housing else left
-    room = right - start - 0.2
-    ax.text(
-        start + 0.1,
-        y,
-        text,
-        va="center",
-        fontsize=_fit(text, room, 12),
-        fontweight="bold",
-        color=INK,
-        zorder=7,
-    )
+    size = _fit(text, right - start - 0.2, 12)
+    _write(ax, start + 0.1, y, text, size, fontweight="bold", zorder=7)
 
 
 # --- arrows ---------------------------------------------------------------------------------------
@@ -401,19 +375,12 @@ def _upright(
     """An upright arrow with its heat beside it, at the left or right, in a middle of its own."""
     start, tip = ends[flow.start], ends[flow.end]
     broad = layout.broad(flow)
-    points = [(across, along) for along, across in _arrow(start, tip, x, broad)]
+    points = _ARROW.corners(start, tip, x, broad, upright=True)
     ax.add_patch(Polygon(points, closed=True, color=FLOW, lw=0, zorder=4))
-    aside = broad / 2 + 0.06
-    ax.text(
-        x - aside if left else x + aside,
-        max(start, tip) - 0.4 * abs(tip - start) if middle is None else middle,
-        _power(flow.watts),
-        ha="right" if left else "left",
-        va="center",
-        fontsize=layout.letters,
-        color=INK,
-        zorder=6,
-    )
+    aside, side = (-1, "right") if left else (1, "left")
+    at = x + aside * (broad / 2 + 0.06)
+    y = max(start, tip) - 0.4 * abs(tip - start) if middle is None else middle
+    _write(ax, at, y, _power(flow.watts), layout.letters, ha=side, zorder=6)
 
 
 def _bridge(ax: Axes, layout: _Layout, flow: _Flow, x: float) -> None:
@@ -437,7 +404,8 @@ def _across(ax: Axes, layout: _Layout, flow: _Flow) -> None:
     middle = layout.rows[0]
     broad = min(layout.broad(flow), TALL)
     if abs(end - start) < 1.5 * layout.spacing:
-        shapes = [_arrow(start + sign * layout.width, end - sign * layout.width, middle, broad)]
+        ends = start + sign * layout.width, end - sign * layout.width
+        shapes = [_ARROW.corners(*ends, middle, broad)]
         between, y = (start + end) / 2, middle + TALL + 0.1
     else:
         low, top = middle + TALL, middle + TALL + 0.25 + broad
@@ -446,36 +414,17 @@ def _across(ax: Axes, layout: _Layout, flow: _Flow) -> None:
         shapes = [
             _band((start - broad / 2, low), (start + broad / 2, top)),
             _band((start - sign * broad / 2, top - broad), (end, top)),
-            ((across, along) for along, across in _arrow(top, low, end, broad)),
+            _ARROW.corners(top, low, end, broad, upright=True),
         ]
         y = low + 0.12
     for corners in shapes:
-        ax.add_patch(Polygon(list(corners), closed=True, color=FLOW, lw=0, zorder=4))
-    ax.text(
-        between,
-        y,
-        _power(flow.watts),
-        ha="center",
-        va="center",
-        fontsize=layout.letters,
-        color=INK,
-        zorder=6,
-    )
+        ax.add_patch(Polygon(corners, closed=True, color=FLOW, lw=0, zorder=4))
+    _write(ax, between, y, _power(flow.watts), layout.letters, ha="center", zorder=6)
 
 
-def _band(low: tuple[float, float], high: tuple[float, float]) -> Iterator[tuple[float, float]]:
+def _band(low: tuple[float, float], high: tuple[float, float]) -> list[tuple[float, float]]:
     """Corners of a rectangle."""
-    yield from (low, (high[0], low[1]), high, (low[0], high[1]))
-
-
-def _arrow(start: float, tip: float, middle: float, broad: float) -> Iterator[tuple[float, float]]:
-    """Corners of an arrow: along, across."""
-    half, reach = broad / 2, max(0.07, 0.8 * broad)
-    length = min(0.45 * abs(tip - start), max(0.13, 0.6 * broad))
-    neck = tip - length if tip > start else tip + length
-    yield from ((start, middle - half), (neck, middle - half), (neck, middle - reach))
-    yield tip, middle
-    yield from ((neck, middle + reach), (neck, middle + half), (start, middle + half))
+    return [low, (high[0], low[1]), high, (low[0], high[1])]
 
 
 # --- legend ---------------------------------------------------------------------------------------

@@ -15,7 +15,15 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 from numpy.typing import NDArray
 
 from epicyclic.case.operating import AXES, PLANE, STATE
-from epicyclic.plots.style import COLOUR_MAP, COLOURS, LINE_STYLES, label_of, legend_below, title_of
+from epicyclic.plots.style import (
+    COLOUR_MAP,
+    COLOURS,
+    LINE_STYLES,
+    in_percent,
+    label_of,
+    legend_below,
+    title_of,
+)
 from epicyclic.units import format_number, unit_text
 
 __all__ = [
@@ -129,7 +137,7 @@ def limits_of(data: xr.Dataset, name: str) -> Limits:
 
     An efficiency is in percent; None if there is no value.
     """
-    values = _shown(data[name])
+    values = in_percent(data[name])
     panels = (*AXES, STATE)
     found = values.isel({dim: 0 for dim in values.dims if dim not in panels}).to_numpy()
     known = found[np.isfinite(found)]
@@ -146,7 +154,7 @@ def plot_map(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Ax
     limits : tuple of float, optional
         Limits of the scale of colours, from `limits_of`; default: those of `data`.
     """
-    values = _shown(data[name]).transpose("torque", "speed")
+    values = in_percent(data[name]).transpose("torque", "speed")
     if min(values.shape) < 2 or not np.isfinite(values).any():
         longest = "torque" if data.sizes["torque"] > data.sizes["speed"] else "speed"
         return plot_map_lines(data, name, longest, ax, limits)
@@ -157,10 +165,8 @@ def plot_map(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Ax
     field = ax.pcolormesh(
         speed, torque, values, shading="gouraud", cmap=COLOUR_MAP, norm=norm, rasterized=True
     )
-    figure = ax.get_figure()
-    assert figure is not None
     below = of_efficiency and low < LEAST_EFFICIENCY
-    bar = figure.colorbar(
+    bar = ax.figure.colorbar(
         field, ax=ax, label=label_of(values), extend="min" if below else "neither"
     )
     levels: list[float] | int = LEVELS
@@ -250,7 +256,7 @@ def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes, limits: Lim
         line = data.isel({other: index})
         ax.plot(
             line[over],
-            _shown(line[name]),
+            in_percent(line[name]),
             color=COLOURS[number],
             ls=LINE_STYLES[number],
             marker=".",
@@ -260,7 +266,7 @@ def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes, limits: Lim
     legend_below(ax, title=other, title_fontsize="small", ncols=3)
     if limits is not None and limits[1] > 0:
         ax.set_ylim(min(0.0, limits[0]), ROOM * limits[1])
-    values = _shown(data[name])
+    values = in_percent(data[name])
     ax.set(
         title=f"{title_of(values)} over {over}",
         xlabel=_axis_label(data, over),
@@ -360,13 +366,6 @@ def limits_of_band(data: xr.Dataset) -> Limits:
     total = data.sel(result="total", drop=True)
     ends = [limits for end in ("low", "high") if (limits := limits_of(total, end)) is not None]
     return (min(low for low, _ in ends), max(high for _, high in ends)) if ends else None
-
-
-def _shown(values: xr.DataArray) -> xr.DataArray:
-    """`values`, an efficiency in percent."""
-    if values.name != "efficiency":
-        return values
-    return (100 * values).assign_attrs(values.attrs | {"units": "%"})
 
 
 def _some(axis: xr.DataArray) -> list[int]:

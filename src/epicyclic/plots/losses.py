@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
-from epicyclic.plots.style import COLOURS, legend_below
+from epicyclic.plots.style import COLOURS, legend_below, write_beside
 from epicyclic.records.contents import ResultContents
 from epicyclic.results.result import in_words
 from epicyclic.units import decimals_of, percent, power_unit
@@ -40,14 +40,7 @@ def plot_losses(result: ResultContents, ax: Axes) -> Axes:
     )
     for row, value in enumerate(sums.values()):
         share = f" ({percent(value / total)})" if total else ""
-        ax.annotate(
-            f"{value:.{decimals_of(total)}f}{share}",
-            (value, row),
-            xytext=(3, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize="small",
-        )
+        write_beside(ax, f"{value:.{decimals_of(total)}f}{share}", (value, row))
     _finish(ax, sums.values())
     ax.set(title="Losses by component", xlabel=f"power loss, {unit}")
     return ax
@@ -100,14 +93,7 @@ def _labels(result: ResultContents) -> dict[str, str]:
 
 def _step(ax: Axes, row: int, start: float, watts: float, colour: str, digits: int) -> None:
     ax.barh(row, watts, left=start, color=colour, edgecolor="black", linewidth=0.5)
-    ax.annotate(
-        f"{watts:.{digits}f}",
-        (start + watts, row),
-        xytext=(3, 0),
-        textcoords="offset points",
-        va="center",
-        fontsize="small",
-    )
+    write_beside(ax, f"{watts:.{digits}f}", (start + watts, row))
 
 
 def _finish(ax: Axes, watts: Iterable[float]) -> None:

@@ -95,9 +95,7 @@ def _draw_map(ax: Axes, path: FloatArray, face: FloatArray, values: FloatArray, 
         rasterized=True,
         vmax=top,
     )
-    figure = ax.get_figure()
-    assert figure is not None
-    figure.colorbar(drawn, ax=ax, label=f"{label}{told}", extend="max" if told else "neither")
+    ax.figure.colorbar(drawn, ax=ax, label=f"{label}{told}", extend="max" if told else "neither")
 
 
 def top_of_scale(values: FloatArray) -> tuple[float, str]:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
-from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.animation import FuncAnimation
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
@@ -20,7 +18,7 @@ from numpy.typing import NDArray
 
 from epicyclic.plots.pocket_section import Section, roll_angles
 from epicyclic.plots.pockets import plot_power
-from epicyclic.plots.style import label_of, styled_figure
+from epicyclic.plots.style import gif_bytes, label_of, styled_figure
 
 __all__ = ["MeshScene", "pocket_animation"]
 
@@ -56,15 +54,9 @@ def pocket_animation(mesh: xr.Dataset, progress: Progress = lambda done, total: 
     animation = FuncAnimation(
         scene.figure, lambda frame: scene.show(int(moments[frame])), frames=moments.size
     )
-    with tempfile.TemporaryDirectory() as folder:  # the writer of frames takes a path only
-        path = Path(folder) / "mesh.gif"
-        animation.save(
-            path,
-            writer=PillowWriter(fps=FRAMES_PER_SECOND),
-            dpi=DPI,
-            progress_callback=lambda done, total: progress(done + 1, total),
-        )
-        return path.read_bytes()
+    return gif_bytes(
+        animation, FRAMES_PER_SECOND, DPI, lambda done, total: progress(done + 1, total)
+    )
 
 
 class MeshScene:

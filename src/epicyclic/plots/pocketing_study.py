@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from epicyclic.plots.style import (
     COLOURS,
+    MARKERS,
     label_logarithms,
     label_of,
     legend_of_figure,
@@ -23,7 +24,6 @@ from epicyclic.validation.pocketing import PublishedStudy
 
 __all__ = ["study_figure"]
 
-MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 PUBLISHED = "Talbot (2012)"
 MOST_COLUMNS = 3
 SAME = 1e-6

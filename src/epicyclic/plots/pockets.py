@@ -15,7 +15,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 
 from epicyclic.plots.style import (
     COLOUR_MAP,
@@ -65,13 +65,11 @@ def pocket_figure(mesh: xr.Dataset) -> Figure:
 def plot_life_with_scale(mesh: xr.Dataset, name: str, kind: int, ax: Axes) -> Axes:
     """`plot_over_life` with a scale of the places across the face."""
     plot_over_life(mesh, name, kind, ax)
-    figure = ax.get_figure()
-    assert isinstance(figure, Figure)
-    _add_face_scale(mesh, figure, ax)
+    _add_face_scale(mesh, ax.figure, ax)
     return ax
 
 
-def _add_face_scale(mesh: xr.Dataset, figure: Figure, axes: Any, **options: Any) -> None:
+def _add_face_scale(mesh: xr.Dataset, figure: FigureBase, axes: Any, **options: Any) -> None:
     place = label_of(mesh["station_position"])
     figure.colorbar(_face_colours(mesh), ax=axes, label=place, **options)
 

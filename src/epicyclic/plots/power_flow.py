@@ -7,12 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise, permutations
 from typing import Any
 
 from matplotlib.axes import Axes
-from matplotlib.patches import FancyBboxPatch, Polygon, Rectangle
+from matplotlib.patches import Polygon, Rectangle
 
+from epicyclic.plots.flow_shapes import INK, SOFT, Arrow, draw_box, fit
 from epicyclic.plots.style import COLOURS
 from epicyclic.records.contents import ResultContents
 from epicyclic.records.power_flow import Line, Link, TrainFlow, power_flow
@@ -25,7 +27,7 @@ SLIDE = (13.33, 7.5)
 THROUGH, CIRCULATING, LOST = COLOURS[0], COLOURS[4], COLOURS[1]
 DARK = "#8a5f00"
 """The colour of circulating power, for words."""
-INK, SOFT, STRIPE, BOX = "#1a1d21", "#5b6470", "#f2f4f7", "#e3e8ee"
+STRIPE, BOX = "#f2f4f7", "#e3e8ee"
 LABELS, RIGHT_END = 2.55, 1.55
 """Room for the names of shafts at the left, and for the output at the right."""
 TOP, LOWEST, GROUNDS, LEGEND = 6.85, 1.75, 1.45, 0.25
@@ -39,6 +41,9 @@ WIDEST, THINNEST, SHORTEST = 0.6, 0.02, 0.55
 NO_POWER = 1e-9
 MOST_ORDERED = 6
 """Sets, and shafts, of which all orders are compared."""
+_ARROW = Arrow(reach=(0.09, 0.5), length=(0.16, 0.5), share=0.5)
+_fit = partial(fit, CHARACTER)
+_box = partial(draw_box, fc=BOX)
 _LABEL: Any = {"ha": "center", "fontsize": 11, "zorder": 6}
 
 
@@ -364,22 +369,9 @@ def _draw_band(
     ):
         if width:
             ends = (piece.start, piece.end) if power > 0 else (piece.end, piece.start)
-            points = list(_arrow(ends, edge - width / 2, width))
-            if upright:
-                points = [(across, along) for along, across in points]
+            points = _ARROW.corners(*ends, edge - width / 2, width, upright=upright)
             ax.add_patch(Polygon(points, closed=True, color=colour, lw=0, zorder=zorder))
             edge -= width
-
-
-def _arrow(ends: tuple[float, float], middle: float, width: float) -> Iterator[tuple[float, float]]:
-    """Corners of an arrow from the first to the second of `ends`: along, across."""
-    start, tip = ends
-    half, reach = width / 2, max(0.09, width / 2)
-    length = min(0.5 * abs(tip - start), max(0.16, half))
-    neck = tip - length if tip > start else tip + length
-    yield from ((start, middle - half), (neck, middle - half), (neck, middle - reach))
-    yield tip, middle
-    yield from ((neck, middle + reach), (neck, middle + half), (start, middle + half))
 
 
 def _label_band(ax: Axes, piece: _Piece, x: float, y: float, half: float) -> None:
@@ -399,7 +391,7 @@ def _draw_tap(ax: Axes, tap: _Tap, x: float, y: float) -> None:
 def _draw_loss(ax: Axes, start: tuple[float, float], tip: float, width: float) -> None:
     """An upright arrow of a loss."""
     x, y = start
-    points = [(across, along) for along, across in _arrow((y, tip), x, width)]
+    points = _ARROW.corners(y, tip, x, width, upright=True)
     ax.add_patch(Polygon(points, closed=True, color=LOST, lw=0, zorder=3.5))
 
 
@@ -428,51 +420,15 @@ def _draw_spine(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
 
 def _draw_boxes(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
     """One box for each line of a set, with its members and their torque."""
+    room = 2 * layout.box
+    write = partial(ax.text, x, ha="center", zorder=7)
     for link in layout.crossing(stage):
         y = layout.lanes[link.line]
-        _box(ax, (x - layout.box, y - layout.height), (2 * layout.box, 2 * layout.height))
+        _box(ax, (x - layout.box, y - layout.height), (room, 2 * layout.height))
         name = " + ".join(member.replace("_", " ") for member in link.members)
-        ax.text(
-            x,
-            y + 0.02,
-            name,
-            ha="center",
-            va="bottom",
-            fontsize=_fit(name, 2 * layout.box, 11),
-            color=INK,
-            zorder=7,
-        )
+        write(y + 0.02, name, va="bottom", fontsize=_fit(name, room, 11), color=INK)
         torque = _torque(link.torque)
-        ax.text(
-            x,
-            y - 0.02,
-            torque,
-            ha="center",
-            va="top",
-            fontsize=_fit(torque, 2 * layout.box, 10),
-            color=SOFT,
-            zorder=7,
-        )
-
-
-def _fit(text: str, room: float, size: float) -> float:
-    """The size of a font at which `text` fits into `room`. [point]"""
-    return min(size, room / (CHARACTER * max(1, len(text))))
-
-
-def _box(ax: Axes, corner: tuple[float, float], size: tuple[float, float]) -> None:
-    ax.add_patch(
-        FancyBboxPatch(
-            (corner[0] + 0.04, corner[1] + 0.04),
-            size[0] - 0.08,
-            size[1] - 0.08,
-            boxstyle="round,pad=0.04",
-            fc=BOX,
-            ec=SOFT,
-            lw=0.9,
-            zorder=5,
-        )
-    )
+        write(y - 0.02, torque, va="top", fontsize=_fit(torque, room, 10), color=SOFT)
 
 
 def _draw_card(ax: Axes, layout: _Layout, stage: str, x: float, entering: float) -> None:
@@ -482,18 +438,10 @@ def _draw_card(ax: Axes, layout: _Layout, stage: str, x: float, entering: float)
     half = min(1.7, 0.5 * layout.width - 0.08)
     height = HEAD + ROW * rows
     _box(ax, (x - half, TOP - height), (2 * half, height))
+    write = partial(ax.text, color=INK, zorder=7)
     name = stage.replace("_", " ")
-    ax.text(
-        x,
-        TOP - 0.06,
-        name,
-        ha="center",
-        va="top",
-        fontsize=_fit(name, 2 * half, 13),
-        fontweight="bold",
-        color=INK,
-        zorder=7,
-    )
+    size = _fit(name, 2 * half, 13)
+    write(x, TOP - 0.06, name, ha="center", va="top", fontsize=size, fontweight="bold")
     most = max(
         (abs(power) for each in layout.flow.stages.values() for power in each.rolling.values()),
         default=0.0,
@@ -513,28 +461,11 @@ def _draw_card(ax: Axes, layout: _Layout, stage: str, x: float, entering: float)
             (0.0, inside, THROUGH),
             (inside, abs(power) * scale - inside, CIRCULATING),
         ):
-            ax.add_patch(
-                Rectangle(
-                    (left + start, low),
-                    length,
-                    0.19,
-                    color=colour,
-                    alpha=0.35,
-                    lw=0,
-                    zorder=6,
-                )
-            )
-        ax.text(x - half + 0.08, low + 0.09, words, va="center", fontsize=size, color=INK, zorder=7)
-        ax.text(
-            x + half - 0.08,
-            low + 0.09,
-            _power(power),
-            ha="right",
-            va="center",
-            fontsize=size,
-            color=INK,
-            zorder=7,
-        )
+            at = left + start, low
+            ax.add_patch(Rectangle(at, length, 0.19, color=colour, alpha=0.35, lw=0, zorder=6))
+        write(x - half + 0.08, low + 0.09, words, va="center", fontsize=size)
+        right = x + half - 0.08
+        write(right, low + 0.09, _power(power), ha="right", va="center", fontsize=size)
     if own.loss:
         share = f" ({percent(own.loss / entering, 2)})" if entering else ""
         aside = x + 0.14 + own.loss * layout.scale / 2
@@ -570,15 +501,8 @@ def _draw_grounds(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
         held = link.line.replace("_", " ")
         name = member if held in (member, f"{stage}.{member}") else f"{member}, {held}"
         for low, words, colour in ((0.42, name, INK), (0.6, _torque(link.torque), SOFT)):
-            ax.text(
-                at,
-                GROUNDS - low,
-                words,
-                ha="center",
-                va="top",
-                fontsize=_fit(words, room, 10),
-                color=colour,
-            )
+            size = _fit(words, room, 10)
+            ax.text(at, GROUNDS - low, words, ha="center", va="top", fontsize=size, color=colour)
 
 
 # --- legend ---------------------------------------------------------------------------------------

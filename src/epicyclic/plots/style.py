@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import io
 import math
+import tempfile
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 import numpy as np
@@ -23,16 +25,22 @@ from numpy.typing import NDArray
 
 from epicyclic.units import format_number, unit_text
 
+if TYPE_CHECKING:
+    from matplotlib.animation import Animation
+
 __all__ = [
     "COLOURS",
     "COLOUR_MAP",
     "LINE_STYLES",
+    "MARKERS",
     "PANEL",
     "STYLE",
     "TITLE_CHARACTERS",
     "caption_below",
     "closed_period",
     "figure_bytes",
+    "gif_bytes",
+    "in_percent",
     "label_logarithms",
     "label_of",
     "legend_below",
@@ -40,6 +48,7 @@ __all__ = [
     "room_of",
     "styled_figure",
     "title_of",
+    "write_beside",
 ]
 
 FloatArray = NDArray[np.float64]
@@ -48,6 +57,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 """Colours of M. Okabe and K. Ito, Color Universal Design (2008)."""
 COLOUR_MAP = "viridis"
 LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (8, 2)))
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 """Beside colours, for prints in grey."""
 PANEL = (4.8, 3.4)
 """Width and height of one of the Axes of a figure. [inch]"""
@@ -225,6 +235,24 @@ def figure_bytes(figure: Figure, ending: str) -> bytes:
     return picture.getvalue()
 
 
+def gif_bytes(
+    animation: Animation, fps: int, dpi: int, told: Callable[[int, int], object] | None = None
+) -> bytes:
+    """What a GIF file holds of an animation; `told` is called with the number of each frame."""
+    with tempfile.TemporaryDirectory() as folder:  # the writer of frames takes a path only
+        path = Path(folder) / "moving.gif"
+        animation.save(path, "pillow", fps, dpi, progress_callback=told)
+        return path.read_bytes()
+
+
+def write_beside(
+    ax: Axes, text: str, place: tuple[float, float], *, gap: int = 3, **style: Any
+) -> None:
+    """Small words at the right of a place of the data, with a `gap` of some points."""
+    style = {"fontsize": "small", **style}
+    ax.annotate(text, place, (gap, 0), textcoords="offset points", va="center", **style)
+
+
 def label_logarithms(*axes: Axis) -> None:
     """Plain numbers along axes with logarithms: 1, 2, 5, 10 where there is room, else 1, 10."""
     for axis in axes:
@@ -245,6 +273,13 @@ def label_of(variable: xr.DataArray) -> str:
     unit = unit_text(str(variable.attrs["units"]))
     name = str(variable.attrs["long_name"]).replace("_", " ")  # of gears
     return f"{name}, {unit}" if unit else name
+
+
+def in_percent(values: xr.DataArray) -> xr.DataArray:
+    """`values`, an efficiency in percent."""
+    if values.name != "efficiency":
+        return values
+    return (100 * values).assign_attrs(values.attrs | {"units": "%"})
 
 
 def title_of(variable: xr.DataArray) -> str:

@@ -14,7 +14,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
@@ -25,10 +24,12 @@ from epicyclic.plots.style import (
     COLOURS,
     LINE_STYLES,
     TITLE_CHARACTERS,
+    in_percent,
     label_of,
     legend_below,
     room_of,
     title_of,
+    write_beside,
 )
 from epicyclic.records.files import is_sweep
 from epicyclic.units import format_number, unit_text
@@ -55,6 +56,8 @@ LABEL_WIDTH = 14
 """Width of the labels of parallel axes. [characters]"""
 MOST_TICKS = 4
 """Most values of a parallel axis that has a tick at each of them."""
+_BACKGROUND = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5}
+"""Of the values beside such an axis."""
 MOST_POINTS = 5000
 """Drawn point by point, and in a report altogether."""
 LEFT_OUT = "points_left_out"
@@ -147,7 +150,7 @@ def plot_sweep_lines(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     over, *others = varied(data)
     between = others[:1]
     part = _at_first(data, [over, *between])
-    values = _in_percent(part[name])
+    values = in_percent(part[name])
     places = values[over].to_numpy()
     for number, index in enumerate(_some(data, between)):
         line = values.isel(index)
@@ -171,13 +174,11 @@ def plot_sweep_field(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     """`name` over two dimensions, with lines of equal value and the points that were computed."""
     across, up = fields_of(data)
     part = _at_first(data, [across, up])
-    values = _in_percent(part[name]).transpose(up, across).sortby([up, across])
+    values = in_percent(part[name]).transpose(up, across).sortby([up, across])
     x, y, z = (array.to_numpy() for array in (values[across], values[up], values))
     if np.isfinite(z).any():
         field = ax.pcolormesh(x, y, z, shading="gouraud", cmap=COLOUR_MAP, rasterized=True)
-        figure = ax.get_figure()
-        assert figure is not None
-        figure.colorbar(field, ax=ax, label=label_of(values))
+        ax.figure.colorbar(field, ax=ax, label=label_of(values))
         draw_lines(ax, (x, y, z), LEVELS)
     points = [grid.ravel() for grid in np.meshgrid(x, y)]
     ax.plot(*points, ls="", marker=".", ms=4, color="black", clip_on=False)
@@ -198,7 +199,7 @@ def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
     dims, results = varied(data), shown_results(data)
     part = thinned(_at_first(data, dims)[results])
     points = part.stack(point=dims).dropna("point", subset=["total"])
-    arrays = [points[dim] for dim in dims] + [_in_percent(points[name]) for name in results]
+    arrays = [points[dim] for dim in dims] + [in_percent(points[name]) for name in results]
     columns = [_column(array) for array in arrays]
     places = np.arange(len(arrays), dtype=float)
     heights = np.column_stack([heights for heights, _ in columns])
@@ -215,15 +216,7 @@ def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
     for place, (_, ticks) in zip(places, columns, strict=True):
         ax.axvline(place, color="black", lw=0.8)
         for height, text in ticks:
-            ax.annotate(
-                text,
-                (place, height),
-                xytext=(3, 0),
-                textcoords="offset points",
-                va="center",
-                fontsize="x-small",
-                bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5},
-            )
+            write_beside(ax, text, (place, height), fontsize="x-small", bbox=_BACKGROUND)
     labels = [_axis_label(data, dim) for dim in dims]
     labels += [label_of(array) for array in arrays[len(dims) :]]
     ax.set_xticks(places, [_wrapped(label) for label in labels], fontsize="small")
@@ -234,9 +227,7 @@ def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
     drawn = f"{part['total'].size} of {part['total'].size + left_out} points"
     title = f"{drawn if left_out else 'Every point'} of the sweep"
     ax.set(title=title, xlim=(-0.1, places[-1] + 0.3), ylim=(-0.05, 1.05))
-    figure = ax.get_figure()
-    assert isinstance(figure, Figure)
-    figure.colorbar(lines, ax=ax, label=label_of(data["total"]))
+    ax.figure.colorbar(lines, ax=ax, label=label_of(data["total"]))
     return ax
 
 
@@ -292,12 +283,6 @@ def _is_number(values: xr.DataArray) -> bool:
 
 def _is_count(values: xr.DataArray) -> bool:
     return values.dtype.kind in "iu"
-
-
-def _in_percent(values: xr.DataArray) -> xr.DataArray:
-    if values.name != "efficiency":
-        return values
-    return (100 * values).assign_attrs(values.attrs | {"units": "%"})
 
 
 def _unit(values: xr.DataArray) -> str:

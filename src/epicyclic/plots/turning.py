@@ -265,10 +265,8 @@ def _draw_plane(mesh: xr.Dataset, ax: Axes) -> None:
         xlabel=label_of(mesh["path_position"]),
         ylabel=label_of(mesh["face_position"]),
     )
-    figure = ax.get_figure()
-    assert figure is not None
     _, told = _top(mesh)
-    figure.colorbar(
+    ax.figure.colorbar(
         ScalarMappable(_scale(mesh), COLOUR_MAP),
         ax=ax,
         label=f"{label_of(mesh['line_load'])}{told}",

@@ -22,6 +22,7 @@ __all__ = [
     "band_figure",
     "banded",
     "drivers_figure",
+    "mean_shares",
     "plot_band",
     "plot_drivers",
     "plot_shares",
@@ -64,6 +65,12 @@ def shares_figure(data: xr.Dataset) -> Figure:
     return figure
 
 
+def mean_shares(data: xr.Dataset) -> xr.DataArray:
+    """Shares of the variance of the total loss over a map, the mean where the loss is."""
+    shares, weights = data["first_order"], data["total"].fillna(0.0)
+    return (shares.fillna(0.0) * weights).sum(weights.dims) / weights.sum()
+
+
 def plot_shares(data: xr.Dataset, ax: Axes) -> Axes:
     """Shares of inputs and models in the variance of the total loss over a map: mean and range.
 
@@ -72,12 +79,11 @@ def plot_shares(data: xr.Dataset, ax: Axes) -> Axes:
     data : xarray.Dataset
         A map with its uncertainty.
     """
-    shares, weights = data["first_order"], data["total"].fillna(0.0)
-    mean = (shares.fillna(0.0) * weights).sum(weights.dims) / weights.sum()
+    mean = mean_shares(data)
     mean = mean.sortby(mean)[-MOST_DRIVERS:]
     drivers = [str(key) for key in mean["driver"].values]
-    own = 100 * shares.sel(driver=drivers)
-    low, high = (end.to_numpy() for end in (own.min(weights.dims), own.max(weights.dims)))
+    own, over = 100 * data["first_order"].sel(driver=drivers), data["total"].dims
+    low, high = (end.to_numpy() for end in (own.min(over), own.max(over)))
     colours = [COLOURS[4 if key.startswith(MODEL_FORM) else 0] for key in drivers]
     middle = 100 * mean.to_numpy()
     ax.barh(range(len(drivers)), middle, color=colours, edgecolor="black", linewidth=0.5)

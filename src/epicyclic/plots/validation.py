@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from epicyclic.plots.style import COLOURS
+from epicyclic.plots.style import COLOURS, write_beside
 from epicyclic.units import format_number, percent, unit_text
 from epicyclic.validation.compare import Comparison
 
@@ -44,15 +44,8 @@ def plot_deviations(rows: Sequence[Comparison], ax: Axes) -> Axes:
             ax.barh(place, 2 * tolerance, left=-tolerance, height=0.7, color=_BAND)
         value = 100 * min(max(row.difference, -SHOWN), SHOWN)
         ax.plot(value, place, ls="none", ms=6, **_MARKS[row.verdict])
-        ax.annotate(
-            f"{_number(row)}, {percent(row.difference, signed=True)}",
-            (100 * SHOWN, place),
-            xytext=(6, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize="small",
-            annotation_clip=False,
-        )
+        text = f"{_number(row)}, {percent(row.difference, signed=True)}"
+        write_beside(ax, text, (100 * SHOWN, place), gap=6, annotation_clip=False)
     ax.axvline(0.0, color="black", lw=0.8)
     ax.set_yticks(range(len(rows)), ["\n".join(textwrap.wrap(row.what, LETTERS)) for row in rows])
     ax.tick_params(axis="y", labelsize="small")
@@ -66,9 +59,7 @@ def plot_deviations(rows: Sequence[Comparison], ax: Axes) -> Axes:
     ]
     if any(row.role == "validation" and row.tolerance > 0 for row in rows):
         handles.append(Patch(facecolor=_BAND, label="tolerance"))
-    figure = ax.get_figure()
-    assert figure is not None
-    figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False)
+    ax.figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False)
     return ax
 
 

@@ -8,7 +8,7 @@ from rich.text import Text
 from epicyclic.analysis.contact import ContactFigure, ContactResult
 from epicyclic.ehl.roughness import Profile
 from epicyclic.report.shown import shown
-from epicyclic.report.tables import plain_table
+from epicyclic.report.tables import number_table
 from epicyclic.status import Status
 from epicyclic.units import MICROMETRE, Quantity, unit_text
 
@@ -17,11 +17,10 @@ __all__ = ["contact_tables"]
 
 def contact_tables(result: ContactResult) -> RenderableType:
     """Figures of a contact and how its solution ended."""
-    table = plain_table(result.case.title or "Line contact")
-    table.show_header = False
-    table.add_column("", no_wrap=True)
-    table.add_column("", justify="right")
+    title = result.case.title or "Line contact"
+    table = number_table(title, "", "", no_wrap=(True, False))
     table.add_column("")
+    table.show_header = False
     for figure in result.figures:
         table.add_row(figure.name, shown(_displayed(figure)), unit_text(figure.display))
     parts: list[RenderableType] = [table] if result.figures else []

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from epicyclic.case.wording import one_line
 from epicyclic.report.shown import shown
-from epicyclic.report.tables import plain_table
+from epicyclic.report.tables import number_table
 from epicyclic.units import percent
 
 if TYPE_CHECKING:
@@ -42,9 +42,8 @@ def duty_tables(data: xr.Dataset) -> RenderableType:
 
 def _tables(data: xr.Dataset, title: str) -> list[RenderableType]:
     modes = [str(name) for name in data["mode"].values]
-    table = plain_table(f"{title}: energy in kJ")
-    for number, column in enumerate(("", *modes, "total", "of lost")):
-        table.add_column(column, justify="right" if number else "left", no_wrap=not number)
+    heads = ("", *modes, "total", "of lost")
+    table = number_table(f"{title}: energy in kJ", *heads, no_wrap=(True, False))
     _add_row(table, "entering", data["energy_in"])
     _add_row(table, "leaving", data["energy_out"], end_section=True)
     lost = data["energy_lost"]
@@ -63,10 +62,8 @@ def _tables(data: xr.Dataset, title: str) -> list[RenderableType]:
 
 def _states_table(data: xr.Dataset) -> Table:
     """Energy of each state."""
-    table = plain_table("States: energy in kJ")
     heads = ("", "entering", "leaving", "lost", "duration s", "efficiency")
-    for number, column in enumerate(heads):
-        table.add_column(column, justify="right" if number else "left")
+    table = number_table("States: energy in kJ", *heads)
     for name in data["state"].values:
         own = data.sel(state=name)
         values = [own["state_energy_in"], own["state_energy_out"]]

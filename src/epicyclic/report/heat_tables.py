@@ -17,7 +17,7 @@ from epicyclic.analysis.heat import (
 from epicyclic.case.case import Case
 from epicyclic.case.wording import sentence
 from epicyclic.errors import ConvergenceError
-from epicyclic.report.page import Cell, Listing, Table, number
+from epicyclic.report.page import Cell, Listing, Table, number, tenths
 from epicyclic.results.heat import HeatBalance, HeatWay
 from epicyclic.results.result import Result, in_words
 from epicyclic.units import CELSIUS, format_number, percent, unit_text
@@ -42,10 +42,8 @@ def _temperatures(heat: HeatBalance) -> Table:
             (
                 Cell(in_words(node)),
                 number(value, f"heat.{places[node]}.{node}.value", text=f"{value:.1f}"),
-                number(known[node] - heat.oil, "", text=f"{known[node] - heat.oil:z.1f}"),
-                number(brought[node], "", text=f"{brought[node]:z.1f}")
-                if node in brought
-                else Cell(""),
+                tenths(known[node] - heat.oil),
+                tenths(brought[node]) if node in brought else Cell(""),
             )
         )
     note = (
@@ -74,7 +72,7 @@ def _end(way: HeatWay) -> str:
 
 def _shared(watts: float, whole: float, key: str) -> tuple[Cell, Cell]:
     share = percent(watts / whole) if whole else ""
-    return number(watts, key, text=f"{watts:z.1f}"), Cell(share, math.nan)
+    return tenths(watts, key), Cell(share, math.nan)
 
 
 def ways_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
@@ -84,7 +82,7 @@ def ways_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
             Cell(way.key),
             Cell(in_words(way.hot)),
             Cell(in_words(way.into)),
-            number(way.watts, f"heat.ways.{way.key}.heat", text=f"{way.watts:z.1f}"),
+            tenths(way.watts, f"heat.ways.{way.key}.heat"),
             number(
                 None if math.isnan(way.conductance) else way.conductance,
                 f"heat.ways.{way.key}.conductance",

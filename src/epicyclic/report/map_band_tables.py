@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from epicyclic.plots.loss_map import at_temperatures
+from epicyclic.plots.uncertainty import mean_shares
 from epicyclic.report.advice import LIMITS, MOST, driver_name
 from epicyclic.report.grids import grid_table
 from epicyclic.report.page import Cell, Listing, Table, aligned
@@ -49,9 +50,8 @@ def _limits(data: xr.Dataset) -> Iterator[str]:
 
 
 def _mean_shares(data: xr.Dataset) -> xr.DataArray:
-    """Shares of the variance of the total loss, the mean where the loss is, the largest first."""
-    shares, weights = data["first_order"], data["total"].fillna(0.0)
-    mean = (shares.fillna(0.0) * weights).sum(weights.dims) / weights.sum()
+    """`mean_shares`, the largest first."""
+    mean = mean_shares(data)
     return mean.sortby(-mean)
 
 

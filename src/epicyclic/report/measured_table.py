@@ -13,7 +13,7 @@ from epicyclic.measurement.comparison import MeasuredComparison
 from epicyclic.measurement.deviations import CALIBRATED, ErrorFigures
 from epicyclic.measurement.fit_result import Fit, FittedParameter
 from epicyclic.report.shown import MISSING, shown
-from epicyclic.report.tables import plain_table
+from epicyclic.report.tables import number_table, plain_table
 from epicyclic.sweeps.unloaded import AS_TESTED
 from epicyclic.units import unit_text
 
@@ -39,12 +39,10 @@ def measured_tables(comparison: MeasuredComparison) -> RenderableType:
 
 
 def _error_table(comparison: MeasuredComparison) -> Table:
-    table = plain_table("Computed less measured loss")
-    table.add_column("case, points", no_wrap=True)
     names = ["n", "mean W", "mean %", "rms W", "size %", "most W", "most %", "line"]
     weighted = comparison.measured.uncertainty is not None
-    for name in [*names, *["χ²"] * weighted]:
-        table.add_column(name, justify="right", no_wrap=True)
+    heads = ["case, points", *names, *["χ²"] * weighted]
+    table = number_table("Computed less measured loss", *heads, no_wrap=(True, True))
     for number, row in enumerate(comparison.errors):
         if number and not row.group:
             table.add_section()
@@ -114,10 +112,9 @@ def _legend(comparison: MeasuredComparison) -> str:
 
 
 def _fit_table(fit: Fit) -> Table:
-    table = plain_table(f"{CALIBRATED} values")
-    table.add_column("key", no_wrap=True)
-    for name in ("start", CALIBRATED, "std. error", f"{100 * fit.confidence:.4g} % interval"):
-        table.add_column(name, justify="right", no_wrap=True)
+    interval = f"{100 * fit.confidence:.4g} % interval"
+    heads = ("key", "start", CALIBRATED, "std. error", interval)
+    table = number_table(f"{CALIBRATED} values", *heads, no_wrap=(True, True))
     table.add_column("unit")
     for item in fit.parameters:
         table.add_row(
@@ -138,10 +135,8 @@ def _interval(item: FittedParameter) -> str:
 
 
 def _correlation_table(fit: Fit) -> Table:
-    table = plain_table("Correlations")
-    table.add_column("", no_wrap=True)
-    for number in range(len(fit.parameters)):
-        table.add_column(f"({number + 1})", justify="right")
+    heads = (f"({number + 1})" for number in range(len(fit.parameters)))
+    table = number_table("Correlations", "", *heads, no_wrap=(True, False))
     for number, (item, row) in enumerate(zip(fit.parameters, fit.correlation, strict=True)):
         table.add_row(f"({number + 1}) {item.key}", *(shown(value, 3) for value in row))
     return table

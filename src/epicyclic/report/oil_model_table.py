@@ -10,7 +10,7 @@ from epicyclic.case.plain import value_at
 from epicyclic.losses.fitted import domain_ranges
 from epicyclic.oilmodel.model import FORMS, OilModel, QuantityFit
 from epicyclic.report.shown import shown
-from epicyclic.report.tables import plain_table
+from epicyclic.report.tables import number_table, plain_table
 from epicyclic.units import percent, unit_text
 
 __all__ = ["oil_model_tables"]
@@ -87,10 +87,7 @@ def _errors(title: str, quantity: str, fit: QuantityFit) -> Table:
 
 
 def _domain(title: str, model: OilModel, quantity: str) -> Table:
-    table = plain_table(title)
-    table.add_column("", no_wrap=True)
-    for name in ("from", "to"):
-        table.add_column(name, justify="right")
+    table = number_table(title, "", "from", "to", no_wrap=(True, False))
     table.add_column("")
     for item in domain_ranges(model, quantity):
         low, high = (shown(limit, 3) for limit in (item.low or 0.0, item.high or 0.0))

@@ -25,6 +25,7 @@ __all__ = [
     "aligned",
     "gallery",
     "number",
+    "tenths",
 ]
 
 
@@ -59,6 +60,11 @@ def number(value: float | None, key: str, digits: int = 4, text: str = "") -> Ce
     if value is None:
         return Cell(MISSING)
     return Cell(text or shown(value, digits), value, key)
+
+
+def tenths(value: float | None, key: str = "") -> Cell:
+    """A cell that shows `value` with one decimal, as that of watts."""
+    return number(value, key, text="" if value is None else f"{value:z.1f}")
 
 
 def aligned(text: str) -> Cell:

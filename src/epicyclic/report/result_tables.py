@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from epicyclic.records.contents import Measure, ResultContents, set_of
-from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number
+from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number, tenths
 from epicyclic.report.shown import MISSING, error_text, shown
 from epicyclic.results.result import in_words
 from epicyclic.units import known_text, large_unit, percent, unit_text
@@ -71,15 +71,11 @@ def _power(label: str, watts: float, key: str) -> KeyFigure:
     return KeyFigure(label, number(watts, key, text=text), unit)
 
 
-def _watts(value: float, key: str) -> Cell:
-    return number(value, key, text=f"{value:z.1f}")
-
-
 def share_row(result: ResultContents, watts: float, key: str) -> tuple[Cell, Cell, Cell]:
     """Power, share of the total loss, share of the input power."""
     of_total = percent(watts / result.total) if result.total else ""
     of_input = percent(watts / result.input_power, 3) if result.input_power else ""
-    return _watts(watts, key), aligned(of_total), aligned(of_input)
+    return tenths(watts, key), aligned(of_total), aligned(of_input)
 
 
 def losses_table(result: ResultContents) -> Table:

@@ -8,7 +8,7 @@ from typing import Any
 
 from epicyclic.case.template import toml_value
 from epicyclic.records.contents import ResultContents
-from epicyclic.report.page import Cell, KeyFigure, Table, aligned, number
+from epicyclic.report.page import Cell, KeyFigure, Table, aligned, number, tenths
 from epicyclic.report.result_tables import key_figures
 from epicyclic.report.shown import MISSING
 from epicyclic.units import percent
@@ -58,7 +58,7 @@ def _losses(first: ResultContents, second: ResultContents, names: tuple[str, str
 
 def _difference(name: str, first: float | None, second: float | None) -> tuple[Cell, ...]:
     label = name.replace("_", " ")
-    values = (_watts(first), _watts(second))
+    values = (tenths(first), tenths(second))
     if first is None or second is None:
         return (Cell(label), *values, Cell(MISSING), Cell(MISSING))
     share = percent((second - first) / first, signed=True) if first else ""
@@ -68,10 +68,6 @@ def _difference(name: str, first: float | None, second: float | None) -> tuple[C
         number(second - first, "", text=f"{second - first:+z.1f}"),
         aligned(share),
     )
-
-
-def _watts(value: float | None) -> Cell:
-    return Cell(MISSING) if value is None else number(value, "", text=f"{value:z.1f}")
 
 
 def _flat(tables: Mapping[str, Any], key: str = "") -> Iterator[tuple[str, str]]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from rich import box
 from rich.columns import Columns
-from rich.console import Console, Group, RenderableType
+from rich.console import Console, Group, JustifyMethod, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
@@ -45,6 +45,7 @@ from epicyclic.results.result import Result, number_fields
 __all__ = [
     "as_on_page",
     "friction_table",
+    "number_table",
     "plain_table",
     "result_tables",
     "terminal",
@@ -163,12 +164,15 @@ def plain_table(title: str) -> FittedTable:
     )
 
 
-def number_table(title: str, *columns: str) -> FittedTable:
-    """An empty table of names, in its first column, and numbers."""
+def number_table(
+    title: str, *columns: str, no_wrap: tuple[bool, bool] = (False, False)
+) -> FittedTable:
+    """An empty table of names, in its first column, and numbers; `no_wrap` of which of both."""
     table = plain_table(title)
-    for number, column in enumerate(columns):
-        first = number == 0
-        table.add_column(column, justify="left" if first else "right")
+    for place, column in enumerate(columns):
+        is_number = place > 0
+        justify: JustifyMethod = "right" if is_number else "left"
+        table.add_column(column, justify=justify, no_wrap=no_wrap[is_number])
     return table
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from epicyclic.analysis.train_losses import LOSS_KINDS, loss_sums
 from epicyclic.records.contents import Measure, ResultContents
 from epicyclic.records.power_flow import power_flow
-from epicyclic.report.page import Cell, Table, aligned, number
+from epicyclic.report.page import Cell, Table, aligned, number, tenths
 from epicyclic.report.result_tables import Labels, flow_units, label_of, scaled, share_row
 from epicyclic.report.shown import shown
 from epicyclic.results.result import in_words
@@ -62,17 +62,13 @@ def sums_table(result: ResultContents) -> Table:
     rows = [
         (
             Cell(in_words(stage)),
-            *(
-                number(own[kind], "", text=f"{own[kind]:z.1f}") if kind in own else Cell("")
-                for kind in columns
-            ),
+            *(tenths(own[kind]) if kind in own else Cell("") for kind in columns),
             *ending(sum(own.values()), f"stages.{stage}"),
         )
         for stage, own in sums.items()
     ]
     totals = [sum(own.get(kind, 0.0) for own in sums.values()) for kind in columns]
-    whole = (number(watts, "", text=f"{watts:z.1f}") for watts in totals)
-    rows.append((Cell("total"), *whole, *ending(result.total, "total")))
+    rows.append((Cell("total"), *map(tenths, totals), *ending(result.total, "total")))
     head = ("", *columns, "total", *(() if wide else ("of total",)), "of input")
     strong = frozenset([len(rows) - 1])
     return Table(head, tuple(rows), "Losses in W, by set and part", strong, locking_text(result))
@@ -117,13 +113,12 @@ def rolling_table(result: ResultContents) -> Table:
         share = percent(abs(power) / entering) if entering else ""
         cells = [
             Cell(in_words(key)),
-            number(abs(power), f"rolling_power.{key}", text=f"{abs(power):z.1f}"),
+            tenths(abs(power), f"rolling_power.{key}"),
             aligned(share),
         ]
         if losses:
             watts = result.losses.get(key)
-            loss = Cell("") if watts is None else number(watts, "", text=f"{watts:z.1f}")
-            cells.append(loss)
+            cells.append(Cell("") if watts is None else tenths(watts))
         rows.append(tuple(cells))
     head = ("", "W", "of input", *(("loss, W",) if losses else ()))
     note = _circulation_text(result.rolling_power, entering)

@@ -12,7 +12,7 @@ from epicyclic.bands.known import known_of
 from epicyclic.case.wording import one_line
 from epicyclic.report.advice import LIMITS, advice_texts, driver_name
 from epicyclic.report.map_band_tables import map_band_tables
-from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number
+from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number, tenths
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import as_on_page, titled
 from epicyclic.results.result import in_words
@@ -126,7 +126,7 @@ def _shown(value: float, unit: str) -> Cell:
     if math.isnan(value):
         return number(None, "")
     if unit == "W":
-        return number(value, "", text=f"{value:z.1f}")
+        return tenths(value)
     return number(value, "", text=f"{100 * value:z.3f}" if unit == "1" else shown(value, 5))
 
 

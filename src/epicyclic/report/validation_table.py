@@ -10,7 +10,7 @@ from rich.text import Text
 from epicyclic.bands.published import MeasuredFigure
 from epicyclic.report.page import Cell, Table, aligned
 from epicyclic.report.shown import MISSING, shown
-from epicyclic.report.tables import plain_table
+from epicyclic.report.tables import number_table
 from epicyclic.units import percent
 from epicyclic.validation.closures import CLOSURES, STUDY, ClosureFigure
 from epicyclic.validation.compare import Comparison, summary
@@ -32,10 +32,8 @@ def validation_table(
     rows: Sequence[Comparison], closures: Sequence[ClosureFigure] = ()
 ) -> RenderableType:
     """One row for each figure, and a count of the verdicts."""
-    table = plain_table("Published against computed")
-    table.add_column("figure, source")
-    for column in ("published", "computed", "difference"):
-        table.add_column(column, justify="right", no_wrap=True)
+    heads = ("figure, source", "published", "computed", "difference")
+    table = number_table("Published against computed", *heads, no_wrap=(False, True))
     table.add_column("verdict", no_wrap=True)
     for row in rows:
         table.add_row(
@@ -78,10 +76,9 @@ def closure_table(rows: Sequence[ClosureFigure]) -> Table:
 
 def settled_table(rows: Sequence[SettledFigure], estimates: Sequence[Estimate]) -> RenderableType:
     """One row for each figure of the loaded tests, one column for each model of temperatures."""
-    table = plain_table("Loaded tests, load-dependent losses as tested")
-    table.add_column("figure")
-    for column in ("published", "inlet", "flank", "network", "network, range"):
-        table.add_column(column, justify="right", no_wrap=True)
+    heads = ("figure", "published", "inlet", "flank", "network", "network, range")
+    title = "Loaded tests, load-dependent losses as tested"
+    table = number_table(title, *heads, no_wrap=(False, True))
     for row in rows:
         table.add_row(
             f"{row.what}, {row.unit}",
@@ -127,9 +124,9 @@ def band_markdown(rows: Sequence[MeasuredFigure]) -> str:
 
 def bands_table(rows: Sequence[MeasuredFigure]) -> RenderableType:
     """One row for each measured figure."""
-    table = plain_table("Measured figures, and the 95 % band by the shipped distributions")
-    for number, column in enumerate(("figure", "measured", "computed", "95 % band", "")):
-        table.add_column(column, justify="right" if number else "left", no_wrap=bool(number))
+    title = "Measured figures, and the 95 % band by the shipped distributions"
+    heads = ("figure", "measured", "computed", "95 % band", "")
+    table = number_table(title, *heads, no_wrap=(False, True))
     for cells in band_rows(rows):
         table.add_row(*cells)
     inside = sum(row.is_inside for row in rows)

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from epicyclic.case.wording import one_line
 from epicyclic.report.shown import shown
-from epicyclic.report.tables import plain_table
+from epicyclic.report.tables import number_table
 from epicyclic.results.result import in_words
 from epicyclic.units import percent
 
@@ -27,10 +27,9 @@ _SHOWN_CONSTANTS = 4
 
 def warm_up_tables(data: xr.Dataset) -> RenderableType:
     """Temperatures at the start, at the end and settled, time constants, and the energy lost."""
-    table = plain_table(f"Warming up for {duration_text(float(data['time'][-1]))}")
-    columns = ("", "start °C", "end °C", "settled °C", "to 90 %", "capacity J/K")
-    for number, column in enumerate(columns):
-        table.add_column(column, justify="right" if number else "left", no_wrap=True)
+    title = f"Warming up for {duration_text(float(data['time'][-1]))}"
+    heads = ("", "start °C", "end °C", "settled °C", "to 90 %", "capacity J/K")
+    table = number_table(title, *heads, no_wrap=(True, True))
     for node in data["node"].values:
         one = data.sel(node=node)
         temperature = one["temperature"].values
@@ -42,9 +41,7 @@ def warm_up_tables(data: xr.Dataset) -> RenderableType:
             duration_text(float(one["time_to_90_percent"])),
             shown(float(one["heat_capacity"])),
         )
-    losses = plain_table("Power loss in W")
-    for number, column in enumerate(("", "start", "end")):
-        losses.add_column(column, justify="right" if number else "left", no_wrap=True)
+    losses = number_table("Power loss in W", "", "start", "end", no_wrap=(True, True))
     for component in data["component"].values:
         watts = data["loss"].sel(component=component).values
         if watts.any():
