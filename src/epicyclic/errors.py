@@ -6,8 +6,9 @@ Bad input is described by `Problem` objects, one per mistake, and reported all t
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 __all__ = [
     "ConvergenceError",
@@ -16,6 +17,7 @@ __all__ = [
     "Problem",
     "is_interrupt",
     "printable",
+    "rising_problems",
 ]
 
 MOST_SHOWN, LONGEST_PROBLEM = 50, 1500
@@ -89,6 +91,20 @@ class InputError(EpicyclicError, ValueError):
 
 class ConvergenceError(EpicyclicError):
     """An iteration ended without a solution; the message names the next thing to try."""
+
+
+def rising_problems(axes: Mapping[str, Collection[float]], prefix: str = "") -> list[Problem]:
+    """One problem for each axis of a table, by its name, whose points do not rise."""
+    return [
+        Problem(
+            f"{prefix}{name}",
+            f"{len(points)} values",
+            "must be two or more rising values.",
+            "Give two or more, the smallest first.",
+        )
+        for name, points in axes.items()
+        if len(points) < 2 or any(not b > a for a, b in pairwise(points))
+    ]
 
 
 def is_interrupt(error: BaseException) -> bool:

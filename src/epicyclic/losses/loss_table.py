@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise, product
+from itertools import product
 from pathlib import Path
 from typing import Literal
 
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, rising_problems
 from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.text_file import read_text, refuse
 from epicyclic.units import CELSIUS, NEWTON, NEWTON_METRE, RPM, WATT, Quantity
@@ -154,16 +154,7 @@ def table_problems(
         allowed = f"must have one or two of the axes {known}."
         remedy = "Give the points of the axes to which the values belong."
         return [Problem(quantity, f"{len(axes)} axes", allowed, remedy)]
-    problems = [
-        Problem(
-            name,
-            f"{len(points)} values",
-            "must be two or more rising values.",
-            "Give two or more, the smallest first.",
-        )
-        for name, points in axes.items()
-        if len(points) < 2 or any(not b > a for a, b in pairwise(points))
-    ]
+    problems = rising_problems(axes)
     if "speed" in axes and len(axes["speed"]) > 0 and axes["speed"][0] < 0:
         problems.append(
             Problem(
