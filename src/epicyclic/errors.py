@@ -6,7 +6,7 @@ Bad input is described by `Problem` objects, one per mistake, and reported all t
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -15,6 +15,7 @@ __all__ = [
     "EpicyclicError",
     "InputError",
     "Problem",
+    "first_of",
     "is_interrupt",
     "printable",
     "rising_problems",
@@ -91,6 +92,12 @@ class InputError(EpicyclicError, ValueError):
 
 class ConvergenceError(EpicyclicError):
     """An iteration ended without a solution; the message names the next thing to try."""
+
+
+def first_of(items: Sequence[str], most: int = 3) -> str:
+    """The first of the items on one line, and how many more there are."""
+    more = len(items) - most
+    return ", ".join(items[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def rising_problems(axes: Mapping[str, Collection[float]], prefix: str = "") -> list[Problem]:
