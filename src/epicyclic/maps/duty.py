@@ -19,7 +19,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.case.case import Case
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.operating import STATE
-from epicyclic.case.wording import sentence, written
+from epicyclic.case.wording import refused, written
 from epicyclic.errors import InputError, Problem
 from epicyclic.maps.compute import MapPlan, map_plan, to_map
 from epicyclic.maps.cycle import Cycle, Piece, open_cycle
@@ -152,9 +152,7 @@ def parse_temperatures(cycle: Cycle, temperature: Iterable[Any] | None) -> tuple
         try:
             values.append(CELSIUS.to_display(CELSIUS.parse(text)))
         except PydanticCustomError as error:
-            remedy = sentence(str((error.context or {}).get("remedy", "")))
-            allowed = sentence(error.message(), capital=False)
-            problems.append(Problem("temperature", written(text), allowed, remedy))
+            problems.append(refused(error, "temperature", written(text)))
     if "temperature" in cycle.ranges:
         allowed = "is a column of the cycle too."
         problems.append(Problem("temperature", "", allowed, "Leave one of them."))

@@ -17,7 +17,7 @@ from epicyclic.builders.build import build
 from epicyclic.case.case import Case
 from epicyclic.case.fields import quantity_of
 from epicyclic.case.operating import AXES, STATE, axis_name
-from epicyclic.case.wording import sentence, written
+from epicyclic.case.wording import refused, written
 from epicyclic.elements.base import OIL
 from epicyclic.elements.heat_paths import INLET
 from epicyclic.errors import ConvergenceError, InputError, Problem
@@ -186,9 +186,7 @@ def _parsed(case: Case, duration: Any, start: Any) -> tuple[float, float]:
         try:
             found.append(quantity.parse(value))
         except PydanticCustomError as error:
-            allowed = sentence(error.message(), capital=False)
-            remedy = sentence(str((error.context or {}).get("remedy", "")))
-            problems.append(Problem(name, written(value), allowed, remedy))
+            problems.append(refused(error, name, written(value)))
     if case.thermal.oil_outlet_temperature is not None:
         allowed = "tells the flow of oil in one settled state only."
         remedy = "Give thermal.oil_flow instead."

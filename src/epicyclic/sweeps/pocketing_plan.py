@@ -23,7 +23,7 @@ from epicyclic.analysis.pocket_variants import (
 from epicyclic.case.case import Case, build_case
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.plain import plain
-from epicyclic.case.wording import sentence, written
+from epicyclic.case.wording import refused, written
 from epicyclic.elements.gear_mesh import MeshDuty
 from epicyclic.errors import InputError, Problem
 from epicyclic.pocketing.similarity import flow_figures
@@ -275,9 +275,7 @@ def _parsed(
             try:
                 found.append(_parse(PARAMETERS[name].quantity, value))
             except PydanticCustomError as error:
-                remedy = sentence(str((error.context or {}).get("remedy", "")))
-                allowed = sentence(error.message(), capital=False)
-                problems.append(Problem(f"{what} {name}", written(value), allowed, remedy))
+                problems.append(refused(error, f"{what} {name}", written(value)))
         parsed[name] = tuple(sorted(set(found)))
     return parsed, problems
 
