@@ -17,7 +17,7 @@ from epicyclic.analysis.contact import ContactResult, solve_contact
 from epicyclic.campaigns.design import AXES, BEARING_TABLE, GEAR_TABLE, Design, quantity_of_axis
 from epicyclic.case.contact import ContactCase, load_contact_case
 from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.plain import plain, without
+from epicyclic.case.plain import flattened, plain, without
 from epicyclic.case.reading import read_file
 from epicyclic.ehl.rough import BRIEF
 from epicyclic.elasticity.threads import one_thread
@@ -219,20 +219,13 @@ def command_of(campaign: Campaign) -> str:
     words.append(f"--seed {campaign.seed}")
     if oil is not None:
         usual_settings = json.loads(make_campaign(oil, size=1).settings)
-        given, usual = _flat(settings), _flat(usual_settings)
-        words += [f'--set "{key}={given[key]}"' for key in given if given[key] != usual.get(key)]
+        usual = dict(flattened(usual_settings))
+        words += [
+            f'--set "{key}={value}"'
+            for key, value in flattened(settings)
+            if value != usual.get(key) and "oil" not in key.split(".")
+        ]
     return " ".join(words)
-
-
-def _flat(tables: Mapping[str, Any], before: str = "") -> dict[str, Any]:
-    """Values by dotted key, without those of the oil."""
-    found: dict[str, Any] = {}
-    for key, value in tables.items():
-        if isinstance(value, Mapping) and key != "oil":
-            found |= _flat(value, f"{before}{key}.")
-        elif key != "oil":
-            found[f"{before}{key}"] = value
-    return found
 
 
 def _ranges_of(
