@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -31,7 +30,7 @@ from epicyclic.maps.lookup import Lookup, loss_power
 from epicyclic.maps.near_zero import resolving_zero
 from epicyclic.maps.tables import driven_problem
 from epicyclic.pocketing.table import FlowTables
-from epicyclic.results.result import versions
+from epicyclic.results.result import origin
 from epicyclic.sweeps.plan import SweepPlan, make_plan
 from epicyclic.sweeps.runner import Progress
 from epicyclic.thermal.transient import Course
@@ -483,7 +482,6 @@ def _to_dataset(
         "node": nodes,
         "component": list(tables.terms),
     }
-    used = versions()
     return xr.Dataset(
         {
             name: (dims, values, {"long_name": label, "units": unit})
@@ -492,9 +490,7 @@ def _to_dataset(
         coords,
         {
             "title": case.title,
-            "source": f"epicyclic {used['epicyclic']}",
-            "versions": json.dumps(used),
-            "case": json.dumps(case.inputs()),
+            **origin(case),
             "temperatures_of_the_tables": ", ".join(CELSIUS.text(it, 4) for it in tables.knots),
         },
     )
