@@ -12,7 +12,7 @@ from typing import Any
 from epicyclic import library
 from epicyclic.app.form import Group, form_of, has_form
 from epicyclic.case.base import FILE_KEYS
-from epicyclic.case.case import Case, build_case, changed_tables
+from epicyclic.case.case import KINDS, Case, build_case, changed_tables
 from epicyclic.case.plain import value_at
 from epicyclic.case.reading import read_file
 from epicyclic.case.template import case_text, toml_key, toml_value
@@ -214,7 +214,7 @@ def opened(path: str, shown: str = "") -> Desk:
         return Desk(shown or path, found.tables, found.case, path)
     if Path(path).suffix.lower() == ".toml":
         tables, problems = read_file(Path(path))
-        is_known = not problems and tables.get("kind") in ("planetary", "gear_pair", "train")
+        is_known = not problems and tables.get("kind") in tuple(KINDS)
         if is_known and has_form(tables):
             return Desk(shown or path, tables, lambda changes: build_case(tables, changes, path))
     case = load_case(path)
