@@ -43,6 +43,7 @@ from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import InputError, Problem, rising_problems
 from epicyclic.geometry.assembly import are_evenly_spaced
+from epicyclic.losses.standing import FITTED
 from epicyclic.oilmodel.builtin import builtin_model
 from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.stored import read_stored
@@ -276,10 +277,9 @@ def _check_friction_model(models: GearPairModels, given: Collection[str]) -> lis
 
 def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> list[Problem]:
     """A fitted model needs its file or one built in for the oil, and in it what is asked of it."""
-    needed = {"friction": "friction", "rolling": "rolling_loss", "bearing": "bearing_rolling_loss"}
     asked = {
         key: quantity
-        for key, quantity in needed.items()
+        for key, quantity in FITTED.items()
         if getattr(models, key, "").startswith("fitted")
     }
     try:

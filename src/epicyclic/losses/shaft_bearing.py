@@ -24,6 +24,7 @@ from epicyclic.lubricant.properties import OilState
 from epicyclic.units import NUMBER
 
 __all__ = [
+    "AXIAL_RATIO",
     "BEARING_TYPES",
     "DEFAULT_COEFFICIENTS",
     "DEFAULT_FLANGE_COEFFICIENTS",
@@ -89,7 +90,7 @@ _STATIC_RATIO = Range(
     NUMBER,
     "static load rating of rolling bearings, ISO 76",
 )
-_AXIAL_RATIO = Range(
+AXIAL_RATIO = Range(
     "axial_ratio",
     "axial over radial force of a cylindrical roller bearing",
     None,
@@ -339,8 +340,7 @@ class PalmgrenModel:
         oil: OilState,
     ) -> tuple[ValidityFlag, ...]:
         """Flags on speed, static load and, of cylindrical rollers, axial force."""
-        name = "harris" if self.constant is None else "palmgren"
-        return load_flags(ModelUse("bearing", name, where), _AXIAL_RATIO, bearing, load, speed)
+        return load_flags(ModelUse("bearing", self.name, where), AXIAL_RATIO, bearing, load, speed)
 
 
 # --- table of the user ----------------------------------------------------------------------------
