@@ -32,7 +32,6 @@ from epicyclic.losses.shaft_bearing import (
     DEFAULT_FLANGE_COEFFICIENTS,
     DEFAULT_VISCOUS_FACTORS,
     BearingLoad,
-    BearingModel,
     CatalogueBearing,
     PalmgrenModel,
     TableModel,
@@ -40,6 +39,7 @@ from epicyclic.losses.shaft_bearing import (
 )
 from epicyclic.losses.skf_bearing import (
     STARVATION,
+    BearingModel,
     ContactSeal,
     SkfModel,
     full_film_friction,

@@ -22,6 +22,8 @@ from epicyclic.losses.shaft_bearing import (
     Cage,
     CatalogueBearing,
     FrictionPart,
+    PalmgrenModel,
+    TableModel,
     load_flags,
 )
 from epicyclic.losses.validity import ModelUse, ValidityFlag
@@ -30,6 +32,7 @@ from epicyclic.lubricant.properties import OilState
 
 __all__ = [
     "STARVATION",
+    "BearingModel",
     "ContactSeal",
     "SkfConstants",
     "SkfModel",
@@ -206,6 +209,10 @@ class SkfModel:
         return load_flags(
             ModelUse("bearing", "skf-2018", where), _AXIAL_RATIO, bearing, load, speed
         )
+
+
+BearingModel = PalmgrenModel | SkfModel | TableModel
+"""How the friction of a bearing is computed."""
 
 
 @cache
