@@ -28,6 +28,7 @@ from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.short_oil import ShortOil, whole_oil
 from epicyclic.geometry.accuracy import named_fit
 from epicyclic.geometry.roughness import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
+from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity, Oil
 from epicyclic.thermal.solids import Solid
 from epicyclic.units import MILLIMETRE, Density, Modulus, Number, Quantity, as_stated
@@ -195,6 +196,12 @@ class Material(Table):
             self.thermal_conductivity if conductivity is None else conductivity,
             self.heat_capacity if heat_capacity is None else heat_capacity,
             self.density,
+        )
+
+    def modulus_against(self, other: Material) -> float:
+        """Equivalent modulus E_eq of a contact with another. [Pa]"""
+        return equivalent_modulus(
+            self.elastic_modulus, self.poisson_ratio, other.elastic_modulus, other.poisson_ratio
         )
 
 
