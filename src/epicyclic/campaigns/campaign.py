@@ -23,7 +23,7 @@ from epicyclic.ehl.rough import BRIEF
 from epicyclic.elasticity.threads import one_thread
 from epicyclic.errors import InputError, Problem
 from epicyclic.sweeps.journal import Row
-from epicyclic.sweeps.runner import Plan, guarded
+from epicyclic.sweeps.runner import Plan
 
 __all__ = ["Campaign", "command_of", "make_campaign", "oil_tables"]
 
@@ -104,10 +104,10 @@ class Campaign(Plan):
             changes[f"{surface}.seed"] = int(seed)
         return load_contact_case(json.loads(self.settings), changes)
 
-    def solve(self, index: int) -> Row:
+    def _solve(self, index: int) -> Row:
         """Results of one simulation; the same bits wherever and whenever it runs."""
         with one_thread():
-            return guarded(lambda: _row(solve_contact(self.case(index))))
+            return _row(solve_contact(self.case(index)))
 
     def describe(self) -> dict[str, Any]:
         """As plain data: equal for equal results."""

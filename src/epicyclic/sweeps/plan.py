@@ -36,7 +36,7 @@ from epicyclic.sweeps.axes import (
 from epicyclic.sweeps.journal import Row
 from epicyclic.sweeps.links import Point, check_links, keys_behind
 from epicyclic.sweeps.pockets import flow_tables
-from epicyclic.sweeps.runner import Plan, guarded
+from epicyclic.sweeps.runner import Plan
 from epicyclic.units import format_number
 
 __all__ = [
@@ -93,10 +93,6 @@ class CasePlan(Plan):
     def changes(self, index: int) -> dict[str, Any]:
         """The keys that point number `index` changes."""
 
-    def solve(self, index: int) -> Row:
-        """One case as a flat record."""
-        return guarded(lambda: self._solve(index))
-
     def prepared(self, indices: Sequence[int], jobs: int | None) -> Self:
         """With the tables of flows that the points `indices` read."""
         return replace(self, flow_tables=flow_tables(self, indices, jobs))
@@ -110,6 +106,7 @@ class CasePlan(Plan):
         }
 
     def _solve(self, index: int) -> Row:
+        """One case as a flat record."""
         case = self.case.updated(self.changes(index))
         result = solve(case, flow_tables=self.flow_tables)
         if result.status is not Status.CONVERGED:

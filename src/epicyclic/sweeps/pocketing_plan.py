@@ -29,7 +29,7 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.pocketing.similarity import flow_figures
 from epicyclic.status import Status
 from epicyclic.sweeps.journal import Row
-from epicyclic.sweeps.runner import Plan, guarded
+from epicyclic.sweeps.runner import Plan
 from epicyclic.units import NUMBER, Quantity
 
 __all__ = ["NUMBERS", "PARAMETERS", "STUDIES", "StudyAxis", "StudyPlan", "make_study"]
@@ -174,10 +174,6 @@ class StudyPlan(Plan):
     def describe(self) -> dict[str, Any]:
         """The case, and what was asked for."""
         return {"case": self.case.given(), "given": self.given}
-
-    def solve(self, index: int) -> Row:
-        """One point as a flat record."""
-        return guarded(lambda: self._solve(index))
 
     def _solve(self, index: int) -> Row:
         flow = solve_variant(self.case, self.duty, self.points[index])

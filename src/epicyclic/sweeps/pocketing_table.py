@@ -24,7 +24,7 @@ from epicyclic.results.result import origin
 from epicyclic.status import Status
 from epicyclic.sweeps.journal import Row, Rows
 from epicyclic.sweeps.plan import SweepPlan, make_plan
-from epicyclic.sweeps.runner import Plan, Progress, Runner, guarded
+from epicyclic.sweeps.runner import Plan, Progress, Runner
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -165,9 +165,8 @@ class TablePlan(Plan):
         """The case, its speeds and temperatures."""
         return self.places.describe()
 
-    def solve(self, index: int) -> Row:
-        """One table."""
-        return guarded(lambda: _row(self._table(self.families[index])))
+    def _solve(self, index: int) -> Row:
+        return _row(self._table(self.families[index]))
 
     def _table(self, family: FlowFamily) -> FlowTable:
         asked = {flow.number for flow in self.flows if flow.family == family and flow.turns}
