@@ -18,6 +18,7 @@ __all__ = [
     "first_of",
     "is_interrupt",
     "printable",
+    "raise_any",
     "rising_problems",
 ]
 
@@ -88,6 +89,13 @@ class InputError(EpicyclicError, ValueError):
         if count > MOST_SHOWN:
             lines.append(f"  ... and {count - MOST_SHOWN} more.")
         return "\n".join([head, *lines])
+
+
+def raise_any(problems: Iterable[Problem], source: str = "") -> None:
+    """Raise the `InputError` of the problems if there are any; parameters as for that."""
+    found = tuple(problems)
+    if found:
+        raise InputError(found, source)
 
 
 class ConvergenceError(EpicyclicError):

@@ -21,7 +21,7 @@ from epicyclic.case.plain import flattened, plain, without
 from epicyclic.case.reading import read_file
 from epicyclic.ehl.rough import BRIEF
 from epicyclic.elasticity.threads import one_thread
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.sweeps.journal import Row
 from epicyclic.sweeps.runner import Plan
 
@@ -254,8 +254,7 @@ def _check_changes(changes: Mapping[str, Any]) -> None:
         else:
             continue
         problems.append(Problem(key, str(value), allowed, remedy))
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
 
 
 def _as_of_file(error: InputError, oil: str | Path | Mapping[str, Any]) -> InputError:
@@ -279,8 +278,7 @@ def oil_tables(oil: str | Path | Mapping[str, Any]) -> Any:
         problem = Problem("OIL", str(oil), "is neither a .toml file nor a built-in oil.", remedy)
         raise InputError([problem], "the command")
     tables, problems = read_file(path)
-    if problems:
-        raise InputError(problems, str(path))
+    raise_any(problems, str(path))
     return {"name": path.stem} | tables
 
 

@@ -25,7 +25,7 @@ from epicyclic.elements.base import HOUSING, Element
 from epicyclic.elements.loss_table import TableLoss
 from epicyclic.elements.seal import Seal, SealFormula
 from epicyclic.elements.shaft_bearing import ShaftBearing
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.losses.loss_table import LossQuantity, LossTable, read_loss_table, table_problems
 from epicyclic.losses.shaft_bearing import (
     DEFAULT_COEFFICIENTS,
@@ -302,8 +302,7 @@ def _between(names: Mapping[str, str], shafts: Mapping[str, str]) -> tuple[str, 
         for key, body in names.items()
         if body not in known
     ]
-    if problems:
-        raise InputError(problems)
+    raise_any(problems)
     first, second = (known[name] for name in names.values())
     if first == second:
         reason = f"is the same shaft, {first}, by another name: nothing moves between them."

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.errors import InputError, Problem, first_of, rising_problems
+from epicyclic.errors import InputError, Problem, first_of, raise_any, rising_problems
 from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.text_file import csv_rows, read_text, refuse
 from epicyclic.units import CELSIUS, NEWTON, NEWTON_METRE, RPM, WATT, Quantity
@@ -239,8 +239,7 @@ def _parse(text: str, source: str) -> LossTable:
         cells = [(line, row[number]) for line, row in body]
         data[name], found = _numbers(header[number], name, unit, cells)
         problems += found
-    if problems:
-        raise InputError(problems)
+    raise_any(problems)
     return _gridded(data, [line for line, _ in body], source)
 
 
@@ -338,14 +337,11 @@ def _gridded(data: Mapping[str, FloatArray], lines: Sequence[int], source: str) 
         allowed = f"the file has no row for {count} {first}."
         remedy = f"Give every value of {names[0]} with every value of {names[-1]}."
         problems.append(Problem("", "", allowed, remedy))
-    if problems:
-        raise InputError(problems)
+    raise_any(problems)
     values = np.zeros(shape)
     for place, number in zip(where, data[quantity], strict=True):
         values[place] = number
-    problems = table_problems(quantity, axes, values)
-    if problems:
-        raise InputError(problems)
+    raise_any(table_problems(quantity, axes, values))
     return LossTable(quantity, axes, values, source)
 
 

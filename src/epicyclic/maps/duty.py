@@ -20,7 +20,7 @@ from epicyclic.case.case import Case
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.operating import STATE
 from epicyclic.case.wording import refused, written
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.maps.compute import MapPlan, map_plan, to_map
 from epicyclic.maps.cycle import Cycle, Piece, open_cycle
 from epicyclic.maps.interpolation_error import (
@@ -158,8 +158,7 @@ def parse_temperatures(cycle: Cycle, temperature: Iterable[Any] | None) -> tuple
         problems.append(Problem("temperature", "", allowed, "Leave one of them."))
     if not texts or len(set(values)) < len(values):
         problems.append(Problem("temperature", "", "must name each value once.", "Name others."))
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
     return tuple(values)
 
 
@@ -341,8 +340,7 @@ def check_states(cycle: Cycle, known: tuple[str, ...]) -> None:
         for name in cycle.states
         if name not in known
     ]
-    if problems:
-        raise InputError(problems, cycle.source.name)
+    raise_any(problems, cycle.source.name)
 
 
 def point_of(lookup: Lookup, cycle: Cycle, piece: Piece) -> tuple[Array, ...]:

@@ -19,7 +19,7 @@ from epicyclic.case.operating import AXES, STATE, axis_name
 from epicyclic.case.wording import refused, written
 from epicyclic.elements.base import OIL
 from epicyclic.elements.heat_paths import INLET
-from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.machine.heat_network import NetworkModel
 from epicyclic.machine.settle import HOTTEST
 from epicyclic.maps.compute import MapPlan, held_shaft, map_plan
@@ -190,8 +190,7 @@ def _parsed(case: Case, duration: Any, start: Any) -> tuple[float, float]:
         allowed = "tells the flow of oil in one settled state only."
         remedy = "Give thermal.oil_flow instead."
         problems.append(Problem("thermal.oil_outlet_temperature", "", allowed, remedy))
-    if problems:
-        raise InputError(problems)
+    raise_any(problems)
     seconds, kelvin = found
     return seconds, kelvin
 

@@ -20,7 +20,7 @@ from epicyclic.case.nearest import did_you_mean, misspelt
 from epicyclic.case.operating import AXES, OPERATING, STATE, STATE_KEY
 from epicyclic.case.values import parse_value
 from epicyclic.case.wording import one_line, sentence
-from epicyclic.errors import InputError, Problem, first_of
+from epicyclic.errors import InputError, Problem, first_of, raise_any
 from epicyclic.measurement.files import Grid
 from epicyclic.units import WATT, Quantity, format_number
 
@@ -151,8 +151,7 @@ def parse_measurements(grid: Grid, case: Case, component: str = "total") -> Meas
         {key: column[row] for key, column in values.items()} for row in range(len(grid.rows))
     )
     found = problems.all() or _refused(case, changes, problems.lines)
-    if found:
-        raise InputError(found, grid.source)
+    raise_any(found, grid.source)
     return Measurements(
         source=grid.source,
         lines=problems.lines,

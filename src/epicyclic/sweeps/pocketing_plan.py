@@ -25,7 +25,7 @@ from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.plain import plain
 from epicyclic.case.wording import refused, written
 from epicyclic.elements.gear_mesh import MeshDuty
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.pocketing.similarity import flow_figures
 from epicyclic.status import Status
 from epicyclic.sweeps.journal import Row
@@ -204,8 +204,7 @@ def make_study(
     given_ranges, range_problems = _parsed("range", ranges, names)
     given_levels, level_problems = _parsed("level", levels, list(LEVELS))
     problems = [*_unknown_studies(names), *range_problems, *level_problems]
-    if problems:
-        raise InputError(problems, "the study")
+    raise_any(problems, "the study")
     base = base_variant(case, duty)
     axes = {}
     for name in names:
