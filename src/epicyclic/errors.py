@@ -6,16 +6,20 @@ Bad input is described by `Problem` objects, one per mistake, and reported all t
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 __all__ = [
     "ConvergenceError",
     "EpicyclicError",
     "InputError",
     "Problem",
+    "first_of",
     "is_interrupt",
     "printable",
+    "raise_any",
+    "rising_problems",
 ]
 
 MOST_SHOWN, LONGEST_PROBLEM = 50, 1500
@@ -87,8 +91,35 @@ class InputError(EpicyclicError, ValueError):
         return "\n".join([head, *lines])
 
 
+def raise_any(problems: Iterable[Problem], source: str = "") -> None:
+    """Raise the `InputError` of the problems if there are any; parameters as for that."""
+    found = tuple(problems)
+    if found:
+        raise InputError(found, source)
+
+
 class ConvergenceError(EpicyclicError):
     """An iteration ended without a solution; the message names the next thing to try."""
+
+
+def first_of(items: Sequence[str], most: int = 3) -> str:
+    """The first of the items on one line, and how many more there are."""
+    more = len(items) - most
+    return ", ".join(items[:most]) + (f" and {more} more" if more > 0 else "")
+
+
+def rising_problems(axes: Mapping[str, Collection[float]], prefix: str = "") -> list[Problem]:
+    """One problem for each axis of a table, by its name, whose points do not rise."""
+    return [
+        Problem(
+            f"{prefix}{name}",
+            f"{len(points)} values",
+            "must be two or more rising values.",
+            "Give two or more, the smallest first.",
+        )
+        for name, points in axes.items()
+        if len(points) < 2 or any(not b > a for a, b in pairwise(points))
+    ]
 
 
 def is_interrupt(error: BaseException) -> bool:

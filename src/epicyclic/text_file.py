@@ -6,18 +6,28 @@ other encodings end in the same messages.
 
 from __future__ import annotations
 
+import csv
 import hashlib
 import io
 import json
 import re
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["check_archive", "decode", "read_bytes", "read_text", "refuse", "sealed", "unsealed"]
+__all__ = [
+    "check_archive",
+    "csv_rows",
+    "decode",
+    "read_bytes",
+    "read_text",
+    "refuse",
+    "sealed",
+    "unsealed",
+]
 
 _MEGABYTE = 1_000_000
 _SEAL = "fingerprint"
@@ -76,6 +86,25 @@ def decode(content: bytes, noun: str) -> str:
         line = content[: error.start].count(b"\n") + 1
         where = f"byte 0x{content[error.start]:02x} in line {line}"
         refuse(f"is not UTF-8 text: {where}.", "Save it as UTF-8 text.")
+
+
+def csv_rows(text: str) -> Iterator[tuple[int, list[str]]]:
+    """Line number and cells of each row; the separator is that of the header.
+
+    Lines that begin with # are skipped.
+    """
+    kept = [
+        (number, line)
+        for number, line in enumerate(text.splitlines(), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    separator = max(",;\t", key=kept[0][1].count) if kept else ","
+    for number, line in kept:  # line by line: a quote that stays open spoils one row only
+        try:
+            (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=True)
+        except csv.Error as error:
+            refuse(f"is no CSV: {error} in line {number}.", "Correct this line.")
+        yield number, [cell.strip() for cell in cells]
 
 
 def check_archive(content: bytes, noun: str, largest: int, remedy: str) -> None:

@@ -27,12 +27,12 @@ __all__ = ["check_place", "make_folder", "whole_file", "write_file"]
 
 PREFIX = ".epicyclic-"
 """Begins the names of the private folders."""
-OPTION, REMEDY = "-o", "Name another file."
+OPTION, FILE, REMEDY = "-o", "FILE", "Name another file."
 
 
 def check_place(path: Path) -> None:
     """Raise `InputError` unless a file can be written to `path`."""
-    with _plain_errors(path, OPTION, REMEDY):
+    with _plain_errors(path, OPTION):
         folder = path.absolute().parent
         with suppress(FileNotFoundError):
             path.lstat()  # raises for a name that is too long
@@ -54,7 +54,7 @@ def make_folder(path: Path, option: str = OPTION) -> None:
 
 
 @contextmanager
-def whole_file(path: Path, option: str = OPTION, remedy: str = REMEDY) -> Iterator[Path]:
+def whole_file(path: Path, option: str = OPTION) -> Iterator[Path]:
     """A file to be written in a private folder; it replaces `path` if nothing goes wrong.
 
     A file that is replaced keeps its permissions, a new one gets those that the umask of the user
@@ -63,10 +63,10 @@ def whole_file(path: Path, option: str = OPTION, remedy: str = REMEDY) -> Iterat
     Raises
     ------
     InputError
-        If the file cannot be written: the disk is full, the name is too long. `option` and `remedy`
-        are those of its problem.
+        If the file cannot be written: the disk is full, the name is too long. `option` is that of
+        its problem.
     """
-    with _plain_errors(path, option, remedy):
+    with _plain_errors(path, option):
         target = path.resolve()
         if target.exists() and not os.access(target, os.W_OK):
             raise PermissionError(errno.EACCES, "it is write-protected")
@@ -79,7 +79,7 @@ def whole_file(path: Path, option: str = OPTION, remedy: str = REMEDY) -> Iterat
             temporary.replace(target)
 
 
-def write_file(path: Path, content: str | bytes, option: str = "FILE") -> None:
+def write_file(path: Path, content: str | bytes) -> None:
     """Write `content` to a file whole or not at all, or to a device or pipe as it is.
 
     Raises
@@ -88,16 +88,16 @@ def write_file(path: Path, content: str | bytes, option: str = "FILE") -> None:
         As for `whole_file`.
     """
     data = content.encode() if isinstance(content, str) else content
-    with _plain_errors(path, option, REMEDY):
+    with _plain_errors(path, FILE):
         if path.exists() and not path.is_file():
             path.write_bytes(data)  # must not be replaced by a file
             return
-    with whole_file(path, option) as temporary:
+    with whole_file(path, FILE) as temporary:
         temporary.write_bytes(data)
 
 
 @contextmanager
-def _plain_errors(path: Path, option: str, remedy: str) -> Iterator[None]:
+def _plain_errors(path: Path, option: str) -> Iterator[None]:
     """What the system and the libraries raise if a file cannot be written, as `InputError`."""
     try:
         _check_name(path)
@@ -105,12 +105,12 @@ def _plain_errors(path: Path, option: str, remedy: str) -> Iterator[None]:
     except BrokenPipeError:  # of a pipe whose reader has seen enough
         raise
     except OSError as error:
-        raise _error(path, option, f"cannot be written: {_reason(error)}.", remedy) from None
+        raise _error(path, option, f"cannot be written: {_reason(error)}.", REMEDY) from None
     except RuntimeError as error:
         if not str(error).startswith("NetCDF: "):
             raise
         allowed = f"cannot be written: {error} (a full disk is one cause)."
-        raise _error(path, option, allowed, remedy) from None
+        raise _error(path, option, allowed, REMEDY) from None
 
 
 def _check_name(path: Path) -> None:

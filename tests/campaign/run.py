@@ -55,7 +55,7 @@ class CampaignPlan(Plan):
         # not how many: more go on from fewer
         return {"cases": "by number", "points": POINTS, "whole": WHOLE}
 
-    def solve(self, index: int) -> Row:
+    def _solve(self, index: int) -> Row:
         case = drawn_case(index)
         found = outcome_of(case)
         return Row(

@@ -34,8 +34,6 @@ class GearSheet:
         x before allowances. [1]
     normal_thickness : float
         s_n at the reference circle. [m]
-    tip_thickness : float
-        Transverse, at the tip circle. [m]
     roughness : float
         Rq. [m]
     span : tuple of (int, float) or None
@@ -51,7 +49,6 @@ class GearSheet:
     gear: Gear
     nominal_shift: float
     normal_thickness: float
-    tip_thickness: float
     roughness: float
     span: tuple[int, float] | None
     pins: tuple[float, float] | None
@@ -162,7 +159,6 @@ def _gear_sheet(gear: Gear, table: GearTable) -> GearSheet:
         gear,
         gear.profile_shift_coefficient - allowance_shift(table, rack),
         thickness * math.cos(rack.helix_angle),
-        gear.thickness_at(gear.tip_radius),
         table.roughness,
         _span(gear, table),
         _pins(gear, table),

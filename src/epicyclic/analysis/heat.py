@@ -12,7 +12,7 @@ from epicyclic.analysis.solve import solve
 from epicyclic.builders.temperatures import oil_medium
 from epicyclic.case.case import Case
 from epicyclic.case.fields import quantity_of
-from epicyclic.case.wording import sentence, written
+from epicyclic.case.wording import refused, written
 from epicyclic.elements.base import LOAD_DEPENDENT
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.losses.direct import EhlDirect
@@ -321,9 +321,7 @@ def _temperature(given: str | float) -> float:
     try:
         return _unit(Temperature).parse(f"{given} K" if isinstance(given, int | float) else given)
     except PydanticCustomError as error:
-        remedy = sentence(str((error.context or {}).get("remedy", "")))
-        allowed = sentence(error.message(), capital=False)
-        raise InputError([Problem("temperature", written(given), allowed, remedy)]) from None
+        raise InputError([refused(error, "temperature", written(given))]) from None
 
 
 def _attempt(base: Case, search: _Search, number: float, target: float) -> Found | None:

@@ -12,13 +12,13 @@ from typing import Any
 from epicyclic import library
 from epicyclic.app.form import Group, form_of, has_form
 from epicyclic.case.base import FILE_KEYS
-from epicyclic.case.case import Case, build_case, changed_tables
+from epicyclic.case.case import KINDS, Case, build_case, changed_tables
 from epicyclic.case.plain import value_at
 from epicyclic.case.reading import read_file
 from epicyclic.case.template import case_text, toml_key, toml_value
 from epicyclic.case.train_text import train_text
 from epicyclic.case.wording import dotted, key_parts, written
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.exchange.load import load_case
 from epicyclic.exchange.rexs.file import is_rexs
 
@@ -214,7 +214,7 @@ def opened(path: str, shown: str = "") -> Desk:
         return Desk(shown or path, found.tables, found.case, path)
     if Path(path).suffix.lower() == ".toml":
         tables, problems = read_file(Path(path))
-        is_known = not problems and tables.get("kind") in ("planetary", "gear_pair", "train")
+        is_known = not problems and tables.get("kind") in tuple(KINDS)
         if is_known and has_form(tables):
             return Desk(shown or path, tables, lambda changes: build_case(tables, changes, path))
     case = load_case(path)
@@ -246,8 +246,7 @@ def received(files: Iterable[tuple[str, bytes]], folder: Path) -> Desk:
         for name, count in counts.items()
         if count > 1
     ]
-    if problems:
-        raise InputError(problems, "the upload")
+    raise_any(problems, "the upload")
     for name, content in contents:
         _keep(folder, name, content)
     cases = [name for name, _ in contents if Path(name).suffix.lower() in ENDINGS]
@@ -255,9 +254,7 @@ def received(files: Iterable[tuple[str, bytes]], folder: Path) -> Desk:
         allowed = f"One of the files must be a case, {', '.join(ENDINGS)}."
         raise InputError([Problem("", "", allowed, "")], "the upload")
     desk = opened(str(folder / cases[0]), cases[0])
-    problems = list(_elsewhere(desk.tables))
-    if problems:
-        raise InputError(problems, desk.source)
+    raise_any(_elsewhere(desk.tables), desk.source)
     return desk
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase
+from epicyclic.case.case import KINDS
 from epicyclic.case.fields import (
     Named,
     choices_of,
@@ -30,11 +30,6 @@ from epicyclic.units import Quantity, unit_text
 
 __all__ = ["Entry", "Group", "Kind", "form_of", "has_form", "number_in"]
 
-_KINDS: dict[str, type[BaseModel]] = {
-    "planetary": PlanetaryCase,
-    "gear_pair": GearPairCase,
-    "train": TrainCase,
-}
 _SHORT = 3
 """Tables of no more keys stand among those of the table that holds them."""
 _YES_NO = ("true", "false")
@@ -170,12 +165,12 @@ def form_of(tables: Mapping[str, Any]) -> Group:
     tables : mapping
         As a case file has them, with the kind.
     """
-    return _group(_KINDS[tables["kind"]], "", "", tables)
+    return _group(KINDS[tables["kind"]], "", "", tables)
 
 
 def has_form(tables: Mapping[str, Any]) -> bool:
     """False if something else stands where a table belongs: no field shows that."""
-    return _is_table([_KINDS[tables["kind"]]], tables)
+    return _is_table([KINDS[tables["kind"]]], tables)
 
 
 def _is_table(tables: list[type[BaseModel]], given: Any) -> bool:

@@ -14,7 +14,7 @@ from epicyclic.analysis.solve import flows_around
 from epicyclic.bands.outputs import Outputs, loss_numbers, outputs_of
 from epicyclic.case.case import Case
 from epicyclic.case.uncertain_values import UncertainValue, uncertain_values
-from epicyclic.errors import EpicyclicError, InputError
+from epicyclic.errors import EpicyclicError, raise_any
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Result
 
@@ -79,8 +79,7 @@ def known_values(case: Case, result: Result) -> tuple[UncertainValue, ...]:
     """All that is uncertain in a case whose table [uncertainty] is sound."""
     kinds = tuple(dict.fromkeys(outputs_of(case, result).kinds))
     values, problems = uncertain_values(case, kinds)
-    if problems:
-        raise InputError(problems, case.source)
+    raise_any(problems, case.source)
     return values
 
 

@@ -23,7 +23,7 @@ from epicyclic.bands.sampling import Samples, groups_of, make_samples
 from epicyclic.case.case import Case
 from epicyclic.case.plain import plain
 from epicyclic.case.uncertain_values import UncertainValue
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.results.result import Result
 from epicyclic.status import Status
 from epicyclic.sweeps.journal import Row, Rows
@@ -293,6 +293,5 @@ def _values_at(
         for key in sorted(frozenset.union(*keys) - everywhere)
         for point in [next(it for it, own in zip(points, keys, strict=True) if key not in own)]
     ]
-    if problems:
-        raise InputError(problems, case.source)
+    raise_any(problems, case.source)
     return found

@@ -4,30 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
-from epicyclic.bands.cycle import cycle_study
-from epicyclic.bands.over_map import map_study
-from epicyclic.bands.study import uncertainty_study
+from epicyclic.bands.cycle import CycleStudy, cycle_study
+from epicyclic.bands.over_map import MapStudy, map_study
+from epicyclic.bands.study import UncertaintyStudy, uncertainty_study
 from epicyclic.case.case import Case
 from epicyclic.maps.cycle import open_cycle
 from epicyclic.maps.duty import cycle_map, parse_temperatures
-from epicyclic.sweeps.journal import Rows
-from epicyclic.sweeps.runner import Plan, Progress, Runner
+from epicyclic.sweeps.runner import Progress, Runner
 
 if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["Study", "uncertainty"]
 
-
-class Study(Protocol):
-    """What is to be solved, and what follows from it."""
-
-    @property
-    def plan(self) -> Plan: ...
-
-    def dataset(self, rows: Rows) -> xr.Dataset: ...
+Study = UncertaintyStudy | CycleStudy | MapStudy
+"""What is to be solved, and what follows from it."""
 
 
 def uncertainty(

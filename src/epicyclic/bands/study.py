@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
 from typing import TYPE_CHECKING, Any
@@ -27,7 +26,7 @@ from epicyclic.bands.statistics import COVERAGE, Summary, sobol_indices, summary
 from epicyclic.case.case import Case
 from epicyclic.case.uncertain_values import UncertainValue, remedy_for
 from epicyclic.errors import ConvergenceError
-from epicyclic.results.result import versions
+from epicyclic.results.result import origin
 from epicyclic.sweeps.journal import Rows
 
 if TYPE_CHECKING:
@@ -193,12 +192,9 @@ def about_study(
     case: Case, outputs: Outputs, samples: int, seed: int, failed: int = 0
 ) -> dict[str, Any]:
     """The attributes of every study."""
-    used = versions()
     return {
         "title": case.title,
-        "source": f"epicyclic {used['epicyclic']}",
-        "versions": json.dumps(used),
-        "case": json.dumps(case.inputs()),
+        **origin(case),
         "samples": samples,
         "seed": seed,
         "grouping": ", as tested" if outputs.tested else "",

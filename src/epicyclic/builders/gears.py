@@ -13,7 +13,6 @@ from epicyclic.elements.gear_mesh import GearMesh, MeshModels
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.tools import Tool
-from epicyclic.kernels.line_contact import equivalent_modulus
 
 __all__ = ["gear_mesh", "planet_mass"]
 
@@ -68,10 +67,4 @@ def planet_mass(gears: Iterable[tuple[Gear, GearTable]], bearing: PlanetBearing 
 def _flanks(tables: tuple[GearTable, GearTable]) -> Flanks[float]:
     """Roughness of both flanks and their equivalent modulus."""
     one, two = tables
-    modulus = equivalent_modulus(
-        one.material.elastic_modulus,
-        one.material.poisson_ratio,
-        two.material.elastic_modulus,
-        two.material.poisson_ratio,
-    )
-    return Flanks(modulus, one.roughness, two.roughness)
+    return Flanks(one.material.modulus_against(two.material), one.roughness, two.roughness)

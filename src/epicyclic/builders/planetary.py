@@ -28,7 +28,6 @@ from epicyclic.elements.planet_bearing import PlanetBearing
 from epicyclic.geometry.cutting import fitted_tool
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.tools import Tool
-from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN, RollerBearing
 from epicyclic.machine.machine import Machine, MeshRow, Operation
@@ -248,7 +247,6 @@ def palmgren_coefficient(table: BearingTable) -> float:
 
 def roller_bearing(table: BearingTable, numerics: Numerics) -> RollerBearing:
     """The bearing that `table` describes."""
-    modulus, poisson = table.material.elastic_modulus, table.material.poisson_ratio
     return RollerBearing(
         rows=table.rows,
         rollers_per_row=table.rollers_per_row,
@@ -261,7 +259,7 @@ def roller_bearing(table: BearingTable, numerics: Numerics) -> RollerBearing:
         row_gap=table.row_gap,
         roller_roughness=table.roller_roughness,
         race_roughness=table.race_roughness,
-        equivalent_modulus=equivalent_modulus(modulus, poisson, modulus, poisson),
+        equivalent_modulus=table.material.modulus_against(table.material),
         slices=numerics.bearing_slices,
     )
 

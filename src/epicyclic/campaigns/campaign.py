@@ -17,13 +17,13 @@ from epicyclic.analysis.contact import ContactResult, solve_contact
 from epicyclic.campaigns.design import AXES, BEARING_TABLE, GEAR_TABLE, Design, quantity_of_axis
 from epicyclic.case.contact import ContactCase, load_contact_case
 from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.plain import plain, without
+from epicyclic.case.plain import flattened, plain, without
 from epicyclic.case.reading import read_file
 from epicyclic.ehl.rough import BRIEF
 from epicyclic.elasticity.threads import one_thread
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.sweeps.journal import Row
-from epicyclic.sweeps.runner import Plan, guarded
+from epicyclic.sweeps.runner import Plan
 
 __all__ = ["Campaign", "command_of", "make_campaign", "oil_tables"]
 
@@ -104,10 +104,10 @@ class Campaign(Plan):
             changes[f"{surface}.seed"] = int(seed)
         return load_contact_case(json.loads(self.settings), changes)
 
-    def solve(self, index: int) -> Row:
+    def _solve(self, index: int) -> Row:
         """Results of one simulation; the same bits wherever and whenever it runs."""
         with one_thread():
-            return guarded(lambda: _row(solve_contact(self.case(index))))
+            return _row(solve_contact(self.case(index)))
 
     def describe(self) -> dict[str, Any]:
         """As plain data: equal for equal results."""
@@ -219,20 +219,13 @@ def command_of(campaign: Campaign) -> str:
     words.append(f"--seed {campaign.seed}")
     if oil is not None:
         usual_settings = json.loads(make_campaign(oil, size=1).settings)
-        given, usual = _flat(settings), _flat(usual_settings)
-        words += [f'--set "{key}={given[key]}"' for key in given if given[key] != usual.get(key)]
+        usual = dict(flattened(usual_settings))
+        words += [
+            f'--set "{key}={value}"'
+            for key, value in flattened(settings)
+            if value != usual.get(key) and "oil" not in key.split(".")
+        ]
     return " ".join(words)
-
-
-def _flat(tables: Mapping[str, Any], before: str = "") -> dict[str, Any]:
-    """Values by dotted key, without those of the oil."""
-    found: dict[str, Any] = {}
-    for key, value in tables.items():
-        if isinstance(value, Mapping) and key != "oil":
-            found |= _flat(value, f"{before}{key}.")
-        elif key != "oil":
-            found[f"{before}{key}"] = value
-    return found
 
 
 def _ranges_of(
@@ -261,8 +254,7 @@ def _check_changes(changes: Mapping[str, Any]) -> None:
         else:
             continue
         problems.append(Problem(key, str(value), allowed, remedy))
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
 
 
 def _as_of_file(error: InputError, oil: str | Path | Mapping[str, Any]) -> InputError:
@@ -286,8 +278,7 @@ def oil_tables(oil: str | Path | Mapping[str, Any]) -> Any:
         problem = Problem("OIL", str(oil), "is neither a .toml file nor a built-in oil.", remedy)
         raise InputError([problem], "the command")
     tables, problems = read_file(path)
-    if problems:
-        raise InputError(problems, str(path))
+    raise_any(problems, str(path))
     return {"name": path.stem} | tables
 
 

@@ -17,7 +17,7 @@ from epicyclic.case.contact import ContactCase
 from epicyclic.case.fields import find_field, quantity_of
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.ehl.box import SOLVER_BOX
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.units import MICROMETRE, NUMBER, Quantity, format_number
 
 __all__ = [
@@ -125,8 +125,7 @@ class Design:
                     )
                 )
         problems += self._check_roughness()
-        if problems:
-            raise InputError(problems, "the design")
+        raise_any(problems, "the design")
 
     def _check_roughness(self) -> Iterator[Problem]:
         """Both surfaces together must not be rougher than the solver is tested for."""
@@ -190,8 +189,7 @@ def parse_ranges(options: Iterable[str]) -> dict[str, tuple[float, float]]:
         if not low < high:
             problems.append(Problem(f"--range {name}", f'"{option}"', "must rise.", "Swap them."))
         ranges[name] = (low, high)
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
     return ranges
 
 

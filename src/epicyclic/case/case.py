@@ -43,6 +43,7 @@ from epicyclic.case.wording import one_line, written
 from epicyclic.errors import InputError, Problem
 
 __all__ = [
+    "KINDS",
     "Case",
     "GearPairCase",
     "PlanetaryCase",
@@ -119,7 +120,7 @@ class GearPairCase(_SetTables):
 
 
 Case = PlanetaryCase | GearPairCase | TrainCase
-_KINDS: dict[str, type[PlanetaryCase] | type[GearPairCase] | type[TrainCase]] = {
+KINDS: Mapping[str, type[PlanetaryCase] | type[GearPairCase] | type[TrainCase]] = {
     "planetary": PlanetaryCase,
     "gear_pair": GearPairCase,
     "train": TrainCase,
@@ -157,13 +158,13 @@ def build_case(tables: Mapping[str, Any], changes: Mapping[str, Any], source: st
     InputError
         With every problem of the changed tables, as problems of `source`.
     """
-    changed, problems = with_changes(_KINDS[tables["kind"]], plain(tables), changes)
+    changed, problems = with_changes(KINDS[tables["kind"]], plain(tables), changes)
     return _build_any(changed, source, problems)
 
 
 def changed_tables(tables: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     """`tables` of a known kind with the `changes`; those that cannot be are left out."""
-    return with_changes(_KINDS[tables["kind"]], plain(tables), changes)[0]
+    return with_changes(KINDS[tables["kind"]], plain(tables), changes)[0]
 
 
 def case_schema() -> dict[str, Any]:
@@ -209,15 +210,15 @@ def _no_such_case(name: object) -> Problem:
 def _build_any(tables: dict[str, Any], source: str, problems: Sequence[Problem] = ()) -> Case:
     """The case of `tables`; if they name no kind, every problem under the likeliest one."""
     given = tables.get("kind")
-    name = given if isinstance(given, str) and given in _KINDS else ""
+    name = given if isinstance(given, str) and given in KINDS else ""
     if not name:
-        name = misspelt(str(given), _KINDS) or max(
-            _KINDS, key=lambda kind: len(tables.keys() & tables_of(_KINDS[kind]).keys())
+        name = misspelt(str(given), KINDS) or max(
+            KINDS, key=lambda kind: len(tables.keys() & tables_of(KINDS[kind]).keys())
         )
-        allowed = f"must be {' or '.join(_KINDS)}."
+        allowed = f"must be {' or '.join(KINDS)}."
         if given is None:
             allowed = f"is missing; it {allowed}"
         shown = "" if given is None else written(given)
         problems = [*problems, Problem("kind", shown, allowed, f'Write kind = "{name}".')]
         tables = tables | {"kind": name}
-    return _KINDS[name].from_tables(tables, source, problems)
+    return KINDS[name].from_tables(tables, source, problems)

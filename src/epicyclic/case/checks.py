@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping
-from itertools import pairwise
 from pathlib import Path
 
 from epicyclic.case import build
@@ -42,8 +41,9 @@ from epicyclic.case.schema import Table
 from epicyclic.case.thermal_checks import check_outlet, check_thermal, check_ways_out
 from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.wording import millimetres
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, rising_problems
 from epicyclic.geometry.assembly import are_evenly_spaced
+from epicyclic.losses.standing import FITTED
 from epicyclic.oilmodel.builtin import builtin_model
 from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.stored import read_stored
@@ -248,16 +248,7 @@ def _check_friction_table(table: FrictionTable) -> list[Problem]:
                 "Give the values of the axes to which the coefficients belong.",
             )
         ]
-    problems = [
-        Problem(
-            f"friction_table.{name}",
-            f"{len(points)} values",
-            "must be two or more rising values.",
-            "Give two or more, the smallest first.",
-        )
-        for name, points in axes.items()
-        if len(points) < 2 or any(b <= a for a, b in pairwise(points))
-    ]
+    problems = rising_problems(axes, "friction_table.")
     wanted = " x ".join(f"{len(points)}" for points in axes.values())
     if table.shape() != tuple(len(points) for points in axes.values()):
         problems.append(
@@ -286,10 +277,9 @@ def _check_friction_model(models: GearPairModels, given: Collection[str]) -> lis
 
 def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> list[Problem]:
     """A fitted model needs its file or one built in for the oil, and in it what is asked of it."""
-    needed = {"friction": "friction", "rolling": "rolling_loss", "bearing": "bearing_rolling_loss"}
     asked = {
         key: quantity
-        for key, quantity in needed.items()
+        for key, quantity in FITTED.items()
         if getattr(models, key, "").startswith("fitted")
     }
     try:

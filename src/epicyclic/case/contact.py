@@ -25,7 +25,7 @@ from epicyclic.case.oil_laws import (
 )
 from epicyclic.case.plain import plain, value_at, with_value
 from epicyclic.case.reading import read_file
-from epicyclic.case.schema import Material, NamedMaterial, NamedOil, Roughness, Table
+from epicyclic.case.schema import NamedMaterial, NamedOil, Roughness, Table
 from epicyclic.case.validation import validate
 from epicyclic.case.wording import key_parts
 from epicyclic.ehl.assumptions import DEFAULT, PRESETS
@@ -35,7 +35,7 @@ from epicyclic.ehl.profile_file import read_profile
 from epicyclic.ehl.rough import MOST_BLOCKS, NODES, STATIONARY, AsperityContact
 from epicyclic.ehl.roughness import PERIOD, SMOOTH, Profile, generate_profile
 from epicyclic.errors import InputError, Problem
-from epicyclic.kernels.line_contact import equivalent_modulus, line_load_at_pressure
+from epicyclic.kernels.line_contact import line_load_at_pressure
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity
 from epicyclic.lubricant.properties import OilState, oil_state
 from epicyclic.units import (
@@ -289,7 +289,7 @@ def _check_surface(name: str, surface: Surface) -> list[Problem]:
 
 def contact_model(case: ContactCase) -> ContactModel:
     """Contact, profiles and asperities of a case."""
-    modulus = _modulus(case.surface1.material, case.surface2.material)
+    modulus = case.surface1.material.modulus_against(case.surface2.material)
     table = case.contact
     load = table.line_load
     if load is None:
@@ -307,12 +307,6 @@ def contact_model(case: ContactCase) -> ContactModel:
     surfaces = (_profile(case.surface1), _profile(case.surface2))
     asperities = AsperityContact(case.asperities.film, case.asperities.friction)
     return ContactModel(contact, surfaces, asperities, _heating(case))
-
-
-def _modulus(one: Material, two: Material) -> float:
-    return equivalent_modulus(
-        one.elastic_modulus, one.poisson_ratio, two.elastic_modulus, two.poisson_ratio
-    )
 
 
 def _oil_state(case: ContactCase) -> OilState:

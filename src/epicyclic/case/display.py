@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from html import escape
 from typing import Any
 
+from epicyclic.case.plain import flattened
 from epicyclic.units import unit_text
 
 __all__ = ["case_html", "case_line"]
@@ -33,19 +34,10 @@ def case_html(name: str, given: Mapping[str, Any]) -> str:
     rows = "".join(
         _row(key if number == 0 else "", name, value)
         for key, table in tables.items()
-        for number, (name, value) in enumerate(_values(table))
+        for number, (name, value) in enumerate(flattened(table))
     )
     title = escape(str(given.get("title") or name))
     return f"<table><caption><strong>{title}</strong></caption><tbody>{rows}</tbody></table>"
-
-
-def _values(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, object]]:
-    """Keys and values of a table and of those within it."""
-    for key, value in table.items():
-        if isinstance(value, Mapping):
-            yield from _values(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", value
 
 
 def _row(table: str, key: str, value: object) -> str:

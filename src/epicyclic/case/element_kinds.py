@@ -25,14 +25,13 @@ from epicyclic.elements.base import HOUSING, Element
 from epicyclic.elements.loss_table import TableLoss
 from epicyclic.elements.seal import Seal, SealFormula
 from epicyclic.elements.shaft_bearing import ShaftBearing
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.losses.loss_table import LossQuantity, LossTable, read_loss_table, table_problems
 from epicyclic.losses.shaft_bearing import (
     DEFAULT_COEFFICIENTS,
     DEFAULT_FLANGE_COEFFICIENTS,
     DEFAULT_VISCOUS_FACTORS,
     BearingLoad,
-    BearingModel,
     CatalogueBearing,
     PalmgrenModel,
     TableModel,
@@ -40,6 +39,7 @@ from epicyclic.losses.shaft_bearing import (
 )
 from epicyclic.losses.skf_bearing import (
     STARVATION,
+    BearingModel,
     ContactSeal,
     SkfModel,
     full_film_friction,
@@ -302,8 +302,7 @@ def _between(names: Mapping[str, str], shafts: Mapping[str, str]) -> tuple[str, 
         for key, body in names.items()
         if body not in known
     ]
-    if problems:
-        raise InputError(problems)
+    raise_any(problems)
     first, second = (known[name] for name in names.values())
     if first == second:
         reason = f"is the same shaft, {first}, by another name: nothing moves between them."

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field, Tag
 
-from epicyclic.case.schema import ShortLength, Table
+from epicyclic.case.schema import VALUES_OR_ROWS, PointsTable, ShortLength, Table
 from epicyclic.units import (
     Length,
     Number,
@@ -39,25 +39,19 @@ DragTorque = Annotated[float, Quantity("a drag torque", "N*m", "N*m", low=0.0, h
 LostPower = Annotated[float, Quantity("a power loss", "W", "W", low=0.0, high=1e9)]
 
 
-def _values_or_rows(value: object) -> str:
-    """Which of its two forms a list of torques or powers has."""
-    rows = isinstance(value, list | tuple) and any(isinstance(row, list | tuple) for row in value)
-    return "rows" if rows else "values"
-
-
 Torques = Annotated[
     Annotated[tuple[DragTorque, ...], Tag("values")]
     | Annotated[tuple[tuple[DragTorque, ...], ...], Tag("rows")],
-    Discriminator(_values_or_rows),
+    VALUES_OR_ROWS,
 ]
 Powers = Annotated[
     Annotated[tuple[LostPower, ...], Tag("values")]
     | Annotated[tuple[tuple[LostPower, ...], ...], Tag("rows")],
-    Discriminator(_values_or_rows),
+    VALUES_OR_ROWS,
 ]
 
 
-class LossTableTable(Table):
+class LossTableTable(PointsTable):
     """Friction torque or power over one or two quantities, or a CSV file of them.
 
     Between the points linear, beyond them constant and flagged.
@@ -86,11 +80,6 @@ class LossTableTable(Table):
         max_length=1000,
         description="CSV file beside the case, its columns with units: speed [rpm],torque [N*m].",
     )
-
-    def axes(self) -> dict[str, tuple[float, ...]]:
-        """The axes given, by name."""
-        given = {name: getattr(self, name) for name in self.AXES}
-        return {name: points for name, points in given.items() if points is not None}
 
 
 class DragTable(LossTableTable):

@@ -5,14 +5,12 @@ Every function returns the problems it finds; none stops at the first.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 from epicyclic.case.flanks import roll_length_at, working_flank
 from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, TopographyTable
 from epicyclic.case.wording import millimetres
-from epicyclic.errors import Problem
+from epicyclic.errors import Problem, rising_problems
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.micro_geometry import active_profile
@@ -169,19 +167,8 @@ def _check_end_relief(flank: _Flank) -> list[Problem]:
 
 def _check_topography(flank: _Flank, table: TopographyTable) -> list[Problem]:
     key = f"{flank.key}.topography"
-    problems = [
-        Problem(
-            f"{key}.{name}",
-            f"{len(points)} values",
-            "must be two or more rising values.",
-            "Give two or more, the smallest first.",
-        )
-        for name, points in (
-            ("diameter", table.diameter),
-            ("face_position", table.face_position),
-        )
-        if not _rises(points)
-    ]
+    axes = {"diameter": table.diameter, "face_position": table.face_position}
+    problems = rising_problems(axes, f"{key}.")
     wanted = (len(table.diameter), len(table.face_position))
     if len(table.deviation) != wanted[0] or any(len(row) != wanted[1] for row in table.deviation):
         problems.append(
@@ -230,7 +217,3 @@ def _shares_half(one: tuple[float, float], two: tuple[float, float]) -> bool:
     """Two ranges have at least half of the longer one in common."""
     common = min(one[1], two[1]) - max(one[0], two[0])
     return common >= max(one[1] - one[0], two[1] - two[0]) / 2
-
-
-def _rises(points: Sequence[float]) -> bool:
-    return len(points) >= 2 and all(b > a for a, b in pairwise(points))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Literal
 
 from epicyclic.case import build
 from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, Planet, TopographyTable
@@ -79,22 +78,8 @@ def _of_member(mesh: Mesh, member: int, table: GearTable) -> MicroGeometry:
     gear = (mesh.gear1, mesh.gear2)[member - 1]
     root, tip = active_profile(mesh, member)
     return MicroGeometry(
-        tip_relief=_profile_relief(
-            gear,
-            tip,
-            flank.tip_relief,
-            flank.tip_relief_roll_length,
-            flank.tip_relief_diameter,
-            flank.tip_relief_shape,
-        ),
-        root_relief=_profile_relief(
-            gear,
-            root,
-            flank.root_relief,
-            flank.root_relief_roll_length,
-            flank.root_relief_diameter,
-            flank.root_relief_shape,
-        ),
+        tip_relief=_profile_relief(gear, tip, flank, "tip_relief"),
+        root_relief=_profile_relief(gear, root, flank, "root_relief"),
         end_relief=None
         if flank.end_relief == 0 or flank.end_relief_length is None
         else Relief(flank.end_relief, flank.end_relief_length, flank.end_relief_shape),
@@ -106,19 +91,15 @@ def _of_member(mesh: Mesh, member: int, table: GearTable) -> MicroGeometry:
     )
 
 
-def _profile_relief(
-    gear: Gear,
-    end: float,
-    amount: float,
-    roll_length: float | None,
-    diameter: float | None,
-    shape: Literal["linear", "parabolic"],
-) -> Relief | None:
+def _profile_relief(gear: Gear, end: float, flank: MicroGeometryTable, key: str) -> Relief | None:
+    amount: float = getattr(flank, key)
+    roll_length: float | None = getattr(flank, f"{key}_roll_length")
+    diameter: float | None = getattr(flank, f"{key}_diameter")
     if diameter is not None:
         roll_length = abs(roll_length_at(gear, diameter / 2) - end)
     if amount == 0 or roll_length is None:
         return None
-    return Relief(amount, roll_length, shape)
+    return Relief(amount, roll_length, getattr(flank, f"{key}_shape"))
 
 
 def roll_length_at(gear: Gear, radius: float) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, Tag, model_validator
 
 from epicyclic.case.oil_laws import (
     HEATING,
@@ -17,7 +17,7 @@ from epicyclic.case.oil_laws import (
     film_text,
 )
 from epicyclic.case.plain import value_at
-from epicyclic.case.schema import Table
+from epicyclic.case.schema import VALUES_OR_ROWS, PointsTable, Table
 from epicyclic.ehl.assumptions import DEFAULT, PRESETS
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity
 from epicyclic.units import (
@@ -111,20 +111,14 @@ Coefficient = Annotated[Number, Field(ge=0, le=1)]
 LoadFactor = Annotated[Number, Field(ge=1, le=10)]
 
 
-def _values_or_rows(value: object) -> str:
-    """Which of its two forms a list of coefficients has."""
-    rows = isinstance(value, list | tuple) and any(isinstance(row, list | tuple) for row in value)
-    return "rows" if rows else "values"
-
-
 Coefficients = Annotated[
     Annotated[tuple[Coefficient, ...], Tag("values")]
     | Annotated[tuple[tuple[Coefficient, ...], ...], Tag("rows")],
-    Discriminator(_values_or_rows),
+    VALUES_OR_ROWS,
 ]
 
 
-class FrictionTable(Table):
+class FrictionTable(PointsTable):
     """A user's coefficients of friction against one or two quantities of the contact.
 
     Between the points linear, beyond them constant.
@@ -139,11 +133,6 @@ class FrictionTable(Table):
     friction: Coefficients = Field(
         description="One value, or one row, for each value of the first axis."
     )
-
-    def axes(self) -> dict[str, tuple[float, ...]]:
-        """The axes given, by name."""
-        given = {name: getattr(self, name) for name in self.AXES}
-        return {name: points for name, points in given.items() if points is not None}
 
     def shape(self) -> tuple[int, ...]:
         """Shape of `friction`; -1 for rows of unequal length."""

@@ -19,7 +19,7 @@ from epicyclic.case.fields import (
 )
 from epicyclic.case.keys import field_at, known_keys, value_of
 from epicyclic.case.nearest import did_you_mean
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem, raise_any
 from epicyclic.units import Quantity
 
 __all__ = ["Parameter", "is_continuous", "make_parameters", "parameter_of"]
@@ -72,8 +72,7 @@ def make_parameters(
     """
     found = [_not_zero(parameter_of(case, key, set(varied))) for key in keys]
     problems = [item for item in found if isinstance(item, Problem)]
-    if problems:
-        raise InputError(problems, "the fit")
+    raise_any(problems, "the fit")
     return tuple(item for item in found if isinstance(item, Parameter))
 
 

@@ -18,6 +18,7 @@ from epicyclic.units import from_pint
 __all__ = [
     "changed_at",
     "control_problems",
+    "flattened",
     "plain",
     "value_at",
     "with_value",
@@ -91,6 +92,15 @@ def _plain(value: Any, depth: int, budget: Iterator[int]) -> Any:
 
 def _not_a_case(allowed: str) -> InputError:
     return InputError([Problem("", "", allowed, "Give the tables of a case.")])
+
+
+def flattened(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values of nested tables."""
+    for key, value in tables.items():
+        if isinstance(value, Mapping):
+            yield from flattened(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value
 
 
 def value_at(tables: Any, path: Sequence[str | int]) -> Any:

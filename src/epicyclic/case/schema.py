@@ -12,7 +12,14 @@ from collections.abc import Iterable
 from functools import cache
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetJsonSchemaHandler,
+)
 from pydantic_core import CoreSchema, PydanticCustomError
 
 from epicyclic import library
@@ -21,6 +28,7 @@ from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.short_oil import ShortOil, whole_oil
 from epicyclic.geometry.accuracy import named_fit
 from epicyclic.geometry.roughness import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
+from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity, Oil
 from epicyclic.thermal.solids import Solid
 from epicyclic.units import MILLIMETRE, Density, Modulus, Number, Quantity, as_stated
@@ -56,6 +64,26 @@ class Table(BaseModel):
         """Keys, and what this package adds to them: not what Pydantic does."""
         own = {name for name in super().__dir__() if not name.startswith("_") and name.islower()}
         return sorted(own - set(dir(BaseModel)) | set(type(self).model_fields))
+
+
+class PointsTable(Table):
+    """Base of tables with values over some of the ``AXES``."""
+
+    AXES: ClassVar[tuple[str, ...]]
+
+    def axes(self) -> dict[str, tuple[float, ...]]:
+        """The axes given, by name."""
+        given = {name: getattr(self, name) for name in self.AXES}
+        return {name: points for name, points in given.items() if points is not None}
+
+
+def _values_or_rows(value: object) -> str:
+    """Which of its two forms a list of numbers has."""
+    rows = isinstance(value, list | tuple) and any(isinstance(row, list | tuple) for row in value)
+    return "rows" if rows else "values"
+
+
+VALUES_OR_ROWS = Discriminator(_values_or_rows)
 
 
 def _no_preset(noun: str, name: str, known: Iterable[str], allowed: str) -> PydanticCustomError:
@@ -168,6 +196,12 @@ class Material(Table):
             self.thermal_conductivity if conductivity is None else conductivity,
             self.heat_capacity if heat_capacity is None else heat_capacity,
             self.density,
+        )
+
+    def modulus_against(self, other: Material) -> float:
+        """Equivalent modulus E_eq of a contact with another. [Pa]"""
+        return equivalent_modulus(
+            self.elastic_modulus, self.poisson_ratio, other.elastic_modulus, other.poisson_ratio
         )
 
 

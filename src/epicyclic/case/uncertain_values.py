@@ -21,7 +21,7 @@ from epicyclic.case.parameters import Parameter, parameter_of
 from epicyclic.case.plain import value_at
 from epicyclic.case.slopes import slope_limit
 from epicyclic.case.uncertainty_tables import DistributionTable
-from epicyclic.case.wording import dotted, path_of, sentence, written
+from epicyclic.case.wording import dotted, path_of, refused, written
 from epicyclic.errors import Problem
 from epicyclic.units import CELSIUS, MICROMETRE, Quantity, format_number
 
@@ -290,9 +290,7 @@ def _made(
     try:
         kind, spread = _spread(table, parameter.start, quantity)
     except PydanticCustomError as error:
-        remedy = str((error.context or {}).get("remedy", ""))
-        allowed = sentence(error.message(), capital=False)
-        return Problem(_name(parameter.key), _given(table), allowed, sentence(remedy))
+        return refused(error, _name(parameter.key), _given(table))
     problem = _impossible(parameter, kind, spread)
     if problem is not None:
         return replace(problem, value=_given(table))

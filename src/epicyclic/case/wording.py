@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from pydantic_core import PydanticCustomError
+
 from epicyclic.errors import InputError, Problem, printable
 
 __all__ = [
@@ -15,6 +17,7 @@ __all__ = [
     "millimetres",
     "one_line",
     "path_of",
+    "refused",
     "sentence",
     "written",
 ]
@@ -104,6 +107,12 @@ def sentence(text: str, *, capital: bool = True) -> str:
     """`text` with a full stop, and with a capital letter at its start unless told otherwise."""
     start = text[:1].upper() if capital else text[:1]
     return f"{start}{text[1:]}" + ("" if text.endswith((".", "?")) else ".")
+
+
+def refused(error: PydanticCustomError, key: str, given: str) -> Problem:
+    """The problem of a value that its quantity refuses."""
+    remedy = str((error.context or {}).get("remedy", ""))
+    return Problem(key, given, sentence(error.message(), capital=False), sentence(remedy))
 
 
 def millimetres(value: float) -> str:

@@ -117,17 +117,10 @@ def export(
 
 
 def _is_key(found: RexsImport, key: str) -> bool:
-    from pydantic import BaseModel
-
-    from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase
+    from epicyclic.case.case import KINDS
     from epicyclic.case.fields import find_field
 
-    kinds: dict[str, type[BaseModel]] = {
-        "planetary": PlanetaryCase,
-        "gear_pair": GearPairCase,
-        "train": TrainCase,
-    }
-    return find_field(kinds[found.kind], key) is not None
+    return find_field(KINDS[found.kind], key) is not None
 
 
 def _state(

@@ -17,12 +17,11 @@ from epicyclic.elements.base import (
 from epicyclic.elements.figures import figure
 from epicyclic.losses.shaft_bearing import (
     BearingLoad,
-    BearingModel,
     CatalogueBearing,
     friction_load,
     minimum_load,
 )
-from epicyclic.losses.skf_bearing import SkfModel
+from epicyclic.losses.skf_bearing import BearingModel, SkfModel
 from epicyclic.units import NEWTON, NEWTON_METRE, NUMBER, RPM, format_number
 
 __all__ = ["ShaftBearing", "ShaftBearingFigures"]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise, product
+from itertools import product
 from pathlib import Path
 from typing import Literal
 
@@ -15,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, first_of, raise_any, rising_problems
 from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
-from epicyclic.text_file import read_text, refuse
+from epicyclic.text_file import csv_rows, read_text, refuse
 from epicyclic.units import CELSIUS, NEWTON, NEWTON_METRE, RPM, WATT, Quantity
 
 __all__ = [
@@ -49,7 +48,6 @@ _LARGEST_FILE = 1_000_000
 """[bytes]"""
 _MOST_ROWS = 10_000
 _LONGEST_SHOWN = 60
-_SHOWN_LINES = 3
 _HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]")
 
 
@@ -154,16 +152,7 @@ def table_problems(
         allowed = f"must have one or two of the axes {known}."
         remedy = "Give the points of the axes to which the values belong."
         return [Problem(quantity, f"{len(axes)} axes", allowed, remedy)]
-    problems = [
-        Problem(
-            name,
-            f"{len(points)} values",
-            "must be two or more rising values.",
-            "Give two or more, the smallest first.",
-        )
-        for name, points in axes.items()
-        if len(points) < 2 or any(not b > a for a, b in pairwise(points))
-    ]
+    problems = rising_problems(axes)
     if "speed" in axes and len(axes["speed"]) > 0 and axes["speed"][0] < 0:
         problems.append(
             Problem(
@@ -229,7 +218,7 @@ def read_loss_table(path: Path) -> LossTable:
 
 
 def _parse(text: str, source: str) -> LossTable:
-    rows = list(_rows(text.splitlines()))
+    rows = list(csv_rows(text))
     if not rows:
         refuse("is empty.", "Give a header such as: speed [rpm],torque [N*m].")
     (_, header), *body = rows
@@ -250,25 +239,8 @@ def _parse(text: str, source: str) -> LossTable:
         cells = [(line, row[number]) for line, row in body]
         data[name], found = _numbers(header[number], name, unit, cells)
         problems += found
-    if problems:
-        raise InputError(problems)
+    raise_any(problems)
     return _gridded(data, [line for line, _ in body], source)
-
-
-def _rows(lines: Iterable[str]) -> Iterable[tuple[int, list[str]]]:
-    """Line number and cells of each row; the separator is that of the header."""
-    kept = [
-        (number, line)
-        for number, line in enumerate(lines, 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    separator = max(",;\t", key=kept[0][1].count) if kept else ","
-    for number, line in kept:  # line by line: a quote that stays open spoils one row only
-        try:
-            (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=True)
-        except csv.Error as error:
-            refuse(f"is no CSV: {error} in line {number}.", "Correct this line.")
-        yield number, [cell.strip() for cell in cells]
 
 
 def _columns(header: Sequence[str]) -> tuple[dict[int, tuple[str, str]], list[Problem]]:
@@ -335,7 +307,7 @@ def _numbers(
             given = f'"{_shown(cell)}" in line {line}'
             wrong.setdefault((f"{error.message()}.", f"{remedy}."), []).append(given)
     return numbers, [
-        Problem(_shown(header), _some(given), allowed, remedy)
+        Problem(_shown(header), first_of(given), allowed, remedy)
         for (allowed, remedy), given in wrong.items()
     ]
 
@@ -365,24 +337,16 @@ def _gridded(data: Mapping[str, FloatArray], lines: Sequence[int], source: str) 
         allowed = f"the file has no row for {count} {first}."
         remedy = f"Give every value of {names[0]} with every value of {names[-1]}."
         problems.append(Problem("", "", allowed, remedy))
-    if problems:
-        raise InputError(problems)
+    raise_any(problems)
     values = np.zeros(shape)
     for place, number in zip(where, data[quantity], strict=True):
         values[place] = number
-    problems = table_problems(quantity, axes, values)
-    if problems:
-        raise InputError(problems)
+    raise_any(table_problems(quantity, axes, values))
     return LossTable(quantity, axes, values, source)
 
 
-def _some(given: Sequence[str]) -> str:
-    more = len(given) - _SHOWN_LINES
-    return ", ".join(given[:_SHOWN_LINES]) + (f" and {more} more" if more > 0 else "")
-
-
 def _lines(numbers: Sequence[int]) -> str:
-    return f"line{'s' if len(numbers) > 1 else ''} {_some([str(number) for number in numbers])}"
+    return f"line{'s' if len(numbers) > 1 else ''} {first_of([str(number) for number in numbers])}"
 
 
 def _shown(text: str) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Protocol
+from typing import ClassVar, Literal
 
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
@@ -24,12 +24,12 @@ from epicyclic.lubricant.properties import OilState
 from epicyclic.units import NUMBER
 
 __all__ = [
+    "AXIAL_RATIO",
     "BEARING_TYPES",
     "DEFAULT_COEFFICIENTS",
     "DEFAULT_FLANGE_COEFFICIENTS",
     "DEFAULT_VISCOUS_FACTORS",
     "BearingLoad",
-    "BearingModel",
     "BearingType",
     "Cage",
     "CatalogueBearing",
@@ -89,7 +89,7 @@ _STATIC_RATIO = Range(
     NUMBER,
     "static load rating of rolling bearings, ISO 76",
 )
-_AXIAL_RATIO = Range(
+AXIAL_RATIO = Range(
     "axial_ratio",
     "axial over radial force of a cylindrical roller bearing",
     None,
@@ -167,40 +167,6 @@ class FrictionPart:
     watts: float
     method: str
     source: str
-
-
-class BearingModel(Protocol):
-    """How the friction of a bearing is computed."""
-
-    @property
-    def name(self) -> str:
-        """As a case has it."""
-
-    @property
-    def terms(self) -> tuple[str, ...]:
-        """Keys of the parts of its friction."""
-
-    @property
-    def depends_on_load(self) -> bool:
-        """False if the load does not matter."""
-
-    def parts(
-        self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
-    ) -> tuple[FrictionPart, ...]:
-        """The losses at a relative speed of the rings. [W]"""
-
-    def coefficient(self, bearing: CatalogueBearing, load: BearingLoad) -> float:
-        """f1; NaN for models without it. [1]"""
-
-    def flags(
-        self,
-        where: str,
-        bearing: CatalogueBearing,
-        load: BearingLoad,
-        speed: float,
-        oil: OilState,
-    ) -> tuple[ValidityFlag, ...]:
-        """Ranges that the bearing called `where` leaves."""
 
 
 def bearing_types(model: str) -> tuple[BearingType, ...]:
@@ -339,8 +305,7 @@ class PalmgrenModel:
         oil: OilState,
     ) -> tuple[ValidityFlag, ...]:
         """Flags on speed, static load and, of cylindrical rollers, axial force."""
-        name = "harris" if self.constant is None else "palmgren"
-        return load_flags(ModelUse("bearing", name, where), _AXIAL_RATIO, bearing, load, speed)
+        return load_flags(ModelUse("bearing", self.name, where), AXIAL_RATIO, bearing, load, speed)
 
 
 # --- table of the user ----------------------------------------------------------------------------

@@ -10,26 +10,29 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 from typing import Any, ClassVar
 
 from epicyclic.losses.shaft_bearing import (
+    AXIAL_RATIO,
     BearingLoad,
     BearingType,
     Cage,
     CatalogueBearing,
     FrictionPart,
+    PalmgrenModel,
+    TableModel,
     load_flags,
 )
-from epicyclic.losses.validity import ModelUse, Range, ValidityFlag
+from epicyclic.losses.validity import ModelUse, ValidityFlag
 from epicyclic.losses.viscous import RPM
 from epicyclic.lubricant.properties import OilState
-from epicyclic.units import NUMBER
 
 __all__ = [
     "STARVATION",
+    "BearingModel",
     "ContactSeal",
     "SkfConstants",
     "SkfModel",
@@ -60,13 +63,8 @@ STARTING_FRICTION = 0.15
 """mu_bl in motion and at the start (SKF 2018). [1]"""
 
 SKF_SOURCE = "SKF, Rolling bearings, catalogue (2018)"
-_AXIAL_RATIO = Range(
-    "axial_ratio",
-    "axial over radial force of a cylindrical roller bearing",
-    None,
-    0.5,
-    NUMBER,
-    "axial load of cylindrical roller bearings, SKF",
+_AXIAL_RATIO = replace(
+    AXIAL_RATIO, high=0.5, source="axial load of cylindrical roller bearings, SKF"
 )
 
 
@@ -211,6 +209,10 @@ class SkfModel:
         return load_flags(
             ModelUse("bearing", "skf-2018", where), _AXIAL_RATIO, bearing, load, speed
         )
+
+
+BearingModel = PalmgrenModel | SkfModel | TableModel
+"""How the friction of a bearing is computed."""
 
 
 @cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 from epicyclic.oilmodel.model import OilModel
 from epicyclic.units import percent
 
-__all__ = ["STANDING", "standing"]
+__all__ = ["FITTED", "STANDING", "standing"]
 
 _GEAR_TESTS = "fitted to gear tests, whose scatter was not found in print"
 _OF_THE_CASE = "given by the case"
@@ -55,11 +55,8 @@ STANDING: dict[str, dict[str, str]] = {
     },
 }
 """By role and name of the model, each a phrase."""
-_QUANTITIES = {
-    "friction": "friction",
-    "rolling": "rolling_loss",
-    "bearing": "bearing_rolling_loss",
-}
+FITTED = {"friction": "friction", "rolling": "rolling_loss", "bearing": "bearing_rolling_loss"}
+"""Which quantity of a fit each role takes."""
 
 
 def standing(role: str, name: str, model: OilModel | None = None, form: str = "") -> str:
@@ -84,7 +81,7 @@ def standing(role: str, name: str, model: OilModel | None = None, form: str = ""
     if not name.startswith("fitted"):
         return STANDING[role][name]
     assert model is not None
-    fit = model.fits[_QUANTITIES[role]]
+    fit = model.fits[FITTED[role]]
     fitted = next((item for item in fit.forms if item.form == form), fit.forms[0])
     whole = fitted.errors[0]
     known = (

@@ -25,7 +25,7 @@ from epicyclic.elements.heat_paths import (
     gear_set_links,
 )
 from epicyclic.elements.shaft_bearing import ShaftBearing
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.machine.machine import Machine
 from epicyclic.machine.settle import Answer, heat_of
 from epicyclic.machine.solve import Solution
@@ -391,8 +391,7 @@ class NetworkModel:
             if change.value is not None or computed is not None:
                 known[node] = change(computed or 0.0)
         problems += [_UNKNOWN_CAPACITY[node] for node, value in known.items() if value is None]
-        if problems:
-            raise InputError(problems)
+        raise_any(problems)
         return {node: value for node, value in known.items() if value is not None}
 
     def _carried(self, oil: Fluid, heat: float) -> float:

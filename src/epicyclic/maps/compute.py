@@ -23,7 +23,7 @@ from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.operating import AXES, STATE, STATE_KEY, axis_name
 from epicyclic.case.wording import written
 from epicyclic.elements.base import HOUSING
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.maps.interpolation_error import written_values
 from epicyclic.maps.near_zero import resolving_texts, torque_interpolation
 from epicyclic.maps.tables import check_map, map_case
@@ -176,8 +176,7 @@ def map_plan(
     if temperature is not None and not case.computed:
         allowed = "has no effect: every loss of the train is given."
         problems.append(Problem("temperature", "", allowed, "Leave it out."))
-    if problems:
-        raise InputError(problems, "the map")
+    raise_any(problems, "the map")
     given: dict[str, Iterable[Any]] = {}
     if chosen:
         given[STATE_KEY] = chosen

@@ -19,7 +19,7 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.case.operating import OPERATING, STATE
 from epicyclic.case.wording import one_line, sentence
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem, raise_any
 from epicyclic.maps.cycle_source import Source, open_source
 from epicyclic.units import SECOND, Quantity
 
@@ -163,8 +163,7 @@ def open_cycle(table: Any, progress: Callable[[int, None], None] | None = None) 
             if progress is not None:
                 progress(checks.rows, None)
         problems += checks.problems()
-    if problems:
-        raise InputError(problems, source.name)
+    raise_any(problems, source.name)
     (weighting,) = (name for name in _WEIGHTINGS if name in columns)
     if weighting == SHARE:
         columns[SHARE] = Column(columns[SHARE].header, SHARE_DURATION / checks.sums[SHARE])

@@ -19,8 +19,8 @@ from pydantic_core import PydanticCustomError
 from epicyclic.case.case import Case
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.operating import STATE
-from epicyclic.case.wording import sentence, written
-from epicyclic.errors import InputError, Problem
+from epicyclic.case.wording import refused, written
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.maps.compute import MapPlan, map_plan, to_map
 from epicyclic.maps.cycle import Cycle, Piece, open_cycle
 from epicyclic.maps.interpolation_error import (
@@ -152,16 +152,13 @@ def parse_temperatures(cycle: Cycle, temperature: Iterable[Any] | None) -> tuple
         try:
             values.append(CELSIUS.to_display(CELSIUS.parse(text)))
         except PydanticCustomError as error:
-            remedy = sentence(str((error.context or {}).get("remedy", "")))
-            allowed = sentence(error.message(), capital=False)
-            problems.append(Problem("temperature", written(text), allowed, remedy))
+            problems.append(refused(error, "temperature", written(text)))
     if "temperature" in cycle.ranges:
         allowed = "is a column of the cycle too."
         problems.append(Problem("temperature", "", allowed, "Leave one of them."))
     if not texts or len(set(values)) < len(values):
         problems.append(Problem("temperature", "", "must name each value once.", "Name others."))
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
     return tuple(values)
 
 
@@ -343,8 +340,7 @@ def check_states(cycle: Cycle, known: tuple[str, ...]) -> None:
         for name in cycle.states
         if name not in known
     ]
-    if problems:
-        raise InputError(problems, cycle.source.name)
+    raise_any(problems, cycle.source.name)
 
 
 def point_of(lookup: Lookup, cycle: Cycle, piece: Piece) -> tuple[Array, ...]:

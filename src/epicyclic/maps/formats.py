@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from epicyclic.case.operating import AXES, PLANE, STATE
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.maps import fmu, simscape, simulation, tables, workbook
 from epicyclic.sweeps.dataset import write_netcdf
 from epicyclic.whole_file import check_place, whole_file
@@ -140,8 +140,7 @@ def check_map_output(path: Path, format: str | None, axes: Coordinates, held: st
             problems.append(
                 tables.driven_problem("the format holds gears of one input and one output")
             )
-    if problems:
-        raise InputError(problems, f"the map for {chosen.about}")
+    raise_any(problems, f"the map for {chosen.about}")
     return chosen
 
 

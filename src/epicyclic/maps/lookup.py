@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.operating import AXES, STATE
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem, raise_any
 from epicyclic.maps.tables import check_gaps, check_map, driven_problem
 from epicyclic.units import RPM, WATT
 
@@ -201,5 +201,4 @@ def _check_usable(data: xr.Dataset) -> None:
         problems.append(driven_problem("only one speed and one torque can be looked up"))
     if not data["speed"].values.any():
         problems.append(Problem("speed", "", "is zero only.", "Make a map with other speeds."))
-    if problems:
-        raise InputError(problems, "the map")
+    raise_any(problems, "the map")

@@ -12,7 +12,7 @@ import numpy as np
 from epicyclic.case.case import Case, read_case
 from epicyclic.case.operating import OPERATING, PLANE, STATE
 from epicyclic.case.wording import one_line
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.sweeps.dataset import csv_safe, to_table
 from epicyclic.units import NEWTON_METRE, WATT
 
@@ -110,9 +110,7 @@ def check_map(data: xr.Dataset, source: str = "the map") -> None:
         allowed = f"is no loss map; it lacks {', '.join(lacks)}."
         remedy = "Give what epicyclic map or loss_map made, all of its axes kept."
         raise InputError([Problem("", "", f"This dataset {allowed}", remedy)], source)
-    problems = [*_axis_problems(data), *_value_problems(data)]
-    if problems:
-        raise InputError(problems, source)
+    raise_any([*_axis_problems(data), *_value_problems(data)], source)
 
 
 def _axis_problems(data: xr.Dataset) -> Iterator[Problem]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,10 +16,10 @@ from epicyclic.builders.build import build
 from epicyclic.case.case import Case
 from epicyclic.case.fields import quantity_of
 from epicyclic.case.operating import AXES, STATE, axis_name
-from epicyclic.case.wording import sentence, written
+from epicyclic.case.wording import refused, written
 from epicyclic.elements.base import OIL
 from epicyclic.elements.heat_paths import INLET
-from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.machine.heat_network import NetworkModel
 from epicyclic.machine.settle import HOTTEST
 from epicyclic.maps.compute import MapPlan, held_shaft, map_plan
@@ -31,7 +30,7 @@ from epicyclic.maps.lookup import Lookup, loss_power
 from epicyclic.maps.near_zero import resolving_zero
 from epicyclic.maps.tables import driven_problem
 from epicyclic.pocketing.table import FlowTables
-from epicyclic.results.result import versions
+from epicyclic.results.result import origin
 from epicyclic.sweeps.plan import SweepPlan, make_plan
 from epicyclic.sweeps.runner import Progress
 from epicyclic.thermal.transient import Course
@@ -186,15 +185,12 @@ def _parsed(case: Case, duration: Any, start: Any) -> tuple[float, float]:
         try:
             found.append(quantity.parse(value))
         except PydanticCustomError as error:
-            allowed = sentence(error.message(), capital=False)
-            remedy = sentence(str((error.context or {}).get("remedy", "")))
-            problems.append(Problem(name, written(value), allowed, remedy))
+            problems.append(refused(error, name, written(value)))
     if case.thermal.oil_outlet_temperature is not None:
         allowed = "tells the flow of oil in one settled state only."
         remedy = "Give thermal.oil_flow instead."
         problems.append(Problem("thermal.oil_outlet_temperature", "", allowed, remedy))
-    if problems:
-        raise InputError(problems)
+    raise_any(problems)
     seconds, kelvin = found
     return seconds, kelvin
 
@@ -485,7 +481,6 @@ def _to_dataset(
         "node": nodes,
         "component": list(tables.terms),
     }
-    used = versions()
     return xr.Dataset(
         {
             name: (dims, values, {"long_name": label, "units": unit})
@@ -494,9 +489,7 @@ def _to_dataset(
         coords,
         {
             "title": case.title,
-            "source": f"epicyclic {used['epicyclic']}",
-            "versions": json.dumps(used),
-            "case": json.dumps(case.inputs()),
+            **origin(case),
             "temperatures_of_the_tables": ", ".join(CELSIUS.text(it, 4) for it in tables.knots),
         },
     )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from epicyclic.case.operating import STATE
+from epicyclic.case.plain import flattened
 from epicyclic.errors import Problem
 from epicyclic.maps.tables import statements
 from epicyclic.status import Status
@@ -53,8 +54,8 @@ def write_workbook(data: xr.Dataset, path: Path) -> None:
         _append_map(book, "map", data)
     inputs = book.create_sheet("inputs")
     _append(inputs, ["key", "value"])
-    for key, value in _flat(json.loads(data.attrs["case"])):
-        _append(inputs, [key, value])
+    for key, value in flattened(json.loads(data.attrs["case"])):
+        _append(inputs, [key, json.dumps(value) if isinstance(value, list) else value])
     about = book.create_sheet("about")
     for key, text in statements(data).items():
         _append(about, [key, text])
@@ -115,15 +116,6 @@ def _append(sheet: Any, row: Sequence[Any]) -> None:
 
 def _unit(data: xr.Dataset, name: str) -> str:
     return str(data[name].attrs.get("units", ""))
-
-
-def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Dotted keys and values of nested tables; lists as JSON."""
-    for key, value in table.items():
-        if isinstance(value, Mapping):
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", json.dumps(value) if isinstance(value, list) else value
 
 
 def write_matlab(data: xr.Dataset, path: Path) -> None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
 from epicyclic.case.parameters import make_parameters
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.measurement.comparison import MeasuredComparison
 from epicyclic.measurement.files import read_frame, read_grid
 from epicyclic.measurement.fit import Tell, fit_parameters
@@ -109,8 +109,7 @@ def compare_measured(
     keys = tuple(dict.fromkeys(fit))
     varied = {key for change in table.changes for key in change}
     problems = [*question.problems(), *_fit_problems(keys, hold_out, confidence)]
-    if problems:
-        raise InputError(problems, "the comparison")
+    raise_any(problems, "the comparison")
     parameters = make_parameters(case, keys, varied)
     held_out = _held_out(table, hold_out, seed)
     points = question.points(runner)

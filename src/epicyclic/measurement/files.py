@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import io
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -10,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from epicyclic.case.wording import one_line
-from epicyclic.errors import InputError
-from epicyclic.text_file import check_archive, decode, read_bytes, refuse
+from epicyclic.errors import InputError, first_of
+from epicyclic.text_file import check_archive, csv_rows, decode, read_bytes, refuse
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -85,9 +84,8 @@ def _checked(rows: Iterator[tuple[int, list[str]]], source: str) -> Grid:
         refuse("has no rows below its header.", "Give one row for each measurement.")
     ragged = [(line, len(cells)) for line, cells in kept if len(cells) != len(header)]
     if ragged:
-        shown = ", ".join(f"line {line} has {count}" for line, count in ragged[:_SHOWN_LINES])
-        more = len(ragged) - _SHOWN_LINES
-        allowed = f"has {len(header)} columns, but {shown}{f' and {more} more' * (more > 0)}."
+        shown = first_of([f"line {line} has {count}" for line, count in ragged], _SHOWN_LINES)
+        allowed = f"has {len(header)} columns, but {shown}."
         refuse(allowed, "Give every row as many cells; quote cells that contain the separator.")
     return Grid(tuple(header), tuple(kept), source)
 
@@ -101,23 +99,9 @@ def _without_end(cells: list[str], least: int) -> list[str]:
 
 
 def _csv_rows(content: bytes) -> Iterator[tuple[int, list[str]]]:
-    """Rows of text; the separator is that of the header, lines that begin with # are skipped."""
     if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
         refuse("is UTF-16 text.", "Save it as CSV in UTF-8.")
-    lines = decode(content, _NOUN).splitlines()
-    header = next((line for line in lines if not _is_aside(line)), "")
-    separator = max(",;\t", key=header.count)
-    numbered = ((number, line) for number, line in enumerate(lines, 1) if not _is_aside(line))
-    for number, line in numbered:  # line by line: a quote that stays open spoils one row only
-        try:
-            (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=True)
-        except csv.Error as error:
-            refuse(f"is no CSV: {error} in line {number}.", "Correct this line.")
-        yield number, [cell.strip() for cell in cells]
-
-
-def _is_aside(line: str) -> bool:
-    return not line.strip() or line.lstrip().startswith("#")
+    return csv_rows(decode(content, _NOUN))
 
 
 def _excel_rows(content: bytes) -> Iterator[tuple[int, list[str]]]:

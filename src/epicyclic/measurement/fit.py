@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.parameters import Parameter
-from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.measurement.fit_result import Fit, FittedParameter
 from epicyclic.measurement.fit_warnings import fit_warnings
 from epicyclic.measurement.identifiability import Combination, combinations
@@ -151,8 +151,7 @@ def _check_influence(residuals: Residuals, slopes: FloatArray) -> None:
         for item, slope in zip(residuals.parameters, np.abs(slopes).max(axis=0), strict=True)
         if slope <= NO_INFLUENCE * scale.max()
     ]
-    if problems:
-        raise InputError(problems, "the fit")
+    raise_any(problems, "the fit")
 
 
 def _described(

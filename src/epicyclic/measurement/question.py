@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case, build_case
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.measurement.comparison import MeasuredComparison, notes_on
 from epicyclic.measurement.deviations import AS_GIVEN, CALIBRATED, all_errors
 from epicyclic.measurement.files import Grid
@@ -123,9 +123,7 @@ class ComparisonPlan(PointList):
     @classmethod
     def of(cls, question: Question) -> Self:
         """The points of a question; raises `InputError` if something is wrong with it."""
-        problems = list(question.problems())
-        if problems:
-            raise InputError(problems, "the comparison")
+        raise_any(question.problems(), "the comparison")
         points = question.points()
         asked, _ = points.asked({})
         return cls(points.case, asked, question=question)

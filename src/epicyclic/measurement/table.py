@@ -20,7 +20,7 @@ from epicyclic.case.nearest import did_you_mean, misspelt
 from epicyclic.case.operating import AXES, OPERATING, STATE, STATE_KEY
 from epicyclic.case.values import parse_value
 from epicyclic.case.wording import one_line, sentence
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, first_of, raise_any
 from epicyclic.measurement.files import Grid
 from epicyclic.units import WATT, Quantity, format_number
 
@@ -109,15 +109,10 @@ class _Problems:
     def all(self) -> list[Problem]:
         """Every problem, those of columns first."""
         cells = [
-            Problem(one_line(header), _some(given), allowed, remedy)
+            Problem(one_line(header), first_of(given), allowed, remedy)
             for (header, allowed, remedy), given in self._cells.items()
         ]
         return [*self.found, *cells]
-
-
-def _some(items: list[str], most: int = 3) -> str:
-    more = len(items) - most
-    return ", ".join(items[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def parse_measurements(grid: Grid, case: Case, component: str = "total") -> Measurements:
@@ -156,8 +151,7 @@ def parse_measurements(grid: Grid, case: Case, component: str = "total") -> Meas
         {key: column[row] for key, column in values.items()} for row in range(len(grid.rows))
     )
     found = problems.all() or _refused(case, changes, problems.lines)
-    if found:
-        raise InputError(found, grid.source)
+    raise_any(found, grid.source)
     return Measurements(
         source=grid.source,
         lines=problems.lines,
@@ -352,7 +346,7 @@ def _check_repeats(grid: Grid, problems: _Problems) -> None:
         seen.setdefault(cells, line)
     if repeats:
         remedy = "Delete them; number repeated measurements in a column of their own, such as run."
-        problems.found.append(Problem("rows", _some(repeats), "are the same twice.", remedy))
+        problems.found.append(Problem("rows", first_of(repeats), "are the same twice.", remedy))
 
 
 def _refused(

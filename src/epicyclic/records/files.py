@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
@@ -11,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 
 from epicyclic.case.case import Case
 from epicyclic.case.wording import one_line
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.maps.tables import check_map
 from epicyclic.netcdf_file import read_groups
 from epicyclic.records.checks import RUN_AGAIN, field_problems, map_problems, sweep_problems
@@ -113,15 +112,15 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
         if root.attrs.get("format") == FORMAT:
             return _record_of(root, fields)
         if "torque_loss" in root and "reference_shaft" in root.attrs:
-            _check(map_problems(root))
+            raise_any(map_problems(root))
             _sound(MapContents, dict(root.attrs))
             check_map(root)
             return root
         if {"contribution", "nominal"} <= set(root.data_vars):
-            _check(field_problems("uncertainty/", root))
+            raise_any(field_problems("uncertainty/", root))
             return root
         if is_sweep(root):
-            _check(sweep_problems(root))
+            raise_any(sweep_problems(root))
             _sound(SweepContents, dict(root.attrs))
             return root
         _refuse("is neither a stored result nor a loss map nor an uncertainty nor a sweep.")
@@ -143,17 +142,11 @@ def _refuse(what: str, remedy: str = RUN_AGAIN) -> NoReturn:
     raise InputError([Problem("", "", f"the file {what}", remedy)])
 
 
-def _check(problems: Iterable[Problem]) -> None:
-    found = list(problems)
-    if found:
-        raise InputError(found)
-
-
 def _record_of(root: xr.Dataset, fields: dict[str, xr.Dataset]) -> ResultRecord:
     version = root.attrs.get("format_version")
     if version != FORMAT_VERSION:
         _refuse(f"has the format version {version}; this program reads {FORMAT_VERSION}.")
-    _check(problem for path, data in fields.items() for problem in field_problems(path, data))
+    raise_any(problem for path, data in fields.items() for problem in field_problems(path, data))
     stated = _sound(RecordContents, dict(root.attrs))
     return ResultRecord(
         result=stated.result,
@@ -169,7 +162,7 @@ def _sound(kind: type[Stated], attributes: dict[str, Any]) -> Stated:
     try:
         return kind.model_validate(attributes)
     except ValidationError as error:
-        _check(
+        raise_any(
             Problem(".".join(map(str, one["loc"])), "", f"{one_line(one['msg'])}.", RUN_AGAIN)
             for one in error.errors()
         )

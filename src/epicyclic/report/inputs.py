@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase
+from epicyclic.case.case import KINDS
 from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.fields import Place, dict_value, locate, quantity_of
 from epicyclic.case.train import form_of_set
@@ -29,7 +29,6 @@ WORDS, VALUES = 18, 42
 """Widths of the columns of keys and values, beside their meaning. [%]"""
 MOST_BESIDE = 3
 """Columns of values that have room in this: more parts follow in a table below."""
-_SCHEMAS = {"planetary": PlanetaryCase, "gear_pair": GearPairCase, "train": TrainCase}
 _SHARED = ("models", "numerics", "lubrication")
 """Tables that the sets of a train take from it."""
 _LISTED, _MEMBERS = "gears", "members"
@@ -70,7 +69,7 @@ def input_tables(
     models : mapping of str to str, optional
         The models that were used. Defaults of keys that have no effect with them are left out.
     """
-    source = _Source(_SCHEMAS[inputs["kind"]], given, _used(inputs, models))
+    source = _Source(KINDS[inputs["kind"]], given, _used(inputs, models))
     if inputs["kind"] != "train":
         return [table for table in _set_tables(source, (), inputs) if table.rows]
     tables = []

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
+from epicyclic.case.plain import flattened
 from epicyclic.case.template import toml_value
 from epicyclic.records.contents import ResultContents
 from epicyclic.report.page import Cell, KeyFigure, Table, aligned, number, tenths
@@ -37,7 +37,13 @@ def side_by_side(
     )
     yield Table(("", *names), rows, "Key figures")
     yield _losses(first, second, names)
-    inputs = [dict(_flat(result.inputs)) for result in (first, second)]
+    inputs = [
+        {
+            key: value if isinstance(value, str) else toml_value(value)
+            for key, value in flattened(result.inputs)
+        }
+        for result in (first, second)
+    ]
     changed = [key for key in inputs[0] | inputs[1] if inputs[0].get(key) != inputs[1].get(key)]
     rows = tuple((Cell(key), *(Cell(one.get(key, MISSING)) for one in inputs)) for key in changed)
     if rows:
@@ -68,13 +74,3 @@ def _difference(name: str, first: float | None, second: float | None) -> tuple[C
         number(second - first, "", text=f"{second - first:+z.1f}"),
         aligned(share),
     )
-
-
-def _flat(tables: Mapping[str, Any], key: str = "") -> Iterator[tuple[str, str]]:
-    """Dotted keys with their values as text."""
-    for name, value in tables.items():
-        full = f"{key}.{name}" if key else name
-        if isinstance(value, Mapping):
-            yield from _flat(value, full)
-        else:
-            yield full, value if isinstance(value, str) else toml_value(value)

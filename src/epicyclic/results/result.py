@@ -42,6 +42,7 @@ __all__ = [
     "in_words",
     "number_fields",
     "of_gear",
+    "origin",
     "versions",
 ]
 
@@ -485,6 +486,16 @@ def versions() -> dict[str, str]:
     """Versions of this package and of what its numbers depend on."""
     names = ("epicyclic", "numpy", "numba", "pint", "pydantic")
     return {"python": platform.python_version()} | {name: metadata.version(name) for name in names}
+
+
+def origin(case: Stated) -> dict[str, str]:
+    """Attributes of a dataset that tell what made it, from which case."""
+    used = versions()
+    return {
+        "source": f"epicyclic {used['epicyclic']}",
+        "versions": json.dumps(used),
+        "case": json.dumps(case.inputs()),
+    }
 
 
 def _members_dict(flow: PowerFlow) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from epicyclic.case.fields import all_keys, is_array, is_named, is_text, quantit
 from epicyclic.case.keys import field_at, known_keys
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.plain import plain
-from epicyclic.case.wording import sentence, written
+from epicyclic.case.wording import refused, written
 from epicyclic.errors import Problem
 from epicyclic.units import Quantity
 
@@ -125,12 +125,7 @@ def make_axis(
         try:
             coordinate.append(coordinate_of(value, quantity))
         except PydanticCustomError as error:
-            remedy = str((error.context or {}).get("remedy", ""))
-            problems.append(
-                Problem(
-                    key, written(value), sentence(error.message(), capital=False), sentence(remedy)
-                )
-            )
+            problems.append(refused(error, key, written(value)))
     if not problems and not repeated and len(set(coordinate)) < len(coordinate):
         problems.append(Problem(key, "", "has the same value twice.", "Give each value once."))
     if problems:

@@ -14,7 +14,7 @@ from epicyclic.builders.build import layout_of
 from epicyclic.case.operating import axis_name
 from epicyclic.errors import InputError, Problem
 from epicyclic.netcdf_file import texts_not_copied
-from epicyclic.results.result import number_fields, versions
+from epicyclic.results.result import number_fields, origin
 from epicyclic.sweeps.axes import ROW, unit_of
 from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.plan import SweepPlan
@@ -123,12 +123,9 @@ def _about(label: str, unit: str) -> dict[str, str]:
 
 
 def _attributes(plan: SweepPlan, rows: Rows) -> dict[str, str]:
-    used = versions()
     return {
         "title": plan.case.title,
-        "source": f"epicyclic {used['epicyclic']}",
-        "versions": json.dumps(used),
-        "case": json.dumps(plan.case.inputs()),
+        **origin(plan.case),
         "conventions": "losses in W of the whole gear set, summed over planets; "
         "torque and speed of the input member",
         "pocketing": _about_pocketing(rows),

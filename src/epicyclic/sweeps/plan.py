@@ -21,7 +21,7 @@ from epicyclic.case.fields import is_whole_number
 from epicyclic.case.keys import field_at
 from epicyclic.case.plain import plain
 from epicyclic.case.values import parse_value
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.status import Status
 from epicyclic.sweeps.axes import (
@@ -36,7 +36,7 @@ from epicyclic.sweeps.axes import (
 from epicyclic.sweeps.journal import Row
 from epicyclic.sweeps.links import Point, check_links, keys_behind
 from epicyclic.sweeps.pockets import flow_tables
-from epicyclic.sweeps.runner import Plan, guarded
+from epicyclic.sweeps.runner import Plan
 from epicyclic.units import format_number
 
 __all__ = [
@@ -93,10 +93,6 @@ class CasePlan(Plan):
     def changes(self, index: int) -> dict[str, Any]:
         """The keys that point number `index` changes."""
 
-    def solve(self, index: int) -> Row:
-        """One case as a flat record."""
-        return guarded(lambda: self._solve(index))
-
     def prepared(self, indices: Sequence[int], jobs: int | None) -> Self:
         """With the tables of flows that the points `indices` read."""
         return replace(self, flow_tables=flow_tables(self, indices, jobs))
@@ -110,6 +106,7 @@ class CasePlan(Plan):
         }
 
     def _solve(self, index: int) -> Row:
+        """One case as a flat record."""
         case = self.case.updated(self.changes(index))
         result = solve(case, flow_tables=self.flow_tables)
         if result.status is not Status.CONVERGED:
@@ -290,8 +287,7 @@ def make_plan(
     problems += _repeated([*single, *(key for group in groups for key in group), *(points or {})])
     linked = {str(key): str(text) for key, text in (links or {}).items()}
     problems += check_links(case, linked, {part.key for axis in axes for part in axis.keys})
-    if problems:
-        raise InputError(problems, "the sweep")
+    raise_any(problems, "the sweep")
     plan = SweepPlan(case, axes, linked)
     _check_first(plan)
     return plan
@@ -361,8 +357,7 @@ def parse_vary(
         if size > MOST_POINTS:
             problems.append(too_many(name, size))
             break
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
     return vary
 
 
@@ -391,8 +386,7 @@ def parse_links(options: Sequence[str]) -> dict[str, str]:
         elif key in links:
             problems.append(Problem("--link", f'"{option}"', f"links {key} again.", "Keep one."))
         links[key] = text
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
     return links
 
 

@@ -23,13 +23,13 @@ from epicyclic.analysis.pocket_variants import (
 from epicyclic.case.case import Case, build_case
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.plain import plain
-from epicyclic.case.wording import sentence, written
+from epicyclic.case.wording import refused, written
 from epicyclic.elements.gear_mesh import MeshDuty
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.pocketing.similarity import flow_figures
 from epicyclic.status import Status
 from epicyclic.sweeps.journal import Row
-from epicyclic.sweeps.runner import Plan, guarded
+from epicyclic.sweeps.runner import Plan
 from epicyclic.units import NUMBER, Quantity
 
 __all__ = ["NUMBERS", "PARAMETERS", "STUDIES", "StudyAxis", "StudyPlan", "make_study"]
@@ -175,10 +175,6 @@ class StudyPlan(Plan):
         """The case, and what was asked for."""
         return {"case": self.case.given(), "given": self.given}
 
-    def solve(self, index: int) -> Row:
-        """One point as a flat record."""
-        return guarded(lambda: self._solve(index))
-
     def _solve(self, index: int) -> Row:
         flow = solve_variant(self.case, self.duty, self.points[index])
         warning = "" if flow.periodic else "the flow does not repeat; the loss is a mean"
@@ -208,8 +204,7 @@ def make_study(
     given_ranges, range_problems = _parsed("range", ranges, names)
     given_levels, level_problems = _parsed("level", levels, list(LEVELS))
     problems = [*_unknown_studies(names), *range_problems, *level_problems]
-    if problems:
-        raise InputError(problems, "the study")
+    raise_any(problems, "the study")
     base = base_variant(case, duty)
     axes = {}
     for name in names:
@@ -275,9 +270,7 @@ def _parsed(
             try:
                 found.append(_parse(PARAMETERS[name].quantity, value))
             except PydanticCustomError as error:
-                remedy = sentence(str((error.context or {}).get("remedy", "")))
-                allowed = sentence(error.message(), capital=False)
-                problems.append(Problem(f"{what} {name}", written(value), allowed, remedy))
+                problems.append(refused(error, f"{what} {name}", written(value)))
         parsed[name] = tuple(sorted(set(found)))
     return parsed, problems
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from epicyclic.analysis.datasets import variable
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.pocketing.similarity import FLOW_NUMBERS
-from epicyclic.results.result import versions
+from epicyclic.results.result import origin
 from epicyclic.sweeps.journal import Rows
 from epicyclic.sweeps.pocketing_plan import (
     NUMBERS,
@@ -130,15 +129,12 @@ def _member(plan: StudyPlan) -> str:
 
 def _attributes(plan: StudyPlan, name: str) -> dict[str, str]:
     mesh = plan.duty.key.replace("_", " ")
-    used = versions()
     return {
         "title": f"Pocketing loss of the {mesh} of {plan.case.title or 'the case'}",
         "figure": STUDIES[name].figure,
         "mesh": plan.duty.key,
         "model": plan.duty.models.pockets.model,
-        "source": f"epicyclic {used['epicyclic']}",
-        "versions": json.dumps(used),
-        "case": json.dumps(plan.case.inputs()),
+        **origin(plan.case),
     }
 
 

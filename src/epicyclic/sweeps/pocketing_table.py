@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -21,11 +20,11 @@ from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.similarity import FLOW_NUMBERS, FlowFamily, FlowFigures
 from epicyclic.pocketing.stored import ATTRIBUTE, store
 from epicyclic.pocketing.table import FlowTable, make_tables
-from epicyclic.results.result import versions
+from epicyclic.results.result import origin
 from epicyclic.status import Status
 from epicyclic.sweeps.journal import Row, Rows
 from epicyclic.sweeps.plan import SweepPlan, make_plan
-from epicyclic.sweeps.runner import Plan, Progress, Runner, guarded
+from epicyclic.sweeps.runner import Plan, Progress, Runner
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -166,9 +165,8 @@ class TablePlan(Plan):
         """The case, its speeds and temperatures."""
         return self.places.describe()
 
-    def solve(self, index: int) -> Row:
-        """One table."""
-        return guarded(lambda: _row(self._table(self.families[index])))
+    def _solve(self, index: int) -> Row:
+        return _row(self._table(self.families[index]))
 
     def _table(self, family: FlowFamily) -> FlowTable:
         asked = {flow.number for flow in self.flows if flow.family == family and flow.turns}
@@ -278,12 +276,9 @@ def table_dataset(plan: TablePlan, rows: Rows) -> xr.Dataset:
     errors = rows.numbers("error").reshape(both)
     about = {"long_name": "largest error of the power, interpolated", "units": "1"}
     variables["interpolation_error"] = (("mesh", "driver"), errors, about)
-    used = versions()
     attributes = {
         "title": case.title,
-        "source": f"epicyclic {used['epicyclic']}",
-        "versions": json.dumps(used),
-        "case": json.dumps(case.inputs()),
+        **origin(case),
         "method": f"{pocketing_method(plan.flows[0].family.model, None)}; {POCKETING_SOURCE}",
         "conventions": "power in W of one mesh; member 1: sun, planet in the ring mesh, pinion",
         ATTRIBUTE: store(tables),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from epicyclic.case.values import parse_value
 from epicyclic.case.wording import one_line
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.sweeps.axes import MOST_POINTS
 from epicyclic.text_file import read_text, refuse
 
@@ -87,8 +87,7 @@ def _columns(table: dict[str, Any]) -> dict[str, list[Any]]:
             allowed = f"has no value in row {', '.join(empty[:5])}{' ...' * (len(empty) > 5)}."
             problems.append(Problem(key, "", allowed, "Give every row a value."))
         columns[key] = [_value(cell, unit) for cell in cells]
-    if problems:
-        raise InputError(problems, "the table of points")
+    raise_any(problems, "the table of points")
     return columns
 
 

@@ -36,7 +36,6 @@ __all__ = [
     "Runner",
     "failed_row",
     "fingerprint",
-    "guarded",
     "parse_shard",
     "share_of",
 ]
@@ -82,9 +81,22 @@ class Plan(ABC):
     def order(self) -> Sequence[int]:
         """Numbers of all points, those next to each other that share most."""
 
-    @abstractmethod
     def solve(self, index: int) -> Row:
-        """Row of one point; raises nothing but an interruption."""
+        """Row of one point, with the reason if it fails; raises nothing but an interruption."""
+        try:
+            return self._solve(index)
+        except InputError as error:
+            return failed_row(_told(error))
+        except EpicyclicError as error:
+            return failed_row(str(error))
+        except Exception as error:  # whatever it is, the other points do not suffer
+            if is_interrupt(error):
+                raise KeyboardInterrupt from error
+            return failed_row(f"{type(error).__name__}: {error}")
+
+    @abstractmethod
+    def _solve(self, index: int) -> Row:
+        """Row of one point."""
 
     @abstractmethod
     def describe(self) -> dict[str, Any]:
@@ -384,20 +396,6 @@ def _solve_batch(plan: Plan, indices: Sequence[int], journal: Journal | None) ->
             journal.append(index, row)
         rows.append((index, row))
     return rows
-
-
-def guarded(solve: Callable[[], Row]) -> Row:
-    """The row of a point; one that fails becomes a row with its reason."""
-    try:
-        return solve()
-    except InputError as error:
-        return failed_row(_told(error))
-    except EpicyclicError as error:
-        return failed_row(str(error))
-    except Exception as error:  # whatever it is, the other points do not suffer
-        if is_interrupt(error):
-            raise KeyboardInterrupt from error
-        return failed_row(f"{type(error).__name__}: {error}")
 
 
 def _told(error: InputError) -> str:

@@ -7,7 +7,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any, Protocol
 
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.sweeps.journal import NOT_COMPUTED, Journal, Rows, read_heading
 from epicyclic.sweeps.runner import Plan, fingerprint, share_of
 
@@ -88,8 +88,7 @@ def _check_whole(rows: Rows, shares: Mapping[Path, Sequence[int]]) -> None:
     if without:
         allowed = f"{without} of {len(rows)} points are of shards that are not named."
         problems.append(Problem("FILE", "", allowed, "Name the files of all shards."))
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
 
 
 def _error(file: Path, allowed: str, remedy: str) -> InputError:

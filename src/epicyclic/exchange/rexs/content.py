@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, Protocol
 
 from epicyclic.case.wording import one_line
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem, raise_any
 from epicyclic.exchange.rexs.model import Attribute, Component, Model, Relation, refuse
 from epicyclic.exchange.rexs.vocabulary import versions
 
@@ -79,8 +79,7 @@ def build_model(content: Content) -> Model:
         ]
         if key is not None:
             load_cases[key] = changes
-    if problems:
-        raise InputError(problems[:_SHOWN])
+    raise_any(problems[:_SHOWN])
     return Model(version, components, relations, load_cases)
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError
 from epicyclic.exchange.rexs.model import refuse
+from epicyclic.text_file import read_bytes
 
 if TYPE_CHECKING:
     from epicyclic.exchange.rexs.content import Content
@@ -102,33 +103,12 @@ def read_document(path: Path, *, with_others: bool = False) -> Document:
         If it is no such file, is too large, or is not sound.
     """
     try:
-        data = _read(path)
+        data = read_bytes(path, "REXS", LARGEST)
         return (
             _from_archive(data, with_others) if data.startswith(b"PK") else Document(_parse(data))
         )
     except InputError as error:
         raise InputError(error.problems, one_line(str(path), 500)) from None
-
-
-def _read(path: Path) -> bytes:
-    try:
-        if path.exists() and not path.is_file():  # a pipe could keep the program waiting
-            raise refuse("cannot be read: it is not a regular file.", "Name a REXS file.")
-        with path.open("rb") as file:
-            data = file.read(LARGEST + 1)
-    except OSError as error:
-        raise refuse(f"cannot be read: {error.strerror}.", "Check the path.") from None
-    except ValueError:
-        raise refuse("cannot be read: no path has a zero character.", "Check the path.") from None
-    return _bounded(data)
-
-
-def _bounded(data: bytes) -> bytes:
-    if len(data) > LARGEST:
-        raise refuse(
-            f"is larger than {LARGEST // 10**6} MB.", "Export the gears without local results."
-        )
-    return data
 
 
 def _from_archive(data: bytes, with_others: bool) -> Document:
@@ -155,7 +135,12 @@ def _unpacked(archive: zipfile.ZipFile, with_others: bool) -> Document:
             raise refuse(
                 f"is an archive with a member that leads out of it: {shown}.", "Repack it."
             )
-    content = _parse(_bounded(_member(archive, members[0], LARGEST)))
+    model = _member(archive, members[0], LARGEST)
+    if len(model) > LARGEST:
+        raise refuse(
+            f"is larger than {LARGEST // 10**6} MB.", "Export the gears without local results."
+        )
+    content = _parse(model)
     others: list[tuple[zipfile.ZipInfo, bytes]] = []
     left = _LARGEST_REST
     for info in infos if with_others else ():

@@ -11,7 +11,7 @@ from epicyclic.case.case import Case, build_case, changed_tables
 from epicyclic.case.template import case_text
 from epicyclic.case.train_text import train_text
 from epicyclic.case.wording import one_line
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.exchange.rexs import checks
 from epicyclic.exchange.rexs.content import build_model
 from epicyclic.exchange.rexs.draft import Draft, Lack
@@ -193,8 +193,7 @@ def _draft(model: Model, chosen: PlanetarySet | Pair | Train) -> Draft:
     if len(model.load_cases) > 0:
         cases = ", ".join(map(str, list(model.load_cases)[:12]))
         draft.notes.append(f"The file has load cases: {cases}. One is read with --load-case.")
-    if draft.problems:
-        raise InputError(draft.problems)
+    raise_any(draft.problems)
     return draft
 
 

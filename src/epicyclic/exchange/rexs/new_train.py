@@ -11,7 +11,7 @@ from epicyclic.case.element_tables import ShaftBearingTable
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import PairSet, PlanetarySet
 from epicyclic.elements.base import HOUSING
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem, raise_any
 from epicyclic.exchange.rexs.model import Component, Relation
 from epicyclic.exchange.rexs.new_file import (
     Builder,
@@ -54,8 +54,7 @@ def train_parts(case: TrainCase) -> Iterator[Component | Relation]:
         for name, table in case.sets.items()
         if not isinstance(table, PlanetarySet | PairSet)
     ]
-    if problems:
-        raise InputError(problems)
+    raise_any(problems)
     names = list(case.states)
     chosen = {}
     if case.operation.state is not None:

@@ -14,7 +14,7 @@ from typing import Any
 
 from epicyclic.elements.figures import Figure
 from epicyclic.elements.shaft_bearing import ShaftBearingFigures
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem, raise_any
 from epicyclic.exchange.rexs.content import Content
 from epicyclic.exchange.rexs.draft import DIGITS
 from epicyclic.exchange.rexs.model import Attribute, Component, Model
@@ -54,8 +54,7 @@ def check_match(chosen: PlanetarySet | Pair | Train, result: Result) -> None:
             where = "the file" if name in tables else "the case"
             remedy = "Keep the names of the sets as they were imported."
             problems.append(Problem(f"sets.{name}", "", f"is not in {where}.", remedy))
-    if problems:
-        raise InputError(problems)
+    raise_any(problems)
 
 
 def _differences(

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from epicyclic.elements.base import HOUSING
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.exchange.rexs.model import Component, Model
 from epicyclic.exchange.rexs.sets import (
     Joint,
@@ -152,8 +152,7 @@ def chosen_train(model: Model) -> Train | None:
             sets[names.of(stage, "stage")] = read_stage(model, stage)
         except InputError as error:
             problems += error.problems
-    if problems:
-        raise InputError(problems)
+    raise_any(problems)
     units = model.of_type("gear_unit")
     shafts = _shafts(model, sets, names)
     by_part = {part: name for name, shaft in shafts.items() for part in shaft.parts}
