@@ -33,7 +33,7 @@ __all__ = [
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-GROUP = 8
+GROUP = 12
 """Nodes summed into one unknown of the coarse level."""
 BAND = 4
 """Nodes to either side whose deflection the banded matrix holds."""
