@@ -38,6 +38,54 @@ def test_many_mistakes_are_told_at_once():
     assert "not a gear" in found["sets.P2.meshes[4]"]
 
 
+def test_mistakes_of_all_kinds_are_told_at_once():
+    """Wrong members and meshes hide neither a brake on the input nor a place that is missing."""
+    tables = copy.deepcopy(dict(ep.load_case("train-eaxle").given()))
+    rings = {name: {"teeth": teeth, "internal": True} for name, teeth in (("a", 61), ("b", 83))}
+    tables["sets"]["spare"] = {"mesh_efficiency": 0.98, "meshes": [["a", "b"]], "gears": rings}
+    tables["shafts"] |= {"differential": ["planets.carier"], "spare": ["spare.a", "spare.a"]}
+    tables["states"] = {"1": {"fixed": ["motor"]}}
+    tables["operation"]["state"] = "1"
+    del tables["bearings"]["motor_rear"]["position"]
+    found = told(tables)
+    assert set(found) == {
+        "operation.input",
+        "sets.spare.meshes[0]",
+        "shafts.differential",
+        "shafts.spare",
+        "bearings.motor_rear.position",
+    }
+    assert "held by a brake" in found["operation.input"]
+
+
+def test_a_train_is_blocked_whatever_else_a_shaft_should_join():
+    teeth = [{"sun": {"teeth": sun}, "ring": {"teeth": ring}} for sun, ring in ((30, 84), (33, 90))]
+    tables = {
+        "kind": "train",
+        "sets": {"one": teeth[0] | {"efficiency": 0.98}, "two": teeth[1] | {"efficiency": 0.97}},
+        "shafts": {
+            "input": ["one.sun"],
+            "middle": ["one.carrier", "two.sun"],
+            "output": ["two.carrier"],
+        },
+        "states": {"low": {"fixed": ["one.ring", "middle", "two.ring"]}},
+        "operation": {
+            "state": "low",
+            "input": "input",
+            "output": "output",
+            "speed": "1200 rpm",
+            "torque": "70 N*m",
+        },
+    }
+    assert "blocks the train" in told(tables)["operation.state"]
+    tables["shafts"]["input"].append("two.rung")
+    found = told(tables)
+    assert "blocks the train" in found["operation.state"]
+    assert "not a member" in found["shafts.input"]
+    tables["states"]["low"]["fixed"].remove("middle")
+    assert set(told(tables)) == {"shafts.input"}
+
+
 def test_members_of_shafts():
     tables = published("6hp26")
     tables["shafts"] |= {

@@ -187,6 +187,7 @@ class _TrainTables(CaseTable):
         sets: dict[str, SetTable] = {}
         shapes: dict[str, SetShape] = {}
         sizes: list[Found] = []
+        complete = True
         joined = _joined_members(tables)
         for name in named:
             read = _read_set(raw_sets[name], shared, folder)
@@ -199,6 +200,7 @@ class _TrainTables(CaseTable):
                 sets[name] = read.table
                 shape, wrong = shape_of_set(read.table, joined.get(name, ()))
                 shapes[name] = shape
+                complete = complete and not wrong
                 found += [_below(f"sets.{name}", problem) for problem in wrong]
                 if isinstance(read.table, ListedSet) and not wrong:
                     sets[name], told, lacks = _complete(read.table, shape, raw_sets[name])
@@ -211,13 +213,12 @@ class _TrainTables(CaseTable):
         train = cls.model_construct(**values, sets=sets)
         train._source, train._found = source, (*sizes, *told_oil(tables))
         train._sound = whole.sections
-        known_shapes = not found
         train._shape, wrong = shape_of_train(shapes, train.shafts)
+        complete = complete and not wrong
         found += wrong
         found += _element_problems(train)
-        if known_shapes and not wrong:
-            found += operation_problems(train, train.shape)
-            found += bearing_force_problems(train)
+        found += operation_problems(train, train.shape, complete)
+        found += bearing_force_problems(train, complete)
         return cls._made(cast(Self, train), tables, source, found)
 
 

@@ -25,8 +25,11 @@ def needs_force(table: ShaftBearingTable) -> bool:
     return table.radial_force is None and (table.model != "table" or by_load)
 
 
-def bearing_force_problems(train: TrainCase) -> Iterator[Problem]:
-    """What is missing for the forces on shaft bearings, shaft by shaft."""
+def bearing_force_problems(train: TrainCase, complete: bool) -> Iterator[Problem]:
+    """What is missing for the forces on shaft bearings, shaft by shaft.
+
+    Nothing is said of the gears on shafts whose members are not `complete`.
+    """
     bearings: dict[str, dict[str, ShaftBearingTable]] = {}
     for kind, name, table in train.elements:
         if kind == "bearings" and isinstance(table, ShaftBearingTable) and needs_force(table):
@@ -34,10 +37,13 @@ def bearing_force_problems(train: TrainCase) -> Iterator[Problem]:
             if shaft is not None:
                 bearings.setdefault(shaft, {})[name] = table
     for shaft, own in bearings.items():
-        yield from _of_shaft(train, shaft, own)
+        yield from _of_bearings(shaft, own)
+        if complete:
+            yield from _of_gears(train, shaft, own)
 
 
-def _of_shaft(train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Problem]:
+def _of_bearings(shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Problem]:
+    """Two bearings at two known places carry a shaft."""
     for name, table in own.items():
         if table.position is None:
             yield Problem(
@@ -62,6 +68,11 @@ def _of_shaft(train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]) -
             f"is that of the other bearing of {shaft} too.",
             "Give both their own positions.",
         )
+
+
+def _of_gears(train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Problem]:
+    """The forces of gears, and where they act."""
+    names = ", ".join(own)
     if len(own) == 1 and any(True for _ in _gears(train, shaft)):
         yield Problem(
             f"bearings.{names}",

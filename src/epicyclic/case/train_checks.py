@@ -28,27 +28,34 @@ if TYPE_CHECKING:
 __all__ = ["operation_problems", "state_problems"]
 
 
-def operation_problems(train: TrainCase, shape: TrainShape) -> list[Problem]:
-    """What cannot be about the states and the operation of a train."""
-    problems: list[Problem] = []
+def operation_problems(train: TrainCase, shape: TrainShape, complete: bool) -> list[Problem]:
+    """What cannot be about the states and the operation of a train.
+
+    Of a `shape` that is not `complete`, because some members or meshes are wrong, only that is told
+    which these cannot change: a train that is blocked without them is blocked with them.
+    """
+    named: list[Problem] = []
     for name, state in train.states.items():
-        problems += state_problems(f"states.{name}", state, shape)
-    problems += _state_choice(train)
+        named += state_problems(f"states.{name}", state, shape)
+    named += _state_choice(train)
     operation = train.operation
     for key in ("input", "output"):
-        problems += _shaft_problems(f"operation.{key}", getattr(operation, key), shape)
+        named += _shaft_problems(f"operation.{key}", getattr(operation, key), shape)
     for key in ("speeds", "torques"):
         for name in getattr(operation, key):
-            problems += _shaft_problems(f"operation.{key}.{name}", name, shape)
-    problems += _position_problems(train, shape)
-    problems += check_outlet(train.thermal, operation.oil_inlet_temperature)
-    problems += _temperature_problems(train)
-    problems += lubrication_problems(train)
-    problems += _oil_model_problems(train)
-    if problems:
+            named += _shaft_problems(f"operation.{key}.{name}", name, shape)
+    problems = [
+        *named,
+        *check_outlet(train.thermal, operation.oil_inlet_temperature),
+        *_temperature_problems(train),
+        *_oil_model_problems(train),
+    ]
+    if complete:
+        problems += [*_position_problems(train, shape), *lubrication_problems(train)]
+    if named:
         return problems
-    problems += _ends_problems(train, shape)
-    return problems or _freedom_problems(train, shape)
+    ends = list(_ends_problems(train, shape, complete))
+    return [*problems, *(ends or _freedom_problems(train, shape, complete))]
 
 
 def _temperature_problems(train: TrainCase) -> list[Problem]:
@@ -147,7 +154,7 @@ def _state_choice(train: TrainCase) -> list[Problem]:
     return []
 
 
-def _ends_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]:
+def _ends_problems(train: TrainCase, shape: TrainShape, complete: bool) -> Iterator[Problem]:
     """Input and output must be two shafts that can turn."""
     operation = train.operation
     ends = {key: shape.shaft_of(getattr(operation, key)) for key in ("input", "output")}
@@ -159,7 +166,7 @@ def _ends_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]:
     held = shape.held(train.state)
     turning = {*shape.turning(train.state), HOUSING}
     for key, shaft in ends.items():
-        if shaft not in turning:
+        if complete and shaft not in turning:
             allowed = f"is joined to nothing in {_state_words(train)}: it has no members, and no "
             allowed += "clutch that joins it is closed."
             shown = written(getattr(operation, key))
@@ -176,7 +183,8 @@ def _ends_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]:
                 allowed,
                 "Name a shaft that turns, or release it.",
             )
-    yield from _given_problems(train, shape, ends)
+    if complete:
+        yield from _given_problems(train, shape, ends)
 
 
 def _given_problems(
@@ -208,12 +216,16 @@ def _given_problems(
                 yield Problem(f"operation.{key}.{name}", "", allowed, "Leave it out.")
 
 
-def _freedom_problems(train: TrainCase, shape: TrainShape) -> list[Problem]:
+def _freedom_problems(train: TrainCase, shape: TrainShape, complete: bool) -> list[Problem]:
     """The given speeds must determine all others, and the input must be able to turn."""
     machine = shape.machine(train.state)
     driven = shape.shaft_of(train.operation.input) or ""
     held = shape.held(train.state)
     others = [*held, *(shape.shaft_of(name) or "" for name in train.operation.speeds)]
+    if not complete:  # without its members a shaft is no body
+        others = [shaft for shaft in others if shaft in machine.bodies]
+        if driven not in machine.bodies:
+            return []
     found = freedom(machine, driven, others)
     key = "operation.state" if train.states else "shafts"
     shown = written(train.operation.state) if train.states else ""
@@ -229,6 +241,8 @@ def _freedom_problems(train: TrainCase, shape: TrainShape) -> list[Problem]:
                 "Release one of these." if means else "Check the shafts: they join too much.",
             )
         )
+    if not complete:
+        return problems
     if found.loose:
         names = ", ".join(body for body in found.loose if body in shape.shafts)
         freedoms = found.freedoms

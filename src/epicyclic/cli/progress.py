@@ -32,7 +32,7 @@ EVERY = 15.0
 """Between two lines, and before the first one. [s]"""
 COMPILING_EVERY = 5.0
 """The same while kernels are compiled. [s]"""
-COMPILED = 65
+COMPILED = 75
 """Kernels that a result needs, about."""
 Update = Callable[..., None]
 LONG_SECONDS = 2.0
