@@ -230,6 +230,48 @@ def test_status_of_a_smooth_failure_is_passed_on():
     assert math.isnan(result.friction_coefficient)
 
 
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 10, 44])
+def test_dense_factors_solve_systems_of_any_size(n):
+    rng = np.random.default_rng(n)
+    matrix, right = rng.standard_normal((n, n)), rng.standard_normal(n)
+    order = np.empty(n, dtype=np.int64)
+    factors = ehl_linear.factor_dense(matrix.copy(), order)
+    found = ehl_linear.solve_dense(factors, order, right)
+    # rounding, times the condition of these matrices
+    np.testing.assert_allclose(found, np.linalg.solve(matrix, right), rtol=1e-9)
+
+
+def test_coarse_matrix_sums_the_full_one_over_groups():
+    """Rows and columns of active nodes; the last group is not a whole one."""
+    rng = np.random.default_rng(8)
+    n, group, weight = 41, ehl_linear.GROUP, 0.3
+    row = 0.02 * (4 - np.log(np.abs(np.arange(1 - n, n)) + 0.5))
+    active = rng.random(n) < 0.8
+    active[[0, -1]] = False
+    active[group : 2 * group] = False  # a group that carries nothing
+    local, by_film = rng.standard_normal((2, n, 3))
+    local[~active], by_film[~active] = 0, 0
+    groups = ehl_linear.groups_for(n)
+    ehl_linear.update_groups(row, np.ones(n, dtype=bool), groups)
+    ehl_linear.update_groups(row, active, groups)
+    found = ehl_linear.coarse_matrix(local, by_film, groups.across, active, weight)
+
+    influence = row[n - 1 + np.subtract.outer(np.arange(n), np.arange(n))]
+    full = np.zeros((n, n))
+    for i in np.flatnonzero(active):
+        for side in range(3):
+            full[i, i - 1 + side] += local[i, side]
+            full[i] += by_film[i, side] * influence[i - 1 + side]
+    full[:, ~active] = 0
+    member = np.equal.outer(np.arange(-(-n // group)), np.arange(n) // group).astype(float)
+    expected = np.zeros((len(member) + 1, len(member) + 1))
+    expected[:-1, :-1] = member @ full @ member.T
+    expected[:-1, -1] = member @ by_film.sum(axis=1)
+    expected[-1, :-1] = weight * (member @ active)
+    expected[1, 1] = 1.0
+    np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12)  # rounding
+
+
 def test_two_level_solver_solves_the_full_equations():
     """GMRES with the two levels against a dense solution of the same matrix."""
     rng = np.random.default_rng(3)

@@ -13,7 +13,7 @@ import os
 import pickle
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
 from numba.core import caching, event
@@ -147,15 +147,19 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     callers check that results are finite.
     """
     compiled: Any = numba.njit(fastmath=False, error_model="numpy", nogil=True)(function)
-    if _CACHE_DIR is None:
-        return compiled  # type: ignore[no-any-return]
+    if _CACHE_DIR is not None:
+        _keep(compiled, _CACHE_DIR)
+    return cast("Callable[P, R]", compiled)
+
+
+def _keep(compiled: Any, folder: Path) -> None:
+    """Keep the machine code of a kernel in `folder`."""
     config: Any = numba.config
     previous = config.CACHE_DIR
-    config.CACHE_DIR = str(_CACHE_DIR)
+    config.CACHE_DIR = str(folder)
     try:
         compiled._cache = _KernelCache(compiled)
     except Exception as error:  # numba finds no place that it can write to
         _note_lost(error)
     finally:
         config.CACHE_DIR = previous
-    return compiled  # type: ignore[no-any-return]

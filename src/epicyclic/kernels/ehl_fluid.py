@@ -35,6 +35,9 @@ LARGE_SHEAR = 1e9
 """Sigma beyond which cosh(tau/tau_0) is Sigma to the last digit. [1]"""
 PLUG_SHEAR = 5.0
 """What Sigma saturates at in the easing of the flow of an oil at its limiting stress. [1]"""
+EVEN = 2e-3
+"""Difference of ln(mu) between two nodes below which a series replaces the closed form of their
+mean fluidity, which loses digits; the series is 1e-14 off. [1]"""
 CUBIC_START, CUBIC_END = 0.7, 1.4
 """Where the cubic between the two slopes starts and ends, over the transition pressure."""
 
@@ -150,7 +153,7 @@ def mean_fluidity(
     is mu^-1/2 of each node.
     """
     rise = log_right - log_left
-    if abs(rise) < 2e-3:  # series, where the closed form loses its digits
+    if abs(rise) < EVEN:
         by_left = -0.5 - rise / 12.0
         return root_left * root_right * (1.0 + rise * rise / 24.0), by_left, -1.0 - by_left
     left, fall = root_left * root_left, root_left * root_left - root_right * root_right

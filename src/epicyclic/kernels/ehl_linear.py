@@ -16,6 +16,7 @@ from epicyclic.kernels._jit import kernel
 
 __all__ = [
     "BAND",
+    "GROUP",
     "Groups",
     "Space",
     "apply_rows",
@@ -25,6 +26,7 @@ __all__ = [
     "factor_dense",
     "groups_for",
     "near_coefficients",
+    "solve_dense",
     "solve_linear",
     "space_for",
     "update_groups",
@@ -284,7 +286,7 @@ def factor_dense(matrix: FloatArray, order: NDArray[np.int64]) -> FloatArray:
             factor_column(matrix, order, k, last)
             for m in range(first, k):
                 add_one(-matrix[k, m], matrix[m, last:], matrix[k, last:])
-        if last < n:
+        if last < n:  # `add_rows` written out: for each row a call would take as long again
             row_a, row_b = matrix[first, last:], matrix[first + 1, last:]
             row_c, row_d = matrix[first + 2, last:], matrix[first + 3, last:]
             for i in range(last, n):

@@ -191,4 +191,4 @@ def _evaluate(node: ast.expr, at_point: Lookup, in_case: Lookup) -> Value:
             return _unit(node.id)
         case ast.Constant(value=int() | float() as number):
             return float(number)
-    raise AssertionError(ast.dump(node))  # pragma: no cover
+    raise AssertionError(ast.dump(node))
