@@ -14,8 +14,6 @@ from typing import NoReturn
 from epicyclic.cli.exit_codes import EXIT_INTERRUPTED
 from epicyclic.garbage import look_seldom
 
-__all__ = ["main"]
-
 
 def main() -> None:
     """Run the command."""

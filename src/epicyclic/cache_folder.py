@@ -12,8 +12,6 @@ from pathlib import Path
 
 import platformdirs
 
-__all__ = ["is_private", "private_folder"]
-
 _USER = os.getuid() if hasattr(os, "getuid") else None
 """Number of the user; None where temporary folders are those of one user anyway (Windows)."""
 

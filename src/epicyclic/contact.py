@@ -19,8 +19,6 @@ from epicyclic.kernels.line_contact import (
 )
 from epicyclic.lubricant.properties import OilState
 
-__all__ = ["CONDITIONS", "Flanks", "InletOil", "LineContacts", "contacts_at"]
-
 FloatArray = NDArray[np.float64]
 Real = TypeVar("Real", float, FloatArray)
 
@@ -39,19 +37,11 @@ CONDITIONS = (
 
 @dataclass(frozen=True, slots=True)
 class Flanks(Generic[Real]):
-    """The two surfaces in contact: flanks of teeth, or race and roller.
+    """The two surfaces in contact: flanks of teeth, or race and roller."""
 
-    Attributes
-    ----------
-    equivalent_modulus : float
-        E_eq. [Pa]
-    roughness1, roughness2 : float or ndarray
-        rms. [m]
-    """
-
-    equivalent_modulus: float
-    roughness1: Real
-    roughness2: Real
+    equivalent_modulus: float  # E_eq. [Pa]
+    roughness1: Real  # rms. [m]
+    roughness2: Real  # rms. [m]
 
     @property
     def composite_roughness(self) -> Real:
@@ -67,21 +57,11 @@ class Flanks(Generic[Real]):
 
 @dataclass(frozen=True, slots=True)
 class InletOil:
-    """As much of an `OilState` as contacts need, also with one value for each contact.
+    """As much of an `OilState` as contacts need, also with one value for each contact."""
 
-    Attributes
-    ----------
-    dynamic_viscosity : ndarray
-        [Pa s]
-    pressure_viscosity : ndarray
-        alpha. [1/Pa]
-    temperature : float
-        Not a number where it is not known. [K]
-    """
-
-    dynamic_viscosity: FloatArray
-    pressure_viscosity: FloatArray
-    temperature: float = math.nan
+    dynamic_viscosity: FloatArray  # [Pa s]
+    pressure_viscosity: FloatArray  # alpha. [1/Pa]
+    temperature: float = math.nan  # Not a number where it is not known. [K]
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,29 +69,14 @@ class LineContacts:
     """Line contacts, one for each entry of the arrays, all of shape (n,).
 
     Theory (O1).
-
-    Attributes
-    ----------
-    line_load : ndarray
-        W'. [N/m]
-    radius : ndarray
-        Equivalent radius of curvature in the normal section. [m]
-    rolling_speed : ndarray
-        u_r = (u1 + u2)/2. [m/s]
-    sliding_speed : ndarray
-        u_s = u1 - u2. [m/s]
-    flanks : Flanks
-        The surfaces, alike for all contacts or with one roughness for each.
-    oil : OilState or InletOil
-        At the temperature of these contacts.
     """
 
-    line_load: FloatArray
-    radius: FloatArray
-    rolling_speed: FloatArray
-    sliding_speed: FloatArray
-    flanks: Flanks[Any]
-    oil: OilState | InletOil
+    line_load: FloatArray  # W'. [N/m]
+    radius: FloatArray  # Equivalent radius of curvature in the normal section. [m]
+    rolling_speed: FloatArray  # u_r = (u1 + u2)/2. [m/s]
+    sliding_speed: FloatArray  # u_s = u1 - u2. [m/s]
+    flanks: Flanks[Any]  # The surfaces, alike for all contacts or with one roughness for each.
+    oil: OilState | InletOil  # At the temperature of these contacts.
 
     @cached_property
     def slide_to_roll_ratio(self) -> FloatArray:

@@ -10,18 +10,6 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-__all__ = [
-    "ConvergenceError",
-    "EpicyclicError",
-    "InputError",
-    "Problem",
-    "first_of",
-    "is_interrupt",
-    "printable",
-    "raise_any",
-    "rising_problems",
-]
-
 MOST_SHOWN, LONGEST_PROBLEM = 50, 1500
 """Problems in one message, and characters of each; `InputError.problems` has all of them."""
 

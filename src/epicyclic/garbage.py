@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import gc
 
-__all__ = ["look_seldom"]
-
 NEW_OBJECTS = 100_000
 """So many make Python look for garbage. Imports make several times as many, all of them to stay."""
 

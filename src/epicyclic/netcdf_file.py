@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     import netCDF4
     import xarray as xr
 
-__all__ = ["LARGEST", "read_attribute", "read_groups", "texts_not_copied"]
-
 LARGEST = 400_000_000
 """A result takes a few megabytes, a map of a million points less than this. [bytes]"""
 MOST_VARIABLES = 2000

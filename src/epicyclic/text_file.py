@@ -18,33 +18,18 @@ from typing import Any, NoReturn
 
 from epicyclic.errors import InputError, Problem
 
-__all__ = [
-    "check_archive",
-    "csv_rows",
-    "decode",
-    "read_bytes",
-    "read_text",
-    "refuse",
-    "sealed",
-    "unsealed",
-]
-
 _MEGABYTE = 1_000_000
 _SEAL = "fingerprint"
 _MAKE_AGAIN = "Make it again."
 _LONGEST_REASON = 200
 
 
-def read_text(path: Path, noun: str, largest: int) -> str:
+def read_text(
+    path: Path,
+    noun: str,  # What the file should be, ``"case"`` for a case file, for messages.
+    largest: int,  # Size beyond which it is something else. [bytes]
+) -> str:
     """The text of a file.
-
-    Parameters
-    ----------
-    path : Path
-    noun : str
-        What the file should be, ``"case"`` for a case file, for messages.
-    largest : int
-        Size beyond which it is something else. [bytes]
 
     Raises
     ------

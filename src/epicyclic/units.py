@@ -23,71 +23,6 @@ from epicyclic.cache_folder import private_folder
 if TYPE_CHECKING:
     from pint import Unit, UnitRegistry
 
-__all__ = [
-    "CELSIUS",
-    "CUBIC_MILLIMETRE",
-    "DEGREE",
-    "GIGAPASCAL",
-    "KELVIN",
-    "KILOGRAM_PER_CUBIC_METRE",
-    "KILOJOULE",
-    "METRE_PER_SECOND",
-    "MICROMETRE",
-    "MILLIMETRE",
-    "MILLIPASCAL_SECOND",
-    "NEWTON",
-    "NEWTON_METRE",
-    "NEWTON_PER_MM",
-    "NEWTON_PER_UM",
-    "NUMBER",
-    "PER_GIGAPASCAL",
-    "RPM",
-    "SECOND",
-    "SQUARE_MILLIMETRE",
-    "SQUARE_MM_PER_SECOND",
-    "WATT",
-    "Angle",
-    "Area",
-    "Conductance",
-    "Density",
-    "Deviation",
-    "HeatTransfer",
-    "HelixAngle",
-    "HertzPressure",
-    "KinematicViscosity",
-    "Length",
-    "Mass",
-    "Modulus",
-    "Number",
-    "Power",
-    "Pressure",
-    "PressureViscosity",
-    "Quantity",
-    "RotationalSpeed",
-    "SmallLength",
-    "Speed",
-    "Temperature",
-    "Torque",
-    "Volume",
-    "VolumeFlow",
-    "as_stated",
-    "decimals_of",
-    "describe_range",
-    "format_number",
-    "from_pint",
-    "in_unit",
-    "known_text",
-    "large_unit",
-    "one_of",
-    "percent",
-    "power_unit",
-    "pure_number",
-    "range_remedy",
-    "registry",
-    "torque_text",
-    "with_unit",
-]
-
 KILO = 10_000.0
 """Watts and newton metres are shown in thousands from here on: no more digits than are known."""
 PLAIN_NUMBERS = 1e7
@@ -307,28 +242,14 @@ def _parsed_text(quantity: Quantity, text: str) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A kind of dimensional value: its units, its range, and how to read it.
+    """A kind of dimensional value: its units, its range, and how to read it."""
 
-    Attributes
-    ----------
-    noun : str
-        What it is, for messages: ``"a length"``.
-    si : str
-        Unit inside the program.
-    display : str
-        Unit shown to the user.
-    low, high : float or None
-        Allowed range, in the display unit.
-    open_low : bool
-        True if `low` itself is not allowed.
-    """
-
-    noun: str
-    si: str
-    display: str
-    low: float | None = None
-    high: float | None = None
-    open_low: bool = False
+    noun: str  # What it is, for messages: ``"a length"``.
+    si: str  # Unit inside the program.
+    display: str  # Unit shown to the user.
+    low: float | None = None  # Allowed range, in the display unit.
+    high: float | None = None  # Allowed range, in the display unit.
+    open_low: bool = False  # True if `low` itself is not allowed.
 
     def parse(self, value: object) -> float:
         """`value`, text with a unit or a pint quantity, as an SI number.

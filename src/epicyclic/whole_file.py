@@ -23,8 +23,6 @@ try:
 except ImportError:  # Windows, where the folder of a living writer cannot be removed anyway
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["check_place", "make_folder", "whole_file", "write_file"]
-
 PREFIX = ".epicyclic-"
 """Begins the names of the private folders."""
 OPTION, FILE, REMEDY = "-o", "FILE", "Name another file."

@@ -445,7 +445,8 @@ def test_too_many_unsolved_contacts_are_no_result(monkeypatch):
 
 @pytest.mark.slow
 def test_direct_contacts_of_smooth_flanks_are_those_of_the_solver():
-    from epicyclic.ehl.conditions import ContactOil, LineContact, Roelands
+    from epicyclic.ehl.conditions import ContactOil, LineContact
+    from epicyclic.ehl.rheology import Roelands
     from epicyclic.ehl.steady import solve_smooth
 
     changes = PAIR | {

@@ -16,11 +16,7 @@ from epicyclic.elements.gear_mesh import MeshDuty
 from epicyclic.elements.planet_load import PlanetContact, planet_load
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss
-from epicyclic.losses.planet_bearing import (
-    mixed_ehl_rolling_loss,
-    palmgren_loss,
-    roller_loads,
-)
+from epicyclic.losses.planet_bearing import mixed_ehl_rolling_loss, palmgren_loss, roller_loads
 
 BEARING_SPEED = 4000 * 125 / 198 * 73 / 26 * math.pi / 30  # at 4000 rpm of the sun, rad/s
 

@@ -12,11 +12,7 @@ from scipy.optimize import brentq
 
 import epicyclic as ep
 from contacts import STEEL, contact_points, oil
-from epicyclic.kernels.line_contact import (
-    hertz_half_width,
-    martin_force,
-    pan_hamrock_minimum_film,
-)
+from epicyclic.kernels.line_contact import hertz_half_width, martin_force, pan_hamrock_minimum_film
 from epicyclic.kernels.mixed_ehl import rolling_loss_number
 from epicyclic.losses.rolling import ROLLING_MODELS
 from epicyclic.oilmodel.regressions import rolling_scale

@@ -7,13 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from epicyclic.ehl.roughness import (
-    SMOOTH,
-    Profile,
-    generate_profile,
-    mean_line,
-    sinusoidal_profile,
-)
+from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, mean_line, sinusoidal_profile
 from epicyclic.errors import InputError
 
 

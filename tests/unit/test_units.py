@@ -29,7 +29,7 @@ TEMPERATURE = quantity(units.Temperature)
 VISCOSITY = quantity(units.KinematicViscosity)
 ALL = {
     name: quantity(getattr(units, name))
-    for name in units.__all__
+    for name in vars(units)
     if hasattr(getattr(units, name), "__metadata__") and name != "Number"
 }
 

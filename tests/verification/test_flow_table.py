@@ -15,12 +15,7 @@ from epicyclic.elements.pocket_flow import flow_family, flow_request
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing import network
 from epicyclic.pocketing.memory import FlowMemory
-from epicyclic.pocketing.similarity import (
-    LEAST_NUMBER,
-    FlowFigures,
-    flow_figures,
-    scaled_figures,
-)
+from epicyclic.pocketing.similarity import LEAST_NUMBER, FlowFigures, flow_figures, scaled_figures
 from epicyclic.pocketing.table import make_tables
 
 COARSE = {

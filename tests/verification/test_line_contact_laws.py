@@ -10,14 +10,7 @@ import pytest
 from epicyclic.ehl import rough
 from epicyclic.ehl.conditions import ContactOil, LineContact
 from epicyclic.ehl.heating import Heating, inlet_factor, temperature_rise
-from epicyclic.ehl.rheology import (
-    Barus,
-    Carreau,
-    LimitingStress,
-    Newtonian,
-    ReeEyring,
-    Roelands,
-)
+from epicyclic.ehl.rheology import Barus, Carreau, LimitingStress, Newtonian, ReeEyring, Roelands
 from epicyclic.ehl.rough import AsperityContact, solve_rough
 from epicyclic.ehl.roughness import SMOOTH, generate_profile, sinusoidal_profile
 from epicyclic.ehl.steady import solve_smooth

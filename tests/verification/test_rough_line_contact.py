@@ -9,7 +9,8 @@ import pytest
 
 from epicyclic.ehl import rough
 from epicyclic.ehl.box import FEWEST_KEPT, SOLVER_BOX
-from epicyclic.ehl.conditions import ContactOil, LineContact, Roelands
+from epicyclic.ehl.conditions import ContactOil, LineContact
+from epicyclic.ehl.rheology import Roelands
 from epicyclic.ehl.rough import AsperityContact, solve_rough
 from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, sinusoidal_profile
 from epicyclic.ehl.steady import solve_smooth

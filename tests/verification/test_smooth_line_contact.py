@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from epicyclic.ehl.box import SOLVER_BOX
-from epicyclic.ehl.conditions import Barus, ContactOil, LineContact, Roelands, TwoSlope
+from epicyclic.ehl.conditions import Barus, ContactOil, LineContact
 from epicyclic.ehl.film import moes_central_film
 from epicyclic.ehl.grid import graded_nodes, grid_for
+from epicyclic.ehl.rheology import Roelands, TwoSlope
 from epicyclic.ehl.steady import solve_smooth
 from epicyclic.errors import InputError
 from epicyclic.kernels.ehl_steady import deflection_matrix

@@ -14,17 +14,13 @@ from epicyclic.units import DEGREE, GIGAPASCAL, MILLIMETRE, NEWTON, NEWTON_PER_M
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["bearing_details"]
 
-
-def bearing_details(bearing: RollerBearing, loads: RollerLoads) -> xr.Dataset:
+def bearing_details(
+    bearing: RollerBearing,
+    # Loads of the result, ``result.bearing.loads``, of a train ``result.bearings[...].loads``.
+    loads: RollerLoads,
+) -> xr.Dataset:
     """Roller loads of a bearing with units, rows, rollers and slices counted from 1.
-
-    Parameters
-    ----------
-    bearing : RollerBearing
-    loads : RollerLoads
-        Loads of the result, ``result.bearing.loads``, of a train ``result.bearings[...].loads``.
 
     Returns
     -------

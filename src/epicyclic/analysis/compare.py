@@ -17,15 +17,14 @@ from epicyclic.builders.models import (
     standing_of,
 )
 from epicyclic.builders.train import set_cases
-from epicyclic.case.case import Case, TrainCase
+from epicyclic.case.case import Case
+from epicyclic.case.train import TrainCase
 from epicyclic.elements.base import LOAD_DEPENDENT
 from epicyclic.losses.fitted_or_formula import FittedOrSchlenk
 from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.losses.validity import ValidityFlag, range_left, share_text
 from epicyclic.results.result import Result, in_words
 from epicyclic.units import percent
-
-__all__ = ["FrictionComparison", "compare_friction", "recommended"]
 
 MOSTLY = 0.5
 """Share of the loss outside its range up to which a model made for the oil is preferred. [1]"""
@@ -40,47 +39,23 @@ _OF_ALL_OILS = ("schlenk", "niemann-winter")
 
 @dataclass(frozen=True, slots=True)
 class FrictionComparison:
-    """One friction model on one case.
+    """One friction model on one case."""
 
-    Attributes
-    ----------
-    name, title, source : str
-        The model.
-    chosen : bool
-        True for the model of the case.
-    mean_friction : dict of str to float
-        For each mesh. [1]
-    sliding : float
-        Sliding loss of all meshes, local along the contact lines. [W]
-    quick : float
-        The same by mean friction times Ohlendorf's loss factor. [W]
-    flagged : bool
-        True if the model was used outside the range in which it was made.
-    reasons : tuple of str
-        Which ranges it leaves, by how much, and with what share of the loss.
-    outside : float
-        Share of the sliding loss outside its range. [1]
-    other_oil : str
-        The fluid that it was made for, if that is not the oil of the case; else empty.
-    own_oil : bool
-        True if it was made for the oil of the case, and for no other.
-    standing : str
-        How well it is known to be right.
-    """
-
-    name: str
-    title: str
-    source: str
-    chosen: bool
-    mean_friction: dict[str, float]
-    sliding: float
-    quick: float
-    flagged: bool
+    name: str  # The model.
+    title: str  # The model.
+    source: str  # The model.
+    chosen: bool  # True for the model of the case.
+    mean_friction: dict[str, float]  # For each mesh. [1]
+    sliding: float  # Sliding loss of all meshes, local along the contact lines. [W]
+    quick: float  # The same by mean friction times Ohlendorf's loss factor. [W]
+    flagged: bool  # True if the model was used outside the range in which it was made.
+    # Which ranges it leaves, by how much, and with what share of the loss.
     reasons: tuple[str, ...]
-    outside: float
+    outside: float  # Share of the sliding loss outside its range. [1]
+    # The fluid that it was made for, if that is not the oil of the case; else empty.
     other_oil: str
-    own_oil: bool
-    standing: str
+    own_oil: bool  # True if it was made for the oil of the case, and for no other.
+    standing: str  # How well it is known to be right.
 
 
 def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionComparison, ...]:

@@ -23,8 +23,6 @@ from epicyclic.losses.validity import ValidityFlag, range_left
 from epicyclic.results.result import versions
 from epicyclic.status import Status
 
-__all__ = ["ContactFigure", "ContactResult", "solve_contact"]
-
 FloatArray = NDArray[np.float64]
 
 FRAMES = 60
@@ -43,22 +41,12 @@ class ContactFigure:
 
 @dataclass(frozen=True, eq=False)
 class ContactResult:
-    """Solution of a contact.
-
-    Attributes
-    ----------
-    case : ContactCase
-    model : ContactModel
-        What the solver was given.
-    smooth : SmoothSolution
-    rough : RoughSolution or None
-        None without roughness.
-    """
+    """Solution of a contact."""
 
     case: ContactCase
-    model: ContactModel
+    model: ContactModel  # What the solver was given.
     smooth: SmoothSolution
-    rough: RoughSolution | None
+    rough: RoughSolution | None  # None without roughness.
 
     @property
     def status(self) -> Status:

@@ -14,8 +14,6 @@ from epicyclic.losses.direct import EhlDirect, solver_range
 from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.units import MICROMETRE, MILLIMETRE, NUMBER, Quantity, format_number, percent
 
-__all__ = ["contact_flags", "contact_notes", "film_ratio"]
-
 KELVIN = Quantity("a temperature difference", "K", "K")
 ROUGH_RANGES = (
     solver_range("film_ratio", "film ratio", NUMBER),

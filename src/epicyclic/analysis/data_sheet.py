@@ -20,69 +20,35 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.profile_shifts import recommended_backlash
 from epicyclic.lubricant.properties import OilState, oil_state
 
-__all__ = ["DataSheet", "GearSheet", "MeshSheet", "data_sheets", "oil_at_inlet"]
-
 
 @dataclass(frozen=True, slots=True)
 class GearSheet:
-    """One gear.
-
-    Attributes
-    ----------
-    gear : Gear
-    nominal_shift : float
-        x before allowances. [1]
-    normal_thickness : float
-        s_n at the reference circle. [m]
-    roughness : float
-        Rq. [m]
-    span : tuple of (int, float) or None
-        k and W_k [m]; None for a helical ring, and where a span does not touch the flanks.
-    pins : tuple of (float, float) or None
-        D_M and M_d [m]; None where balls do not touch the flanks.
-    allowances : tuple of (float, float) or None
-        A_sne and A_sni, where the case states them. [m]
-    tolerances : FlankTolerances or None
-        By the class that the case states.
-    """
+    """One gear."""
 
     gear: Gear
-    nominal_shift: float
-    normal_thickness: float
-    roughness: float
+    nominal_shift: float  # x before allowances. [1]
+    normal_thickness: float  # s_n at the reference circle. [m]
+    roughness: float  # Rq. [m]
+    # k and W_k [m]; None for a helical ring, and where a span does not touch the flanks.
     span: tuple[int, float] | None
-    pins: tuple[float, float] | None
-    allowances: tuple[float, float] | None
-    tolerances: FlankTolerances | None
+    pins: tuple[float, float] | None  # D_M and M_d [m]; None where balls do not touch the flanks.
+    allowances: tuple[float, float] | None  # A_sne and A_sni, where the case states them. [m]
+    tolerances: FlankTolerances | None  # By the class that the case states.
 
 
 @dataclass(frozen=True, slots=True)
 class MeshSheet:
-    """One mesh.
-
-    Attributes
-    ----------
-    mesh : Mesh
-    recommended_backlash : float
-        Least j_bn of ISO/TR 10064-2. [m]
-    specific_sliding : tuple of float or None
-        Sliding over rolling speed of each member at its root. [1]
-    """
+    """One mesh."""
 
     mesh: Mesh
-    recommended_backlash: float
+    recommended_backlash: float  # Least j_bn of ISO/TR 10064-2. [m]
+    # Sliding over rolling speed of each member at its root. [1]
     specific_sliding: tuple[float | None, float | None]
 
 
 @dataclass(frozen=True, slots=True)
 class DataSheet:
-    """The gears of a set or pair.
-
-    Attributes
-    ----------
-    gears : tuple of GearSheet
-    meshes : tuple of MeshSheet
-    """
+    """The gears of a set or pair."""
 
     gears: tuple[GearSheet, ...]
     meshes: tuple[MeshSheet, ...]

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from epicyclic.units import Quantity
 
-__all__ = ["Array", "Variable", "variable"]
-
 Array = NDArray[np.float64] | NDArray[np.bool_]
 Variable = tuple[tuple[str, ...], Array, dict[str, Any]]
 

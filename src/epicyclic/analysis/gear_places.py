@@ -13,8 +13,6 @@ from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.listed_set import ListedCase, arrangement_of, directions_of, pins_of
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = ["Place", "SetPlaces", "places_of", "tooth_directions"]
-
 Point = tuple[float, float]
 """x and y of a centre. [m]"""
 Place = tuple[float, float, float]
@@ -26,21 +24,12 @@ HALF = 0.5
 
 @dataclass(frozen=True, slots=True)
 class SetPlaces:
-    """What is to be drawn of a set.
+    """What is to be drawn of a set."""
 
-    Attributes
-    ----------
-    tables : mapping of str to GearTable
-        Tables of its gears, by name.
-    centers : mapping of str to tuple of tuple of float
-        Where each gear stands; several times on the planets. [m]
-    bodies : mapping of str to str
-        The body of each gear: gears of one body turn together.
-    """
-
-    tables: Mapping[str, GearTable]
+    tables: Mapping[str, GearTable]  # Tables of its gears, by name.
+    # Where each gear stands; several times on the planets. [m]
     centers: Mapping[str, tuple[Point, ...]]
-    bodies: Mapping[str, str]
+    bodies: Mapping[str, str]  # The body of each gear: gears of one body turn together.
 
     def places(self, meshes: Sequence[Mesh]) -> dict[str, list[Place]]:
         """Centres with the directions of the first teeth, the first gear with a tooth upwards."""
@@ -67,15 +56,11 @@ class SetPlaces:
         return {name: known.get(body, 0.0) for name, body in self.bodies.items()}
 
 
-def places_of(case: SetCase, meshes: Mapping[str, Mesh]) -> SetPlaces | None:
-    """Gears and centres of a set; None if the case does not tell where all of them stand.
-
-    Parameters
-    ----------
-    case : PlanetaryCase, GearPairCase or ListedCase
-    meshes : mapping of str to Mesh
-        By their keys.
-    """
+def places_of(
+    case: SetCase,
+    meshes: Mapping[str, Mesh],  # By their keys.
+) -> SetPlaces | None:
+    """Gears and centres of a set; None if the case does not tell where all of them stand."""
     if isinstance(case, PlanetaryCase):
         return _of_planetary(case)
     if isinstance(case, GearPairCase):
@@ -146,19 +131,14 @@ def _polar(radius: float, angle: float) -> Point:
 
 
 def tooth_directions(
-    centers: Mapping[str, Sequence[Point]], bodies: Mapping[str, str], meshes: Sequence[Mesh]
+    centers: Mapping[str, Sequence[Point]],  # By gear. [m]
+    # By gear: where no mesh decides, the gears of one body point the same way.
+    bodies: Mapping[str, str],
+    meshes: Sequence[Mesh],
 ) -> dict[str, list[float]]:
     """Direction of a tooth of every gear at every place, so that teeth stand in spaces.
 
     Nothing is checked: whether the set can be assembled so is a matter of the case.
-
-    Parameters
-    ----------
-    centers : mapping of str to sequence of tuple of float
-        By gear. [m]
-    bodies : mapping of str to str
-        By gear: where no mesh decides, the gears of one body point the same way.
-    meshes : sequence of Mesh
 
     Returns
     -------
@@ -205,19 +185,13 @@ def _on_known_bodies(
                 yield (name, number), turn
 
 
-def _meshing(mesh: Mesh, forward: bool, turn: float, angle: float) -> float:
-    """Direction of a tooth of the mate of a gear with a tooth at `turn`, whose centre lies ahead.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    forward : bool
-        True from gear 1 to gear 2.
-    turn : float
-        [rad]
-    angle : float
-        From the centre of the gear to that of its mate. [rad]
-    """
+def _meshing(
+    mesh: Mesh,
+    forward: bool,  # True from gear 1 to gear 2.
+    turn: float,  # [rad]
+    angle: float,  # From the centre of the gear to that of its mate. [rad]
+) -> float:
+    """Direction of a tooth of the mate of a gear with a tooth at `turn`, its centre lies ahead."""
     one, two = mesh.gear1.teeth, mesh.gear2.teeth
     own, mate = (one, two) if forward else (two, one)
     if not mesh.gear2.internal:

@@ -21,20 +21,6 @@ from epicyclic.results.heat import HeatBalance
 from epicyclic.results.result import Result, in_words
 from epicyclic.units import CELSIUS, NEWTON_METRE, Power, Quantity, Temperature, VolumeFlow
 
-__all__ = [
-    "QUANTITIES",
-    "BeyondRange",
-    "Found",
-    "beyond_range",
-    "heat_balance",
-    "hottest",
-    "solve_for",
-    "takes_minutes",
-    "with_network",
-    "with_warm_flanks",
-    "without_holding",
-]
-
 NETWORK = {"models.temperatures": "network"}
 TEMPERATURE = "oil temperature"
 """What ranges of formulas call the temperature of a contact."""
@@ -122,19 +108,11 @@ def with_warm_flanks(case: Case) -> Result:
 
 @dataclass(frozen=True, slots=True)
 class BeyondRange:
-    """Meshes with oil hotter than the range of their formulas, and held at its limit.
+    """Meshes with oil hotter than the range of their formulas, and held at its limit."""
 
-    Attributes
-    ----------
-    share : float
-        Share of the load-dependent loss. [1]
-    low, high : float
-        The range. [degC]
-    """
-
-    share: float
-    low: float
-    high: float
+    share: float  # Share of the load-dependent loss. [1]
+    low: float  # The range. [degC]
+    high: float  # The range. [degC]
 
 
 def beyond_range(case: Case, result: Result) -> BeyondRange | None:
@@ -211,30 +189,15 @@ class Found:
 
 @dataclass(frozen=True, slots=True)
 class _Search:
-    """One quantity as a number from 0 upwards.
-
-    Attributes
-    ----------
-    key : str
-    unit : Quantity
-    value : callable
-        The quantity of a number.
-    scale : float
-        The number where the temperature is guessed to be the wanted one.
-    warms : bool
-        True if larger numbers make the oil hotter.
-    start : float or None
-        Temperature of the oil at 0 where no case can have it. [K]
-    changes : mapping of str to None
-        Keys that the quantity replaces.
-    """
+    """One quantity as a number from 0 upwards."""
 
     key: str
     unit: Quantity
-    value: Callable[[float], float]
-    scale: float
-    warms: bool
-    start: float | None = None
+    value: Callable[[float], float]  # The quantity of a number.
+    scale: float  # The number where the temperature is guessed to be the wanted one.
+    warms: bool  # True if larger numbers make the oil hotter.
+    start: float | None = None  # Temperature of the oil at 0 where no case can have it. [K]
+    # Keys that the quantity replaces.
     changes: Mapping[str, None] = field(default_factory=dict[str, None])
 
 

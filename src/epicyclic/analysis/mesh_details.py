@@ -41,8 +41,6 @@ from epicyclic.units import (
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["mesh_details"]
-
 FloatArray = NDArray[np.float64]
 
 _DIMENSIONS = ("mesh_position", "contact_line", "segment")

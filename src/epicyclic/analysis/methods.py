@@ -14,8 +14,6 @@ from epicyclic.elements.pocket_flow import POCKETING_SOURCE, pocketing_method
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
 from epicyclic.losses.viscous import DRAG_METHOD, DRAG_SOURCE, VISCOUS_METHOD, VISCOUS_SOURCE
 
-__all__ = ["methods_of"]
-
 
 def methods_of(case: Case) -> dict[str, tuple[str, str]]:
     """Title and source of the method for each role, ``"friction"``; of a train with the set."""

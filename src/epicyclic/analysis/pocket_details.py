@@ -49,8 +49,6 @@ from epicyclic.units import (
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["mesh_duties", "pocket_details"]
-
 Array = NDArray[np.float64] | NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
 

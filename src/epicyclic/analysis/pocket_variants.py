@@ -17,16 +17,6 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.lubricant.properties import mixture_state
 from epicyclic.pocketing.fluid import NETWORK_MODELS, PocketFlow
 
-__all__ = [
-    "PocketVariant",
-    "base_variant",
-    "solve_variant",
-    "teeth_for_module",
-    "transverse_module",
-    "varied_duty",
-]
-
-
 ROUNDING = 1e-9
 """What is less negative is left over from rounding. [m] or [1]"""
 
@@ -36,33 +26,19 @@ FEWEST_TEETH = 5
 
 @dataclass(frozen=True, slots=True)
 class PocketVariant:
-    """A mesh that keeps what is not listed here: centre distance, pressure angle, oil, air.
+    """A mesh that keeps what is not listed here: centre distance, pressure angle, oil, air."""
 
-    Attributes
-    ----------
-    helix_angle : float
-        The transverse section stays as it is, but for the fillets, which a tool of the same
-        rounding over the normal module leaves. [rad]
-    face_width : float
-        Face width of both gears. [m]
-    oil_fraction : float
-        [1]
-    backlash : float
-        At the operating circles; both teeth are made thinner or thicker by half of the change. [m]
-    teeth : tuple of int
-        The transverse module follows: pitch diameters stay, but for the ratio that whole teeth
-        allow; addendum and dedendum at the operating circles go with the module, the backlash
-        stays.
-    speed : float
-        Speed of member 1 against the line of centres. [rad/s]
-    """
-
+    # The transverse section stays as it is, but for the fillets, which a tool of the same rounding
+    # over the normal module leaves. [rad]
     helix_angle: float
-    face_width: float
-    oil_fraction: float
+    face_width: float  # Face width of both gears. [m]
+    oil_fraction: float  # [1]
+    # At the operating circles; both teeth are made thinner or thicker by half of the change. [m]
     backlash: float
+    # The transverse module follows: pitch diameters stay, but for the ratio that whole teeth allow;
+    # addendum and dedendum at the operating circles go with the module, the backlash stays.
     teeth: tuple[int, int]
-    speed: float
+    speed: float  # Speed of member 1 against the line of centres. [rad/s]
 
 
 def base_variant(case: Case, duty: MeshDuty) -> PocketVariant:

@@ -7,8 +7,6 @@ from epicyclic.builders.built import Built
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["build_computed"]
-
 
 def build_computed(case: Case) -> Built:
     """The machine of a case with gears.

@@ -30,8 +30,6 @@ from epicyclic.units import DEGREE, MILLIMETRE
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["gear_shapes", "mesh_views"]
-
 POINTS_PER_SECTION = 12
 """Points of a drawn outline on each section of half a tooth."""
 
@@ -40,10 +38,6 @@ def gear_shapes(case: Case) -> dict[str, xr.Dataset]:
     """Outline and places of every gear of a case, about the axis of the set or of the wheel.
 
     Of a train the gears of the sets whose losses are computed.
-
-    Parameters
-    ----------
-    case : PlanetaryCase, GearPairCase or TrainCase
 
     Returns
     -------

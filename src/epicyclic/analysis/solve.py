@@ -13,8 +13,9 @@ from dataclasses import replace
 from epicyclic.analysis.sets_of import build_computed
 from epicyclic.builders.assembly import assemble
 from epicyclic.builders.build import build
-from epicyclic.case.case import Case, TrainCase
+from epicyclic.case.case import Case
 from epicyclic.case.operating import AXES
+from epicyclic.case.train import TrainCase
 from epicyclic.elasticity.loaded_mesh import LoadedMesh
 from epicyclic.elements.base import OIL
 from epicyclic.elements.gear_mesh import elastic_loads, load_mesh
@@ -29,15 +30,6 @@ from epicyclic.results.result import Result
 WARMER = (30.0, 60.0)
 """How much warmer than its inlet the oil is where tables are asked for flows through pockets; they
 are read between two of their flows where one between them was foretold. [K]"""
-
-__all__ = [
-    "flows_around",
-    "loaded_meshes",
-    "mesh_contacts",
-    "pocket_flow_numbers",
-    "solve",
-    "without_torque",
-]
 
 
 def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
@@ -103,15 +95,11 @@ def pocket_flow_numbers(case: Case) -> tuple[tuple[FlowFamily, float], ...]:
     return tuple(number for each in fluids for number in flow_numbers(duties, each))
 
 
-def flows_around(case: Case, reach: float) -> FlowTables:
-    """The flows of a case, for flows of nearly the same number. Theory (Q22).
-
-    Parameters
-    ----------
-    case : Case
-    reach : float
-        Difference of the numbers, relative, at most. [1]
-    """
+def flows_around(
+    case: Case,
+    reach: float,  # Difference of the numbers, relative, at most. [1]
+) -> FlowTables:
+    """The flows of a case, for flows of nearly the same number. Theory (Q22)."""
     built = build(case)
     if built.known_fluids is None:
         return {}

@@ -5,24 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-__all__ = ["LOSS_KINDS", "loss_sums"]
-
 LOSS_KINDS = ("given", "sliding", "rolling", "pocketing", "bearings", "seals", "drag")
 """In the order of their columns; ``"given"`` are those of meshes of given efficiency."""
 _OF_PARTS = {"bearings": "bearings", "seals": "seals", "drags": "drag"}
 
 
 def loss_sums(
-    losses: Mapping[str, float], inputs: Mapping[str, Any]
+    # Losses of a train, ``"planets.sun_mesh_sliding"``; without those that are left out.
+    losses: Mapping[str, float],
+    inputs: Mapping[str, Any],  # The case, as a file has it.
 ) -> dict[str, dict[str, float]]:
     """Sums by set or part, and in each by kind. [W]
-
-    Parameters
-    ----------
-    losses : mapping of str to float
-        Losses of a train, ``"planets.sun_mesh_sliding"``; without those that are left out.
-    inputs : mapping
-        The case, as a file has it.
 
     Returns
     -------

@@ -10,40 +10,23 @@ from epicyclic.case.train_tables import StateTable
 from epicyclic.elements.base import HOUSING
 from epicyclic.machine.kinematics import freedom, speeds_of
 
-__all__ = ["StateKinematics", "train_states"]
-
 AT_REST = 1e-10
 """Speed, relative to that of the input, of a shaft that stands still. [1]"""
 
 
 @dataclass(frozen=True, slots=True)
 class StateKinematics:
-    """One state of a train.
+    """One state of a train."""
 
-    Attributes
-    ----------
-    name : str
-        Empty if the train has no states.
-    held : tuple of str
-        As the case names them.
-    joined : tuple of tuple of str
-        Groups of shafts that clutches join.
-    ratio : float or None
-        Speed of the input over that of the output, signed; None if there is none. [1]
-    speeds : mapping of str to float
-        Speed of every shaft over that of the input; NaN where it is open, empty if the state is
-        blocked.
-        [1]
-    remark : str
-        Why there is no ratio, or what is open.
-    """
-
-    name: str
-    held: tuple[str, ...]
-    joined: tuple[tuple[str, ...], ...]
+    name: str  # Empty if the train has no states.
+    held: tuple[str, ...]  # As the case names them.
+    joined: tuple[tuple[str, ...], ...]  # Groups of shafts that clutches join.
+    # Speed of the input over that of the output, signed; None if there is none. [1]
     ratio: float | None
+    # Speed of every shaft over that of the input; NaN where it is open, empty if the state is
+    # blocked. [1]
     speeds: dict[str, float]
-    remark: str = ""
+    remark: str = ""  # Why there is no ratio, or what is open.
 
 
 def train_states(case: TrainCase) -> tuple[StateKinematics, ...]:

@@ -14,8 +14,6 @@ from epicyclic.app.tasks import Answer, Study
 from epicyclic.app.turning import TurningView
 from epicyclic.report.page import Section
 
-__all__ = ["Chapters", "View"]
-
 
 class View(Protocol):
     """What a tab shows that is no chapter of the result."""

@@ -22,8 +22,6 @@ from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.exchange.load import load_case
 from epicyclic.exchange.rexs.file import is_rexs
 
-__all__ = ["ENDINGS", "Desk", "built_in", "opened", "owner_of", "received"]
-
 ENDINGS = (".toml", ".rexs", ".rexsj", ".rexsz")
 """Endings of files that hold a case."""
 _HEAD = "A case file of epicyclic, saved by its app. Keys behind a # have defaults."
@@ -31,33 +29,16 @@ _HEAD = "A case file of epicyclic, saved by its app. Keys behind a # have defaul
 
 @dataclass
 class Desk:
-    """One case and its changes.
+    """One case and its changes."""
 
-    Attributes
-    ----------
-    source : str
-        File or built-in case, as a command names it.
-    tables : mapping
-        What the source holds.
-    build : callable
-        Makes the case of the source with changed keys.
-    original : str or None
-        The REXS file it came from.
-    changes : dict
-        Changes of dotted keys, as ``--set`` has them; None for keys that are removed.
-    case : Case or None
-        None if it is not sound.
-    problems : tuple of Problem
-        What is wrong with it.
-    """
-
-    source: str
-    tables: Mapping[str, Any]
-    build: Callable[[dict[str, Any]], Case]
-    original: str | None = None
+    source: str  # File or built-in case, as a command names it.
+    tables: Mapping[str, Any]  # What the source holds.
+    build: Callable[[dict[str, Any]], Case]  # Makes the case of the source with changed keys.
+    original: str | None = None  # The REXS file it came from.
+    # Changes of dotted keys, as ``--set`` has them; None for keys that are removed.
     changes: dict[str, Any] = field(default_factory=dict)
-    case: Case | None = None
-    problems: tuple[Problem, ...] = ()
+    case: Case | None = None  # None if it is not sound.
+    problems: tuple[Problem, ...] = ()  # What is wrong with it.
 
     def __post_init__(self) -> None:
         self._check()
@@ -190,17 +171,13 @@ def _is_name(value: object) -> bool:
     return text not in (".", "..") and not set(text) & set("/\\:\0")
 
 
-def opened(path: str, shown: str = "") -> Desk:
+def opened(
+    path: str,  # File or name.
+    shown: str = "",  # How commands name it, if not by `path`.
+) -> Desk:
     """The desk of a case: a file, or a built-in one.
 
     A case with problems is opened, if it is known what kind it is and a form can show it.
-
-    Parameters
-    ----------
-    path : str
-        File or name.
-    shown : str
-        How commands name it, if not by `path`.
 
     Raises
     ------
@@ -221,15 +198,12 @@ def opened(path: str, shown: str = "") -> Desk:
     return Desk(shown or path, case.given(), case.updated)
 
 
-def received(files: Iterable[tuple[str, bytes]], folder: Path) -> Desk:
+def received(
+    # Names and contents: the file with the case, and those that it names.
+    files: Iterable[tuple[str, bytes]],
+    folder: Path,  # Folder of the app, empty.
+) -> Desk:
     """The desk of an uploaded case.
-
-    Parameters
-    ----------
-    files : iterable of (str, bytes)
-        Names and contents: the file with the case, and those that it names.
-    folder : Path
-        Folder of the app, empty.
 
     Raises
     ------

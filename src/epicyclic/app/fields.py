@@ -13,8 +13,6 @@ from epicyclic.app.form import Entry, Group, number_in
 from epicyclic.app.names import ask_for_name, ask_for_new
 from epicyclic.case.template import toml_key
 
-__all__ = ["Form"]
-
 _OPEN = "operation"
 """The table that is open at first."""
 _STEPS, _DIGITS = 200, 6

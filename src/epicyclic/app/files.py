@@ -17,8 +17,6 @@ from epicyclic.app.sheet import Do
 from epicyclic.app.worker import Ended
 from epicyclic.errors import EpicyclicError, InputError
 
-__all__ = ["ask_for_case", "save_menu"]
-
 RESULTS = {
     ".nc": "Result with all its fields",
     ".json": "Result as JSON",
@@ -28,15 +26,11 @@ RESULTS = {
 MOST_FILES = 20
 
 
-def ask_for_case(folder: Path, then: Callable[[Desk], None]) -> None:
-    """Ask for a case, built in or a file of the user; call `then` with its desk.
-
-    Parameters
-    ----------
-    folder : Path
-        In which uploaded files are kept, each time in a new folder.
-    then : callable
-    """
+def ask_for_case(
+    folder: Path,  # In which uploaded files are kept, each time in a new folder.
+    then: Callable[[Desk], None],
+) -> None:
+    """Ask for a case, built in or a file of the user; call `then` with its desk."""
     with ui.dialog() as dialog, ui.card().classes("asking"):
         ui.label("Open a case").classes("section")
         told = ui.label("").classes("told")

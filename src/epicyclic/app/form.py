@@ -28,8 +28,6 @@ from epicyclic.case.train_tables import PlanetarySet
 from epicyclic.case.values import parse_value
 from epicyclic.units import Quantity, unit_text
 
-__all__ = ["Entry", "Group", "Kind", "form_of", "has_form", "number_in"]
-
 _SHORT = 3
 """Tables of no more keys stand among those of the table that holds them."""
 _YES_NO = ("true", "false")
@@ -39,48 +37,20 @@ _MEMBERS, _GEARS = "members", "gears"
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One key of a case.
+    """One key of a case."""
 
-    Attributes
-    ----------
-    key : str
-        Dotted, as in ``--set``.
-    name : str
-        What is left of the key within its group.
-    about : str
-        Description, and what is allowed.
-    unit : str
-        In which numbers are shown and typed; empty for keys without one.
-    choices : tuple of str
-        All that the key may hold; empty if that is not a list.
-    suggestions : tuple of str
-        Names that stand for tables of values, such as those of oils.
-    text : str
-        What is given, without its unit; empty if nothing is.
-    default : str
-        What holds if nothing is given.
-    is_required : bool
-        True if something must be given.
-    quantity : Quantity or None
-        Quantity of keys with a unit.
-    is_text : bool
-        True if what is typed is not read as a number or a list.
-    is_own : bool
-        True if the user chose the name.
-    """
-
-    key: str
-    name: str
-    about: str
-    unit: str
-    choices: tuple[str, ...]
-    suggestions: tuple[str, ...]
-    text: str
-    default: str
-    is_required: bool
-    quantity: Quantity | None
-    is_text: bool
-    is_own: bool = False
+    key: str  # Dotted, as in ``--set``.
+    name: str  # What is left of the key within its group.
+    about: str  # Description, and what is allowed.
+    unit: str  # In which numbers are shown and typed; empty for keys without one.
+    choices: tuple[str, ...]  # All that the key may hold; empty if that is not a list.
+    suggestions: tuple[str, ...]  # Names that stand for tables of values, such as those of oils.
+    text: str  # What is given, without its unit; empty if nothing is.
+    default: str  # What holds if nothing is given.
+    is_required: bool  # True if something must be given.
+    quantity: Quantity | None  # Quantity of keys with a unit.
+    is_text: bool  # True if what is typed is not read as a number or a list.
+    is_own: bool = False  # True if the user chose the name.
 
     def value(self, text: str) -> Any:
         """What a case file has for what was typed; None for nothing."""
@@ -97,52 +67,28 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """What a new name may stand for.
+    """What a new name may stand for."""
 
-    Attributes
-    ----------
-    about : str
-        First line of its description.
-    tables : dict or None
-        What the name holds at first; None if it is a value, not a table.
-    """
-
-    about: str
+    about: str  # First line of its description.
+    # What the name holds at first; None if it is a value, not a table.
     tables: dict[str, Any] | None
 
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """One table of a case: its keys, and the tables in it.
+    """One table of a case: its keys, and the tables in it."""
 
-    Attributes
-    ----------
-    key, name : str
-        Dotted, as in ``--set``; its last part.
-    about : str
-    entries : tuple of Entry
-    groups : tuple of Group
-    is_given : bool
-    is_own : bool
-        True if the user chose the name.
-    is_optional : bool
-        True if a case may do without the table.
-    kinds : tuple of Kind
-        What new names in it may stand for; empty if it has none of the user.
-    sample : Entry or None
-        How values of new names are read, if they are no tables.
-    """
-
-    key: str
-    name: str
+    key: str  # Dotted, as in ``--set``; its last part.
+    name: str  # Dotted, as in ``--set``; its last part.
     about: str
     entries: tuple[Entry, ...]
     groups: tuple[Group, ...]
     is_given: bool
-    is_own: bool = False
-    is_optional: bool = False
+    is_own: bool = False  # True if the user chose the name.
+    is_optional: bool = False  # True if a case may do without the table.
+    # What new names in it may stand for; empty if it has none of the user.
     kinds: tuple[Kind, ...] = ()
-    sample: Entry | None = None
+    sample: Entry | None = None  # How values of new names are read, if they are no tables.
 
     def walk(self) -> Iterator[Entry]:
         """All entries, also of the groups within."""
@@ -157,14 +103,10 @@ class Group:
         return next(filter(None, (group.find(key) for group in self.groups)), None)
 
 
-def form_of(tables: Mapping[str, Any]) -> Group:
-    """The form of the tables of a case, whether they are sound or not.
-
-    Parameters
-    ----------
-    tables : mapping
-        As a case file has them, with the kind.
-    """
+def form_of(
+    tables: Mapping[str, Any],  # As a case file has them, with the kind.
+) -> Group:
+    """The form of the tables of a case, whether they are sound or not."""
     return _group(KINDS[tables["kind"]], "", "", tables)
 
 

@@ -8,8 +8,6 @@ from http.cookies import CookieError, SimpleCookie
 from typing import Any
 from urllib.parse import parse_qs
 
-__all__ = ["HEADERS", "LARGEST_BODY", "Guard"]
-
 LARGEST_BODY = 10_000_000
 """Largest request: a case file is a page of text, a REXS file may have some megabytes. [bytes]"""
 _MOST_DIGITS = 20

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
 
-__all__ = ["Latest"]
-
 
 class Latest:
     """Does work again after each change, for the last one: what comes meanwhile never queues.

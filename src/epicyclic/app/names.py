@@ -8,23 +8,16 @@ from nicegui import ui
 
 from epicyclic.app.form import Group
 
-__all__ = ["ask_for_name", "ask_for_new"]
-
 Take = Callable[[str], Awaitable[str]]
 """Takes what was typed; what is wrong with it, or nothing."""
 
 
-def ask_for_name(title: str, name: str, take: Take) -> None:
-    """Ask for another name.
-
-    Parameters
-    ----------
-    title : str
-    name : str
-        The one of now.
-    take : callable
-        Takes the name; what is wrong with it, or nothing.
-    """
+def ask_for_name(
+    title: str,
+    name: str,  # The one of now.
+    take: Take,  # Takes the name; what is wrong with it, or nothing.
+) -> None:
+    """Ask for another name."""
     with ui.dialog() as dialog, ui.card().classes("asking"):
         ui.label(title).classes("section")
         field = _line("name", name)
@@ -32,15 +25,12 @@ def ask_for_name(title: str, name: str, take: Take) -> None:
     dialog.open()
 
 
-def ask_for_new(group: Group, take: Callable[[str, object], Awaitable[str]]) -> None:
-    """Ask for a new name in a table of names, and what it stands for.
-
-    Parameters
-    ----------
-    group : Group
-    take : callable
-        Takes the name, and what a case file has for it; what is wrong with it, or nothing.
-    """
+def ask_for_new(
+    group: Group,
+    # Takes the name, and what a case file has for it; what is wrong with it, or nothing.
+    take: Callable[[str, object], Awaitable[str]],
+) -> None:
+    """Ask for a new name in a table of names, and what it stands for."""
     sample = group.sample
     with ui.dialog() as dialog, ui.card().classes("asking"):
         ui.label(f"Add to {group.name}").classes("section")

@@ -22,8 +22,6 @@ from epicyclic.app.views import CompareView, MapView
 from epicyclic.app.worker import Ended
 from epicyclic.errors import EpicyclicError
 
-__all__ = ["Page", "add_assets"]
-
 _VERBS = {"run": (), "check": (), "report": ("-o", "report.html")}
 """Commands that do what the page does, and what they need more."""
 

@@ -23,8 +23,6 @@ from epicyclic.app.shelves import Shelves
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["LOOPBACK", "application", "names_of", "serve", "show"]
-
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 """Addresses that only this machine can reach."""
 ANY = ("0.0.0.0", "::")
@@ -38,19 +36,13 @@ TERMINATED = 128 + signal.SIGTERM
 """Exit code after a signal, as shells have it."""
 
 
-def serve(desk: Desk, host: str, port: int, told: Callable[[str], None]) -> None:
-    """Serve a case until the command is interrupted.
-
-    Parameters
-    ----------
-    desk : Desk
-    host : str
-        The address that is listened at.
-    port : int
-        0 for any that is free.
-    told : callable
-        Called with the address to open.
-    """
+def serve(
+    desk: Desk,
+    host: str,  # The address that is listened at.
+    port: int,  # 0 for any that is free.
+    told: Callable[[str], None],  # Called with the address to open.
+) -> None:
+    """Serve a case until the command is interrupted."""
     token = secrets.token_urlsafe(_TOKEN_BYTES)
     with closing(_listening(host, port)) as listening:
         bound, found = listening.getsockname()[:2]
@@ -65,14 +57,13 @@ def serve(desk: Desk, host: str, port: int, told: Callable[[str], None]) -> None
             uvicorn.Server(config).run(sockets=[listening])
 
 
-def names_of(host: str, bound: str) -> list[str]:
-    """What browsers may call the address; the first one is shown.
-
-    Parameters
-    ----------
-    host, bound : str
-        The address as the user names it, and as the system writes it, which browsers do too.
-    """
+def names_of(
+    # host, bound: The address as the user names it, and as the system writes it, which browsers do
+    # too.
+    host: str,
+    bound: str,
+) -> list[str]:
+    """What browsers may call the address; the first one is shown."""
     if host in LOOPBACK:
         names = [host, *LOOPBACK]
     elif bound in ANY:

@@ -17,8 +17,6 @@ from epicyclic.errors import EpicyclicError
 from epicyclic.report.html import items_html
 from epicyclic.report.page import Drawing, Gallery, Item, KeyFigure, Listing, Row, Section, Table
 
-__all__ = ["BEHIND", "FORMATS", "Do", "Place", "Sheet", "key_figures", "mark_behind"]
-
 FORMATS = ("png", "svg", "pdf")
 BEHIND = "behind"
 """Class of what is of an earlier case than that of the form."""

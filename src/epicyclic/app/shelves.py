@@ -11,8 +11,6 @@ from pathlib import Path
 from epicyclic.app.desk import Desk
 from epicyclic.app.worker import Worker
 
-__all__ = ["Shelf", "Shelves"]
-
 MOST_TABS = 8
 """That are open at a time: each has up to three processes of some 300 MB."""
 MOST_KEPT = 50
@@ -23,23 +21,12 @@ BEHIND = 5
 
 @dataclass
 class Shelf:
-    """What is kept for one tab while its page is loaded again.
+    """What is kept for one tab while its page is loaded again."""
 
-    Attributes
-    ----------
-    desk : Desk
-        The case that is open.
-    folder : Path
-        For uploaded files.
-    chapter : str
-        That is open.
-    quick, slow, maps : Worker
-        Follows every value of an input; draws what takes longer; computes maps.
-    """
-
-    desk: Desk
-    folder: Path
-    chapter: str = ""
+    desk: Desk  # The case that is open.
+    folder: Path  # For uploaded files.
+    chapter: str = ""  # That is open.
+    # Follows every value of an input; draws what takes longer; computes maps.
     quick: Worker = field(default_factory=Worker)
     slow: Worker = field(default_factory=lambda: Worker(BEHIND))
     maps: Worker = field(default_factory=lambda: Worker(BEHIND))
@@ -73,16 +60,15 @@ class Shelves:
         self._kept: dict[str, Shelf] = {}
         self._pages: dict[str, str] = {}
 
-    def take(self, tab: str, page: str, before: str = "") -> Shelf | None:
-        """The shelf of a tab; None if too many are open.
-
-        Parameters
-        ----------
-        tab, page : str
-            What the tab and its present page are called; a page that is loaded again is another.
-        before : str
-            The tab that this one was duplicated from.
-        """
+    def take(
+        self,
+        # tab, page: What the tab and its present page are called; a page that is loaded again is
+        # another.
+        tab: str,
+        page: str,
+        before: str = "",  # The tab that this one was duplicated from.
+    ) -> Shelf | None:
+        """The shelf of a tab; None if too many are open."""
         is_open = tab in self._pages
         if not is_open and len(self._pages) >= self.most:
             return None

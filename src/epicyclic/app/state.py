@@ -7,8 +7,6 @@ from contextlib import contextmanager
 
 from nicegui import ui
 
-__all__ = ["Doing"]
-
 
 class Doing:
     """The line; it is there while something is done.

@@ -29,21 +29,6 @@ from epicyclic.report.side_by_side import side_by_side
 from epicyclic.results.result import in_words
 from epicyclic.sweeps.plan import parse_vary
 
-__all__ = [
-    "FIRST",
-    "IN_PAGE",
-    "MESH",
-    "TURNS",
-    "Answer",
-    "Study",
-    "answered",
-    "compared",
-    "moved",
-    "picture",
-    "saved",
-    "turning",
-]
-
 Progress = Callable[[int, int], None]
 STILL = ("gear-set", "teeth")
 """Plots of what turns, where that is shown."""
@@ -58,40 +43,23 @@ MOST_KEPT = 6
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """The result of a case, or its map over speed and torque.
-
-    Attributes
-    ----------
-    case : Case
-    speed, torque, temperature : str
-        Values of the map, as the command has them.
-    is_map : bool
-    """
+    """The result of a case, or its map over speed and torque."""
 
     case: Case
-    speed: str = ""
-    torque: str = ""
-    temperature: str = ""
+    speed: str = ""  # Values of the map, as the command has them.
+    torque: str = ""  # Values of the map, as the command has them.
+    temperature: str = ""  # Values of the map, as the command has them.
     is_map: bool = field(default=False, kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a page shows of a study; its figures have no pictures yet.
-
-    Attributes
-    ----------
-    key_figures : list of KeyFigure
-    sections : list of Section
-    wide : frozenset of str
-        Figures of several panels.
-    turning : dict of str to str
-        What turns: sets, and meshes with a slash before the key; with its title.
-    """
+    """What a page shows of a study; its figures have no pictures yet."""
 
     key_figures: list[KeyFigure]
     sections: list[Section]
-    wide: frozenset[str]
+    wide: frozenset[str]  # Figures of several panels.
+    # What turns: sets, and meshes with a slash before the key; with its title.
     turning: dict[str, str]
 
 

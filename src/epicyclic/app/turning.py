@@ -12,8 +12,6 @@ from epicyclic.app import tasks
 from epicyclic.app.sheet import Do, Place
 from epicyclic.app.tasks import IN_PAGE, MESH, Study
 
-__all__ = ["TurningView"]
-
 PERIODS, STEP = 4, 0.005
 """Range and step of the slider. [mesh periods]"""
 

@@ -22,8 +22,6 @@ from epicyclic.case.operating import OPERATING, OperatingValue
 from epicyclic.errors import EpicyclicError
 from epicyclic.report.page import Drawing, Gallery, Section, Table
 
-__all__ = ["CompareView", "MapView"]
-
 MAP_STEPS = {"speed": 9, "torque": 7}
 SHOWN_TWICE = {"losses": "Where do the watts go?", "loss-sum": "How do the losses add up?"}
 _TOLD = "Keep the case, change it, and come back: both stand side by side here."

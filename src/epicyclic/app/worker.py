@@ -16,8 +16,6 @@ from typing import Any
 from epicyclic.errors import EpicyclicError
 from epicyclic.kernels.compiling import listeners
 
-__all__ = ["Ended", "WorkError", "Worker"]
-
 Progress = Callable[[int, int], None]
 """Called with what is done and what there is to do, and with 0 for this while code is compiled."""
 
@@ -50,15 +48,13 @@ class Worker:
         self._ours: Connection | None = None
         self._lock = asyncio.Lock()
 
-    async def do(self, task: Callable[..., Any], *arguments: Any, progress: Progress) -> Any:
+    async def do(
+        self,
+        task: Callable[..., Any],  # Takes `arguments` and a function that it tells its progress.
+        *arguments: Any,
+        progress: Progress,  # Called in this process.
+    ) -> Any:
         """What a function of a module returns, computed in the process.
-
-        Parameters
-        ----------
-        task : callable
-            Takes `arguments` and a function that it tells its progress.
-        progress : callable
-            Called in this process.
 
         Raises
         ------

@@ -19,8 +19,6 @@ from epicyclic.losses.validity import range_text
 from epicyclic.results.result import Result
 from epicyclic.units import known_text, percent
 
-__all__ = ["Limit", "Measurement", "limits_of", "measurements_of", "model_remarks"]
-
 LEAST = 0.02
 """Share in the variance of the total from which a value is said to limit the trust. [1]"""
 CONCERNED = 0.05
@@ -29,38 +27,20 @@ CONCERNED = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """A value, or several that are correlated, that the band is due to.
-
-    Attributes
-    ----------
-    name : str
-    advice : str
-        What to do about it.
-    width : float
-        Width of the band that it makes alone, in the unit of the total.
-    """
+    """A value, or several that are correlated, that the band is due to."""
 
     name: str
-    advice: str
-    width: float
+    advice: str  # What to do about it.
+    width: float  # Width of the band that it makes alone, in the unit of the total.
 
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """Something that could be measured.
-
-    Attributes
-    ----------
-    name : str
-    is_input : bool
-        False for a part of the loss.
-    width : float
-        Width of the band that is left once it is known, in the unit of the total.
-    """
+    """Something that could be measured."""
 
     name: str
-    is_input: bool
-    width: float
+    is_input: bool  # False for a part of the loss.
+    width: float  # Width of the band that is left once it is known, in the unit of the total.
 
 
 def limits_of(known: Known) -> list[Limit]:

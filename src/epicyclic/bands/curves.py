@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from epicyclic.bands.sampling import Samples
 from epicyclic.case.uncertain_values import UncertainValue
 
-__all__ = ["Curves", "fit_curves"]
-
 FloatArray = NDArray[np.float64]
 
 ROUNDING = 1e-9
@@ -22,26 +20,15 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Curves:
-    """Every loss as a product of one curve for each input and model. Theory (U9).
+    """Every loss as a product of one curve for each input and model. Theory (U9)."""
 
-    Attributes
-    ----------
-    dependent : ndarray of bool, shape (t,)
-        Which of them depend on the load.
-    values : tuple of UncertainValue
-    slopes : ndarray of float, shape (c, t)
-        Slopes of the logarithm of each loss, over the columns of `_columns`.
-    means : ndarray of float, shape (t,)
-        Means of losses that do not vary, or are 0 in some samples; NaN for all others.
-    explained : float
-        Share of the variance of the total that the curves explain, less what they would by chance;
-        NaN with too few samples. [1]
-    """
-
-    dependent: NDArray[np.bool]
+    dependent: NDArray[np.bool]  # Which of them depend on the load.
     values: tuple[UncertainValue, ...]
-    slopes: FloatArray
+    slopes: FloatArray  # Slopes of the logarithm of each loss, over the columns of `_columns`.
+    # Means of losses that do not vary, or are 0 in some samples; NaN for all others.
     means: FloatArray
+    # Share of the variance of the total that the curves explain, less what they would by chance;
+    # NaN with too few samples. [1]
     explained: float = math.nan
 
     def at(self, drawn: FloatArray) -> FloatArray:

@@ -35,8 +35,6 @@ from epicyclic.units import KILOJOULE
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["POINTS", "CycleStudy", "Energies", "cycle_study"]
-
 FloatArray = NDArray[np.float64]
 
 SAMPLES = 64
@@ -50,45 +48,24 @@ EXPLAINED = "share of the variance of the total that curves through the samples 
 
 @dataclass(frozen=True, slots=True)
 class Energies:
-    """How the energy of a cycle follows from the losses at some of its points.
-
-    Attributes
-    ----------
-    outputs : Outputs
-    points : tuple of mapping
-        What they change in the case.
-    at_shaft : ndarray of float, shape (p,)
-        Power of the reference shaft. [W]
-    time : ndarray of float, shape (p,)
-        What each stands for: its own time over the probability that it was drawn with. [s]
-    interpolated : ndarray of float, shape (t, p)
-        Losses in the map of the cycle. [W]
-    lost : ndarray of float, shape (t,)
-        Energies of the whole cycle by the map. [J]
-    entering : float
-        Energy that enters, by the map. [J]
-    whole : bool
-        True if the points are all of the cycle.
-    """
+    """How the energy of a cycle follows from the losses at some of its points."""
 
     outputs: Outputs
-    points: tuple[dict[str, Any], ...]
-    at_shaft: FloatArray
+    points: tuple[dict[str, Any], ...]  # What they change in the case.
+    at_shaft: FloatArray  # Power of the reference shaft. [W]
+    # What each stands for: its own time over the probability that it was drawn with. [s]
     time: FloatArray
-    interpolated: FloatArray
-    lost: FloatArray
-    entering: float
-    whole: bool
+    interpolated: FloatArray  # Losses in the map of the cycle. [W]
+    lost: FloatArray  # Energies of the whole cycle by the map. [J]
+    entering: float  # Energy that enters, by the map. [J]
+    whole: bool  # True if the points are all of the cycle.
 
-    def of(self, results: FloatArray, without: int | None = None) -> FloatArray:
+    def of(
+        self,
+        results: FloatArray,  # At the points, as `Outputs.names` has them. [W]
+        without: int | None = None,  # Number of a point to leave out.
+    ) -> FloatArray:
         """Energies of the cycle, and its efficiency. Theory (U10).
-
-        Parameters
-        ----------
-        results : ndarray of float, shape (p, s, n)
-            At the points, as `Outputs.names` has them. [W]
-        without : int, optional
-            Number of a point to leave out.
 
         Returns
         -------
@@ -141,26 +118,15 @@ def _entering(at_shaft: FloatArray, loss: FloatArray) -> FloatArray:
 
 
 def cycle_study(
-    data: xr.Dataset,
+    data: xr.Dataset,  # A loss map.
     cycle: Cycle,
-    celsius: tuple[float, ...] | None = None,
-    samples: int | None = None,
-    points: int | None = None,
-    seed: int = 1,
-    runner: Runner = HERE,
+    celsius: tuple[float, ...] | None = None,  # As for `uncertainty`.
+    samples: int | None = None,  # As for `uncertainty`.
+    points: int | None = None,  # As for `uncertainty`.
+    seed: int = 1,  # As for `uncertainty`.
+    runner: Runner = HERE,  # Runner of the solutions with one input changed.
 ) -> CycleStudy:
-    """What has to be solved for the uncertainty of the energy of a cycle; see `uncertainty`.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        A loss map.
-    cycle : Cycle
-    celsius, samples, points, seed
-        As for `uncertainty`.
-    runner : Runner
-        Runner of the solutions with one input changed.
-    """
+    """What has to be solved for the uncertainty of the energy of a cycle; see `uncertainty`."""
     count = SAMPLES if samples is None else samples
     check_samples(count)
     case = _case_of(data, celsius, points)
@@ -214,23 +180,12 @@ def _energies(sums: Sums, outputs: Outputs) -> Energies:
 
 @dataclass(frozen=True, slots=True)
 class CycleStudy:
-    """The samples of the points that stand for a duty cycle.
-
-    Attributes
-    ----------
-    case : Case
-    cycle : Cycle
-    energies : Energies
-    nearby : tuple of Nearby
-        At each point.
-    sampled : SampledCase
-    seed : int
-    """
+    """The samples of the points that stand for a duty cycle."""
 
     case: Case
     cycle: Cycle
     energies: Energies
-    nearby: tuple[Nearby, ...]
+    nearby: tuple[Nearby, ...]  # At each point.
     sampled: SampledCase
     seed: int
 

@@ -14,8 +14,6 @@ from epicyclic.case.uncertain_values import UncertainValue
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["correlations", "cut_off", "quantiles", "standard_uncertainty"]
-
 FloatArray = NDArray[np.float64]
 
 

@@ -12,39 +12,19 @@ if TYPE_CHECKING:
     import numpy as np
     import xarray as xr
 
-__all__ = ["Known", "known_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """The band of a result, what makes it, and what to know of it.
+    """The band of a result, what makes it, and what to know of it."""
 
-    Attributes
-    ----------
-    unit : str
-        Unit of the total and its parts.
-    nominal : mapping of str to float
-        Results of the case.
-    ends : mapping of str to tuple of float
-        Ends of the symmetric 95 % interval of each result.
-    draws : mapping of str to ndarray of float, shape (n,)
-        What each result may be.
-    shares : mapping of str to float
-        Shares of drivers in the variance of the total, each alone. [1]
-    names, advice : mapping of str to str
-        What each input is called, and how to know it better.
-    remarks : tuple of str
-        Sentences on warnings and models.
-    """
-
-    unit: str
-    nominal: Mapping[str, float]
-    ends: Mapping[str, tuple[float, float]]
-    draws: Mapping[str, NDArray[np.float64]]
-    shares: Mapping[str, float]
-    names: Mapping[str, str]
-    advice: Mapping[str, str]
-    remarks: tuple[str, ...]
+    unit: str  # Unit of the total and its parts.
+    nominal: Mapping[str, float]  # Results of the case.
+    ends: Mapping[str, tuple[float, float]]  # Ends of the symmetric 95 % interval of each result.
+    draws: Mapping[str, NDArray[np.float64]]  # What each result may be.
+    shares: Mapping[str, float]  # Shares of drivers in the variance of the total, each alone. [1]
+    names: Mapping[str, str]  # What each input is called, and how to know it better.
+    advice: Mapping[str, str]  # What each input is called, and how to know it better.
+    remarks: tuple[str, ...]  # Sentences on warnings and models.
 
     @property
     def width(self) -> float:

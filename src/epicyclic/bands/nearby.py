@@ -18,15 +18,6 @@ from epicyclic.errors import EpicyclicError, raise_any
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Result
 
-__all__ = [
-    "Nearby",
-    "known_values",
-    "look_nearby",
-    "nearby_of",
-    "steps",
-    "without_table",
-]
-
 FloatArray = NDArray[np.float64]
 
 HALF_WIDTH = math.sqrt(3.0)
@@ -39,25 +30,14 @@ that of 10 K. [1]"""
 
 @dataclass(frozen=True, slots=True)
 class Nearby:
-    """Losses where one input is off by a standard deviation.
-
-    Attributes
-    ----------
-    values : tuple of UncertainValue
-    outputs : Outputs
-    losses : ndarray of float, shape (t,)
-        `Outputs.numbers`, at the values of the case. [W]
-    input_power : float
-        [W]
-    ends : ndarray of float, shape (d, 2, t)
-        One standard deviation below and above the middle of each input; NaN where there is no
-        result. [W]
-    """
+    """Losses where one input is off by a standard deviation."""
 
     values: tuple[UncertainValue, ...]
     outputs: Outputs
-    losses: FloatArray
-    input_power: float
+    losses: FloatArray  # `Outputs.numbers`, at the values of the case. [W]
+    input_power: float  # [W]
+    # One standard deviation below and above the middle of each input; NaN where there is no result.
+    # [W]
     ends: FloatArray
 
     @property

@@ -16,8 +16,6 @@ from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Result
 from epicyclic.sweeps.unloaded import AS_TESTED
 
-__all__ = ["INPUT_POWER", "SUMS", "Outputs", "factors_of", "loss_numbers", "outputs_of"]
-
 FloatArray = NDArray[np.float64]
 
 SUMS = ("load_dependent", "load_independent", "total", "efficiency")
@@ -29,23 +27,12 @@ INPUT_POWER = "input_power"
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """How results follow from the losses of one case.
+    """How results follow from the losses of one case."""
 
-    Attributes
-    ----------
-    losses : tuple of str
-        Names of those that are included.
-    load_dependent : ndarray of bool, shape (t,)
-        Which of them depend on the load.
-    kinds : tuple of str
-        Kind of each, see `model_form_of`.
-    tested : bool
-        True if they are grouped as a test rig does: what torque adds, and the rest.
-    """
-
-    losses: tuple[str, ...]
-    load_dependent: NDArray[np.bool]
-    kinds: tuple[str, ...]
+    losses: tuple[str, ...]  # Names of those that are included.
+    load_dependent: NDArray[np.bool]  # Which of them depend on the load.
+    kinds: tuple[str, ...]  # Kind of each, see `model_form_of`.
+    # True if they are grouped as a test rig does: what torque adds, and the rest.
     tested: bool = False
 
     @property
@@ -60,18 +47,12 @@ class Outputs:
         return (*self.losses, *SUMS)
 
     def of(
-        self, losses: FloatArray, input_power: FloatArray, factors: Mapping[str, FloatArray]
+        self,
+        losses: FloatArray,  # In the order of `numbers`. [W]
+        input_power: FloatArray,  # [W]
+        factors: Mapping[str, FloatArray],  # By kind; 1 for others. [1]
     ) -> FloatArray:
         """Results with the losses of each kind times the factor of its model. Theory (U7).
-
-        Parameters
-        ----------
-        losses : ndarray of float, shape (t, n)
-            In the order of `numbers`. [W]
-        input_power : ndarray of float, shape (n,)
-            [W]
-        factors : mapping of str to ndarray of float, shape (n,)
-            By kind; 1 for others. [1]
 
         Returns
         -------

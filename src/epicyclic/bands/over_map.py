@@ -23,8 +23,6 @@ from epicyclic.units import NEWTON_METRE, RPM
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["MapStudy", "map_study"]
-
 FloatArray = NDArray[np.float64]
 
 SAMPLES = 32
@@ -52,18 +50,9 @@ def map_study(data: xr.Dataset, samples: int | None = None, seed: int = 1) -> Ma
 
 @dataclass(frozen=True, slots=True)
 class MapStudy:
-    """The samples of all points of a map.
+    """The samples of all points of a map."""
 
-    Attributes
-    ----------
-    data : xarray.Dataset
-        The map.
-    grid : MapPlan
-    sampled : SampledCase
-    seed : int
-    """
-
-    data: xr.Dataset
+    data: xr.Dataset  # The map.
     grid: MapPlan
     sampled: SampledCase
     seed: int

@@ -26,8 +26,6 @@ from epicyclic.sweeps.runner import Progress, Runner
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["compare_cases"]
-
 FloatArray = NDArray[np.float64]
 OWN = "B: "
 """Before the key of a value of the second case that the first does not share."""

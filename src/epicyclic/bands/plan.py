@@ -12,13 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.bands.nearby import Nearby, known_values, nearby_of, steps, without_table
-from epicyclic.bands.outputs import (
-    INPUT_POWER,
-    Outputs,
-    factors_of,
-    loss_numbers,
-    outputs_of,
-)
+from epicyclic.bands.outputs import INPUT_POWER, Outputs, factors_of, loss_numbers, outputs_of
 from epicyclic.bands.sampling import Samples, groups_of, make_samples
 from epicyclic.case.case import Case
 from epicyclic.case.plain import plain
@@ -29,8 +23,6 @@ from epicyclic.status import Status
 from epicyclic.sweeps.journal import Row, Rows
 from epicyclic.sweeps.plan import CasePlan
 from epicyclic.sweeps.runner import Runner
-
-__all__ = ["FEWEST", "SamplePlan", "SampledCase", "check_samples", "nearby_at", "sampled_case"]
 
 FloatArray = NDArray[np.float64]
 Point = Mapping[str, Any]
@@ -44,26 +36,16 @@ class SamplePlan(CasePlan):
     """The same samples of the inputs of a case at each of its operating points.
 
     Some make no case, and are counted.
-
-    Attributes
-    ----------
-    outputs : Outputs
-    inputs : tuple of UncertainValue
-    count : int
-        Points in each set of samples.
-    drawn : tuple of ndarray of float, shape (d, m)
-        Values of the inputs in their units, of all sets one after another; of each operating point.
-    points : tuple of mapping
-        What the operating points change in the case.
     """
 
     kind: ClassVar[str] = "uncertainty"
     may_fail: ClassVar[bool] = True
     outputs: Outputs
     inputs: tuple[UncertainValue, ...] = ()
-    count: int = 1
+    count: int = 1  # Points in each set of samples.
+    # Values of the inputs in their units, of all sets one after another; of each operating point.
     drawn: tuple[FloatArray, ...] = ()
-    points: tuple[Point, ...] = ({},)
+    points: tuple[Point, ...] = ({},)  # What the operating points change in the case.
 
     @property
     def samples(self) -> int:
@@ -118,31 +100,22 @@ def check_samples(samples: int) -> None:
 
 @dataclass(frozen=True, slots=True)
 class SampledCase:
-    """Samples A and B of a case at operating points, and A with some groups of inputs from B.
-
-    Attributes
-    ----------
-    outputs : Outputs
-    samples : tuple of Samples
-        Samples of each operating point: of equal probabilities, about the values of that point.
-    groups : tuple of int
-        Numbers of the groups that are solved for with values from B.
-    plan : SamplePlan
-    """
+    """Samples A and B of a case at operating points, and A with some groups of inputs from B."""
 
     outputs: Outputs
+    # Samples of each operating point: of equal probabilities, about the values of that point.
     samples: tuple[Samples, ...]
-    groups: tuple[int, ...]
+    groups: tuple[int, ...]  # Numbers of the groups that are solved for with values from B.
     plan: SamplePlan
 
-    def results(self, rows: Rows, *, mixed: bool = True) -> FloatArray:
+    def results(
+        self,
+        rows: Rows,
+        *,
+        # Whether to go on behind A and B with A with each of all groups from B.
+        mixed: bool = True,
+    ) -> FloatArray:
         """Results at all operating points, in all sets of samples.
-
-        Parameters
-        ----------
-        rows : Rows
-        mixed : bool
-            Whether to go on behind A and B with A with each of all groups from B.
 
         Returns
         -------
@@ -188,27 +161,15 @@ class SampledCase:
 
 def sampled_case(
     case: Case,
-    result: Result,
-    count: int,
-    seed: int,
-    points: Sequence[Point] = ({},),
+    result: Result,  # Result of the case.
+    count: int,  # As for `make_samples`.
+    seed: int,  # As for `make_samples`.
+    points: Sequence[Point] = ({},),  # What the operating points change.
+    # Which values change any loss: only these are varied, and A is solved with each group of them
+    # from B. Default: all are varied, in A and B alone.
     active: Sequence[bool] | None = None,
 ) -> SampledCase:
-    """Samples of a case with the same probabilities of all inputs at each operating point.
-
-    Parameters
-    ----------
-    case : PlanetaryCase, GearPairCase or TrainCase
-    result : Result
-        Result of the case.
-    count, seed : int
-        As for `make_samples`.
-    points : sequence of mapping
-        What the operating points change.
-    active : sequence of bool, optional
-        Which values change any loss: only these are varied, and A is solved with each group of
-        them from B. Default: all are varied, in A and B alone.
-    """
+    """Samples of a case with the same probabilities of all inputs at each operating point."""
     values = _values_at(case, result, points)
     (first, *_) = values
     inputs = [
@@ -242,19 +203,12 @@ def sampled_case(
 
 
 def nearby_at(
-    case: Case, result: Result, points: Sequence[Point], runner: Runner
+    case: Case,
+    result: Result,  # Result of the case.
+    points: Sequence[Point],  # What the operating points change.
+    runner: Runner,
 ) -> tuple[Nearby, ...]:
-    """Losses at operating points, at each with every input off by a standard deviation.
-
-    Parameters
-    ----------
-    case : PlanetaryCase, GearPairCase or TrainCase
-    result : Result
-        Result of the case.
-    points : sequence of mapping
-        What the operating points change.
-    runner : Runner
-    """
+    """Losses at operating points, at each with every input off by a standard deviation."""
     outputs = outputs_of(case, result)
     values = _values_at(case, result, points)
     changes = [

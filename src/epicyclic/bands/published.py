@@ -15,14 +15,7 @@ from epicyclic.bands.quick import quick_band
 from epicyclic.bands.statistics import summary
 from epicyclic.sweeps.runner import HERE, Runner
 from epicyclic.validation.compare import published_figures
-from epicyclic.validation.compute import (
-    FIGURES,
-    LoadedTests,
-    loaded_conditions,
-    source_case,
-)
-
-__all__ = ["MeasuredFigure", "measured_figures"]
+from epicyclic.validation.compute import FIGURES, LoadedTests, loaded_conditions, source_case
 
 FloatArray = NDArray[np.float64]
 
@@ -36,23 +29,15 @@ MEASURED = "measured"
 
 @dataclass(frozen=True, slots=True)
 class MeasuredFigure:
-    """A measured figure and the band of the computed one.
-
-    Attributes
-    ----------
-    what, unit, source : str
-    measured, computed : float
-    low, high : float
-        Ends of the 95 % band.
-    """
+    """A measured figure and the band of the computed one."""
 
     what: str
     unit: str
     source: str
     measured: float
     computed: float
-    low: float
-    high: float
+    low: float  # Ends of the 95 % band.
+    high: float  # Ends of the 95 % band.
 
     @property
     def is_inside(self) -> bool:

@@ -30,8 +30,6 @@ from epicyclic.results.result import Result
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Band", "quick_band", "quick_dataset", "quick_known"]
-
 FloatArray = NDArray[np.float64]
 
 DRAWN = 4096
@@ -43,20 +41,11 @@ SEED = 1
 
 @dataclass(frozen=True)
 class Band:
-    """What a result may be, drawn from parabolas, and what makes most of it.
-
-    Attributes
-    ----------
-    nearby : Nearby
-    results : ndarray of float, shape (s, n)
-        Draws, in the order of `Outputs.names`.
-    parts : ndarray of float, shape (d, n)
-        What each uncertain value alone adds to the total loss in these draws. [W]
-    """
+    """What a result may be, drawn from parabolas, and what makes most of it."""
 
     nearby: Nearby
-    results: FloatArray
-    parts: FloatArray
+    results: FloatArray  # Draws, in the order of `Outputs.names`.
+    parts: FloatArray  # What each uncertain value alone adds to the total loss in these draws. [W]
 
     @cached_property
     def drivers(self) -> tuple[tuple[str, float], ...]:

@@ -17,8 +17,6 @@ from epicyclic.sweeps.runner import Progress, Runner
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Study", "uncertainty"]
-
 Study = UncertaintyStudy | CycleStudy | MapStudy
 """What is to be solved, and what follows from it."""
 

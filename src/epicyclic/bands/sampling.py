@@ -11,28 +11,18 @@ from numpy.typing import NDArray
 from epicyclic.bands.distributions import correlations, quantiles
 from epicyclic.case.uncertain_values import UncertainValue
 
-__all__ = ["Samples", "groups_of", "make_samples", "probabilities"]
-
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class Samples:
-    """Values of all inputs in two independent sets of points, A and B, and their mixtures.
-
-    Attributes
-    ----------
-    values : tuple of UncertainValue
-    groups : tuple of tuple of int
-        Numbers of the values that are correlated with each other: they vary together.
-    a, b : ndarray of float, shape (d, n)
-        In the units of the values.
-    """
+    """Values of all inputs in two independent sets of points, A and B, and their mixtures."""
 
     values: tuple[UncertainValue, ...]
+    # Numbers of the values that are correlated with each other: they vary together.
     groups: tuple[tuple[int, ...], ...]
-    a: FloatArray
-    b: FloatArray
+    a: FloatArray  # In the units of the values.
+    b: FloatArray  # In the units of the values.
 
     def mixed(self, group: int) -> FloatArray:
         """Points of A with the values of one group from B, shape (d, n)."""
@@ -54,17 +44,12 @@ def groups_of(values: Sequence[UncertainValue]) -> tuple[tuple[int, ...], ...]:
     return tuple(dict.fromkeys(tuple(sorted(group)) for group in owner.values()))
 
 
-def make_samples(values: Sequence[UncertainValue], count: int, seed: int) -> Samples:
-    """Two sets of `count` points, a power of 2. Theory (U1), (U2).
-
-    Parameters
-    ----------
-    values : sequence of UncertainValue
-    count : int
-        Number of points in each set.
-    seed : int
-        Seed of the scrambling: equal ones give equal points.
-    """
+def make_samples(
+    values: Sequence[UncertainValue],
+    count: int,  # Number of points in each set.
+    seed: int,  # Seed of the scrambling: equal ones give equal points.
+) -> Samples:
+    """Two sets of `count` points, a power of 2. Theory (U1), (U2)."""
     drawn = _sobol(2 * len(values), count, seed)
     one, two = (
         np.array(

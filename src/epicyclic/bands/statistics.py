@@ -8,16 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = [
-    "COVERAGE",
-    "Indices",
-    "Summary",
-    "index_values",
-    "shortest_interval",
-    "sobol_indices",
-    "summary",
-]
-
 FloatArray = NDArray[np.float64]
 
 COVERAGE = 0.95
@@ -30,25 +20,15 @@ RESAMPLES = 200
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """A result as a distribution.
+    """A result as a distribution."""
 
-    Attributes
-    ----------
-    mean, standard_uncertainty, expanded_uncertainty : float
-        The last for k = 2.
-    low, high : float
-        Ends of the probabilistically symmetric interval.
-    shortest_low, shortest_high : float
-        Ends of the shortest one.
-    """
-
-    mean: float
-    standard_uncertainty: float
-    expanded_uncertainty: float
-    low: float
-    high: float
-    shortest_low: float
-    shortest_high: float
+    mean: float  # The last for k = 2.
+    standard_uncertainty: float  # The last for k = 2.
+    expanded_uncertainty: float  # The last for k = 2.
+    low: float  # Ends of the probabilistically symmetric interval.
+    high: float  # Ends of the probabilistically symmetric interval.
+    shortest_low: float  # Ends of the shortest one.
+    shortest_high: float  # Ends of the shortest one.
 
 
 def summary(samples: FloatArray) -> Summary:
@@ -81,34 +61,21 @@ def shortest_interval(samples: FloatArray) -> tuple[float, float]:
 
 @dataclass(frozen=True, slots=True)
 class Indices:
-    """Shares of the variance of results, of each group of inputs.
+    """Shares of the variance of results, of each group of inputs."""
 
-    Attributes
-    ----------
-    first, total : ndarray of float, shape (s, g)
-        Shares for `s` results: alone, and with all interactions.
-    first_ends, total_ends : ndarray of float, shape (2, s, g)
-        Ends of their 95 % intervals.
-    """
-
-    first: FloatArray
-    total: FloatArray
-    first_ends: FloatArray
-    total_ends: FloatArray
+    first: FloatArray  # Shares for `s` results: alone, and with all interactions.
+    total: FloatArray  # Shares for `s` results: alone, and with all interactions.
+    first_ends: FloatArray  # Ends of their 95 % intervals.
+    total_ends: FloatArray  # Ends of their 95 % intervals.
 
 
-def sobol_indices(a: FloatArray, b: FloatArray, mixed: FloatArray, seed: int) -> Indices:
-    """First and total indices with their intervals. Theory (U5), (U6).
-
-    Parameters
-    ----------
-    a, b : ndarray of float, shape (s, n)
-        Results at the points of A and of B.
-    mixed : ndarray of float, shape (g, s, n)
-        At those of A with a group from B.
-    seed : int
-        Seed of the resampling of points that the intervals are found by.
-    """
+def sobol_indices(
+    a: FloatArray,  # Results at the points of A and of B.
+    b: FloatArray,  # Results at the points of A and of B.
+    mixed: FloatArray,  # At those of A with a group from B.
+    seed: int,  # Seed of the resampling of points that the intervals are found by.
+) -> Indices:
+    """First and total indices with their intervals. Theory (U5), (U6)."""
     count = a.shape[1]
     found = index_values(a, b, mixed)
     rng = np.random.default_rng(seed)

@@ -14,13 +14,7 @@ from epicyclic.bands.advice import model_remarks
 from epicyclic.bands.distributions import cut_off, standard_uncertainty
 from epicyclic.bands.nearby import Nearby, look_nearby
 from epicyclic.bands.outputs import SUMS, Outputs, factors_of
-from epicyclic.bands.plan import (
-    FEWEST,
-    SampledCase,
-    SamplePlan,
-    check_samples,
-    sampled_case,
-)
+from epicyclic.bands.plan import FEWEST, SampledCase, SamplePlan, check_samples, sampled_case
 from epicyclic.bands.sampling import Samples
 from epicyclic.bands.statistics import COVERAGE, Summary, sobol_indices, summary
 from epicyclic.case.case import Case
@@ -31,22 +25,6 @@ from epicyclic.sweeps.journal import Rows
 
 if TYPE_CHECKING:
     import xarray as xr
-
-__all__ = [
-    "LABELS",
-    "SAMPLES",
-    "UNIT_OF_RESULT",
-    "UncertaintyStudy",
-    "about_inputs",
-    "about_study",
-    "banded_variables",
-    "contributions",
-    "drivers_of",
-    "indices_of",
-    "sample_variables",
-    "summaries",
-    "uncertainty_study",
-]
 
 FloatArray = NDArray[np.float64]
 
@@ -79,15 +57,7 @@ def uncertainty_study(case: Case, samples: int | None = None, seed: int = 1) -> 
 
 @dataclass(frozen=True, slots=True)
 class UncertaintyStudy:
-    """The samples of a case, and the points to be solved for them.
-
-    Attributes
-    ----------
-    case : Case
-    nearby : Nearby
-    sampled : SampledCase
-    seed : int
-    """
+    """The samples of a case, and the points to be solved for them."""
 
     case: Case
     nearby: Nearby
@@ -116,27 +86,13 @@ class UncertaintyStudy:
 
 def sample_variables(
     sets: FloatArray,
-    nominal: FloatArray,
-    change: FloatArray,
+    nominal: FloatArray,  # Without uncertainty.
+    change: FloatArray,  # For one standard deviation of each input.
     sampled: SampledCase,
-    rows: Rows,
-    unit: str = "W",
+    rows: Rows,  # Rows of all samples.
+    unit: str = "W",  # Unit of all results but the efficiency.
 ) -> xr.Dataset:
-    """What the results of the samples A and B say.
-
-    Parameters
-    ----------
-    sets : ndarray of float, shape (2, s, n)
-    nominal : ndarray of float, shape (s,)
-        Without uncertainty.
-    change : ndarray of float, shape (d, s)
-        For one standard deviation of each input.
-    sampled : SampledCase
-    rows : Rows
-        Rows of all samples.
-    unit : str
-        Unit of all results but the efficiency.
-    """
+    """What the results of the samples A and B say."""
     import xarray as xr
 
     (samples, *_), names = sampled.samples, sampled.outputs.names
@@ -243,19 +199,13 @@ def contributions(nearby: Nearby) -> FloatArray:
 
 
 def indices_of(
-    sets: FloatArray, groups: Sequence[int], samples: Samples, seed: int
+    sets: FloatArray,  # These losses at A, B, and A with each group from B.
+    # Numbers of the groups of inputs that change losses, beyond factors of models.
+    groups: Sequence[int],
+    samples: Samples,
+    seed: int,
 ) -> dict[str, Any]:
-    """Sobol indices of load-dependent, load-independent and total loss.
-
-    Parameters
-    ----------
-    sets : ndarray of float, shape (2 + g, 3, n)
-        These losses at A, B, and A with each group from B.
-    groups : sequence of int
-        Numbers of the groups of inputs that change losses, beyond factors of models.
-    samples : Samples
-    seed : int
-    """
+    """Sobol indices of load-dependent, load-independent and total loss."""
     factors = [
         number
         for number, group in enumerate(samples.groups)

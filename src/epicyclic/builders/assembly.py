@@ -29,8 +29,6 @@ from epicyclic.results.heat import HeatBalance, HeatWay
 from epicyclic.results.lubrication import OilSupply
 from epicyclic.results.result import LossTerm, MemberState, PowerFlow, Result, Train, in_words
 
-__all__ = ["assemble"]
-
 Methods = dict[str, tuple[str, str]]
 
 

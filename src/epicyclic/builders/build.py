@@ -14,18 +14,13 @@ from epicyclic.case.train import TrainCase
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Layout
 
-__all__ = ["build", "layout_of"]
 
-
-def build(case: Case, flow_tables: FlowTables | None = None) -> Built:
-    """The machine of a case, driven as the case says.
-
-    Parameters
-    ----------
-    case : PlanetaryCase or GearPairCase
-    flow_tables : mapping, optional
-        Tables of flows through pockets that the points of a sweep share.
-    """
+def build(
+    case: Case,
+    # Tables of flows through pockets that the points of a sweep share.
+    flow_tables: FlowTables | None = None,
+) -> Built:
+    """The machine of a case, driven as the case says."""
     built = _machine(case, flow_tables or {})
     model = thermal_model(case, built.machine)
     if model is None:

@@ -15,32 +15,18 @@ from epicyclic.machine.settle import Settled, ThermalModel, isothermal, settle
 from epicyclic.machine.solve import lossless_state, solve_machine
 from epicyclic.results.result import Layout
 
-__all__ = ["Built"]
-
 
 @dataclass(frozen=True, slots=True)
 class Built:
-    """A machine that can be solved.
-
-    Attributes
-    ----------
-    machine : Machine
-    operation : Operation
-    known_fluids : Fluids or None
-        Oil and mixture; None if every loss is given.
-    sets : mapping of str to GearSet
-        Those whose losses are computed; the key of a single set is empty.
-    layout : Layout
-        What its result consists of.
-    thermal : ThermalModel or None
-        How temperatures follow from losses; None if all are those of the oil inlet.
-    """
+    """A machine that can be solved."""
 
     machine: Machine
     operation: Operation
-    known_fluids: Fluids | None
+    known_fluids: Fluids | None  # Oil and mixture; None if every loss is given.
+    # Those whose losses are computed; the key of a single set is empty.
     sets: Mapping[str, GearSet]
-    layout: Layout
+    layout: Layout  # What its result consists of.
+    # How temperatures follow from losses; None if all are those of the oil inlet.
     thermal: ThermalModel | None = None
 
     @property

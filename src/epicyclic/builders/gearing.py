@@ -18,8 +18,6 @@ from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = ["Gearing", "SetCase", "gearing_of"]
-
 SetCase = PlanetaryCase | GearPairCase | ListedCase
 """A set or pair with its oil and surroundings."""
 

@@ -14,8 +14,6 @@ from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.tools import Tool
 
-__all__ = ["gear_mesh", "planet_mass"]
-
 
 def gear_mesh(
     key: str,

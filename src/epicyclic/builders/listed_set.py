@@ -30,26 +30,18 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.tools import Tool
 from epicyclic.pocketing.table import FlowTables
 
-__all__ = ["listed_element"]
-
 
 def listed_element(
-    key: str, case: ListedCase, bodies: Mapping[str, str], flow_tables: FlowTables
+    key: str,  # First part of the keys of its losses.
+    case: ListedCase,
+    # The body in the machine of every body of the set, and of its carrier.
+    bodies: Mapping[str, str],
+    flow_tables: FlowTables,  # Tables of flows through pockets.
 ) -> GearSet:
     """The losses of a listed set.
 
     Each of its meshes carries what the losses leave, which a set of several ways of power cannot
     state from one of its torques.
-
-    Parameters
-    ----------
-    key : str
-        First part of the keys of its losses.
-    case : ListedCase
-    bodies : mapping of str to str
-        The body in the machine of every body of the set, and of its carrier.
-    flow_tables : mapping
-        Tables of flows through pockets.
     """
     planets = bool(case.shape.planets)
     missing = (

@@ -21,7 +21,8 @@ from epicyclic.elements.pocket_flow import PocketSettings
 from epicyclic.losses.direct import DirectSettings, EhlDirect
 from epicyclic.losses.fitted import FittedFriction, FittedRolling
 from epicyclic.losses.fitted_or_formula import FittedOrGoksem, FittedOrSchlenk
-from epicyclic.losses.friction import DRY_FRICTION, FrictionModel, FrictionSettings, friction_model
+from epicyclic.losses.friction import DRY_FRICTION, FrictionSettings, friction_model
+from epicyclic.losses.friction.base import FrictionModel
 from epicyclic.losses.friction.user import FrictionMap
 from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN
@@ -32,21 +33,6 @@ from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.fluid import PocketModel, automatic_pocketing
 from epicyclic.pocketing.memory import FlowMemory
 from epicyclic.pocketing.table import FlowTables
-
-__all__ = [
-    "bearing_model",
-    "fitted_oil_model",
-    "fitted_rolling",
-    "fluids_of",
-    "friction_of",
-    "friction_settings",
-    "loss_choices",
-    "mesh_models",
-    "pocketing_of",
-    "resolve_models",
-    "rolling_of",
-    "standing_of",
-]
 
 
 def resolve_models(case: SetCase) -> dict[str, str]:

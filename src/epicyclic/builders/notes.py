@@ -25,8 +25,6 @@ from epicyclic.oilmodel.builtin import changed_properties
 from epicyclic.results.result import LossTerm
 from epicyclic.units import GIGAPASCAL, NEWTON, format_number, percent
 
-__all__ = ["NOT_INCLUDED", "case_notes", "general_notes", "load_notes"]
-
 NOT_INCLUDED = "Not included"
 """Begins the note that names loss terms which are missing."""
 GEAR_PRESSURE = 2.4e9
@@ -40,16 +38,12 @@ LEAST_CONTACT = 0.75
 """Share of the contact lines that carries below which a result says so. [1]"""
 
 
-def case_notes(case: SetCase, found: GearSetResult, turning: Collection[str]) -> tuple[str, ...]:
-    """What a user must know about a set: its oil, its load, its flows, its planets.
-
-    Parameters
-    ----------
-    case : PlanetaryCase, GearPairCase or ListedCase
-    found : GearSetResult
-    turning : collection of str
-        Central gears that turn.
-    """
+def case_notes(
+    case: SetCase,
+    found: GearSetResult,
+    turning: Collection[str],  # Central gears that turn.
+) -> tuple[str, ...]:
+    """What a user must know about a set: its oil, its load, its flows, its planets."""
     meshes = {key: item for key, item in found.figures.items() if isinstance(item, MeshFigures)}
     notes = (
         *fluid_notes(case),

@@ -17,8 +17,6 @@ from epicyclic.machine.machine import Machine, MeshRow, Operation
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Layout
 
-__all__ = ["PAIR_MEMBERS", "build_pair", "pair_element", "pair_rows"]
-
 PAIR_MEMBERS = ("pinion", "gear")
 
 
@@ -45,26 +43,13 @@ def pair_rows(key: str, case: GearPairCase, bodies: Mapping[str, str]) -> tuple[
 
 
 def pair_element(
-    key: str,
+    key: str,  # First part of the keys of its losses.
     case: GearPairCase,
-    bodies: Mapping[str, str],
-    reference: str,
-    flow_tables: FlowTables,
+    bodies: Mapping[str, str],  # Bodies of ``"pinion"`` and ``"gear"``.
+    reference: str,  # The gear whose torque states the load.
+    flow_tables: FlowTables,  # Tables of flows through pockets.
 ) -> GearSet:
-    """The losses of a pair.
-
-    Parameters
-    ----------
-    key : str
-        First part of the keys of its losses.
-    case : GearPairCase
-    bodies : mapping of str to str
-        Bodies of ``"pinion"`` and ``"gear"``.
-    reference : str
-        The gear whose torque states the load.
-    flow_tables : mapping
-        Tables of flows through pockets.
-    """
+    """The losses of a pair."""
     mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
     tables = (case.pinion, case.gear)
     other = "gear" if reference == "pinion" else "pinion"

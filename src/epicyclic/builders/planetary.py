@@ -34,16 +34,6 @@ from epicyclic.machine.machine import Machine, MeshRow, Operation
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Layout
 
-__all__ = [
-    "MEMBERS",
-    "build_planetary",
-    "palmgren_coefficient",
-    "planet_bearing",
-    "planetary_element",
-    "planetary_rows",
-    "roller_bearing",
-]
-
 MEMBERS = ("sun", "ring", "carrier")
 CAGED_PALMGREN = 0.0003
 """f1 of a caged roller bearing, middle of 0.0002-0.0004. Talbot (2012), p. 56. [1]"""
@@ -93,26 +83,14 @@ def planetary_rows(key: str, case: PlanetaryCase, bodies: Mapping[str, str]) -> 
 
 
 def planetary_element(
-    key: str,
+    key: str,  # First part of the keys of its losses.
     case: PlanetaryCase,
-    bodies: Mapping[str, str],
+    bodies: Mapping[str, str],  # Bodies of ``"sun"``, ``"ring"``, ``"carrier"`` and ``"planet"``.
+    # The member whose torque states the load, and the two between which the losses act.
     order: tuple[str, str, str],
-    flow_tables: FlowTables,
+    flow_tables: FlowTables,  # Tables of flows through pockets.
 ) -> GearSet:
-    """The losses of a planetary set.
-
-    Parameters
-    ----------
-    key : str
-        First part of the keys of its losses.
-    case : PlanetaryCase
-    bodies : mapping of str to str
-        Bodies of ``"sun"``, ``"ring"``, ``"carrier"`` and ``"planet"``.
-    order : tuple of str
-        The member whose torque states the load, and the two between which the losses act.
-    flow_tables : mapping
-        Tables of flows through pockets.
-    """
+    """The losses of a planetary set."""
     carrier = bodies["carrier"]
     return GearSet(
         key=key,

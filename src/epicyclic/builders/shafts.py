@@ -13,8 +13,6 @@ from epicyclic.elements.gear_set import GearSet
 from epicyclic.elements.reactions import Support
 from epicyclic.machine.forces import GearSeat, ShaftLayout
 
-__all__ = ["shaft_layouts"]
-
 
 def shaft_layouts(case: TrainCase, sets: Mapping[str, GearSet]) -> Iterator[ShaftLayout]:
     """What stands along each shaft with a bearing whose force is computed."""

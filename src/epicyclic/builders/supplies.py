@@ -16,8 +16,6 @@ from epicyclic.elements.pocket_flow import oil_in_mesh
 from epicyclic.machine.solve import Solution
 from epicyclic.results.lubrication import OilSupply
 
-__all__ = ["solved_supplies", "stated_supplies"]
-
 
 def stated_supplies(case: Case) -> Iterator[tuple[str, OilSupply]]:
     """How oil gets to the gears of each set that says so, by the key of the set."""

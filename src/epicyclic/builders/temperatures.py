@@ -29,8 +29,6 @@ from epicyclic.results.result import in_words
 from epicyclic.thermal.bulk import LUBRICATION_FACTORS
 from epicyclic.thermal.fluid import Fluid, air, mixture, oil_conductivity, oil_heat_capacity
 
-__all__ = ["oil_medium", "term_nodes", "thermal_model"]
-
 GRAVITY_TEMPERATURE = 288.75
 """15.6 degC, at which the specific gravity of petroleum is stated. [K]"""
 WATER = 999.0

@@ -25,8 +25,6 @@ from epicyclic.machine.machine import Operation
 from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Layout
 
-__all__ = ["build_train", "set_cases", "train_layout"]
-
 
 def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:
     """A train in the state and at the operating point of the case."""

@@ -11,8 +11,6 @@ from epicyclic.elements.disc import Disc, Jets, Sump
 from epicyclic.geometry.gear import Gear
 from epicyclic.losses.churning import Dipped
 
-__all__ = ["carrier_disc", "gear_disc"]
-
 
 def gear_disc(case: SetCase, body: str, gear: Gear, table: GearTable) -> Disc:
     """A central gear as it turns in the mixture, dips or meets jets.

@@ -25,8 +25,6 @@ from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.sweeps.journal import Row
 from epicyclic.sweeps.runner import Plan
 
-__all__ = ["Campaign", "command_of", "make_campaign", "oil_tables"]
-
 SCHEMA = 2
 """Version of the files of a campaign."""
 BRIEFLY = {"numerics.most_blocks": BRIEF, "numerics.friction_tolerance": 0.05}
@@ -38,24 +36,15 @@ PROFILES = ("surface1.profile", "surface2.profile")
 
 @dataclass(frozen=True)
 class Campaign(Plan):
-    """What is simulated.
-
-    Attributes
-    ----------
-    settings : str
-        The tables of a line contact that all points share, as JSON: oil, shear stress, spectra.
-    designs : tuple of Design
-    seed : int
-        Every profile of every point follows from it and the number of the point.
-    version : str
-        Version of this package, which solves the contacts.
-    """
+    """What is simulated."""
 
     kind: ClassVar[str] = "oil"
     may_fail: ClassVar[bool] = True
+    # The tables of a line contact that all points share, as JSON: oil, shear stress, spectra.
     settings: str
     designs: tuple[Design, ...]
-    seed: int = 0
+    seed: int = 0  # Every profile of every point follows from it and the number of the point.
+    # Version of this package, which solves the contacts.
     version: str = field(default_factory=lambda: metadata.version("epicyclic"))
 
     @classmethod
@@ -133,32 +122,22 @@ MOST_CONTACTS = 1_000_000
 
 
 def make_campaign(
+    # A name of the oil library, a TOML file with its properties, or these.
     oil: str | Path | Mapping[str, Any],
     *,
+    # Number of gear contacts in a space-filling design; default: the full table.
     size: int | None = None,
+    # Number of bearing contacts in a space-filling design, 0 for none; default: the full table, or
+    # with `size` none.
     bearing_size: int | None = None,
-    seed: int = 0,
+    seed: int = 0,  # Seed of designs and profiles.
+    # Other limits of gear axes, in display units, and with ``bearing.`` before the name of those of
+    # bearings; for space-filling designs.
     ranges: Mapping[str, tuple[float, float]] | None = None,
+    # Keys of a line contact that hold for all points, ``"lubricant.eyring_stress"``.
     changes: Mapping[str, Any] | None = None,
 ) -> Campaign:
     """Plan the simulations for an oil.
-
-    Parameters
-    ----------
-    oil : str, Path or mapping
-        A name of the oil library, a TOML file with its properties, or these.
-    size : int, optional
-        Number of gear contacts in a space-filling design; default: the full table.
-    bearing_size : int, optional
-        Number of bearing contacts in a space-filling design, 0 for none; default: the full table,
-        or with `size` none.
-    seed : int
-        Seed of designs and profiles.
-    ranges : mapping of str to (float, float), optional
-        Other limits of gear axes, in display units, and with ``bearing.`` before the name of those
-        of bearings; for space-filling designs.
-    changes : mapping of str to object, optional
-        Keys of a line contact that hold for all points, ``"lubricant.eyring_stress"``.
 
     Raises
     ------

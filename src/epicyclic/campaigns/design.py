@@ -20,16 +20,6 @@ from epicyclic.ehl.box import SOLVER_BOX
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.units import MICROMETRE, NUMBER, Quantity, format_number
 
-__all__ = [
-    "AXES",
-    "BEARING_TABLE",
-    "GEAR_TABLE",
-    "Axis",
-    "Design",
-    "parse_ranges",
-    "quantity_of_axis",
-]
-
 AXES = {
     "temperature": "lubricant.temperature",
     "radius": "contact.radius",
@@ -52,25 +42,15 @@ Axis = tuple[str, tuple[float, ...]]
 
 @dataclass(frozen=True)
 class Design:
-    """Points of a campaign.
+    """Points of a campaign."""
 
-    Attributes
-    ----------
-    part : str
-        ``"gear"`` or ``"bearing"``: what the contacts are those of.
-    axes : tuple of (str, tuple of float)
-        Name and values of each axis, in display units: the levels of a full product, or of a
-        space-filling design the first and the last one as limits.
-    size : int or None
-        Number of points of a space-filling design; None for the full product.
-    seed : int
-        Seed of the scrambling of a space-filling design.
-    """
-
-    part: str
+    part: str  # ``"gear"`` or ``"bearing"``: what the contacts are those of.
+    # Name and values of each axis, in display units: the levels of a full product, or of a space-
+    # filling design the first and the last one as limits.
     axes: tuple[Axis, ...]
+    # Number of points of a space-filling design; None for the full product.
     size: int | None = None
-    seed: int = 0
+    seed: int = 0  # Seed of the scrambling of a space-filling design.
 
     @property
     def count(self) -> int:

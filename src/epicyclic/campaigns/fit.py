@@ -25,8 +25,6 @@ from epicyclic.whole_file import write_file
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["characterise_oil", "fit_and_write", "fit_campaigns", "simulated_quantities"]
-
 FloatArray = NDArray[np.float64]
 
 LARGEST_ERROR = 0.10
@@ -114,7 +112,10 @@ def fit_and_write(folders: Sequence[CampaignFolder], output: Path) -> OilModel:
     return model
 
 
-def fit_campaigns(folders: Sequence[CampaignFolder]) -> OilModel:
+def fit_campaigns(
+    # Campaigns of one oil, of one version and with the same settings.
+    folders: Sequence[CampaignFolder],
+) -> OilModel:
     """Fit friction and rolling loss to all simulations that are good enough.
 
     Theory (O8).
@@ -122,11 +123,6 @@ def fit_campaigns(folders: Sequence[CampaignFolder]) -> OilModel:
     A simulation counts if nearly all of its time steps converged, its grid resolved the roughness,
     and what is fitted is known to 10 %, whether or not it reached the error at which it is called
     converged.
-
-    Parameters
-    ----------
-    folders : sequence of CampaignFolder
-        Campaigns of one oil, of one version and with the same settings.
 
     Raises
     ------

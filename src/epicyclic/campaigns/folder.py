@@ -28,8 +28,6 @@ from epicyclic.whole_file import make_folder, write_file
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["SIMULATIONS", "CampaignFolder", "column_of", "open_folder"]
-
 SIMULATIONS = "simulations"
 """With which files of results begin."""
 

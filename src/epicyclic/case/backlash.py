@@ -18,8 +18,6 @@ from epicyclic.geometry.profile_shifts import (
     thinning,
 )
 
-__all__ = ["ROUNDING", "TOO_THIN", "backlash_notes", "check_backlash"]
-
 ROUNDING = 1e-9
 """Clearances count as negative beyond this: drawings may state exactly zero. [m]"""
 

@@ -13,15 +13,10 @@ from pydantic import PrivateAttr
 from epicyclic.case.checks import cross_check
 from epicyclic.case.display import case_html, case_line
 from epicyclic.case.fields import find_field, locate, to_inputs
-from epicyclic.case.gear_sizes import (
-    Found,
-    converted_roughness,
-    find_sizes,
-    negative_teeth,
-    told_oil,
-)
+from epicyclic.case.gear_sizes import converted_roughness, find_sizes, negative_teeth, told_oil
 from epicyclic.case.plain import plain, value_at, with_value, without
 from epicyclic.case.schema import Table
+from epicyclic.case.size_solver import Found
 from epicyclic.case.translation import unknown_key
 from epicyclic.case.validation import AnyCase, Validation, tables_of, validate
 from epicyclic.case.wording import key_parts, path_of, written
@@ -30,9 +25,6 @@ from epicyclic.errors import InputError, Problem
 if TYPE_CHECKING:
     from epicyclic.case.lubrication_tables import LubricationTable
     from epicyclic.case.operation_tables import Surroundings
-
-__all__ = ["FILE_KEYS", "CaseTable", "as_given", "owner_without_keys", "with_changes", "with_sizes"]
-
 
 FILE_KEYS = ("oil_model", "pocketing_table", "file")
 """Keys that name files, wherever they stand."""
@@ -69,14 +61,13 @@ class CaseTable(Table):
         """Where the files lie that it names: that of its file, or the current one."""
         return Path(self._source).parent
 
-    def updated(self, changes: Mapping[str, Any]) -> Self:
+    def updated(
+        self,
+        # Dotted keys, ``"operation.torque"``, to values as a case file has them: text with a unit
+        # or a pint quantity for dimensional ones. None removes a key.
+        changes: Mapping[str, Any],
+    ) -> Self:
         """A copy of the case with some keys changed, validated afresh.
-
-        Parameters
-        ----------
-        changes : mapping of str to object
-            Dotted keys, ``"operation.torque"``, to values as a case file has them: text with a
-            unit or a pint quantity for dimensional ones. None removes a key.
 
         Returns
         -------
@@ -101,21 +92,12 @@ class CaseTable(Table):
     def from_tables(
         cls,
         tables: dict[str, Any],
-        source: str,
-        problems: Sequence[Problem] = (),
+        source: str,  # The file or built-in case that they come from.
+        problems: Sequence[Problem] = (),  # Found before.
+        # Those of the tables that were read before.
         sound: Mapping[str, Table] = MappingProxyType({}),
     ) -> Self:
         """The case of `tables`, plain values, checked by themselves and against each other.
-
-        Parameters
-        ----------
-        tables : dict
-        source : str
-            The file or built-in case that they come from.
-        problems : sequence of Problem
-            Found before.
-        sound : mapping of str to Table
-            Those of the tables that were read before.
 
         Raises
         ------

@@ -11,17 +11,6 @@ from epicyclic.geometry.assembly import admissible_angles
 from epicyclic.geometry.gear import BasicRack, Gear
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = [
-    "basic_rack",
-    "gear",
-    "is_internal",
-    "outside_radius",
-    "pair_mesh",
-    "planet_angles",
-    "planetary_meshes",
-    "rim_thickness",
-]
-
 DEFAULT_RIM_THICKNESS = 3.0
 """Rim of a ring gear from root to outside if the case states none (estimate). [normal modules]"""
 

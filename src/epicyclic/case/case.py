@@ -42,18 +42,6 @@ from epicyclic.case.validation import tables_of
 from epicyclic.case.wording import one_line, written
 from epicyclic.errors import InputError, Problem
 
-__all__ = [
-    "KINDS",
-    "Case",
-    "GearPairCase",
-    "PlanetaryCase",
-    "TrainCase",
-    "build_case",
-    "case_schema",
-    "changed_tables",
-    "read_case",
-]
-
 
 class _SetTables(CaseTable):
     """What a set or pair has in common with a train, and with a set of a train."""

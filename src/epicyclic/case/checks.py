@@ -49,26 +49,16 @@ from epicyclic.oilmodel.model import OilModel, read_oil_model
 from epicyclic.pocketing.stored import read_stored
 from epicyclic.units import BAR
 
-__all__ = ["check_bore", "check_cage", "check_oil_model", "check_rollers", "cross_check"]
-
 MOST_COEFFICIENTS = 5_000_000
 """Largest number of influence coefficients for each contact line: 40 MB, for three lines 120 MB."""
 
 
 def cross_check(
-    sections: Mapping[str, Table], given: Collection[str], folder: Path
+    sections: Mapping[str, Table],  # The tables that are valid by themselves.
+    given: Collection[str],  # Names of the tables that the case has, valid or not.
+    folder: Path,  # Where the files lie that the case names.
 ) -> list[Problem]:
-    """Problems between keys and tables of a case.
-
-    Parameters
-    ----------
-    sections : mapping of str to Table
-        The tables that are valid by themselves.
-    given : collection of str
-        Names of the tables that the case has, valid or not.
-    folder : Path
-        Where the files lie that the case names.
-    """
+    """Problems between keys and tables of a case."""
     problems: list[Problem] = []
     models = sections.get("models")
     if isinstance(models, GearPairModels):

@@ -38,16 +38,7 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import line_load_at_pressure
 from epicyclic.lubricant.oil import Conductivity, HeatCapacity
 from epicyclic.lubricant.properties import OilState, oil_state
-from epicyclic.units import (
-    Length,
-    Number,
-    Quantity,
-    SmallLength,
-    Temperature,
-    as_stated,
-)
-
-__all__ = ["ContactCase", "ContactModel", "contact_model", "load_contact_case"]
+from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature, as_stated
 
 LineLoad = Annotated[
     float, Quantity("a line load", "N/m", "N/mm", low=0.0, high=1e5, open_low=True)
@@ -208,16 +199,10 @@ class ContactModel:
 
 
 def load_contact_case(
-    source: str | Path | Mapping[str, Any], changes: Mapping[str, Any] | None = None
+    source: str | Path | Mapping[str, Any],  # A TOML file, with profiles beside it, or its tables.
+    changes: Mapping[str, Any] | None = None,  # Dotted keys to values as a file has them.
 ) -> ContactCase:
     """Read and check a line contact.
-
-    Parameters
-    ----------
-    source : str, Path or mapping
-        A TOML file, with profiles beside it, or its tables.
-    changes : mapping of str to object, optional
-        Dotted keys to values as a file has them.
 
     Raises
     ------

@@ -9,19 +9,12 @@ from typing import Any
 from epicyclic.case.plain import flattened
 from epicyclic.units import unit_text
 
-__all__ = ["case_html", "case_line"]
 
-
-def case_line(name: str, given: Mapping[str, Any]) -> str:
-    """A case in one line: its title and operating point.
-
-    Parameters
-    ----------
-    name : str
-        Name of its class.
-    given : mapping
-        Its tables, without defaults.
-    """
+def case_line(
+    name: str,  # Name of its class.
+    given: Mapping[str, Any],  # Its tables, without defaults.
+) -> str:
+    """A case in one line: its title and operating point."""
     words = [f"title={given['title']!r}"] if given.get("title") else []
     words += [f"{key}={value!r}" for key, value in given.get("operation", {}).items()]
     return f"{name}({', '.join(words)})"

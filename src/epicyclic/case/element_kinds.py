@@ -12,12 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from epicyclic.case.element_tables import (
-    DragTable,
-    LossTableTable,
-    SealTable,
-    ShaftBearingTable,
-)
+from epicyclic.case.element_tables import DragTable, LossTableTable, SealTable, ShaftBearingTable
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.schema import Table
 from epicyclic.case.wording import millimetres, written
@@ -49,40 +44,20 @@ from epicyclic.losses.skf_bearing import (
 from epicyclic.lubricant.oil import Oil
 from epicyclic.lubricant.properties import oil_state
 
-__all__ = [
-    "ELEMENT_KINDS",
-    "ElementKind",
-    "bearing_problems",
-    "build_bearing",
-    "build_drag",
-    "build_seal",
-    "drag_problems",
-    "loss_table_problems",
-    "seal_problems",
-]
-
 _FORTY_CELSIUS = 313.15
 """40 degC in kelvin."""
 
 
 class ElementKind(NamedTuple):
-    """A kind of element.
+    """A kind of element."""
 
-    Attributes
-    ----------
-    table : type
-        The class of its keys.
-    build : callable
-        ``build(name, table, *, shafts, oil, folder)`` gives the element called `name`; `shafts` are
-        the bodies beside the housing by all their names, `folder` is that of the case. Raises
-        `InputError` for unknown shafts and files that cannot be used, with keys relative to the
-        table.
-    check : callable
-        The problems of a table that need no other table, with keys relative to it.
-    """
-
-    table: type[Table]
+    table: type[Table]  # The class of its keys.
+    # ``build(name, table, *, shafts, oil, folder)`` gives the element called `name`; `shafts` are
+    # the bodies beside the housing by all their names, `folder` is that of the case. Raises
+    # `InputError` for unknown shafts and files that cannot be used, with keys relative to the
+    # table.
     build: Callable[..., Element]
+    # The problems of a table that need no other table, with keys relative to it.
     check: Callable[[Any], list[Problem]]
 
 

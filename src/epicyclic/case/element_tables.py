@@ -7,21 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, Tag
 
 from epicyclic.case.schema import VALUES_OR_ROWS, PointsTable, ShortLength, Table
-from epicyclic.units import (
-    Length,
-    Number,
-    Quantity,
-    Temperature,
-    as_stated,
-)
-
-__all__ = [
-    "BearingSealTable",
-    "DragTable",
-    "LossTableTable",
-    "SealTable",
-    "ShaftBearingTable",
-]
+from epicyclic.units import Length, Number, Quantity, Temperature, as_stated
 
 Force = Annotated[float, Quantity("a force", "N", "N", low=0.0, high=1e9)]
 LoadRating = Annotated[float, Quantity("a load rating", "N", "N", low=0.0, high=1e9, open_low=True)]

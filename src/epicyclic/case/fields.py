@@ -17,45 +17,14 @@ from pydantic_core import CoreSchema
 from epicyclic.case.wording import key_parts
 from epicyclic.units import Quantity, describe_range
 
-__all__ = [
-    "Named",
-    "Place",
-    "all_keys",
-    "bounds_of",
-    "choices_of",
-    "describe",
-    "dict_value",
-    "entry_of",
-    "find_field",
-    "is_array",
-    "is_named",
-    "is_text",
-    "is_whole_number",
-    "locate",
-    "quantity_of",
-    "table_of",
-    "tables_in",
-    "to_inputs",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """Marks a table that may also be given by name.
+    """Marks a table that may also be given by name."""
 
-    Attributes
-    ----------
-    names : callable
-        The names.
-    allowed : callable
-        What is allowed, in words.
-    short : type or None
-        Another form of the table, of a few keys.
-    """
-
-    names: Callable[[], tuple[str, ...]]
-    allowed: Callable[[], str]
-    short: type[BaseModel] | None = None
+    names: Callable[[], tuple[str, ...]]  # The names.
+    allowed: Callable[[], str]  # What is allowed, in words.
+    short: type[BaseModel] | None = None  # Another form of the table, of a few keys.
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
@@ -208,23 +177,12 @@ def _keys_below(table: type[BaseModel]) -> tuple[str, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a value stands in the schema.
+    """Where a value stands in the schema."""
 
-    Attributes
-    ----------
-    path : tuple of str and int
-        Keys and numbers of array entries that lead to it.
-    annotation : object
-        Type of the value; None if the schema has no such key.
-    metadata : tuple
-        Metadata of the value.
-    owner : type or None
-        The table that holds the key, or should; None if there is no table there.
-    """
-
-    path: tuple[str | int, ...]
-    annotation: Any
-    metadata: tuple[Any, ...]
+    path: tuple[str | int, ...]  # Keys and numbers of array entries that lead to it.
+    annotation: Any  # Type of the value; None if the schema has no such key.
+    metadata: tuple[Any, ...]  # Metadata of the value.
+    # The table that holds the key, or should; None if there is no table there.
     owner: type[BaseModel] | None
 
 

@@ -15,8 +15,6 @@ from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.micro_geometry import active_profile
 
-__all__ = ["check_flanks"]
-
 
 @dataclass(frozen=True, slots=True)
 class _Flank:

@@ -20,14 +20,6 @@ from epicyclic.geometry.micro_geometry import (
     active_profile,
 )
 
-__all__ = [
-    "flank_deviations",
-    "gear_bodies",
-    "micro_geometries",
-    "roll_length_at",
-    "working_flank",
-]
-
 Tables = tuple[GearTable, GearTable]
 
 

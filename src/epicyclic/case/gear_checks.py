@@ -20,8 +20,6 @@ from epicyclic.geometry.cutting import longest_involute
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = ["check_gears", "check_mesh", "check_pair", "check_planetary"]
-
 ANGLE_TOLERANCE = math.radians(0.01)
 """Given planet positions may differ by this from an admissible one: drawing precision. [rad]"""
 
@@ -183,18 +181,11 @@ def _diameter(radius: float, given: float | None) -> str:
 
 
 def check_mesh(
-    mesh: Mesh, tables: Tables, distance_key: str = "gears.center_distance"
+    mesh: Mesh,
+    tables: Tables,  # Tables of both gears, by their names.
+    distance_key: str = "gears.center_distance",  # Where its centre distance is stated.
 ) -> list[Problem]:
-    """Problems of a mesh of two sound gears.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    tables : mapping of str to GearTable
-        Tables of both gears, by their names.
-    distance_key : str
-        Where its centre distance is stated.
-    """
+    """Problems of a mesh of two sound gears."""
     one, two = mesh.gear1, mesh.gear2
     if mesh.internal and two.teeth <= one.teeth:
         return [

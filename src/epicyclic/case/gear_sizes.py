@@ -18,18 +18,6 @@ from epicyclic.case.short_oil import short_oil_told
 from epicyclic.case.size_solver import Found, SizedMesh, Solver
 from epicyclic.errors import InputError, Problem
 
-__all__ = [
-    "BASIC_RACKS",
-    "Found",
-    "Sizes",
-    "converted_roughness",
-    "find_sizes",
-    "named_rack",
-    "negative_teeth",
-    "told_oil",
-    "with_tool_tip",
-]
-
 MESHES = {"planetary": ("sun-planet", "planet-ring"), "gear_pair": ("pinion-gear",)}
 """Gears of each mesh; of both the first, or of a ring mesh the ring, is fitted to the other."""
 BASIC_RACKS = {
@@ -77,31 +65,18 @@ def told_oil(raw: Mapping[str, Any]) -> Iterator[Found]:
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """The tables of a case with what they left out.
+    """The tables of a case with what they left out."""
 
-    Attributes
-    ----------
-    changed : dict of str to Table
-        Tables in place of those of the case.
-    found : tuple of Found
-    problems : list of Problem
-        Why something cannot be found.
-    """
-
-    changed: dict[str, Table] = field(default_factory=dict)
+    changed: dict[str, Table] = field(default_factory=dict)  # Tables in place of those of the case.
     found: tuple[Found, ...] = ()
-    problems: list[Problem] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)  # Why something cannot be found.
 
 
-def find_sizes(sections: Mapping[str, Table], raw: Mapping[str, Any]) -> Sizes | None:
+def find_sizes(
+    sections: Mapping[str, Table],  # The tables that are valid by themselves.
+    raw: Mapping[str, Any],  # The case as the user wrote it, for the digits that are printed.
+) -> Sizes | None:
     """What the gears of a set or pair leave out.
-
-    Parameters
-    ----------
-    sections : mapping of str to Table
-        The tables that are valid by themselves.
-    raw : mapping
-        The case as the user wrote it, for the digits that are printed.
 
     Returns
     -------

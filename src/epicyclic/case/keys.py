@@ -12,8 +12,6 @@ from epicyclic.case.fields import all_keys, dict_value, find_field
 from epicyclic.case.train import TrainCase
 from epicyclic.case.wording import dotted, key_parts
 
-__all__ = ["field_at", "known_keys", "value_of"]
-
 _UNCERTAINTY = "uncertainty."
 _GEARS, _MEMBERS = "gears", "members"
 """Key of the gears of a listed set in a file, and in its table, which has the shared keys apart."""

@@ -43,8 +43,6 @@ from epicyclic.geometry.assembly import nearest_places
 from epicyclic.geometry.gear import Gear, involute
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = ["listed_set_problems", "rack_problems", "sound_gears"]
-
 SAME_PITCH = 1e-6
 """Base pitches and helix angles that differ by less, relatively and in radians, are equal. [1]"""
 SAME_PLACE = 1e-7

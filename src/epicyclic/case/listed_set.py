@@ -30,30 +30,6 @@ from epicyclic.geometry.assembly import closing_number, nearest_places, pin_angl
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = [
-    "Arrangement",
-    "ListedCase",
-    "Pin",
-    "arrangement_of",
-    "bearing_of",
-    "central_gear",
-    "directions_of",
-    "distance_key",
-    "distances_of",
-    "gear_of",
-    "gears_table",
-    "hands_of",
-    "meshes_of",
-    "outward_of",
-    "own_mesh",
-    "pair_of",
-    "pins_of",
-    "planet_of",
-    "positions_of",
-    "rack_keys",
-    "terms_of",
-]
-
 RACK_KEYS = (
     ("normal_module", "transverse_module"),
     ("normal_pressure_angle", "transverse_pressure_angle"),
@@ -64,26 +40,16 @@ RACK_KEYS = (
 
 @dataclass(frozen=True, slots=True)
 class ListedCase:
-    """A listed set of a train, with the oil and the surroundings of the train.
-
-    Attributes
-    ----------
-    table : ListedSet
-    shape : SetShape
-    lubricant, surroundings, thermal, friction_table, contact_solver
-        Tables of the train.
-    folder : Path
-        Where the files lie that it names.
-    """
+    """A listed set of a train, with the oil and the surroundings of the train."""
 
     table: ListedSet
     shape: SetShape
-    lubricant: Lubricant
-    surroundings: Surroundings
-    thermal: ThermalTable
-    friction_table: FrictionTable | None
-    contact_solver: ContactSolver
-    folder: Path
+    lubricant: Lubricant  # Tables of the train.
+    surroundings: Surroundings  # Tables of the train.
+    thermal: ThermalTable  # Tables of the train.
+    friction_table: FrictionTable | None  # Tables of the train.
+    contact_solver: ContactSolver  # Tables of the train.
+    folder: Path  # Where the files lie that it names.
 
     @property
     def lubrication(self) -> LubricationTable | None:
@@ -114,18 +80,10 @@ class ListedCase:
 
 @dataclass(frozen=True, slots=True)
 class Pin:
-    """Where the pin of a planet stands on its arm of the carrier.
+    """Where the pin of a planet stands on its arm of the carrier."""
 
-    Attributes
-    ----------
-    radius : float
-        From the axis of the set. [m]
-    angle : float
-        From the middle of the arm, positive in the sense of positive speeds. [rad]
-    """
-
-    radius: float
-    angle: float
+    radius: float  # From the axis of the set. [m]
+    angle: float  # From the middle of the arm, positive in the sense of positive speeds. [rad]
 
     @property
     def place(self) -> tuple[float, float]:
@@ -135,20 +93,11 @@ class Pin:
 
 @dataclass(frozen=True, slots=True)
 class Arrangement:
-    """How the planets stand around the axis.
+    """How the planets stand around the axis."""
 
-    Attributes
-    ----------
-    angles : tuple of float
-        Angles of the arms of the carrier. [rad]
-    number : int
-        Alike planets fit at multiples of a turn over this number; 0: anywhere. [1]
-    individual : bool
-        True if the gears on one body must be turned against each other from planet to planet.
-    """
-
-    angles: tuple[float, ...]
-    number: int
+    angles: tuple[float, ...]  # Angles of the arms of the carrier. [rad]
+    number: int  # Alike planets fit at multiples of a turn over this number; 0: anywhere. [1]
+    # True if the gears on one body must be turned against each other from planet to planet.
     individual: bool
 
 
@@ -367,17 +316,14 @@ def pins_of(table: ListedSet, shape: SetShape) -> dict[str, Pin]:
     return pins
 
 
-def outward_of(pins: Mapping[str, Pin], planet: str, mate: str | None) -> tuple[float, float]:
+def outward_of(
+    pins: Mapping[str, Pin],
+    planet: str,
+    mate: str | None,  # The body of another planet; None for a central gear.
+) -> tuple[float, float]:
     """Unit vector along t and r from the pitch point with an external mate to a planet's axis.
 
     Theory (A5). For t and r see `epicyclic.elements.planet_load`.
-
-    Parameters
-    ----------
-    pins : mapping of str to Pin
-    planet : str
-    mate : str or None
-        The body of another planet; None for a central gear.
     """
     if mate is None:
         return 0.0, 1.0

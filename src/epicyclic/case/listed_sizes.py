@@ -27,25 +27,17 @@ from epicyclic.case.train_tables import ListedSet
 from epicyclic.errors import InputError, Problem
 from epicyclic.geometry.gear import BasicRack
 
-__all__ = ["find_listed_sizes"]
-
 _GEARS = "gears."
 _ALIKE = 1e-9
 """Modules and angles that differ by less are equal, relatively."""
 
 
 def find_listed_sizes(
-    table: ListedSet, shape: SetShape, raw: Mapping[str, Any]
+    table: ListedSet,
+    shape: SetShape,
+    raw: Mapping[str, Any],  # The set as the user wrote it, for the digits that are printed.
 ) -> tuple[ListedSet, tuple[Found, ...], list[Problem]]:
-    """A listed set with what it leaves out, what was found, and why something cannot be.
-
-    Parameters
-    ----------
-    table : ListedSet
-    shape : SetShape
-    raw : mapping
-        The set as the user wrote it, for the digits that are printed.
-    """
+    """A listed set with what it leaves out, what was found, and why something cannot be."""
     if any(rack_problems(table)):  # told with the gears
         return table, (), []
     table, told = _with_named_rack(table)

@@ -11,17 +11,6 @@ from epicyclic.case.lubrication_tables import LubricationTable, Method
 from epicyclic.case.operation_tables import Surroundings
 from epicyclic.case.thermal_tables import ThermalTable
 
-__all__ = [
-    "FACTOR_KEY",
-    "OWN_SHARE_KEY",
-    "SHARE_KEY",
-    "WETTING",
-    "OilShare",
-    "assumed_factor",
-    "oil_share",
-    "with_lubrication",
-]
-
 SHARE_KEY = "surroundings.oil_air_ratio"
 OWN_SHARE_KEY = "lubrication.oil_share"
 FACTOR_KEY = "lubrication.oil_share_factor"
@@ -53,23 +42,12 @@ class Lubricated(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class OilShare:
-    """The share of oil by volume around gears.
+    """The share of oil by volume around gears."""
 
-    Attributes
-    ----------
-    share : float
-        [1]
-    source : str
-        Where it is from; of a given one the key.
-    grade : str
-        ``"given"``, ``"read"`` or ``"estimate"``.
-    factor : float
-        Two thirds of all gearboxes lie within this factor, either way; 1 for a given share. [1]
-    """
-
-    share: float
-    source: str
-    grade: str = "given"
+    share: float  # [1]
+    source: str  # Where it is from; of a given one the key.
+    grade: str = "given"  # ``"given"``, ``"read"`` or ``"estimate"``.
+    # Two thirds of all gearboxes lie within this factor, either way; 1 for a given share. [1]
     factor: float = 1.0
 
     @property
@@ -98,17 +76,11 @@ def assumed_factor(table: LubricationTable) -> tuple[float, str]:
 
 
 def with_lubrication(
-    thermal: ThermalTable, table: LubricationTable | None, flow: float | None
+    thermal: ThermalTable,
+    table: LubricationTable | None,
+    flow: float | None,  # Oil that is brought to all gears. [m^3/s]
 ) -> ThermalTable:
-    """The table [thermal] with what [lubrication] says of the oil, where it says nothing itself.
-
-    Parameters
-    ----------
-    thermal : ThermalTable
-    table : LubricationTable or None
-    flow : float or None
-        Oil that is brought to all gears. [m^3/s]
-    """
+    """The table [thermal] with what [lubrication] says of the oil, where it says nothing itself."""
     if table is None:
         return thermal
     found: dict[str, object] = {}

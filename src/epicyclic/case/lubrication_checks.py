@@ -11,13 +11,6 @@ from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.errors import Problem
 from epicyclic.units import LITRE
 
-__all__ = [
-    "check_immersion",
-    "check_lubrication",
-    "check_sump",
-    "check_wetting",
-]
-
 _EVERY = {"method", "oil_share", "oil_share_factor"}
 _KEYS: Mapping[Method, Collection[str]] = {
     "jet": ("oil_flow", "jet_speed", "nozzle_side"),

@@ -11,8 +11,6 @@ from epicyclic.losses.churning import ChurningModel
 from epicyclic.losses.jets import NozzleSide
 from epicyclic.units import Length, Number, Quantity, Speed, VolumeFlow, as_stated
 
-__all__ = ["LUBRICATION", "LubricationTable", "Method"]
-
 Method = Literal["jet", "spray", "flow", "drained", "dip", "submerged"]
 _Sump = Annotated[float, Quantity("a volume", "m^3", "l", low=0.0, high=1e6, open_low=True)]
 _Level = Annotated[float, Quantity("a height", "m", "mm", low=-1e5, high=1e5)]

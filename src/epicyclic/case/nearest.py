@@ -7,8 +7,6 @@ from collections.abc import Iterable
 from rapidfuzz import fuzz, process
 from rapidfuzz.distance import OSA
 
-__all__ = ["did_you_mean", "misspelt"]
-
 _LIKENESS = 60.0
 """Smallest likeness, in percent, at which a name is worth suggesting."""
 

@@ -20,20 +20,6 @@ from epicyclic.ehl.rheology import (
 from epicyclic.errors import Problem
 from epicyclic.units import Number, PressureViscosity, Quantity, as_stated
 
-__all__ = [
-    "HEATING",
-    "PRESET",
-    "USUAL",
-    "HeatingModel",
-    "LoadPressure",
-    "OilBehaviour",
-    "PresetName",
-    "behaviour_of",
-    "film_text",
-    "law_problems",
-    "oil_laws",
-]
-
 LoadPressure = Annotated[
     float, Quantity("a pressure", "Pa", "GPa", low=0.0, high=100.0, open_low=True)
 ]

@@ -8,17 +8,6 @@ from typing import Any
 
 from epicyclic.units import CELSIUS, NEWTON_METRE, RPM, Quantity, torque_text, unit_text
 
-__all__ = [
-    "AXES",
-    "OPERATING",
-    "PLANE",
-    "STATE",
-    "STATE_KEY",
-    "OperatingValue",
-    "axis_name",
-    "operating_line",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class OperatingValue:

@@ -10,19 +10,11 @@ from typing import Any
 from annotated_types import Gt
 
 from epicyclic.case.base import CaseTable
-from epicyclic.case.fields import (
-    bounds_of,
-    is_array,
-    is_whole_number,
-    quantity_of,
-    table_of,
-)
+from epicyclic.case.fields import bounds_of, is_array, is_whole_number, quantity_of, table_of
 from epicyclic.case.keys import field_at, known_keys, value_of
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.errors import Problem, raise_any
 from epicyclic.units import Quantity
-
-__all__ = ["Parameter", "is_continuous", "make_parameters", "parameter_of"]
 
 OFF_OPEN_BOUND = 1e-6
 """Distance kept from a bound that is no value itself, over that of the start value. [1]"""
@@ -30,23 +22,13 @@ OFF_OPEN_BOUND = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A key of the case that is fitted.
+    """A key of the case that is fitted."""
 
-    Attributes
-    ----------
-    key : str
-        Dotted key of the case.
-    unit : str
-        Display unit; empty for pure numbers.
-    start, low, high : float
-        Value in the case, and bounds of the schema, in `unit`.
-    """
-
-    key: str
-    unit: str
-    start: float
-    low: float
-    high: float
+    key: str  # Dotted key of the case.
+    unit: str  # Display unit; empty for pure numbers.
+    start: float  # Value in the case, and bounds of the schema, in `unit`.
+    low: float  # Value in the case, and bounds of the schema, in `unit`.
+    high: float  # Value in the case, and bounds of the schema, in `unit`.
 
     @property
     def ends(self) -> tuple[float, float]:

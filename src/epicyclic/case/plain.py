@@ -15,16 +15,6 @@ from epicyclic.case.wording import dotted, written
 from epicyclic.errors import InputError, Problem
 from epicyclic.units import from_pint
 
-__all__ = [
-    "changed_at",
-    "control_problems",
-    "flattened",
-    "plain",
-    "value_at",
-    "with_value",
-    "without",
-]
-
 _DEEPEST = 20
 """Tables of a case are nested a few levels deep; deeper ones are something else."""
 

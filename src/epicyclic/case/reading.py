@@ -15,8 +15,6 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.text_file import read_text, refuse
 from epicyclic.units import format_number
 
-__all__ = ["read_file"]
-
 _LARGEST_FILE = 1_000_000
 """A case file is a page of text; anything larger than this is something else. [bytes]"""
 

@@ -16,8 +16,6 @@ from epicyclic.case.plain import plain
 from epicyclic.lubricant.oil import OilDensity
 from epicyclic.units import KinematicViscosity
 
-__all__ = ["GOLD", "ShortOil", "short_oil_told", "whole_oil"]
-
 GOLD: dict[str, tuple[float, float, str]] = {
     "mineral": (9.904, 0.1390, "mineral oil"),
     "pao": (7.382, 0.1335, "polyalphaolefin"),

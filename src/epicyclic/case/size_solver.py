@@ -26,8 +26,6 @@ from epicyclic.geometry.profile_shifts import (
 )
 from epicyclic.units import MILLIMETRE
 
-__all__ = ["Found", "SizedMesh", "Solver"]
-
 FINEST_SHIFT = 0.5e-3
 """Half a unit of the last digit of a profile shift counts at most as this: 0.3 means 0.300. [1]"""
 FINEST_LENGTH = 0.5e-6
@@ -63,44 +61,19 @@ class Found:
 
 @dataclass(frozen=True, slots=True)
 class SizedMesh:
-    """A mesh whose centre distance or profile shifts may have to be found.
-
-    Attributes
-    ----------
-    name : str
-    backlash_key : str
-        Where its backlash is stated.
-    gears : tuple of str
-        A ring is the second.
-    teeth : int
-        z1 + z2, those of a ring negative.
-    backlash : float or None
-        j_bn. [m]
-    rack : BasicRack
-        Rack of both gears.
-    place : tuple of str
-        Path of its centre distance.
-    stated_distance : float or None
-        [m]
-    gives_way : str
-        The gear that is thinned where digits contradict each other.
-    group : str
-        Meshes of one group have one centre distance.
-    prefix : str
-        Before the names of gears in keys.
-    """
+    """A mesh whose centre distance or profile shifts may have to be found."""
 
     name: str
-    backlash_key: str
-    gears: tuple[str, str]
-    teeth: int
-    backlash: float | None
-    rack: BasicRack
-    place: tuple[str, ...]
-    stated_distance: float | None
-    gives_way: str
-    group: str = ""
-    prefix: str = ""
+    backlash_key: str  # Where its backlash is stated.
+    gears: tuple[str, str]  # A ring is the second.
+    teeth: int  # z1 + z2, those of a ring negative.
+    backlash: float | None  # j_bn. [m]
+    rack: BasicRack  # Rack of both gears.
+    place: tuple[str, ...]  # Path of its centre distance.
+    stated_distance: float | None  # [m]
+    gives_way: str  # The gear that is thinned where digits contradict each other.
+    group: str = ""  # Meshes of one group have one centre distance.
+    prefix: str = ""  # Before the names of gears in keys.
 
     def shift_key(self, name: str) -> str:
         """The key of the profile shift of a gear."""

@@ -13,8 +13,6 @@ from epicyclic.case.thickness import tolerances_of
 from epicyclic.case.train_tables import ListedSet
 from epicyclic.case.wording import dotted, key_parts
 
-__all__ = ["SLOPES", "slope_limit"]
-
 SLOPES = {"profile_slope": "profile_slope", "lead_slope": "helix_slope"}
 """Keys of ``micro_geometry``, and what ISO 1328-1 calls their tolerance."""
 _FLANKS = ("micro_geometry", "micro_geometry_ring_side")

@@ -13,18 +13,9 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from epicyclic import library
-from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase, read_case
+from epicyclic.case.case import GearPairCase, PlanetaryCase, read_case
 from epicyclic.case.fields import choices_of, dict_value, entry_of, quantity_of, table_of
-
-__all__ = [
-    "COMMENT_COLUMN",
-    "TableWriter",
-    "case_template",
-    "case_text",
-    "text_like",
-    "toml_key",
-    "toml_value",
-]
+from epicyclic.case.train import TrainCase
 
 _EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {
     "planetary": ("talbot-2012", PlanetaryCase),
@@ -99,20 +90,13 @@ def text_like(name: str) -> str:
 
 
 def case_text(
-    tables: Mapping[str, Any], head: list[str], about: Mapping[str, str] | None = None
+    tables: Mapping[str, Any],  # The tables of a case, with its kind; they need not be complete.
+    head: list[str],  # Lines of comment at the top.
+    # Comments of single keys by their dotted names, in place of the schema's description. With
+    # these, tables of which nothing is given or told are only named.
+    about: Mapping[str, str] | None = None,
 ) -> str:
-    """A case file: keys of `tables` with values, the others commented out.
-
-    Parameters
-    ----------
-    tables : mapping
-        The tables of a case, with its kind; they need not be complete.
-    head : list of str
-        Lines of comment at the top.
-    about : mapping of str to str
-        Comments of single keys by their dotted names, in place of the schema's description. With
-        these, tables of which nothing is given or told are only named.
-    """
+    """A case file: keys of `tables` with values, the others commented out."""
     kind = tables["kind"]
     _, schema = _EXAMPLES[kind]
     lines = [*(f"# {line}" for line in head), f'kind = "{kind}"']

@@ -9,8 +9,6 @@ from epicyclic.units import CELSIUS
 ROUNDING = 1e-9
 """Rounding of shares that add up to 1. [1]"""
 
-__all__ = ["check_outlet", "check_thermal", "check_ways_out"]
-
 
 def check_thermal(thermal: ThermalTable) -> list[Problem]:
     """What [thermal] states twice, or more of than there is."""

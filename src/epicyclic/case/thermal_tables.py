@@ -23,8 +23,6 @@ from epicyclic.units import (
     as_stated,
 )
 
-__all__ = ["CapacityTable", "ConductanceTable", "HousingTable", "ThermalTable"]
-
 
 class HousingTable(Table):
     """The housing as ISO/TR 14179 sees it."""

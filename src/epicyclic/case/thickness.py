@@ -22,17 +22,6 @@ from epicyclic.geometry.gear import (
     half_angle_from_thickness,
 )
 
-__all__ = [
-    "allowance_shift",
-    "allowances",
-    "check_fit",
-    "check_measure",
-    "fitting",
-    "half_angle",
-    "thickness_key",
-    "tolerances_of",
-]
-
 DIGITS = 4
 """Decimals of the profile shifts that messages propose: 0.1 um at a module of 1.5 mm."""
 

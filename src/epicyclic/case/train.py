@@ -15,7 +15,7 @@ from pydantic import Field, PrivateAttr, create_model
 from epicyclic.case.base import CaseTable, as_given, with_sizes
 from epicyclic.case.checks import cross_check
 from epicyclic.case.element_kinds import ELEMENT_KINDS
-from epicyclic.case.gear_sizes import Found, told_oil
+from epicyclic.case.gear_sizes import told_oil
 from epicyclic.case.listed_checks import listed_set_problems
 from epicyclic.case.listed_set import directions_of, hands_of
 from epicyclic.case.listed_sizes import find_listed_sizes
@@ -30,6 +30,7 @@ from epicyclic.case.model_tables import (
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.operation_tables import Lubricant, Surroundings
 from epicyclic.case.schema import Table
+from epicyclic.case.size_solver import Found
 from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.train_bearings import bearing_force_problems
 from epicyclic.case.train_checks import operation_problems
@@ -53,8 +54,6 @@ from epicyclic.case.uncertainty_tables import UNCERTAINTY, DistributionTable
 from epicyclic.case.validation import Validation, validate
 from epicyclic.case.wording import written
 from epicyclic.errors import InputError, Problem
-
-__all__ = ["TrainCase", "all_gears_to_members", "form_of_set"]
 
 _SHARED = ("models", "numerics", "friction_table", "lubrication")
 """Tables of a train that its computed sets take over where they have none of their own."""

@@ -14,8 +14,6 @@ from epicyclic.errors import Problem
 if TYPE_CHECKING:
     from epicyclic.case.train import TrainCase
 
-__all__ = ["bearing_force_problems", "needs_force"]
-
 GIVE_FORCE = "Or give radial_force (and axial_force) of the bearings of this shaft."
 
 

@@ -25,8 +25,6 @@ from epicyclic.machine.machine import Machine
 if TYPE_CHECKING:
     from epicyclic.case.train import TrainCase
 
-__all__ = ["operation_problems", "state_problems"]
-
 
 def operation_problems(train: TrainCase, shape: TrainShape, complete: bool) -> list[Problem]:
     """What cannot be about the states and the operation of a train.

@@ -6,18 +6,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from epicyclic.case.lubrication_checks import (
-    check_immersion,
-    check_sump,
-    check_wetting,
-)
+from epicyclic.case.lubrication_checks import check_immersion, check_sump, check_wetting
 from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet
 from epicyclic.errors import Problem
 
 if TYPE_CHECKING:
     from epicyclic.case.train import TrainCase
-
-__all__ = ["computed_sets", "lubrication_problems"]
 
 
 def lubrication_problems(train: TrainCase) -> list[Problem]:

@@ -24,51 +24,27 @@ from epicyclic.elements.base import HOUSING
 from epicyclic.errors import Problem
 from epicyclic.machine.machine import Coupling, Machine, MeshRow
 
-__all__ = ["SetShape", "ShapeMesh", "TrainShape", "shape_of_set", "shape_of_train"]
-
 CARRIER = "carrier"
 
 
 @dataclass(frozen=True, slots=True)
 class ShapeMesh:
-    """Two gears in mesh.
+    """Two gears in mesh."""
 
-    Attributes
-    ----------
-    key : str
-        ``"sun_mesh"``.
-    first, second : str
-        Gears; the ring gear of an internal mesh is the second.
-    teeth : tuple of float
-        Numbers of teeth of both. [1]
-    internal : bool
-    efficiency : float
-        Given, or 1. [1]
-    """
-
-    key: str
-    first: str
-    second: str
-    teeth: tuple[float, float]
+    key: str  # ``"sun_mesh"``.
+    first: str  # Gears; the ring gear of an internal mesh is the second.
+    second: str  # Gears; the ring gear of an internal mesh is the second.
+    teeth: tuple[float, float]  # Numbers of teeth of both. [1]
     internal: bool
-    efficiency: float = 1.0
+    efficiency: float = 1.0  # Given, or 1. [1]
 
 
 @dataclass(frozen=True, slots=True)
 class SetShape:
-    """The bodies of a set and its meshes.
+    """The bodies of a set and its meshes."""
 
-    Attributes
-    ----------
-    bodies : mapping of str to str
-        The body of each gear.
-    planets : tuple of str
-        Bodies that stand on the carrier; empty for fixed axes.
-    meshes : tuple of ShapeMesh
-    """
-
-    bodies: Mapping[str, str]
-    planets: tuple[str, ...]
+    bodies: Mapping[str, str]  # The body of each gear.
+    planets: tuple[str, ...]  # Bodies that stand on the carrier; empty for fixed axes.
     meshes: tuple[ShapeMesh, ...]
 
     @property
@@ -80,16 +56,10 @@ class SetShape:
 
 @dataclass(frozen=True, slots=True)
 class TrainShape:
-    """The sets of a train and the shafts that join them.
-
-    Attributes
-    ----------
-    sets : mapping of str to SetShape
-    shafts : mapping of str to tuple of str
-        Members of each shaft, ``"P1.sun"``; a member that no shaft names is a shaft of its own.
-    """
+    """The sets of a train and the shafts that join them."""
 
     sets: Mapping[str, SetShape]
+    # Members of each shaft, ``"P1.sun"``; a member that no shaft names is a shaft of its own.
     shafts: Mapping[str, tuple[str, ...]]
 
     def shaft_of(self, name: str) -> str | None:
@@ -175,15 +145,12 @@ class TrainShape:
 # --- sets -----------------------------------------------------------------------------------------
 
 
-def shape_of_set(table: SetTable, joined: Iterable[str] = ()) -> tuple[SetShape, list[Problem]]:
-    """The bodies and meshes of a set, and what cannot be about them.
-
-    Parameters
-    ----------
-    table : SetTable
-    joined : iterable of str
-        Members of the set that shafts, states and the operation name: they are no planets.
-    """
+def shape_of_set(
+    table: SetTable,
+    # Members of the set that shafts, states and the operation name: they are no planets.
+    joined: Iterable[str] = (),
+) -> tuple[SetShape, list[Problem]]:
+    """The bodies and meshes of a set, and what cannot be about them."""
     if isinstance(table, PlanetarySet | GivenPlanetarySet):
         return _planetary(table), list(_planetary_problems(table))
     if isinstance(table, PairSet | GivenPair):

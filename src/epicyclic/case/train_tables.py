@@ -44,22 +44,6 @@ from epicyclic.units import (
     as_stated,
 )
 
-__all__ = [
-    "GivenListedSet",
-    "GivenPair",
-    "GivenPlanetarySet",
-    "ListedGear",
-    "ListedSet",
-    "PairSet",
-    "PlanetarySet",
-    "Position",
-    "SetTable",
-    "SharedGears",
-    "StateTable",
-    "Teeth",
-    "TrainOperation",
-]
-
 Efficiency = Annotated[Number, Field(gt=0, le=1)]
 _Pressure = Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)]
 Position = Annotated[float, Quantity("a position", "m", "mm", low=-1e5, high=1e5)]

@@ -14,8 +14,6 @@ from epicyclic.case.train import TrainCase, form_of_set
 from epicyclic.case.train_tables import ListedSet, PlanetarySet, SharedGears
 from epicyclic.case.wording import dotted, key_parts
 
-__all__ = ["train_text"]
-
 _LISTS = {
     "shafts": "what turns together, always; members not named turn alone",
     "positions": "of gears along their shafts, for the forces on bearings",

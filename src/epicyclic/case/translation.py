@@ -26,8 +26,6 @@ from epicyclic.case.wording import dotted, sentence, written
 from epicyclic.errors import Problem
 from epicyclic.units import format_number, range_remedy
 
-__all__ = ["translate", "unknown_key"]
-
 _PLAIN_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(%?)\s*")
 
 _OUT_OF_RANGE = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
@@ -69,17 +67,13 @@ def translate(table: type[BaseModel], detail: ErrorDetails) -> Problem:
     return Problem(key, given, f"must be {allowed}.", sentence(remedy))
 
 
-def unknown_key(place: Place, value: Any, tables: Iterable[tuple[str, type[BaseModel]]]) -> Problem:
-    """The problem of a key that the schema does not have.
-
-    Parameters
-    ----------
-    place : Place
-        Place of the key.
-    value : object
-    tables : iterable of (str, type)
-        Names and classes of the tables in which the key might belong.
-    """
+def unknown_key(
+    place: Place,  # Place of the key.
+    value: Any,
+    # Names and classes of the tables in which the key might belong.
+    tables: Iterable[tuple[str, type[BaseModel]]],
+) -> Problem:
+    """The problem of a key that the schema does not have."""
     name = str(place.path[-1])
     known = () if place.owner is None else tuple(place.owner.model_fields)
     homes = [table for table, fields in tables if name in fields.model_fields]

@@ -25,15 +25,6 @@ from epicyclic.case.wording import dotted, path_of, refused, written
 from epicyclic.errors import Problem
 from epicyclic.units import CELSIUS, MICROMETRE, Quantity, format_number
 
-__all__ = [
-    "MODEL_FORM",
-    "Assumption",
-    "UncertainValue",
-    "model_form_of",
-    "remedy_for",
-    "uncertain_values",
-]
-
 MODEL_FORM = "model_form."
 """What keys of [uncertainty] begin with that are no keys of the case, but kinds of losses."""
 _MICROMETRE = 1e-6
@@ -42,36 +33,18 @@ Kind = Literal["normal", "uniform", "lognormal"]
 
 @dataclass(frozen=True, slots=True)
 class UncertainValue:
-    """A key of the case, or a kind of losses, with the distribution of its value.
+    """A key of the case, or a kind of losses, with the distribution of its value."""
 
-    Attributes
-    ----------
-    key : str
-        Dotted key of the case, or ``"model_form.sliding"``.
-    unit : str
-        Unit of all values here; empty for pure numbers.
-    value : float
-        That of the case; 1 for the factor of a model.
-    kind : str
-        ``"normal"``, ``"uniform"`` or ``"lognormal"``.
-    spread : tuple of float
-        Standard uncertainty; the two limits; or the factor of one standard deviation.
-    low, high : float
-        Beyond which the case has no values.
-    source : str
-        Where the distribution is from.
-    correlated : mapping of str to float
-        Coefficients of correlation with other keys.
-    """
-
-    key: str
-    unit: str
-    value: float
-    kind: Kind
+    key: str  # Dotted key of the case, or ``"model_form.sliding"``.
+    unit: str  # Unit of all values here; empty for pure numbers.
+    value: float  # That of the case; 1 for the factor of a model.
+    kind: Kind  # ``"normal"``, ``"uniform"`` or ``"lognormal"``.
+    # Standard uncertainty; the two limits; or the factor of one standard deviation.
     spread: tuple[float, ...]
-    low: float = -math.inf
-    high: float = math.inf
-    source: str = ""
+    low: float = -math.inf  # Beyond which the case has no values.
+    high: float = math.inf  # Beyond which the case has no values.
+    source: str = ""  # Where the distribution is from.
+    # Coefficients of correlation with other keys.
     correlated: Mapping[str, float] = field(default_factory=dict[str, float], hash=False)
 
     @property
@@ -103,17 +76,9 @@ class UncertainValue:
 
 @dataclass(frozen=True, slots=True)
 class Assumption:
-    """A distribution that is assumed where a case states none.
+    """A distribution that is assumed where a case states none."""
 
-    Attributes
-    ----------
-    keys : tuple of str
-        Patterns of keys.
-    table : DistributionTable
-    source : str
-    """
-
-    keys: tuple[str, ...]
+    keys: tuple[str, ...]  # Patterns of keys.
     table: DistributionTable
     source: str
 
@@ -170,16 +135,10 @@ def model_form_of(term: str, method: str = "") -> str:
 
 
 def uncertain_values(
-    case: CaseTable, kinds: tuple[str, ...] = ()
+    case: CaseTable,
+    kinds: tuple[str, ...] = (),  # Kinds of losses that it has, see `model_form_of`.
 ) -> tuple[tuple[UncertainValue, ...], list[Problem]]:
-    """All that is uncertain in a case, and what is wrong with its table [uncertainty].
-
-    Parameters
-    ----------
-    case : PlanetaryCase, GearPairCase or TrainCase
-    kinds : tuple of str
-        Kinds of losses that it has, see `model_form_of`.
-    """
+    """All that is uncertain in a case, and what is wrong with its table [uncertainty]."""
     known = set(known_keys(case))
     found, problems = _stated(case)
     own = _own_tables(case)

@@ -9,8 +9,6 @@ from pydantic import Field
 from epicyclic.case.schema import Table
 from epicyclic.units import Number
 
-__all__ = ["UNCERTAINTY", "DistributionTable"]
-
 Stated = str | Number
 """A value of the key as a case file has it, or a percentage of it; its unit is that of the key."""
 

@@ -20,26 +20,15 @@ from epicyclic.case.translation import translate, unknown_key
 from epicyclic.case.wording import dotted, written
 from epicyclic.errors import Problem
 
-__all__ = ["Validation", "tables_of", "validate"]
-
 AnyCase = TypeVar("AnyCase", bound=Table)
 
 
 @dataclass(frozen=True, slots=True)
 class Validation(Generic[AnyCase]):
-    """What the schema makes of the tables of a case.
+    """What the schema makes of the tables of a case."""
 
-    Attributes
-    ----------
-    case : Table or None
-        The case; None if there are problems.
-    sections : mapping of str to Table
-        The tables that are sound enough for checks across tables.
-    problems : list of Problem
-    """
-
-    case: AnyCase | None
-    sections: Mapping[str, Table]
+    case: AnyCase | None  # The case; None if there are problems.
+    sections: Mapping[str, Table]  # The tables that are sound enough for checks across tables.
     problems: list[Problem]
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import tomllib
 from typing import Any
 
-__all__ = ["parse_value"]
-
 
 def parse_value(text: str) -> Any:
     """`text` as TOML would read it (numbers, true, lists), else as plain text."""

@@ -10,18 +10,6 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.errors import InputError, Problem, printable
 
-__all__ = [
-    "dotted",
-    "key_parts",
-    "micrometres",
-    "millimetres",
-    "one_line",
-    "path_of",
-    "refused",
-    "sentence",
-    "written",
-]
-
 _LONGEST_SHOWN = 60
 """Text that users wrote is cut to this many characters in messages."""
 

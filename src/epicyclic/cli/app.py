@@ -8,8 +8,6 @@ import click
 
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["app"]
-
 EXAMPLE = "talbot-2012"
 
 

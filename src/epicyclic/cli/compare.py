@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from epicyclic.sweeps.runner import Runner
     from epicyclic.sweeps.unloaded import LoadDependent
 
-__all__ = ["compare", "comparison_writer"]
-
 
 @click.command()
 @case_argument

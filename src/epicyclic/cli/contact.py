@@ -14,8 +14,6 @@ from epicyclic.cli.output import PICTURES, picture_bytes, show
 from epicyclic.status import Status
 from epicyclic.whole_file import write_file
 
-__all__ = ["contact"]
-
 ANIMATION = ".gif"
 
 CONTACT_OPTIONS = {

@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from epicyclic.sweeps.journal import Rows
     from epicyclic.sweeps.runner import Runner
 
-__all__ = ["duty", "duty_writer"]
-
 _MAP_SUFFIX = ".nc"
 _OUTPUTS = (".nc", ".csv")
 _JSON = ".json"

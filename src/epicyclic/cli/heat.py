@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from epicyclic.case.case import Case
     from epicyclic.results.result import Result
 
-__all__ = ["heat"]
-
 AS_GIVEN = "oil_temperature"
 QUANTITIES = (AS_GIVEN, "cooler_power", "oil_flow", "input_power")
 

@@ -21,8 +21,6 @@ import click
 
 from epicyclic.cli.exit_codes import EXIT_INTERRUPTED
 
-__all__ = ["ending_soon", "tell_once", "was_interrupted"]
-
 GRACE_SECONDS = 1.0
 """For the command to end by itself, with its own last words."""
 CLEANING_SECONDS = 0.5

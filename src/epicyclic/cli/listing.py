@@ -9,8 +9,6 @@ import click
 from epicyclic.errors import InputError, Problem
 from epicyclic.whole_file import write_file
 
-__all__ = ["cases", "init", "oils", "schema"]
-
 
 @click.command()
 def cases() -> None:

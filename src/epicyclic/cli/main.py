@@ -44,8 +44,6 @@ from epicyclic.cli.validate import validate
 from epicyclic.cli.warm_up import warm_up
 from epicyclic.errors import ConvergenceError, InputError, is_interrupt, printable
 
-__all__ = ["main"]
-
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="epicyclic")

@@ -32,18 +32,6 @@ if TYPE_CHECKING:
     from epicyclic.sweeps.plan import SweepPlan
     from epicyclic.sweeps.runner import Plan, Runner
 
-__all__ = [
-    "Write",
-    "check_values",
-    "compute",
-    "finish",
-    "loss_map",
-    "map_writer",
-    "parse_axes",
-    "sweep",
-    "sweep_writer",
-]
-
 Write = Callable[["Rows"], str]
 """Writes the rows of a plan, and tells what it wrote."""
 SHOWN_FAILURES = 10

@@ -9,8 +9,6 @@ import click
 
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["convert", "refuse_options"]
-
 
 def refuse_options(options: Mapping[str, object]) -> None:
     """Raise `InputError` for options that say what is computed: a stored map holds it."""

@@ -16,8 +16,6 @@ from epicyclic.cli.options import output_option
 from epicyclic.cli.pockets import study_writer
 from epicyclic.cli.pockets_table import table_writer
 
-__all__ = ["merge"]
-
 
 @click.command()
 @click.argument(

@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from epicyclic.sweeps.journal import Rows
     from epicyclic.sweeps.runner import Runner
 
-__all__ = ["campaign_writer", "oil"]
-
-
 plot_models = plot_option("Draw the models against the simulations (.png, .svg, .pdf).")
 
 

@@ -13,23 +13,6 @@ import click
 from epicyclic.cli.output import PICTURES, check_ending
 from epicyclic.errors import InputError, Problem
 
-__all__ = [
-    "case_argument",
-    "contact_set_option",
-    "from_rexs",
-    "journal_option",
-    "json_option",
-    "load_with",
-    "output_option",
-    "parse_changes",
-    "picture_option",
-    "plot_option",
-    "runner_options",
-    "set_option",
-    "shard_option",
-    "temperature_option",
-]
-
 case_argument = click.argument("case", metavar="CASE")
 json_option = click.option(
     "--json",

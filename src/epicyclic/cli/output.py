@@ -17,19 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
 
-__all__ = [
-    "PICTURES",
-    "beside",
-    "check_ending",
-    "check_page",
-    "draw",
-    "parse_size",
-    "picture_bytes",
-    "show",
-    "write_page",
-    "wrong_ending",
-]
-
 PICTURES = (".png", ".svg", ".pdf")
 PAGE, PRINT = ".html", ".pdf"
 SIZES = (30, 2000)

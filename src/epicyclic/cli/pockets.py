@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from epicyclic.sweeps.pocketing_plan import StudyPlan
     from epicyclic.sweeps.runner import Runner
 
-__all__ = ["pockets", "study", "study_writer"]
-
 ANIMATION = ".gif"
 STUDY = "study"
 """With which files of unfinished studies begin in their folder."""

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from epicyclic.sweeps.pocketing_table import TablePlan
     from epicyclic.sweeps.runner import Runner
 
-__all__ = ["pockets_table", "table_writer"]
-
 FORMATS = (".nc", ".csv")
 
 

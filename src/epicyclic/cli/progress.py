@@ -26,8 +26,6 @@ from rich.progress import (
 
 from epicyclic.kernels.compiling import listeners
 
-__all__ = ["progress_bar", "tell", "tell_compilation", "working"]
-
 EVERY = 15.0
 """Between two lines, and before the first one. [s]"""
 COMPILING_EVERY = 5.0

@@ -16,8 +16,6 @@ from epicyclic.whole_file import make_folder, write_file
 if TYPE_CHECKING:
     from epicyclic.sweeps.runner import Runner
 
-__all__ = ["reproduce"]
-
 PAGE = "index.html"
 
 

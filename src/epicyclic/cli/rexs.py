@@ -23,8 +23,6 @@ from epicyclic.whole_file import write_file
 if TYPE_CHECKING:
     from epicyclic.exchange.rexs.importing import RexsImport
 
-__all__ = ["rexs"]
-
 component_option = click.option(
     "--component", type=int, metavar="ID", help="One stage of several, by its id."
 )

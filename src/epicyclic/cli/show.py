@@ -15,8 +15,6 @@ from epicyclic.errors import InputError, Problem
 if TYPE_CHECKING:
     from epicyclic.plots.catalogue import Stored
 
-__all__ = ["plot", "report"]
-
 stored_argument = click.argument("source", metavar="CASE|FILE.nc")
 
 

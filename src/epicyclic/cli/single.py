@@ -24,7 +24,6 @@ from epicyclic.status import Status
 
 if TYPE_CHECKING:
     from epicyclic.case.case import Case
-__all__ = ["check", "friction", "mesh", "run"]
 
 
 @click.command()

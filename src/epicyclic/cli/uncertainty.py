@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from epicyclic.sweeps.journal import Rows
     from epicyclic.sweeps.runner import Runner
 
-__all__ = ["compare_cases", "uncertainty"]
-
 MAP_SUFFIX = ".nc"
 seed_option = click.option(
     "--seed", type=int, default=1, show_default=True, help="Of the drawn points."

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from epicyclic.validation.closures import ClosureFigure
     from epicyclic.validation.compare import Comparison
 
-__all__ = ["validate"]
-
 
 @click.command()
 @click.option(

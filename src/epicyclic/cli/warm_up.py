@@ -20,8 +20,6 @@ from epicyclic.cli.output import check_ending, draw
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["warm_up"]
-
 OUTPUTS = (".nc", ".csv", ".parquet")
 
 

@@ -8,8 +8,6 @@ from typing import Literal
 
 from epicyclic.ehl.rheology import PressureLaw, Roelands, TwoSlope
 
-__all__ = ["DEFAULT", "PRESETS", "SLOPE_RATIO", "TRANSITION", "Assumptions"]
-
 SLOPE_RATIO = 0.41
 """Slope of ln(mu) at high pressure over that at low pressure. [1]"""
 TRANSITION = 0.38e9
@@ -18,24 +16,12 @@ TRANSITION = 0.38e9
 
 @dataclass(frozen=True, slots=True)
 class Assumptions:
-    """Inputs of rough contacts that are rarely known. Theory (H7), (H17), (H23).
+    """Inputs of rough contacts that are rarely known. Theory (H7), (H17), (H23)."""
 
-    Attributes
-    ----------
-    pressure_law : type
-        Viscosity under pressure.
-    eyring_stress : float
-        [Pa]
-    film : float
-        Below which surfaces touch. [m]
-    friction : float
-        Where they touch. [1]
-    """
-
-    pressure_law: type[PressureLaw]
-    eyring_stress: float
-    film: float
-    friction: float
+    pressure_law: type[PressureLaw]  # Viscosity under pressure.
+    eyring_stress: float  # [Pa]
+    film: float  # Below which surfaces touch. [m]
+    friction: float  # Where they touch. [1]
 
 
 DEFAULT: Literal["usual"] = "usual"

@@ -15,8 +15,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Estimate", "Plan", "aided_mean", "next_plan"]
-
 FloatArray = NDArray[np.float64]
 
 GROWTH = 1.5
@@ -38,23 +36,15 @@ MOST_AID = 32
 
 
 class Estimate(NamedTuple):
-    """A mean, and where its error comes from. Theory (H34), (H35).
-
-    Attributes
-    ----------
-    value : float
-    own, aid : float
-        Variances over a block of what the coarse grid does not explain, widened for a small sample,
-        and of what it does.
-    blocks, aid_blocks : int
-        Numbers of blocks on the fine and on the coarse grid.
-    """
+    """A mean, and where its error comes from. Theory (H34), (H35)."""
 
     value: float
+    # Variances over a block of what the coarse grid does not explain, widened for a small sample,
+    # and of what it does.
     own: float
     aid: float
-    blocks: int
-    aid_blocks: int
+    blocks: int  # Numbers of blocks on the fine and on the coarse grid.
+    aid_blocks: int  # Numbers of blocks on the fine and on the coarse grid.
 
     @property
     def error(self) -> float:
@@ -74,17 +64,14 @@ class Plan(NamedTuple):
     aid_blocks: int
 
 
-def aided_mean(fine: FloatArray, coarse: FloatArray) -> Estimate:
+def aided_mean(
+    fine: FloatArray,  # Means over blocks.
+    # Means of the same blocks on the coarse grid, and of those that follow; none if m < n.
+    coarse: FloatArray,
+) -> Estimate:
     """Mean of `fine`, from its blocks and the longer series of the coarse grid.
 
     Theory (H34), (H35).
-
-    Parameters
-    ----------
-    fine : ndarray, shape (n,)
-        Means over blocks.
-    coarse : ndarray, shape (m,)
-        Means of the same blocks on the coarse grid, and of those that follow; none if m < n.
 
     Examples
     --------
@@ -135,19 +122,13 @@ def _widening(freedom: int) -> float:
     return (1 + STUDENT / max(freedom / 2, 1)) ** 2
 
 
-def next_plan(estimate: Estimate, tolerance: float, cost: float, most: int) -> Plan:
+def next_plan(
+    estimate: Estimate,  # Estimate of what has been simulated.
+    tolerance: float,  # Wanted error over the mean.
+    cost: float,  # Cost of a block on the coarse grid, over that of one on the fine grid. [1]
+    most: int,  # Blocks on the fine grid.
+) -> Plan:
     """How many blocks to have before the next look at the error. Theory (H36).
-
-    Parameters
-    ----------
-    estimate : Estimate
-        Estimate of what has been simulated.
-    tolerance : float
-        Wanted error over the mean.
-    cost : float
-        Cost of a block on the coarse grid, over that of one on the fine grid. [1]
-    most : int
-        Blocks on the fine grid.
 
     Examples
     --------

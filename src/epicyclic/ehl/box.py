@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["DRY_SPEED", "FEWEST_KEPT", "SOLVER_BOX", "VALIDATED_FILM_RATIO"]
-
 SOLVER_BOX: dict[str, tuple[float, float]] = {
     "radius": (0.3e-3, 0.3),
     "hertz_pressure": (3e6, 3e9),

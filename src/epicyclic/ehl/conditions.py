@@ -8,7 +8,6 @@ from functools import cached_property
 
 from epicyclic.contact import LineContacts
 from epicyclic.ehl.rheology import (
-    Barus,
     Carreau,
     LimitingStress,
     Newtonian,
@@ -34,16 +33,6 @@ from epicyclic.kernels.ehl_fluid import (
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
 from epicyclic.lubricant.properties import ROELANDS_OFFSET, ROELANDS_PRESSURE, OilState
 
-__all__ = [
-    "Barus",
-    "ContactOil",
-    "LineContact",
-    "Roelands",
-    "TwoSlope",
-    "contact_oil",
-    "line_contact",
-]
-
 STIFFENING, PACKING = 1.34 / 5.9e8, 1.0 / 5.9e8
 """Constants of Dowson and Higginson's density. [1/Pa]"""
 
@@ -58,26 +47,14 @@ SHEAR_CODES: dict[type[ShearLaw], int] = {
 
 @dataclass(frozen=True, slots=True)
 class ContactOil:
-    """Oil in a contact, at one temperature.
+    """Oil in a contact, at one temperature."""
 
-    Attributes
-    ----------
-    viscosity : float
-        Dynamic viscosity at ambient pressure. [Pa s]
-    pressure_law : Barus, Roelands or TwoSlope
-    eyring_stress : float
-        tau_0 of the Ree-Eyring law; infinite for a Newtonian oil. [Pa]
-    compressible : bool
-        Density after Dowson and Higginson, or constant.
-    shear_law : Newtonian, ReeEyring, LimitingStress or Carreau, optional
-        Instead of the Ree-Eyring law of `eyring_stress`.
-    """
-
-    viscosity: float
+    viscosity: float  # Dynamic viscosity at ambient pressure. [Pa s]
     pressure_law: PressureLaw
+    # tau_0 of the Ree-Eyring law; infinite for a Newtonian oil. [Pa]
     eyring_stress: float = math.inf
-    compressible: bool = True
-    shear_law: ShearLaw | None = None
+    compressible: bool = True  # Density after Dowson and Higginson, or constant.
+    shear_law: ShearLaw | None = None  # Instead of the Ree-Eyring law of `eyring_stress`.
 
     @property
     def shear(self) -> ShearLaw:
@@ -104,26 +81,13 @@ def contact_oil(oil: OilState, laws: OilLaws) -> ContactOil:
 
 @dataclass(frozen=True)
 class LineContact:
-    """Load, geometry and surface speeds of one line contact, as the solver wants them.
+    """Load, geometry and surface speeds of one line contact, as the solver wants them."""
 
-    Attributes
-    ----------
-    line_load : float
-        W', per length. [N/m]
-    radius : float
-        R_eq. [m]
-    equivalent_modulus : float
-        E_eq. [Pa]
-    speed1, speed2 : float
-        Speeds of the surfaces through the contact, both in the direction of x. [m/s]
-    oil : ContactOil
-    """
-
-    line_load: float
-    radius: float
-    equivalent_modulus: float
-    speed1: float
-    speed2: float
+    line_load: float  # W', per length. [N/m]
+    radius: float  # R_eq. [m]
+    equivalent_modulus: float  # E_eq. [Pa]
+    speed1: float  # Speeds of the surfaces through the contact, both in the direction of x. [m/s]
+    speed2: float  # Speeds of the surfaces through the contact, both in the direction of x. [m/s]
     oil: ContactOil
 
     def __post_init__(self) -> None:

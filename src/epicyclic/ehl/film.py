@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["moes_central_film"]
 
-
-def moes_central_film(load: float, material: float) -> float:
+def moes_central_film(
+    load: float,  # M. [1]
+    material: float,  # L. [1]
+) -> float:
     """Central film of an incompressible oil in Moes' units, H = (h/R)(2U)^-1/2. Theory (H20).
 
     H. Moes, Lubrication and Beyond, University of Twente (2000). A fit of numerical solutions over
     all four regimes, rigid or elastic, isoviscous or piezoviscous.
-
-    Parameters
-    ----------
-    load : float
-        M. [1]
-    material : float
-        L. [1]
     """
     rigid_isoviscous, elastic_isoviscous = 3 / load, 2.621 * load**-0.2
     rigid_piezoviscous = 1.287 * math.pow(material, 2 / 3)

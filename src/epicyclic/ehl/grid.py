@@ -8,8 +8,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Grid", "gap_length", "graded_nodes", "grid_for"]
-
 FloatArray = NDArray[np.float64]
 
 MIDDLE_SHARE, INLET_SHARE, EXIT_SHARE = 0.25, 0.375, 0.375

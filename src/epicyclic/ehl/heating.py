@@ -13,15 +13,6 @@ from epicyclic.ehl.rheology import Roelands
 from epicyclic.kernels.ehl_fluid import mean_shear
 from epicyclic.lubricant.properties import ROELANDS_PRESSURE, OilState
 
-__all__ = [
-    "Heating",
-    "flow_easing",
-    "heating_of",
-    "inlet_factor",
-    "temperature_rise",
-    "thinning",
-]
-
 FloatArray = NDArray[np.float64]
 
 FILM_EXPONENT = 0.694
@@ -32,22 +23,12 @@ SMALLEST_CHANGE = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Heating:
-    """What carries the heat of sliding away.
+    """What carries the heat of sliding away."""
 
-    Attributes
-    ----------
-    thermoviscosity : float
-        beta = -d(ln mu)/dT of the oil at the inlet. [1/K]
-    oil_conductivity : float
-        [W/(m K)]
-    effusivity1, effusivity2 : float
-        sqrt(k rho c) of each solid. [W s^0.5/(m^2 K)]
-    """
-
-    thermoviscosity: float
-    oil_conductivity: float
-    effusivity1: float
-    effusivity2: float
+    thermoviscosity: float  # beta = -d(ln mu)/dT of the oil at the inlet. [1/K]
+    oil_conductivity: float  # [W/(m K)]
+    effusivity1: float  # sqrt(k rho c) of each solid. [W s^0.5/(m^2 K)]
+    effusivity2: float  # sqrt(k rho c) of each solid. [W s^0.5/(m^2 K)]
 
 
 def heating_of(oil: OilState, effusivity1: float, effusivity2: float) -> Heating:
@@ -87,18 +68,15 @@ def thinning(
 
 
 def temperature_rise(
-    contact: LineContact, heating: Heating, x: FloatArray, pressure: FloatArray, film: FloatArray
+    contact: LineContact,
+    heating: Heating,
+    x: FloatArray,  # Nodes [m], pressure [Pa] and film [m] of a steady solution.
+    pressure: FloatArray,  # Nodes [m], pressure [Pa] and film [m] of a steady solution.
+    film: FloatArray,  # Nodes [m], pressure [Pa] and film [m] of a steady solution.
 ) -> FloatArray:
     """Mean over the film of the temperature above that of the inlet, shape (n,). [K]
 
     Theory (H30), (H31). Heat only acts downstream, so that node after node has one unknown.
-
-    Parameters
-    ----------
-    contact : LineContact
-    heating : Heating
-    x, pressure, film : ndarray, shape (n,)
-        Nodes [m], pressure [Pa] and film [m] of a steady solution.
     """
     from scipy.optimize import brentq
 

@@ -17,8 +17,6 @@ from epicyclic.ehl.roughness import Profile, mean_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.text_file import check_archive, read_bytes, read_text, refuse
 
-__all__ = ["read_profile"]
-
 FloatArray = NDArray[np.float64]
 
 X3P = ".x3p"
@@ -47,17 +45,14 @@ class _Points(NamedTuple):
 
 
 def read_profile(
-    path: Path, cutoff: float | None = None, short_cutoff: float | None = None
+    # An X3P file, or CSV with position in mm and height in um in its first two columns; there lines
+    # that start with # or letters are skipped.
+    path: Path,
+    # cutoff, short_cutoff: lambda_c and lambda_s: longer and shorter waves are taken off. [m]
+    cutoff: float | None = None,
+    short_cutoff: float | None = None,
 ) -> Profile:
-    """A measured profile, the straight line through it taken off.
-
-    Parameters
-    ----------
-    path : Path
-        An X3P file, or CSV with position in mm and height in um in its first two columns; there
-        lines that start with # or letters are skipped.
-    cutoff, short_cutoff : float, optional
-        lambda_c and lambda_s: longer and shorter waves are taken off. Theory (H32). [m]
+    """A measured profile, the straight line through it taken off. Theory (H32).
 
     Raises
     ------

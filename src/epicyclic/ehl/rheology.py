@@ -6,63 +6,28 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-__all__ = [
-    "PRESSURE_LAWS",
-    "SHEAR_LAWS",
-    "Barus",
-    "Carreau",
-    "LimitingStress",
-    "Newtonian",
-    "OilLaws",
-    "PressureLaw",
-    "ReeEyring",
-    "Roelands",
-    "ShearLaw",
-    "TwoSlope",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Barus:
-    """mu = mu_0 exp(alpha p). Theory (H5).
+    """mu = mu_0 exp(alpha p). Theory (H5)."""
 
-    Attributes
-    ----------
-    alpha : float
-        [1/Pa]
-    """
-
-    alpha: float
+    alpha: float  # [1/Pa]
 
 
 @dataclass(frozen=True, slots=True)
 class Roelands:
-    """Roelands' law with the slope `alpha` at ambient pressure. Theory (H6).
+    """Roelands' law with the slope `alpha` at ambient pressure. Theory (H6)."""
 
-    Attributes
-    ----------
-    alpha : float
-        [1/Pa]
-    """
-
-    alpha: float
+    alpha: float  # [1/Pa]
 
 
 @dataclass(frozen=True, slots=True)
 class TwoSlope:
-    """Slopes of ln(mu) at low and at high pressure, joined by a cubic. Theory (H7).
+    """Slopes of ln(mu) at low and at high pressure, joined by a cubic. Theory (H7)."""
 
-    Attributes
-    ----------
-    alpha, alpha_high : float
-        [1/Pa]
-    transition : float
-        Pressure at which the two straight lines meet. [Pa]
-    """
-
-    alpha: float
-    alpha_high: float
-    transition: float
+    alpha: float  # [1/Pa]
+    alpha_high: float  # [1/Pa]
+    transition: float  # Pressure at which the two straight lines meet. [Pa]
 
 
 PressureLaw = Barus | Roelands | TwoSlope
@@ -80,50 +45,26 @@ class Newtonian:
 
 @dataclass(frozen=True, slots=True)
 class ReeEyring:
-    """tau = tau_0 arsinh(mu gamma/tau_0), tau_0 = stress + slope p. Theory (H17).
+    """tau = tau_0 arsinh(mu gamma/tau_0), tau_0 = stress + slope p. Theory (H17)."""
 
-    Attributes
-    ----------
-    stress : float
-        [Pa]
-    slope : float
-        [1]
-    """
-
-    stress: float
-    slope: float = 0.0
+    stress: float  # [Pa]
+    slope: float = 0.0  # [1]
 
 
 @dataclass(frozen=True, slots=True)
 class LimitingStress:
-    """tau = tau_L [1 - exp(-mu gamma/tau_L)], tau_L = stress + slope p. Theory (H27).
+    """tau = tau_L [1 - exp(-mu gamma/tau_L)], tau_L = stress + slope p. Theory (H27)."""
 
-    Attributes
-    ----------
-    stress : float
-        [Pa]
-    slope : float
-        Limiting stress-pressure coefficient. [1]
-    """
-
-    stress: float
-    slope: float
+    stress: float  # [Pa]
+    slope: float  # Limiting stress-pressure coefficient. [1]
 
 
 @dataclass(frozen=True, slots=True)
 class Carreau:
-    """tau = mu gamma [1 + (mu gamma/G)^2]^((n - 1)/2), G = stress. Theory (H28).
+    """tau = mu gamma [1 + (mu gamma/G)^2]^((n - 1)/2), G = stress. Theory (H28)."""
 
-    Attributes
-    ----------
-    stress : float
-        [Pa]
-    exponent : float
-        n, 1 for a Newtonian oil. [1]
-    """
-
-    stress: float
-    exponent: float
+    stress: float  # [Pa]
+    exponent: float  # n, 1 for a Newtonian oil. [1]
 
 
 ShearLaw = Newtonian | ReeEyring | LimitingStress | Carreau
@@ -137,26 +78,14 @@ SHEAR_LAWS: Mapping[str, type[ShearLaw]] = {
 
 @dataclass(frozen=True, slots=True)
 class OilLaws:
-    """How an oil behaves in a contact, but for viscosity and slope at ambient pressure.
+    """How an oil behaves in a contact, but for viscosity and slope at ambient pressure."""
 
-    Attributes
-    ----------
-    pressure_law : type
-        Barus, Roelands or TwoSlope.
-    shear : Newtonian, ReeEyring, LimitingStress or Carreau
-    second_slope : float or None
-        For two slopes: the one at high pressure. [1/Pa]
-    slope_ratio : float
-        For two slopes, without `second_slope`: it over the one at ambient pressure. [1]
-    transition : float
-        For two slopes: where they meet. [Pa]
-    """
-
-    pressure_law: type[PressureLaw]
+    pressure_law: type[PressureLaw]  # Barus, Roelands or TwoSlope.
     shear: ShearLaw
-    second_slope: float | None = None
+    second_slope: float | None = None  # For two slopes: the one at high pressure. [1/Pa]
+    # For two slopes, without `second_slope`: it over the one at ambient pressure. [1]
     slope_ratio: float = math.nan
-    transition: float = math.nan
+    transition: float = math.nan  # For two slopes: where they meet. [Pa]
 
     def pressure(self, alpha: float) -> PressureLaw:
         """The law for an oil of slope `alpha` at ambient pressure."""

@@ -23,8 +23,6 @@ from epicyclic.kernels.ehl_steady import deflection_matrix
 from epicyclic.status import Status
 from epicyclic.units import percent
 
-__all__ = ["AsperityContact", "Frame", "RoughSolution", "solve_rough"]
-
 FloatArray = NDArray[np.float64]
 
 NODES = 512
@@ -67,19 +65,12 @@ MOST_FRAMES = 60
 
 @dataclass(frozen=True, slots=True)
 class AsperityContact:
-    """Where surfaces touch, and their friction there. Theory (H23).
+    """Where surfaces touch, and their friction there. Theory (H23)."""
 
-    Attributes
-    ----------
-    film : float
-        Film below which boundary layers and roughness finer than a stylus resolves carry the
-        load: thinner films than the default do not converge on a grid. [m]
-    friction : float
-        Shear stress over pressure where they touch. [1]
-    """
-
+    # Film below which boundary layers and roughness finer than a stylus resolves carry the load:
+    # thinner films than the default do not converge on a grid. [m]
     film: float = PRESETS[DEFAULT].film
-    friction: float = PRESETS[DEFAULT].friction
+    friction: float = PRESETS[DEFAULT].friction  # Shear stress over pressure where they touch. [1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,70 +84,34 @@ class Frame:
 
 @dataclass(frozen=True, eq=False)
 class RoughSolution:
-    """Averages of a transient rough contact.
-
-    Attributes
-    ----------
-    contact : LineContact
-    smooth : SmoothSolution
-        The same contact without roughness, where the simulation starts.
-    status : Status
-        Failed if the friction did not become stationary or too many steps had no solution.
-    message : str
-        Why it failed; empty if it did not.
-    x : ndarray, shape (n,)
-        [m]
-    friction : ndarray, shape (steps,)
-        Coefficient at every step that counts. [1]
-    friction_coefficient, friction_error : float
-        Mean and its standard error, from the means of blocks. [1]
-    asperity_friction_share : float
-        Share of friction from touching surfaces. [1]
-    contact_share : float
-        Touching length over 2 b_h. [1]
-    asperity_load_share : float
-        Load on touching surfaces over W'. [1]
-    minimum_film, mean_least_film : float
-        Least film of all moments, and the mean over them of the least. [m]
-    mean_highest_pressure : float
-        Mean over all moments of the highest pressure; above the hardness of a surface it would
-        yield, and this solution be wrong there. [Pa]
-    mean_central_film : float
-        Mean over all moments of the film at x = 0. [m]
-    rolling_loss, rolling_loss_error : float
-        Power per length of the pressure flow: mean and its standard error. [W/m]
-    roughness_kept : float
-        Share of Rq that the grid resolves, of the surface that loses more. [1]
-    steps, unsolved_steps : int
-        Time steps in all, and those without convergence.
-    newton_steps : float
-        Mean over the time steps.
-    frames : list of Frame
-        The last moments, if asked for.
-    """
+    """Averages of a transient rough contact."""
 
     contact: LineContact
-    smooth: SmoothSolution
+    smooth: SmoothSolution  # The same contact without roughness, where the simulation starts.
+    # Failed if the friction did not become stationary or too many steps had no solution.
     status: Status
-    message: str
-    x: FloatArray
-    friction: FloatArray
-    friction_coefficient: float
-    friction_error: float
-    asperity_friction_share: float
-    contact_share: float
-    asperity_load_share: float
-    minimum_film: float
-    mean_least_film: float
-    mean_central_film: float
+    message: str  # Why it failed; empty if it did not.
+    x: FloatArray  # [m]
+    friction: FloatArray  # Coefficient at every step that counts. [1]
+    friction_coefficient: float  # Mean and its standard error, from the means of blocks. [1]
+    friction_error: float  # Mean and its standard error, from the means of blocks. [1]
+    asperity_friction_share: float  # Share of friction from touching surfaces. [1]
+    contact_share: float  # Touching length over 2 b_h. [1]
+    asperity_load_share: float  # Load on touching surfaces over W'. [1]
+    minimum_film: float  # Least film of all moments, and the mean over them of the least. [m]
+    mean_least_film: float  # Least film of all moments, and the mean over them of the least. [m]
+    mean_central_film: float  # Mean over all moments of the film at x = 0. [m]
+    # Mean over all moments of the highest pressure; above the hardness of a surface it would yield,
+    # and this solution be wrong there. [Pa]
     mean_highest_pressure: float
+    # Power per length of the pressure flow: mean and its standard error. [W/m]
     rolling_loss: float
     rolling_loss_error: float
-    roughness_kept: float
-    steps: int
-    unsolved_steps: int
-    newton_steps: float
-    frames: Sequence[Frame] = field(default_factory=list)
+    roughness_kept: float  # Share of Rq that the grid resolves, of the surface that loses more. [1]
+    steps: int  # Time steps in all, and those without convergence.
+    unsolved_steps: int  # Time steps in all, and those without convergence.
+    newton_steps: float  # Mean over the time steps.
+    frames: Sequence[Frame] = field(default_factory=list)  # The last moments, if asked for.
 
 
 class _State(NamedTuple):
@@ -331,40 +286,25 @@ def _stride(contact: LineContact, surfaces: Sequence[Profile], spacing: float) -
 
 def solve_rough(
     contact: LineContact,
-    surface1: Profile = SMOOTH,
-    surface2: Profile = SMOOTH,
+    surface1: Profile = SMOOTH,  # Moving with the speeds of the contact.
+    surface2: Profile = SMOOTH,  # Moving with the speeds of the contact.
     asperities: AsperityContact | None = None,
     nodes: int = NODES,
-    frame_interval: float | None = None,
+    frame_interval: float | None = None,  # Time between kept moments; none are kept by default. [s]
+    # Isothermal without; with it the film has the temperature of the smooth contact.
     heating: Heating | None = None,
+    # Hold the roughness still where it is and let the oil flow past: the steady rough contact.
     frozen: bool = False,
+    # Times b/u_r after which it is given up if the friction is still not known.
     most_blocks: int = MOST_BLOCKS,
+    # Standard error of the mean friction over it at which it is known. [1]
     tolerance: float = STATIONARY,
+    # Called with the numbers of blocks done and expected.
     progress: Callable[[int, int], None] | None = None,
 ) -> RoughSolution:
     """Simulate until the mean friction is known well enough.
 
     Theory (H21), (H25).
-
-    Parameters
-    ----------
-    contact : LineContact
-    surface1, surface2 : Profile
-        Moving with the speeds of the contact.
-    asperities : AsperityContact, optional
-    nodes : int
-    frame_interval : float, optional
-        Time between kept moments; none are kept by default. [s]
-    heating : Heating, optional
-        Isothermal without; with it the film has the temperature of the smooth contact.
-    frozen : bool
-        Hold the roughness still where it is and let the oil flow past: the steady rough contact.
-    most_blocks : int
-        Times b/u_r after which it is given up if the friction is still not known.
-    tolerance : float
-        Standard error of the mean friction over it at which it is known. [1]
-    progress : callable, optional
-        Called with the numbers of blocks done and expected.
     """
     smooth = solve_smooth(contact, heating=heating)
     if smooth.status is not Status.CONVERGED:

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["PERIOD", "SMOOTH", "Profile", "generate_profile", "mean_line", "sinusoidal_profile"]
-
 FloatArray = NDArray[np.float64]
 
 POINTS_PER_CORRELATION = 8
@@ -27,18 +25,10 @@ GAUSSIAN = math.sqrt(math.log(2) / math.pi)
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """Heights of a surface at even distances; it repeats itself.
+    """Heights of a surface at even distances; it repeats itself."""
 
-    Attributes
-    ----------
-    heights : ndarray, shape (n,)
-        With zero mean. [m]
-    spacing : float
-        [m]
-    """
-
-    heights: FloatArray
-    spacing: float
+    heights: FloatArray  # With zero mean. [m]
+    spacing: float  # [m]
 
     @property
     def length(self) -> float:
@@ -107,27 +97,14 @@ def sinusoidal_profile(amplitude: float, wavelength: float) -> Profile:
 
 
 def generate_profile(
-    rms: float,
-    correlation_length: float,
-    length: float,
-    seed: int,
-    skewness: float = 0.0,
-    kurtosis: float = 3.0,
+    rms: float,  # Rq. [m]
+    correlation_length: float,  # Where the autocorrelation exp(-(x/l)^2) has fallen to 1/e. [m]
+    length: float,  # Length of the period. [m]
+    seed: int,  # The same seed gives the same profile.
+    skewness: float = 0.0,  # Rsk and Rku of the height distribution.
+    kurtosis: float = 3.0,  # Rsk and Rku of the height distribution.
 ) -> Profile:
     """A random profile of given statistics. Theory (H26).
-
-    Parameters
-    ----------
-    rms : float
-        Rq. [m]
-    correlation_length : float
-        Where the autocorrelation exp(-(x/l)^2) has fallen to 1/e. [m]
-    length : float
-        Length of the period. [m]
-    seed : int
-        The same seed gives the same profile.
-    skewness, kurtosis : float
-        Rsk and Rku of the height distribution.
 
     Raises
     ------
@@ -149,16 +126,12 @@ def generate_profile(
     return Profile(heights * (rms / heights.std()), length / count)
 
 
-def mean_line(heights: FloatArray, spacing: float, cutoff: float) -> FloatArray:
-    """What of a profile is longer than `cutoff`: the Gaussian filter. Theory (H32).
-
-    Parameters
-    ----------
-    heights : ndarray, shape (n,)
-        At even distances.
-    spacing, cutoff : float
-        In the same unit.
-    """
+def mean_line(
+    heights: FloatArray,  # At even distances.
+    spacing: float,  # In the same unit.
+    cutoff: float,  # In the same unit.
+) -> FloatArray:
+    """What of a profile is longer than `cutoff`: the Gaussian filter. Theory (H32)."""
     from scipy.signal import fftconvolve
 
     reach = math.ceil(cutoff / spacing)  # the weight there is 7e-7 of the largest

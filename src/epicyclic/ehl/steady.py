@@ -16,8 +16,6 @@ from epicyclic.ehl.heating import Heating, flow_easing, temperature_rise, thinni
 from epicyclic.kernels.ehl_steady import deflection_matrix, shear_stresses, solve_steady
 from epicyclic.status import Status
 
-__all__ = ["SmoothSolution", "solve_smooth"]
-
 FloatArray = NDArray[np.float64]
 
 NODES = 256
@@ -38,43 +36,20 @@ TRACE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class SmoothSolution:
-    """Solution of a steady smooth contact.
-
-    Attributes
-    ----------
-    contact : LineContact
-    status : Status
-        Whether the iteration met its tolerance; if it did not, nothing else may be used.
-    message : str
-        Why it failed; empty if it did not.
-    iterations : int
-        Newton steps on the last grid.
-    error : float
-        Largest relative change in the last step. [1]
-    x : ndarray, shape (n,)
-        [m]
-    pressure : ndarray, shape (n,)
-        [Pa]
-    film : ndarray, shape (n,)
-        [m]
-    shear_stress : ndarray, shape (n,)
-        Mean over the film; zero where it is ruptured. [Pa]
-    flow : ndarray, shape (n - 1,)
-        Volume flow at ambient density through the faces between the nodes. [m^2/s]
-    temperature_rise : ndarray, shape (n,)
-        Rise of the temperature of the film above the inlet; zero without heating. [K]
-    """
+    """Solution of a steady smooth contact."""
 
     contact: LineContact
+    # Whether the iteration met its tolerance; if it did not, nothing else may be used.
     status: Status
-    message: str
-    iterations: int
-    error: float
-    x: FloatArray
-    pressure: FloatArray
-    film: FloatArray
-    shear_stress: FloatArray
-    flow: FloatArray
+    message: str  # Why it failed; empty if it did not.
+    iterations: int  # Newton steps on the last grid.
+    error: float  # Largest relative change in the last step. [1]
+    x: FloatArray  # [m]
+    pressure: FloatArray  # [Pa]
+    film: FloatArray  # [m]
+    shear_stress: FloatArray  # Mean over the film; zero where it is ruptured. [Pa]
+    flow: FloatArray  # Volume flow at ambient density through the faces between the nodes. [m^2/s]
+    # Rise of the temperature of the film above the inlet; zero without heating. [K]
     temperature_rise: FloatArray
 
     @property
@@ -118,22 +93,14 @@ class SmoothSolution:
 def solve_smooth(
     contact: LineContact,
     nodes: int = NODES,
+    # Where the film starts, over b_h and below -1; by default so far off that it does not matter, a
+    # fully flooded contact.
     inlet: float | None = None,
-    heating: Heating | None = None,
+    heating: Heating | None = None,  # Isothermal without.
 ) -> SmoothSolution:
     """Steady smooth solution of a contact.
 
     Theory (H14).
-
-    Parameters
-    ----------
-    contact : LineContact
-    nodes : int
-    inlet : float, optional
-        Where the film starts, over b_h and below -1; by default so far off that it does not
-        matter, a fully flooded contact.
-    heating : Heating, optional
-        Isothermal without.
     """
     easing = flow_easing(contact, heating)
     film = expected_film(contact, easing)

@@ -17,8 +17,6 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.micro_geometry import FlankDeviations
 from epicyclic.kernels.contact_load import solve_all_positions
 
-__all__ = ["LoadedMesh", "load_mesh_elastically", "load_mesh_next_to"]
-
 FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-9
@@ -107,27 +105,18 @@ class LoadedMesh:
 
 @lru_cache(maxsize=KEPT_LOADS)
 def load_mesh_elastically(
-    mesh: Mesh,
-    body1: GearBody,
-    body2: GearBody,
-    positions: int,
-    segments: int,
-    force: float,
-    deviations: FlankDeviations = UNMODIFIED,
+    mesh: Mesh,  # As for `mesh_compliance`.
+    body1: GearBody,  # As for `mesh_compliance`.
+    body2: GearBody,  # As for `mesh_compliance`.
+    positions: int,  # As for `mesh_compliance`.
+    segments: int,  # As for `mesh_compliance`.
+    force: float,  # Positive. [N]
+    deviations: FlankDeviations = UNMODIFIED,  # Micro-geometry of both members, and misalignment.
 ) -> LoadedMesh:
     """Line loads of all segments under the transverse `force` of the mesh.
 
     Contact is looked for on the contact lines of rigid flanks: that deflection and relief may move
     the first and the last contact of a tooth beyond the ends of the path is left out.
-
-    Parameters
-    ----------
-    mesh, body1, body2, positions, segments
-        As for `mesh_compliance`.
-    force : float
-        Positive. [N]
-    deviations : FlankDeviations
-        Micro-geometry of both members, and misalignment.
 
     Raises
     ------
@@ -140,7 +129,9 @@ def load_mesh_elastically(
 
 
 def load_mesh_next_to(
-    last: LoadedMesh,
+    last: LoadedMesh,  # With the same `positions` and `segments`.
+    # body1, body2, positions, segments, force, deviations: As for `load_mesh_elastically`, which
+    # has the same solution but for its tolerance.
     body1: GearBody,
     body2: GearBody,
     positions: int,
@@ -148,15 +139,7 @@ def load_mesh_next_to(
     force: float,
     deviations: FlankDeviations = UNMODIFIED,
 ) -> LoadedMesh:
-    """The mesh of `last` under nearly the same load, which saves most of the work.
-
-    Parameters
-    ----------
-    last : LoadedMesh
-        With the same `positions` and `segments`.
-    body1, body2, positions, segments, force, deviations
-        As for `load_mesh_elastically`, which has the same solution but for its tolerance.
-    """
+    """The mesh of `last` under nearly the same load, which saves most of the work."""
     compliance = mesh_compliance(last.mesh, body1, body2, positions, segments)
     separation = _separation(last.mesh, deviations, positions, segments)
     return _loaded(last.mesh, compliance, force, separation, last.line_load * last.lines.length)

@@ -23,8 +23,6 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.tools import Tool
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_half_width
 
-__all__ = ["GearBody", "MeshCompliance", "mesh_compliance"]
-
 FloatArray = NDArray[np.float64]
 
 FACE_TERMS_PER_HEIGHT = 2.5
@@ -37,22 +35,12 @@ to each other. One takes 0.25 MB with the default resolution, and 120 MB with th
 
 @dataclass(frozen=True, slots=True)
 class GearBody:
-    """What makes a gear yield beside its geometry.
+    """What makes a gear yield beside its geometry."""
 
-    Attributes
-    ----------
-    modulus, poisson_ratio : float
-        [Pa], [1]
-    tool : RackTool, ShaperTool or None
-        The tool that leaves the root fillet; None for `default_tool`.
-    rim : Rim or None
-        Rim of a ring gear; None for a body that only yields under each tooth.
-    """
-
-    modulus: float
-    poisson_ratio: float
-    tool: Tool | None = None
-    rim: Rim | None = None
+    modulus: float  # [Pa], [1]
+    poisson_ratio: float  # [Pa], [1]
+    tool: Tool | None = None  # The tool that leaves the root fillet; None for `default_tool`.
+    rim: Rim | None = None  # Rim of a ring gear; None for a body that only yields under each tooth.
 
     @property
     def surface_compliance(self) -> float:
@@ -62,42 +50,27 @@ class GearBody:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MeshCompliance:
-    """Influence coefficients of all contact lines of a mesh at all mesh positions.
-
-    Attributes
-    ----------
-    lines : ContactLines
-    influence : ndarray, shape (positions, lines, segments, segments)
-        Approach at one segment under unit force on another of its line, both teeth. [m/N]
-    coupling : ndarray, shape (positions, lines, lines)
-        Approach at one line under unit force on another, from the rim. [m/N]
-    local_a : ndarray, shape (positions, lines, segments)
-        A of the local deflection q (A - B ln(q)/2), q in N/m. [m^2/N]
-    local_b : float
-        B of it. [m^2/N]
-    """
+    """Influence coefficients of all contact lines of a mesh at all mesh positions."""
 
     lines: ContactLines
+    # Approach at one segment under unit force on another of its line, both teeth. [m/N]
     influence: FloatArray
-    coupling: FloatArray
-    local_a: FloatArray
-    local_b: float
+    coupling: FloatArray  # Approach at one line under unit force on another, from the rim. [m/N]
+    local_a: FloatArray  # A of the local deflection q (A - B ln(q)/2), q in N/m. [m^2/N]
+    local_b: float  # B of it. [m^2/N]
 
 
 @lru_cache(maxsize=KEPT_MESHES)
 def mesh_compliance(
-    mesh: Mesh, body1: GearBody, body2: GearBody, positions: int, segments: int
+    mesh: Mesh,
+    body1: GearBody,
+    body2: GearBody,
+    positions: int,  # As for `contact_lines`.
+    segments: int,  # As for `contact_lines`.
 ) -> MeshCompliance:
     """Influence coefficients of `mesh`, shared by all loads.
 
     Theory (E4).
-
-    Parameters
-    ----------
-    mesh : Mesh
-    body1, body2 : GearBody
-    positions, segments : int
-        As for `contact_lines`.
 
     Raises
     ------

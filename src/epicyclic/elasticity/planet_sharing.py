@@ -16,14 +16,6 @@ from numpy.typing import NDArray
 
 from epicyclic.errors import ConvergenceError
 
-__all__ = [
-    "Branches",
-    "branch_directions",
-    "closed_form_branch_forces",
-    "mesh_load_factor_shares",
-    "solve_branch_forces",
-]
-
 FloatArray = NDArray[np.float64]
 
 ROUNDING = 1e-9
@@ -35,34 +27,20 @@ lighter the load, the less they change. [1]"""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Branches:
-    """The elastic branches of all planets.
+    """The elastic branches of all planets."""
 
-    Attributes
-    ----------
-    angles : ndarray, shape (planets,)
-        Positions of the planets. [rad]
-    compliance : float
-        C of one branch, along the line of action. [m/N]
-    lead : ndarray, shape (planets,)
-        g, by which a branch is closed before the others, along the line of action. [m]
-    """
-
-    angles: FloatArray
-    compliance: float
+    angles: FloatArray  # Positions of the planets. [rad]
+    compliance: float  # C of one branch, along the line of action. [m/N]
+    # g, by which a branch is closed before the others, along the line of action. [m]
     lead: FloatArray
 
 
 def branch_directions(
-    angles: FloatArray, sun_pressure_angle: float, ring_pressure_angle: float
+    angles: FloatArray,  # Positions of the planets. [rad]
+    sun_pressure_angle: float,  # Operating pressure angles of both meshes. [rad]
+    ring_pressure_angle: float,  # Operating pressure angles of both meshes. [rad]
 ) -> dict[str, FloatArray]:
     """How much a displacement of a member in x and y closes each branch. Theory (S2).
-
-    Parameters
-    ----------
-    angles : ndarray, shape (planets,)
-        Positions of the planets. [rad]
-    sun_pressure_angle, ring_pressure_angle : float
-        Operating pressure angles of both meshes. [rad]
 
     Returns
     -------
@@ -76,24 +54,15 @@ def branch_directions(
 
 
 def solve_branch_forces(
-    force: float,
+    force: float,  # Sum of all branch forces, positive. [N]
     branches: Branches,
-    directions: Mapping[str, FloatArray],
+    directions: Mapping[str, FloatArray],  # As from `branch_directions`.
+    # Stiffness of the support of every member that can give way; 0 if it floats. [N/m]
     supports: Mapping[str, float],
 ) -> FloatArray:
     """Forces of all branches, none negative, in balance with `force` and the supports.
 
     Theory (S3), (S4).
-
-    Parameters
-    ----------
-    force : float
-        Sum of all branch forces, positive. [N]
-    branches : Branches
-    directions : mapping of str to ndarray, shape (planets, 2)
-        As from `branch_directions`.
-    supports : mapping of str to float
-        Stiffness of the support of every member that can give way; 0 if it floats. [N/m]
 
     Returns
     -------
@@ -195,19 +164,16 @@ def _gives_way() -> ConvergenceError:
     )
 
 
-def closed_form_branch_forces(force: float, branches: Branches, *, floating: bool) -> FloatArray:
+def closed_form_branch_forces(
+    force: float,  # Sum of all branch forces. [N]
+    branches: Branches,
+    *,
+    floating: bool,  # True if one central member floats.
+) -> FloatArray:
     """Forces of equally spaced branches that all stay loaded. Theory (S5).
 
     Other members than the one that may float are rigid. Can be negative: the form does not hold
     there.
-
-    Parameters
-    ----------
-    force : float
-        Sum of all branch forces. [N]
-    branches : Branches
-    floating : bool
-        True if one central member floats.
 
     Returns
     -------

@@ -26,46 +26,26 @@ from epicyclic.elasticity.tooth_plate import SHEAR_FACTOR
 from epicyclic.geometry.contact_lines import ContactLines
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = ["ElasticRing", "Rim", "rim_coupling"]
-
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class Rim:
-    """The rim that carries the teeth of a ring gear.
+    """The rim that carries the teeth of a ring gear."""
 
-    Attributes
-    ----------
-    thickness : float
-        From root to outside. [m]
-    loads : int
-        Planets that load it, taken as evenly spaced and equal.
-    """
-
-    thickness: float
-    loads: int = 1
+    thickness: float  # From root to outside. [m]
+    loads: int = 1  # Planets that load it, taken as evenly spaced and equal.
 
 
 @dataclass(frozen=True, slots=True)
 class ElasticRing:
-    """A circular ring of rectangular section.
+    """A circular ring of rectangular section."""
 
-    Attributes
-    ----------
-    radius : float
-        Radius of its middle line. [m]
-    thickness, width : float
-        [m]
-    modulus, poisson_ratio : float
-        [Pa], [1]
-    """
-
-    radius: float
-    thickness: float
-    width: float
-    modulus: float
-    poisson_ratio: float
+    radius: float  # Radius of its middle line. [m]
+    thickness: float  # [m]
+    width: float  # [m]
+    modulus: float  # [Pa], [1]
+    poisson_ratio: float  # [Pa], [1]
 
     @property
     def shear_stiffness(self) -> float:
@@ -73,20 +53,18 @@ class ElasticRing:
         shear_modulus = self.modulus / (2 * (1 + self.poisson_ratio))
         return SHEAR_FACTOR * shear_modulus * self.thickness * self.width
 
-    def influence(self, angle: FloatArray, loads: int) -> FloatArray:
+    def influence(
+        self,
+        angle: FloatArray,  # From the force, anticlockwise. [rad]
+        # Number of evenly spaced forces (outwards, anticlockwise) and moments (anticlockwise).
+        loads: int,
+    ) -> FloatArray:
         """Displacement (u, v, psi) at `angle` from one of `loads` equal forces (W, T, M).
 
         Waves shorter than the thickness of the ring are left out: they belong to the foundation
         of the tooth. One wave around the ring moves it as a whole, which its support prevents.
 
         Theory (E6).
-
-        Parameters
-        ----------
-        angle : ndarray
-            From the force, anticlockwise. [rad]
-        loads : int
-            Number of evenly spaced forces (outwards, anticlockwise) and moments (anticlockwise).
 
         Returns
         -------
@@ -139,22 +117,17 @@ _ODD_SIGN = np.array([[0.0, -1.0, -1.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
 
 
 def rim_coupling(
-    mesh: Mesh, lines: ContactLines, rim: Rim, modulus: float, poisson_ratio: float
+    mesh: Mesh,  # Its member 2 is the ring gear.
+    lines: ContactLines,
+    rim: Rim,
+    modulus: float,  # [Pa], [1]
+    poisson_ratio: float,  # [Pa], [1]
 ) -> FloatArray:
     """Deflection along the normal at each contact line under a unit force on each.
 
     The force of a line acts at its middle, in the plane of action; the tooth is rigid here.
 
     Theory (E7).
-
-    Parameters
-    ----------
-    mesh : Mesh
-        Its member 2 is the ring gear.
-    lines : ContactLines
-    rim : Rim
-    modulus, poisson_ratio : float
-        [Pa], [1]
 
     Returns
     -------

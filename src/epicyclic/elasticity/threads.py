@@ -12,8 +12,6 @@ from importlib import import_module
 
 from threadpoolctl import ThreadpoolController
 
-__all__ = ["one_thread"]
-
 
 def one_thread() -> AbstractContextManager[object]:
     """A context in which matrix products and decompositions use one thread."""

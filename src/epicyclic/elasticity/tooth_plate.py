@@ -32,8 +32,6 @@ from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.outline import tooth_outline
 from epicyclic.geometry.tools import Tool
 
-__all__ = ["ToothPlate", "tooth_plate"]
-
 FloatArray = NDArray[np.float64]
 
 SHEAR_FACTOR = 5 / 6
@@ -53,30 +51,17 @@ DEFLECTION_CONSTANT = 1.534
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ToothPlate:
-    """Compliance of one tooth, ready to be evaluated anywhere on its flank.
-
-    Attributes
-    ----------
-    gear : Gear
-    height : float
-        From root section to tip. [m]
-    section_height, section_thickness : ndarray, shape (n,)
-        Thickness of the tooth over the height above the root section. [m]
-    root_offset : float
-        Height of the root section above the root circle. [m]
-    half_inverse : ndarray, shape (3 terms, 3 terms)
-        Inverse of the Cholesky factor of the stiffness matrix: compliances are products of it.
-    face_terms : int
-        Polynomials along the tooth.
-    """
+    """Compliance of one tooth, ready to be evaluated anywhere on its flank."""
 
     gear: Gear
-    height: float
+    height: float  # From root section to tip. [m]
+    # Thickness of the tooth over the height above the root section. [m]
     section_height: FloatArray
     section_thickness: FloatArray
-    root_offset: float
+    root_offset: float  # Height of the root section above the root circle. [m]
+    # Inverse of the Cholesky factor of the stiffness matrix: compliances are products of it.
     half_inverse: FloatArray
-    face_terms: int
+    face_terms: int  # Polynomials along the tooth.
 
     def depth(self, curvature: FloatArray) -> FloatArray:
         """Distance from points of the flank to the tooth's middle line, along the normal. [m]"""
@@ -85,20 +70,17 @@ class ToothPlate:
         depth: FloatArray = thickness / (2 * np.cos(inclination))
         return depth
 
-    def amplitudes(self, curvature: FloatArray, face_position: FloatArray) -> FloatArray:
+    def amplitudes(
+        self,
+        curvature: FloatArray,  # Transverse radius of curvature of the involute at each point. [m]
+        face_position: FloatArray,  # Position across the face width of the gear, 0 to 1.
+    ) -> FloatArray:
         """Amplitudes a_i of unit normal forces at points of the flank: their compliance is a_i a_j.
 
         The force acts along the common normal; in the section of the tooth it bends the plate by
         its part across the middle line and, acting beside that line, by the moment of the rest.
 
         Theory (E3).
-
-        Parameters
-        ----------
-        curvature : ndarray, shape (n,)
-            Transverse radius of curvature of the involute at each point. [m]
-        face_position : ndarray, shape (n,)
-            Position across the face width of the gear, 0 to 1.
 
         Returns
         -------
@@ -133,20 +115,13 @@ class ToothPlate:
 
 @lru_cache(maxsize=64)
 def tooth_plate(
-    gear: Gear, elastic_modulus: float, poisson_ratio: float, face_terms: int, tool: Tool
+    gear: Gear,
+    elastic_modulus: float,  # [Pa], [1]
+    poisson_ratio: float,  # [Pa], [1]
+    face_terms: int,  # Polynomials along the tooth: more for teeth long against their height.
+    tool: Tool,  # The tool that leaves the root fillet.
 ) -> ToothPlate:
-    """The plate of one tooth of `gear`.
-
-    Parameters
-    ----------
-    gear : Gear
-    elastic_modulus, poisson_ratio : float
-        [Pa], [1]
-    face_terms : int
-        Polynomials along the tooth: more for teeth long against their height.
-    tool : RackTool or ShaperTool
-        The tool that leaves the root fillet.
-    """
+    """The plate of one tooth of `gear`."""
     height, thickness, offset = _section(gear, tool)
     length = gear.face_width / math.cos(gear.rack.helix_angle)
     stiffness = _stiffness(height, thickness, length, elastic_modulus, poisson_ratio, face_terms)

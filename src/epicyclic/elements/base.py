@@ -13,18 +13,6 @@ from epicyclic.losses.validity import SomeFlags
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = [
-    "HOUSING",
-    "LOAD_DEPENDENT",
-    "LOAD_INDEPENDENT",
-    "OIL",
-    "Element",
-    "ElementResult",
-    "Loss",
-    "State",
-    "joined_key",
-]
-
 LOAD_DEPENDENT = "load-dependent"
 LOAD_INDEPENDENT = "load-independent"
 HOUSING = "housing"
@@ -40,94 +28,52 @@ def joined_key(element: str, name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """What an element sees of the machine.
+    """What an element sees of the machine."""
 
-    Attributes
-    ----------
-    speeds : mapping of str to float
-        Speeds of every body, positive in one common sense; that of `HOUSING` is 0. [rad/s]
-    torques : mapping of str to float
-        That each mesh takes up at its first gear, by the key of the mesh; all its planets together.
-        Torque times speed of that gear against the carrier is the rolling power. [N m]
-    forces : mapping of str to BearingLoad
-        On each bearing of a shaft, by the key of its element.
-    fluids : Fluids
-        Oil and mixture with air. A machine without elements may do without.
-    lossless : bool
-        True if no loss has been taken from the torques yet.
-    drives : mapping of str to bool
-        For each mesh, True if its first gear drives it; where losses turn a small load round, not
-        before they are found.
-    idle : mapping of str to object
-        What each element has found out about itself from the speeds alone, by its key.
-    """
-
+    # Speeds of every body, positive in one common sense; that of `HOUSING` is 0. [rad/s]
     speeds: Mapping[str, float]
+    # That each mesh takes up at its first gear, by the key of the mesh; all its planets together.
+    # Torque times speed of that gear against the carrier is the rolling power. [N m]
     torques: Mapping[str, float]
-    forces: Mapping[str, BearingLoad]
-    fluids: Fluids
-    lossless: bool = False
+    forces: Mapping[str, BearingLoad]  # On each bearing of a shaft, by the key of its element.
+    fluids: Fluids  # Oil and mixture with air. A machine without elements may do without.
+    lossless: bool = False  # True if no loss has been taken from the torques yet.
+    # For each mesh, True if its first gear drives it; where losses turn a small load round, not
+    # before they are found.
     drives: Mapping[str, bool] = field(default_factory=dict[str, bool])
+    # What each element has found out about itself from the speeds alone, by its key.
     idle: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
 class Loss(NamedTuple):
-    """Power that an element loses, or why it loses none.
+    """Power that an element loses, or why it loses none."""
 
-    Attributes
-    ----------
-    group : str
-        `LOAD_DEPENDENT` or `LOAD_INDEPENDENT`.
-    watts : float
-        Never negative. [W]
-    method, source : str
-        The model and where it is printed.
-    left_out : str
-        Why there is no such loss; empty if there is.
-    brakes : tuple of (str, str, float)
-        Two bodies each whose relative motion the loss brakes, and its share there. [1]
-    mesh : str
-        Key of the mesh whose power the loss is a share of; empty for friction between bodies.
-    factor : float
-        The user's factor, which `watts` contain. [1]
-    heat : tuple of (str, float)
-        The thermal nodes that it heats, each with its share. [1]
-    follows : tuple of str
-        Those of the loads of its element that it depends on; empty: all of them.
-    """
-
-    group: str
-    watts: float = 0.0
-    method: str = ""
-    source: str = ""
-    left_out: str = ""
+    group: str  # `LOAD_DEPENDENT` or `LOAD_INDEPENDENT`.
+    watts: float = 0.0  # Never negative. [W]
+    method: str = ""  # The model and where it is printed.
+    source: str = ""  # The model and where it is printed.
+    left_out: str = ""  # Why there is no such loss; empty if there is.
+    # Two bodies each whose relative motion the loss brakes, and its share there. [1]
     brakes: tuple[tuple[str, str, float], ...] = ()
+    # Key of the mesh whose power the loss is a share of; empty for friction between bodies.
     mesh: str = ""
-    factor: float = 1.0
+    factor: float = 1.0  # The user's factor, which `watts` contain. [1]
+    # The thermal nodes that it heats, each with its share. [1]
     heat: tuple[tuple[str, float], ...] = ((OIL, 1.0),)
+    # Those of the loads of its element that it depends on; empty: all of them.
     follows: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class ElementResult:
-    """What an element answers to a state.
+    """What an element answers to a state."""
 
-    Attributes
-    ----------
-    losses : mapping of str to Loss
-        By the last part of their keys, ``"sun_mesh_sliding"``, ``"friction"``.
-    figures : mapping of str to dataclass
-        Labelled numbers for the user, by what they describe: ``"sun_mesh"``.
-    flags : Flags or tuple of ValidityFlag
-        Models used outside their ranges.
-    notes : tuple of str
-        What else the user must know.
-    """
-
+    # By the last part of their keys, ``"sun_mesh_sliding"``, ``"friction"``.
     losses: Mapping[str, Loss]
+    # Labelled numbers for the user, by what they describe: ``"sun_mesh"``.
     figures: Mapping[str, DataclassInstance] = field(default_factory=dict[str, Any])
-    flags: SomeFlags = ()
-    notes: tuple[str, ...] = ()
+    flags: SomeFlags = ()  # Models used outside their ranges.
+    notes: tuple[str, ...] = ()  # What else the user must know.
 
 
 class Element(Protocol):

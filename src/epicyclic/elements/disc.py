@@ -26,36 +26,16 @@ from epicyclic.losses.viscous import (
     viscous_flags,
 )
 
-__all__ = [
-    "Disc",
-    "Jets",
-    "Sump",
-    "ThrustBearing",
-    "churned",
-    "disc_loss",
-    "thrust_loss",
-]
-
 Outcome = tuple[Loss, tuple[ValidityFlag, ...]]
 
 
 @dataclass(frozen=True, slots=True)
 class Sump:
-    """Oil that a body dips into.
+    """Oil that a body dips into."""
 
-    Attributes
-    ----------
-    part : Dipped
-        How far it does.
-    volume : float
-        Volume of the oil. [m^3]
-    model : ChurningModel
-        Model of its churning.
-    """
-
-    part: Dipped
-    volume: float
-    model: ChurningModel
+    part: Dipped  # How far it does.
+    volume: float  # Volume of the oil. [m^3]
+    model: ChurningModel  # Model of its churning.
 
     def power(self, model: ChurningModel, speed: float, state: State) -> float:
         """Churning power. [W]"""
@@ -66,49 +46,24 @@ class Sump:
 
 @dataclass(frozen=True, slots=True)
 class Jets:
-    """Jets of oil on the teeth of a set.
+    """Jets of oil on the teeth of a set."""
 
-    Attributes
-    ----------
-    flow : float
-        Flow of all of them, which the gears that turn share evenly. [m^3/s]
-    speed : float
-        Speed of the oil along the teeth. [m/s]
-    side : NozzleSide
-    pitch_radius : float
-        Pitch radius of the gear that they meet. [m]
-    """
-
-    flow: float
-    speed: float
+    flow: float  # Flow of all of them, which the gears that turn share evenly. [m^3/s]
+    speed: float  # Speed of the oil along the teeth. [m/s]
     side: NozzleSide
-    pitch_radius: float
+    pitch_radius: float  # Pitch radius of the gear that they meet. [m]
 
 
 @dataclass(frozen=True, slots=True)
 class Disc:
-    """A body that turns in the mixture, or dips into a sump.
+    """A body that turns in the mixture, or dips into a sump."""
 
-    Attributes
-    ----------
-    where : str
-        For the flags: ``"sun"``.
-    body : str
-    radius, width : float
-        [m]
-    oil_fraction : float
-        Oil in the mixture, by volume. [1]
-    sump : Sump or None
-        Oil that it dips into, which then drags in place of the mixture.
-    jets : Jets or None
-    """
-
-    where: str
+    where: str  # For the flags: ``"sun"``.
     body: str
-    radius: float
-    width: float
-    oil_fraction: float
-    sump: Sump | None = None
+    radius: float  # [m]
+    width: float  # [m]
+    oil_fraction: float  # Oil in the mixture, by volume. [1]
+    sump: Sump | None = None  # Oil that it dips into, which then drags in place of the mixture.
     jets: Jets | None = None
 
     @property
@@ -119,36 +74,22 @@ class Disc:
 
 @dataclass(frozen=True, slots=True)
 class ThrustBearing:
-    """Thrust bearings that carry no load worth counting.
+    """Thrust bearings that carry no load worth counting."""
 
-    Attributes
-    ----------
-    between : tuple of str
-        The two bodies whose speeds differ.
-    mean_diameter : float
-        [m]
-    viscous_factor : float
-        f0. [1]
-    count : int
-    """
-
-    between: tuple[str, str]
-    mean_diameter: float
-    viscous_factor: float
+    between: tuple[str, str]  # The two bodies whose speeds differ.
+    mean_diameter: float  # [m]
+    viscous_factor: float  # f0. [1]
     count: int
 
 
-def disc_loss(discs: Iterable[Disc], state: State, struck: int = 1) -> Outcome:
+def disc_loss(
+    discs: Iterable[Disc],
+    state: State,
+    struck: int = 1,  # Gears that turn and share the oil of the jets.
+) -> Outcome:
     """The drag of `discs` together, each on its own shaft, and its flags.
 
     Theory (N2).
-
-    Parameters
-    ----------
-    discs : iterable of Disc
-    state : State
-    struck : int
-        Gears that turn and share the oil of the jets.
     """
     flags: tuple[ValidityFlag, ...] = ()
     drags: dict[str, float] = {}

@@ -39,17 +39,6 @@ from epicyclic.units import (
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = [
-    "BearingFigures",
-    "Figure",
-    "Figures",
-    "FluidFigures",
-    "MeshFigures",
-    "displayed",
-    "figure",
-    "figures",
-]
-
 
 def figure(label: str, unit: Quantity) -> Any:
     """A field of a dataclass that carries its label and unit."""

@@ -17,8 +17,6 @@ from epicyclic.lubricant.properties import (
 )
 from epicyclic.units import CELSIUS, SQUARE_MM_PER_SECOND
 
-__all__ = ["Fluids", "fluids_at", "oil_at", "oil_flags"]
-
 _VISCOSITY = Range(
     "kinematic_viscosity",
     "kinematic viscosity",
@@ -31,23 +29,13 @@ _VISCOSITY = Range(
 
 @dataclass(frozen=True, slots=True)
 class Fluids:
-    """The oil, its mixture with air, and flags on both.
-
-    Attributes
-    ----------
-    oil : OilState
-    mixture : MixtureState
-    pressure : float
-        Ambient. [Pa]
-    flags : Flags or tuple of ValidityFlag
-    contacts : mapping of str to OilState
-        Oil at the contacts whose temperature differs, by the keys of meshes and bearings.
-    """
+    """The oil, its mixture with air, and flags on both."""
 
     oil: OilState
     mixture: MixtureState
-    pressure: float
+    pressure: float  # Ambient. [Pa]
     flags: SomeFlags
+    # Oil at the contacts whose temperature differs, by the keys of meshes and bearings.
     contacts: Mapping[str, OilState] = field(default_factory=dict[str, OilState], hash=False)
 
     def at(self, contact: str) -> OilState:
@@ -81,26 +69,14 @@ def oil_at(oil: Oil, temperature: float, pressure_viscosity_factor: float = 1.0)
 
 def fluids_at(
     oil: Oil,
-    temperature: float,
+    temperature: float,  # [K]
     *,
-    oil_air_ratio: float,
-    pressure: float,
+    oil_air_ratio: float,  # Oil share by volume at ambient pressure. [1]
+    pressure: float,  # Ambient. [Pa]
+    # Multiplies the pressure-viscosity coefficient of the oil. [1]
     pressure_viscosity_factor: float = 1.0,
 ) -> Fluids:
-    """Oil and mixture at one temperature.
-
-    Parameters
-    ----------
-    oil : Oil
-    temperature : float
-        [K]
-    oil_air_ratio : float
-        Oil share by volume at ambient pressure. [1]
-    pressure : float
-        Ambient. [Pa]
-    pressure_viscosity_factor : float
-        Multiplies the pressure-viscosity coefficient of the oil. [1]
-    """
+    """Oil and mixture at one temperature."""
     state = oil_at(oil, temperature, pressure_viscosity_factor)
     mixture = mixture_state(state, oil_air_ratio, pressure)
     return Fluids(state, mixture, pressure, oil_flags(oil, temperature))

@@ -29,7 +29,7 @@ from epicyclic.geometry.micro_geometry import FlankDeviations
 from epicyclic.geometry.tools import Tool
 from epicyclic.losses.contact import MeshContact, mesh_contact
 from epicyclic.losses.direct import EhlDirect
-from epicyclic.losses.friction import FrictionModel
+from epicyclic.losses.friction.base import FrictionModel
 from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS, LineLoads, MeshLoad
 from epicyclic.losses.mesh import (
     MeshLoss,
@@ -46,18 +46,6 @@ from epicyclic.lubricant.properties import OilState
 from epicyclic.pocketing.similarity import FlowFigures
 from epicyclic.thermal.solids import Solid
 
-__all__ = [
-    "GearMesh",
-    "MeshDuty",
-    "MeshModels",
-    "MeshOutcome",
-    "contact_under",
-    "distribute_load",
-    "elastic_loads",
-    "load_mesh",
-    "solve_mesh",
-]
-
 FloatArray = NDArray[np.float64]
 
 PEAK_SHARE = 0.01
@@ -67,90 +55,43 @@ OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
 
 @dataclass(frozen=True, slots=True)
 class MeshModels:
-    """How the losses of a mesh are computed.
-
-    Attributes
-    ----------
-    friction : FrictionModel
-    rolling : RollingModel
-    by_loss_factor : bool
-        True for mean friction times Ohlendorf's loss factor, without rolling loss.
-    load_distribution : str
-        A key of `LOAD_DISTRIBUTIONS`.
-    positions, segments : int
-        Resolution: mesh positions, segments of a contact line.
-    pockets : PocketSettings
-    """
+    """How the losses of a mesh are computed."""
 
     friction: FrictionModel
     rolling: RollingModel
+    # True for mean friction times Ohlendorf's loss factor, without rolling loss.
     by_loss_factor: bool
-    load_distribution: str
-    positions: int
-    segments: int
+    load_distribution: str  # A key of `LOAD_DISTRIBUTIONS`.
+    positions: int  # Resolution: mesh positions, segments of a contact line.
+    segments: int  # Resolution: mesh positions, segments of a contact line.
     pockets: PocketSettings
 
 
 @dataclass(frozen=True, slots=True)
 class GearMesh:
-    """Two gears in mesh, each on a body, seen from a carrier.
+    """Two gears in mesh, each on a body, seen from a carrier."""
 
-    Attributes
-    ----------
-    key : str
-        ``"sun_mesh"``: first word of its losses.
-    mesh : Mesh
-    bodies : tuple of str
-        The bodies of gear 1 and gear 2.
-    tools : tuple of Tool
-        The tools that cut both gears.
-    roundings : tuple of float or None
-        Tip rounding of both tools, where stated. [m]
-    flanks : Flanks
-        Roughness of both flanks, equivalent modulus.
-    solids : tuple of GearBody
-        What makes both gears yield.
-    deviations : FlankDeviations
-        Micro-geometry of both flanks, and misalignment.
-    models : MeshModels
-    materials : tuple of Solid
-        Materials of both gears.
-    nodes : tuple of str
-        The thermal nodes of both gears.
-    """
-
-    key: str
+    key: str  # ``"sun_mesh"``: first word of its losses.
     mesh: Mesh
-    bodies: tuple[str, str]
-    tools: tuple[Tool, Tool]
-    roundings: tuple[float | None, float | None]
-    flanks: Flanks[float]
-    solids: tuple[GearBody, GearBody]
-    deviations: FlankDeviations
+    bodies: tuple[str, str]  # The bodies of gear 1 and gear 2.
+    tools: tuple[Tool, Tool]  # The tools that cut both gears.
+    roundings: tuple[float | None, float | None]  # Tip rounding of both tools, where stated. [m]
+    flanks: Flanks[float]  # Roughness of both flanks, equivalent modulus.
+    solids: tuple[GearBody, GearBody]  # What makes both gears yield.
+    deviations: FlankDeviations  # Micro-geometry of both flanks, and misalignment.
     models: MeshModels
-    materials: tuple[Solid, Solid]
-    nodes: tuple[str, str]
+    materials: tuple[Solid, Solid]  # Materials of both gears.
+    nodes: tuple[str, str]  # The thermal nodes of both gears.
 
 
 @dataclass(frozen=True, slots=True)
 class MeshDuty:
-    """A mesh and what it has to do, relative to the carrier, for one planet.
-
-    Attributes
-    ----------
-    gears : GearMesh
-    torque1 : float
-        That gear 1 brings into the mesh. [N m]
-    speed1 : float
-        Speed of gear 1 against the carrier. [rad/s]
-    drives1 : bool
-        True if power flows from gear 1 to gear 2 or no power flows.
-    """
+    """A mesh and what it has to do, relative to the carrier, for one planet."""
 
     gears: GearMesh
-    torque1: float
-    speed1: float
-    drives1: bool
+    torque1: float  # That gear 1 brings into the mesh. [N m]
+    speed1: float  # Speed of gear 1 against the carrier. [rad/s]
+    drives1: bool  # True if power flows from gear 1 to gear 2 or no power flows.
 
     @property
     def key(self) -> str:
@@ -236,19 +177,12 @@ def load_mesh(duty: MeshDuty, oil: OilState, around: OilState | None = None) -> 
 
 
 def contact_under(
-    duty: MeshDuty, loads: LineLoads, oil: OilState, around: OilState | None = None
+    duty: MeshDuty,
+    loads: LineLoads,
+    oil: OilState,  # At the temperature of the flanks.
+    around: OilState | None = None,  # Around the gears, if that differs.
 ) -> MeshContact:
-    """Conditions along the contact lines under `loads`, at standstill too.
-
-    Parameters
-    ----------
-    duty : MeshDuty
-    loads : LineLoads
-    oil : OilState
-        At the temperature of the flanks.
-    around : OilState, optional
-        Around the gears, if that differs.
-    """
+    """Conditions along the contact lines under `loads`, at standstill too."""
     return mesh_contact(
         duty.mesh,
         loads.lines,

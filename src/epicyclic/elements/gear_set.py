@@ -27,9 +27,6 @@ from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.losses.validity import Flags, ModelUse, SomeFlags, ValidityFlag
 from epicyclic.units import NEWTON, format_number
 
-__all__ = ["GearSet", "GearSetResult", "LossChoice", "Planet", "PlanetMesh", "Reference"]
-
-
 WORTH_A_NOTE = 0.1
 """Centrifugal force of an estimated mass over the load on a bearing, from which a note says so: it
 stands square to the force of the teeth, and changes the load by 0.5 %. [1]"""
@@ -39,17 +36,10 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True, slots=True)
 class LossChoice:
-    """What becomes of one loss.
-
-    Attributes
-    ----------
-    include : bool
-    factor : float
-        [1]
-    """
+    """What becomes of one loss."""
 
     include: bool = True
-    factor: float = 1.0
+    factor: float = 1.0  # [1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,19 +48,12 @@ class Reference:
 
     The losses inside the set act between two other bodies, so that the torque of this one and the
     loads of the meshes stay in the ratio of the lossless set. Theory (K5).
-
-    Attributes
-    ----------
-    body : str
-    levers : mapping of str to float
-        Torque at the first gear of each mesh over the torque of the body. [1]
-    between : tuple of str
-        The bodies between which the losses act.
     """
 
     body: str
+    # Torque at the first gear of each mesh over the torque of the body. [1]
     levers: Mapping[str, float]
-    between: tuple[str, str]
+    between: tuple[str, str]  # The bodies between which the losses act.
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,39 +69,18 @@ class PlanetMesh:
 
 @dataclass(frozen=True, slots=True)
 class Planet:
-    """The planets of one kind: a body that turns on a pin of the carrier.
+    """The planets of one kind: a body that turns on a pin of the carrier."""
 
-    Attributes
-    ----------
-    key : str
-        First word of the losses of its bearing: ``"planet_bearing"``.
-    body : str
-    pin_radius : float
-        From the axis of the set to that of the planet. [m]
-    meshes : tuple of PlanetMesh
-    mass : float
-        Mass of one planet with its rollers. [kg]
-    mass_estimated : bool
-        True if no case states it.
-    bearing : PlanetBearing or None
-    no_bearing : str
-        Why there is none.
-    tilts : bool
-        True if the planet tilts in its bearing and misaligns its meshes.
-    nodes : tuple of str
-        The thermal nodes of the planets and of their pins.
-    """
-
-    key: str
+    key: str  # First word of the losses of its bearing: ``"planet_bearing"``.
     body: str
-    pin_radius: float
+    pin_radius: float  # From the axis of the set to that of the planet. [m]
     meshes: tuple[PlanetMesh, ...]
-    mass: float = 0.0
-    mass_estimated: bool = False
+    mass: float = 0.0  # Mass of one planet with its rollers. [kg]
+    mass_estimated: bool = False  # True if no case states it.
     bearing: PlanetBearing | None = None
-    no_bearing: str = ""
-    tilts: bool = False
-    nodes: tuple[str, str] = (OIL, OIL)
+    no_bearing: str = ""  # Why there is none.
+    tilts: bool = False  # True if the planet tilts in its bearing and misaligns its meshes.
+    nodes: tuple[str, str] = (OIL, OIL)  # The thermal nodes of the planets and of their pins.
 
     def load(
         self, duties: Mapping[str, MeshDuty], carrier_speed: float
@@ -182,14 +144,9 @@ class _Idle:
 
 @dataclass(frozen=True, slots=True)
 class GearSetResult(ElementResult):
-    """Losses, figures and flags of a set; figures of meshes and bearings of its most loaded planet.
+    """Losses, figures, flags of a set; meshes and bearings are those of its most loaded planet."""
 
-    Attributes
-    ----------
-    shares : tuple of float
-        Share of the load that each planet carries; empty without planets. [1]
-    """
-
+    # Share of the load that each planet carries; empty without planets. [1]
     shares: tuple[float, ...] = ()
 
 
@@ -205,39 +162,19 @@ class _Branch:
 
 @dataclass(frozen=True, slots=True)
 class GearSet:
-    """Meshes seen from one carrier, with planets, their bearings, discs and thrust bearings.
+    """Meshes seen from one carrier, with planets, their bearings, discs and thrust bearings."""
 
-    Attributes
-    ----------
-    key : str
-        First part of its losses; empty for a single set.
-    carrier : str
-        Body from which the meshes are seen; `HOUSING` for a pair.
-    meshes : tuple of GearMesh
-    planets : tuple of Planet
-        Kinds of planets; empty for a pair.
-    sharing : LoadSharing or None
-        None without planets.
-    discs : mapping of str to tuple of Disc
-        By the name of their loss, ``"sun_drag"``.
-    missing : mapping of str to str
-        Losses that the set does not have, and why.
-    thrust : ThrustBearing or None
-    choices : mapping of str to LossChoice
-        Every loss of the set, in the order in which they are shown.
-    reference : Reference or None
-        None: each mesh carries what the losses leave, and its losses act on its own bodies.
-    """
-
-    key: str
-    carrier: str
+    key: str  # First part of its losses; empty for a single set.
+    carrier: str  # Body from which the meshes are seen; `HOUSING` for a pair.
     meshes: tuple[GearMesh, ...]
-    planets: tuple[Planet, ...]
-    sharing: LoadSharing | None
-    discs: Mapping[str, tuple[Disc, ...]]
-    missing: Mapping[str, str]
+    planets: tuple[Planet, ...]  # Kinds of planets; empty for a pair.
+    sharing: LoadSharing | None  # None without planets.
+    discs: Mapping[str, tuple[Disc, ...]]  # By the name of their loss, ``"sun_drag"``.
+    missing: Mapping[str, str]  # Losses that the set does not have, and why.
     thrust: ThrustBearing | None
+    # Every loss of the set, in the order in which they are shown.
     choices: Mapping[str, LossChoice]
+    # None: each mesh carries what the losses leave, and its losses act on its own bodies.
     reference: Reference | None = None
 
     def evaluate(self, state: State) -> GearSetResult:

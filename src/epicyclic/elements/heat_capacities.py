@@ -15,8 +15,6 @@ from epicyclic.elements.heat_paths import (
 from epicyclic.elements.shaft_bearing import ShaftBearing
 from epicyclic.thermal.solids import Solid
 
-__all__ = ["OF_SHAFT", "STEEL", "bearing_capacity", "gear_set_capacities"]
-
 STEEL = Solid(conductivity=46.0, heat_capacity=460.0, density=7850.0)
 """Material of parts for which no case states one: pins, carriers, shaft bearings."""
 OF_SHAFT = 500.0

@@ -17,18 +17,6 @@ from epicyclic.thermal.housing import SPLASHED_WALL
 from epicyclic.thermal.network import Link
 from epicyclic.thermal.solids import Solid
 
-__all__ = [
-    "INLET",
-    "SEAT_LENGTH",
-    "OneGear",
-    "Wetting",
-    "bearing_links",
-    "bearing_width",
-    "carrier_node",
-    "gear_set_links",
-    "gears_of",
-]
-
 INLET = "oil_inlet"
 """The oil before it meets anything."""
 WIDTH_OF_HEIGHT = 1.2
@@ -48,27 +36,13 @@ ESTIMATE = "estimate"
 
 @dataclass(frozen=True, slots=True)
 class Wetting:
-    """What meets the surfaces of the gears, and how well solids that touch pass heat on.
+    """What meets the surfaces of the gears, and how well solids that touch pass heat on."""
 
-    Attributes
-    ----------
-    around : Fluid
-        The mixture of oil and air, or the oil that gears dip into.
-    bath : float
-        Share of the surfaces that dips into an oil bath; 0 in a spray. [1]
-    jet : float
-        Heat capacity of the oil flow times the effectiveness of the jets. [W/K]
-    jet_shares : mapping of str to float
-        Shares of the flow that meet each node. [1]
-    press_fit : float
-        Contact conductance of a press fit, by area. [W/(m^2 K)]
-    """
-
-    around: Fluid
-    bath: float
-    jet: float
-    jet_shares: Mapping[str, float]
-    press_fit: float
+    around: Fluid  # The mixture of oil and air, or the oil that gears dip into.
+    bath: float  # Share of the surfaces that dips into an oil bath; 0 in a spray. [1]
+    jet: float  # Heat capacity of the oil flow times the effectiveness of the jets. [W/K]
+    jet_shares: Mapping[str, float]  # Shares of the flow that meet each node. [1]
+    press_fit: float  # Contact conductance of a press fit, by area. [W/(m^2 K)]
 
 
 @dataclass(frozen=True, slots=True)

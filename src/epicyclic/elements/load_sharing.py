@@ -17,8 +17,6 @@ from epicyclic.elasticity.planet_sharing import (
 from epicyclic.elements.gear_mesh import MeshDuty, elastic_loads
 from epicyclic.losses.planet_bearing import RollerBearing, radial_stiffness
 
-__all__ = ["SHARING_METHODS", "LoadSharing", "planet_shares"]
-
 SHARE_DIGITS = 12
 """Decimals of a share, so that planets that carry alike are solved once. [1]"""
 SHARING_METHODS = {
@@ -38,33 +36,17 @@ SHARING_METHODS = {
 
 @dataclass(frozen=True, slots=True)
 class LoadSharing:
-    """How the planets of a set share the load.
+    """How the planets of a set share the load."""
 
-    Attributes
-    ----------
-    method : str
-        A key of `SHARING_METHODS`; the last two are for a sun, a ring and planets between them.
-    mesh_load_factor : float
-        K_gamma: load of the most loaded planet over the mean. [1]
-    angles : tuple of float
-        Positions of the planets. [rad]
-    position_errors : tuple of float
-        Error of each pin, against the sense in which a positive torque of the sun pushes it. [m]
-    floating_member : str
-        The member that gives way, or ``"none"``.
-    support_stiffness : float
-        Radial, of that member. [N/m]
-    pin_stiffness : float or None
-        Radial, of one pin; None: rigid. [N/m]
-    """
-
+    # A key of `SHARING_METHODS`; the last two are for a sun, a ring and planets between them.
     method: str
-    mesh_load_factor: float
-    angles: tuple[float, ...]
+    mesh_load_factor: float  # K_gamma: load of the most loaded planet over the mean. [1]
+    angles: tuple[float, ...]  # Positions of the planets. [rad]
+    # Error of each pin, against the sense in which a positive torque of the sun pushes it. [m]
     position_errors: tuple[float, ...]
-    floating_member: str
-    support_stiffness: float
-    pin_stiffness: float | None
+    floating_member: str  # The member that gives way, or ``"none"``.
+    support_stiffness: float  # Radial, of that member. [N/m]
+    pin_stiffness: float | None  # Radial, of one pin; None: rigid. [N/m]
 
     @property
     def count(self) -> int:
@@ -78,19 +60,14 @@ class LoadSharing:
 
 
 def planet_shares(
-    sharing: LoadSharing, duties: tuple[MeshDuty, ...], bearing: RollerBearing | None
+    sharing: LoadSharing,
+    # The meshes of a planet under the mean load, that of the sun first.
+    duties: tuple[MeshDuty, ...],
+    bearing: RollerBearing | None,  # Bearing of one planet; None: rigid.
 ) -> tuple[float, ...]:
     """Share of the load that each planet carries; their sum is 1. Theory (S1).
 
     The closed form holds while all planets carry; where one does not, (S3) and (S4) are solved.
-
-    Parameters
-    ----------
-    sharing : LoadSharing
-    duties : tuple of MeshDuty
-        The meshes of a planet under the mean load, that of the sun first.
-    bearing : RollerBearing or None
-        Bearing of one planet; None: rigid.
 
     Raises
     ------

@@ -13,8 +13,6 @@ from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.validity import ModelUse
 from epicyclic.units import NEWTON_METRE, RPM
 
-__all__ = ["TableLoss", "TableLossFigures"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TableLossFigures:
@@ -26,21 +24,11 @@ class TableLossFigures:
 
 @dataclass(frozen=True, slots=True)
 class TableLoss:
-    """Drag between two bodies over their speed difference and the oil temperature.
+    """Drag between two bodies over their speed difference and the oil temperature."""
 
-    Attributes
-    ----------
-    key : str
-        First part of the key of its loss.
-    between : tuple of str
-        The two bodies, one of which may be `HOUSING`.
-    table : LossTable
-        Over speed and temperature.
-    """
-
-    key: str
-    between: tuple[str, str]
-    table: LossTable
+    key: str  # First part of the key of its loss.
+    between: tuple[str, str]  # The two bodies, one of which may be `HOUSING`.
+    table: LossTable  # Over speed and temperature.
 
     terms: ClassVar = ("drag",)
     figure_types: ClassVar = (("drag", TableLossFigures),)

@@ -35,8 +35,6 @@ from epicyclic.losses.viscous import (
 from epicyclic.lubricant.properties import OilState
 from epicyclic.thermal.convection import roller_conductance
 
-__all__ = ["BearingOutcome", "PlanetBearing", "missing_bearing", "solve_bearing"]
-
 BEARING_METHOD = "mixed-EHL rolling-loss regression, slice by slice"
 BEARING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), Eq. 3.2 to 3.6"
 PALMGREN_METHOD = "friction coefficient f1 of Palmgren"
@@ -45,31 +43,16 @@ PALMGREN_SOURCE = "A. Palmgren, Ball and Roller Bearing Engineering (1959); Talb
 
 @dataclass(frozen=True, slots=True)
 class PlanetBearing:
-    """A planet bearing and the models of its losses.
-
-    Attributes
-    ----------
-    bearing : RollerBearing
-    model : str or FittedRolling
-        ``"mixed-ehl"``, ``"palmgren"``, or a loss fitted to simulated contacts.
-    palmgren_coefficient : float
-        f1. [1]
-    viscous_factor : float
-        f0 of the whole bearing. [1]
-    conductivity : float
-        Thermal, of races and rollers. [W/(m K)]
-    oil_held : bool
-        False to continue the model mixed-ehl beyond its oil.
-    palmgren_beyond : bool
-        True if Palmgren's coefficient takes over where a fitted loss was not simulated.
-    """
+    """A planet bearing and the models of its losses."""
 
     bearing: RollerBearing
+    # ``"mixed-ehl"``, ``"palmgren"``, or a loss fitted to simulated contacts.
     model: str | FittedRolling
-    palmgren_coefficient: float
-    viscous_factor: float
-    conductivity: float
-    oil_held: bool = True
+    palmgren_coefficient: float  # f1. [1]
+    viscous_factor: float  # f0 of the whole bearing. [1]
+    conductivity: float  # Thermal, of races and rollers. [W/(m K)]
+    oil_held: bool = True  # False to continue the model mixed-ehl beyond its oil.
+    # True if Palmgren's coefficient takes over where a fitted loss was not simulated.
     palmgren_beyond: bool = False
 
     @property
@@ -111,30 +94,15 @@ def missing_bearing(key: str, reason: str) -> BearingOutcome:
 
 
 def solve_bearing(
-    key: str,
+    key: str,  # First word of the losses, ``"planet_bearing"``.
     own: PlanetBearing,
-    load: PlanetLoad,
+    load: PlanetLoad,  # Load of each of them.
     count: int,
     oil: OilState,
-    speed: float,
-    last: RollerLoads | None = None,
+    speed: float,  # Speed of the planet against the carrier. [rad/s]
+    last: RollerLoads | None = None,  # The rollers under nearly this load, which saves work.
 ) -> BearingOutcome:
-    """Losses of `count` planet bearings under the same load.
-
-    Parameters
-    ----------
-    key : str
-        First word of the losses, ``"planet_bearing"``.
-    own : PlanetBearing
-    load : PlanetLoad
-        Load of each of them.
-    count : int
-    oil : OilState
-    speed : float
-        Speed of the planet against the carrier. [rad/s]
-    last : RollerLoads, optional
-        The rollers under nearly this load, which saves work.
-    """
+    """Losses of `count` planet bearings under the same load."""
     bearing = own.bearing
     if last is None:
         loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)

@@ -18,8 +18,6 @@ from numpy.typing import NDArray
 from epicyclic.elements.gear_mesh import MeshDuty, elastic_loads
 from epicyclic.losses.planet_bearing import RollerBearing, roller_loads, tilting_moments
 
-__all__ = ["PlanetContact", "PlanetLoad", "planet_load", "tilt_planet"]
-
 FloatArray = NDArray[np.float64]
 
 TILT_TOLERANCE = 1e-9
@@ -36,47 +34,25 @@ SLOPE = 1e-4
 
 @dataclass(frozen=True, slots=True)
 class PlanetLoad:
-    """Load of one planet on its bearing, x along the radial force.
+    """Load of one planet on its bearing, x along the radial force."""
 
-    Attributes
-    ----------
-    force : float
-        Radial. [N]
-    moment_x, moment_y : float
-        Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
-    """
-
-    force: float
-    moment_x: float
-    moment_y: float
+    force: float  # Radial. [N]
+    moment_x: float  # Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
+    moment_y: float  # Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
 
 
 @dataclass(frozen=True, slots=True)
 class PlanetContact:
-    """A mesh that loads a planet. Theory (A1).
-
-    Attributes
-    ----------
-    duty : MeshDuty
-    member : int
-        Which of its gears sits on the planet, 1 or 2.
-    outward : tuple of float
-        Unit vector along t and r from the pitch point to the axis of the planet: the sense in which
-        the radial force of the mesh pushes the planet.
-    sense : int
-        +1 if the mesh turns the planet from t to r, else -1.
-    hand : int
-        +1 if a positive `sense` pushes the planet along y, else -1.
-    position : float
-        Position of the middle of the face, along y. [m]
-    """
+    """A mesh that loads a planet. Theory (A1)."""
 
     duty: MeshDuty
-    member: int
+    member: int  # Which of its gears sits on the planet, 1 or 2.
+    # Unit vector along t and r from the pitch point to the axis of the planet: the sense in which
+    # the radial force of the mesh pushes the planet.
     outward: tuple[float, float]
-    sense: int
-    hand: int = 1
-    position: float = 0.0
+    sense: int  # +1 if the mesh turns the planet from t to r, else -1.
+    hand: int = 1  # +1 if a positive `sense` pushes the planet along y, else -1.
+    position: float = 0.0  # Position of the middle of the face, along y. [m]
 
     def turned_round(self) -> PlanetContact:
         """The same in axes turned about r by half a turn."""
@@ -118,7 +94,10 @@ Contacts = Sequence[PlanetContact]
 
 
 def planet_load(
-    contacts: Contacts, centrifugal: float, mesh_moments: Sequence[float] = ()
+    contacts: Contacts,
+    centrifugal: float,  # [N]
+    # Moments of the transverse force of each mesh about the middle of its face. [N m]
+    mesh_moments: Sequence[float] = (),
 ) -> PlanetLoad:
     """Load on the bearing of a planet from all its meshes and the centrifugal force.
 
@@ -127,14 +106,6 @@ def planet_load(
     Talbot (2012), Eq. 3.7 and 3.8, for any number of meshes and any pressure angles: the transverse
     forces add as vectors, the axial ones form couples in the planes of the axes, and a force beside
     the middle of the bearing a moment.
-
-    Parameters
-    ----------
-    contacts : sequence of PlanetContact
-    centrifugal : float
-        [N]
-    mesh_moments : sequence of float, optional
-        Moments of the transverse force of each mesh about the middle of its face. [N m]
     """
     moment = 0j  # t + i r
     for contact, own in zip(contacts, mesh_moments or [0.0] * len(contacts), strict=True):

@@ -26,35 +26,10 @@ from epicyclic.pocketing.memory import FlowMemory
 from epicyclic.pocketing.similarity import FlowFamily, FlowFigures
 from epicyclic.pocketing.stored import stored_table
 from epicyclic.pocketing.table import FlowTables
-from epicyclic.units import (
-    BAR,
-    DEGREE,
-    METRE_PER_SECOND,
-    MILLIMETRE,
-    WATT,
-    format_number,
-    percent,
-)
+from epicyclic.units import BAR, DEGREE, METRE_PER_SECOND, MILLIMETRE, WATT, format_number, percent
 
 if TYPE_CHECKING:
     from epicyclic.elements.gear_mesh import MeshDuty
-
-__all__ = [
-    "POCKETING_SOURCE",
-    "FlowRequest",
-    "MeshFlow",
-    "PocketSettings",
-    "flow_family",
-    "flow_numbers",
-    "flow_request",
-    "flow_requests",
-    "mesh_flows",
-    "oil_in_mesh",
-    "pocket_notes",
-    "pocketing_method",
-    "solve_pockets",
-    "stored_note",
-]
 
 POCKETING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), chapter 4"
 STUDY_SOURCE = "Talbot (2012), section 4.4"
@@ -79,61 +54,32 @@ FlowRequest = tuple[FlowFamily, float, MixtureState, float]
 
 @dataclass(frozen=True, slots=True)
 class PocketSettings:
-    """How the flow through the pockets of a mesh is found.
+    """How the flow through the pockets of a mesh is found."""
 
-    Attributes
-    ----------
-    include : bool
-        False if the loss is left out, so that nobody asks for the flow.
-    oil_fraction : float
-        Oil share by volume at ambient pressure. [1]
-    model : PocketModel
-    void_pressure : float
-        Absolute pressure of a void in an incompressible mixture. [Pa]
-    slices, steps : int
-        Resolution: across the face, in one pitch.
-    end_length : float
-        Length of the control volumes at the ends of the face. [normal modules]
-    file : Path or None
-        File of a stored table.
-    tables : mapping of FlowFamily to FlowTable
-        Tables that the points of a sweep share.
-    memory : FlowMemory or None
-        Flows of this very case at other temperatures, while they settle.
-    fed : float
-        Oil that is fed into the mesh of one planet as the teeth mesh. [m^3/s]
-    any_order : bool
-        Whether the gears may be named in any order: the smaller one is then gear 1 of the pockets.
-    """
-
-    include: bool
-    oil_fraction: float
+    include: bool  # False if the loss is left out, so that nobody asks for the flow.
+    oil_fraction: float  # Oil share by volume at ambient pressure. [1]
     model: PocketModel
-    void_pressure: float
-    slices: int
-    steps: int
-    end_length: float
-    file: Path | None = None
+    void_pressure: float  # Absolute pressure of a void in an incompressible mixture. [Pa]
+    slices: int  # Resolution: across the face, in one pitch.
+    steps: int  # Resolution: across the face, in one pitch.
+    end_length: float  # Length of the control volumes at the ends of the face. [normal modules]
+    file: Path | None = None  # File of a stored table.
+    # Tables that the points of a sweep share.
     tables: FlowTables = field(default_factory=dict, hash=False, compare=False)
+    # Flows of this very case at other temperatures, while they settle.
     memory: FlowMemory | None = field(default=None, hash=False, compare=False)
-    fed: float = 0.0
+    fed: float = 0.0  # Oil that is fed into the mesh of one planet as the teeth mesh. [m^3/s]
+    # Whether the gears may be named in any order: the smaller one is then gear 1 of the pockets.
     any_order: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class MeshFlow:
-    """Flow through the pockets of a mesh.
+    """Flow through the pockets of a mesh."""
 
-    Attributes
-    ----------
-    figures : FlowFigures or None
-        None without motion, and where the case leaves the loss out.
-    left_out : str
-        Why there can be no such loss; empty if there can.
-    """
-
+    # None without motion, and where the case leaves the loss out.
     figures: FlowFigures | None = None
-    left_out: str = ""
+    left_out: str = ""  # Why there can be no such loss; empty if there can.
 
 
 def oil_in_mesh(duty: MeshDuty) -> float:

@@ -17,16 +17,6 @@ from numpy.typing import NDArray
 from epicyclic.losses.shaft_bearing import BearingLoad
 from epicyclic.units import NEWTON, format_number
 
-__all__ = [
-    "AxialSense",
-    "Reaction",
-    "ShaftLoad",
-    "Support",
-    "bearing_reactions",
-    "mesh_force",
-    "mesh_load",
-]
-
 FloatArray = NDArray[np.float64]
 AxialSense = Literal["none", "both", "positive", "negative"]
 
@@ -36,53 +26,30 @@ NEGLIGIBLE = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Support:
-    """A bearing that supports a shaft radially.
+    """A bearing that supports a shaft radially."""
 
-    Attributes
-    ----------
-    position : float
-        z. [m]
-    axial : str
-        The sense of an axial force of the shaft that the bearing takes: ``"positive"`` if it holds
-        a shaft that is pushed towards +z, ``"negative"``, ``"both"``, ``"none"``.
-    """
-
-    position: float
+    position: float  # z. [m]
+    # The sense of an axial force of the shaft that the bearing takes: ``"positive"`` if it holds a
+    # shaft that is pushed towards +z, ``"negative"``, ``"both"``, ``"none"``.
     axial: AxialSense = "none"
 
 
 @dataclass(frozen=True, slots=True)
 class ShaftLoad:
-    """A force on a shaft, and a moment about the point of the axis where it acts.
+    """A force on a shaft, and a moment about the point of the axis where it acts."""
 
-    Attributes
-    ----------
-    position : float
-        z. [m]
-    force : tuple of float
-        F_x, F_y, F_z. [N]
-    moment : tuple of float
-        M_x, M_y. [N m]
-    """
-
-    position: float
-    force: tuple[float, float, float]
-    moment: tuple[float, float] = (0.0, 0.0)
+    position: float  # z. [m]
+    force: tuple[float, float, float]  # F_x, F_y, F_z. [N]
+    moment: tuple[float, float] = (0.0, 0.0)  # M_x, M_y. [N m]
 
 
 @dataclass(frozen=True, slots=True)
 class Reaction:
-    """BearingLoad of a bearing on the shaft.
+    """BearingLoad of a bearing on the shaft."""
 
-    Attributes
-    ----------
-    x, y, z : float
-        [N]
-    """
-
-    x: float
-    y: float
-    z: float
+    x: float  # [N]
+    y: float  # [N]
+    z: float  # [N]
 
     @property
     def force(self) -> BearingLoad:
@@ -91,7 +58,8 @@ class Reaction:
 
 
 def bearing_reactions(
-    supports: Sequence[Support], loads: Sequence[ShaftLoad]
+    supports: Sequence[Support],  # Two; or one, if the loads leave no moment about it.
+    loads: Sequence[ShaftLoad],
 ) -> tuple[Reaction, ...]:
     """Forces of the bearings of a rigid shaft, in the order of `supports`.
 
@@ -104,12 +72,6 @@ def bearing_reactions(
 
     and the forces R_1 = -R_2 - sum F. The axial force -sum F_z falls on the first support that
     takes it in this sense; on the first of all if none is marked.
-
-    Parameters
-    ----------
-    supports : sequence of Support
-        Two; or one, if the loads leave no moment about it.
-    loads : sequence of ShaftLoad
 
     Raises
     ------
@@ -173,14 +135,16 @@ def _axial_bearing(supports: Sequence[Support], thrust: float) -> int:
 
 
 def mesh_force(
-    torque: float,
-    radius: float,
-    pressure_angle: float,
-    helix_tangent: float,
+    torque: float,  # Torque of the mesh on the gear, about +z. [N m]
+    radius: float,  # r_w, of the operating pitch circle. [m]
+    pressure_angle: float,  # alpha_wt, operating, transverse. [rad]
+    helix_tangent: float,  # tan beta_w on the operating pitch cylinder, not negative. [1]
+    # 1 for a right-handed helix, -1 for a left-handed one: the hand of the teeth themselves, also
+    # of a ring gear, which has the hand of its mate. Of two external gears the hands differ.
     hand: int,
-    direction: float,
+    direction: float,  # Angle of e from x about +z. [rad]
     *,
-    internal: bool = False,
+    internal: bool = False,  # True for a ring gear.
 ) -> FloatArray:
     """BearingLoad of a mesh on a gear, shape (3,). [N]
 
@@ -198,24 +162,6 @@ def mesh_force(
         F = F_t t -+ |F_t| tan(alpha_wt) e - h F_t tan(beta_w) z
 
     with the upper sign for external teeth.
-
-    Parameters
-    ----------
-    torque : float
-        Torque of the mesh on the gear, about +z. [N m]
-    radius : float
-        r_w, of the operating pitch circle. [m]
-    pressure_angle : float
-        alpha_wt, operating, transverse. [rad]
-    helix_tangent : float
-        tan beta_w on the operating pitch cylinder, not negative. [1]
-    hand : int
-        1 for a right-handed helix, -1 for a left-handed one: the hand of the teeth themselves, also
-        of a ring gear, which has the hand of its mate. Of two external gears the hands differ.
-    direction : float
-        Angle of e from x about +z. [rad]
-    internal : bool
-        True for a ring gear.
     """
     outward = np.array([math.cos(direction), math.sin(direction), 0.0])
     along = np.array([-math.sin(direction), math.cos(direction), 0.0])

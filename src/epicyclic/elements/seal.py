@@ -14,18 +14,6 @@ from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_range
 from epicyclic.losses.viscous import RPM as ONE_RPM
 from epicyclic.units import METRE_PER_SECOND, NEWTON_METRE, NUMBER, RPM, WATT
 
-__all__ = [
-    "SEAL_METHODS",
-    "SEAL_SOURCES",
-    "Seal",
-    "SealFigures",
-    "SealFormula",
-    "linke_bracket",
-    "seal_flags",
-    "seal_loss",
-    "seal_losses",
-]
-
 SealFormula = Literal["iso-14179-1-viton", "iso-14179-1-buna-n", "iso-14179-2", "linke"]
 
 SEAL_METHODS: Mapping[SealFormula, str] = {
@@ -72,24 +60,17 @@ _RANGES: Mapping[SealFormula, tuple[Range, ...]] = {
 
 
 def seal_loss(
-    formula: SealFormula, diameter: float, speed: float, temperature: float, viscosity_40: float
+    # ``"iso-14179-1-viton"``, ``"iso-14179-1-buna-n"``, ``"iso-14179-2"`` or ``"linke"``.
+    formula: SealFormula,
+    diameter: float,  # Diameter of the shaft under the lip. [m]
+    speed: float,  # Speed of the shaft against the seal. [rad/s]
+    temperature: float,  # Temperature of the oil; only Linke. [K]
+    # Kinematic viscosity of the oil at 40 degC, more than 0.2 mm^2/s; only Linke. [m^2/s]
+    viscosity_40: float,
 ) -> float:
     """Friction loss of one lip seal. [W]
 
     Theory (J14), (J15), (J16).
-
-    Parameters
-    ----------
-    formula : str
-        ``"iso-14179-1-viton"``, ``"iso-14179-1-buna-n"``, ``"iso-14179-2"`` or ``"linke"``.
-    diameter : float
-        Diameter of the shaft under the lip. [m]
-    speed : float
-        Speed of the shaft against the seal. [rad/s]
-    temperature : float
-        Temperature of the oil; only Linke. [K]
-    viscosity_40 : float
-        Kinematic viscosity of the oil at 40 degC, more than 0.2 mm^2/s; only Linke. [m^2/s]
 
     Examples
     --------
@@ -162,27 +143,13 @@ class SealFigures:
 
 @dataclass(frozen=True, slots=True)
 class Seal:
-    """A radial lip seal between a shaft and the housing, or between two shafts.
+    """A radial lip seal between a shaft and the housing, or between two shafts."""
 
-    Attributes
-    ----------
-    key : str
-        First part of the key of its loss.
-    between : tuple of str
-        The shaft that runs under the lip, and the body that holds the seal.
-    diameter : float
-        Diameter of the shaft under the lip. [m]
-    model : str or LossTable
-        A formula of `seal_loss`, or a table of the user.
-    viscosity_40 : float
-        Kinematic viscosity of the oil at 40 degC. [m^2/s]
-    """
-
-    key: str
-    between: tuple[str, str]
-    diameter: float
-    model: SealFormula | LossTable
-    viscosity_40: float
+    key: str  # First part of the key of its loss.
+    between: tuple[str, str]  # The shaft that runs under the lip, and the body that holds the seal.
+    diameter: float  # Diameter of the shaft under the lip. [m]
+    model: SealFormula | LossTable  # A formula of `seal_loss`, or a table of the user.
+    viscosity_40: float  # Kinematic viscosity of the oil at 40 degC. [m^2/s]
 
     terms: ClassVar = ("friction",)
     figure_types: ClassVar = (("seal", SealFigures),)

@@ -7,13 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from epicyclic.elements.base import (
-    LOAD_DEPENDENT,
-    LOAD_INDEPENDENT,
-    ElementResult,
-    Loss,
-    State,
-)
+from epicyclic.elements.base import LOAD_DEPENDENT, LOAD_INDEPENDENT, ElementResult, Loss, State
 from epicyclic.elements.figures import figure
 from epicyclic.losses.shaft_bearing import (
     BearingLoad,
@@ -23,8 +17,6 @@ from epicyclic.losses.shaft_bearing import (
 )
 from epicyclic.losses.skf_bearing import BearingModel, SkfModel
 from epicyclic.units import NEWTON, NEWTON_METRE, NUMBER, RPM, format_number
-
-__all__ = ["ShaftBearing", "ShaftBearingFigures"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,31 +34,16 @@ class ShaftBearingFigures:
 
 @dataclass(frozen=True, slots=True)
 class ShaftBearing:
-    """A rolling bearing between a shaft and the housing, or between two shafts.
+    """A rolling bearing between a shaft and the housing, or between two shafts."""
 
-    Attributes
-    ----------
-    key : str
-        First part of the keys of its losses; `State.forces` has its load under this key.
-    between : tuple of str
-        The bodies of its two rings.
-    bearing : CatalogueBearing
-    model : BearingModel
-        `PalmgrenModel`, `SkfModel` or `TableModel`.
-    force : BearingLoad or None
-        The load where the user gives it; None to take that of the state.
-    minimum_load_factor : float or None
-        k_r of SKF; None for the default of the type. [1]
-    reference_speed : float or None
-        Reference speed of a cylindrical roller bearing, for its minimum load. [rad/s]
-    """
-
-    key: str
-    between: tuple[str, str]
+    key: str  # First part of the keys of its losses; `State.forces` has its load under this key.
+    between: tuple[str, str]  # The bodies of its two rings.
     bearing: CatalogueBearing
-    model: BearingModel
+    model: BearingModel  # `PalmgrenModel`, `SkfModel` or `TableModel`.
+    # The load where the user gives it; None to take that of the state.
     force: BearingLoad | None = None
-    minimum_load_factor: float | None = None
+    minimum_load_factor: float | None = None  # k_r of SKF; None for the default of the type. [1]
+    # Reference speed of a cylindrical roller bearing, for its minimum load. [rad/s]
     reference_speed: float | None = None
 
     figure_types: ClassVar = (("bearing", ShaftBearingFigures),)

@@ -9,8 +9,6 @@ from typing import Any
 from epicyclic.case.case import Case, read_case
 from epicyclic.exchange.rexs.file import is_rexs
 
-__all__ = ["load_case"]
-
 
 def load_case(
     source: str | Path | Mapping[str, Any], changes: Mapping[str, Any] | None = None

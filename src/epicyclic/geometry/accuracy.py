@@ -11,8 +11,6 @@ import re
 from bisect import bisect_left
 from dataclasses import dataclass
 
-__all__ = ["LARGEST_FIT", "FlankTolerances", "fit_allowances", "flank_tolerances", "named_fit"]
-
 _MM, _UM = 1e-3, 1e-6
 _DIAMETERS = (10, 50, 125, 280, 560, 1000, 1600, 2500, 4000, 6300, 10000)
 """Largest reference diameter of each row of both tables. [mm]"""
@@ -67,17 +65,13 @@ def named_fit(name: str) -> str | None:
     return f"{number}{letters}" if known else None
 
 
-def fit_allowances(fit: str, reference_diameter: float) -> tuple[float, float]:
+def fit_allowances(
+    fit: str,  # As `named_fit` returns it.
+    reference_diameter: float,  # Up to 10 m. [m]
+) -> tuple[float, float]:
     """Upper and lower allowance of the tooth thickness, A_sne and A_sni. [m]
 
     DIN 3967:1978, Tables 1 and 2, and 3.2 (second hand). Theory (G53).
-
-    Parameters
-    ----------
-    fit : str
-        As `named_fit` returns it.
-    reference_diameter : float
-        Up to 10 m. [m]
 
     Examples
     --------
@@ -92,23 +86,13 @@ def fit_allowances(fit: str, reference_diameter: float) -> tuple[float, float]:
 
 @dataclass(frozen=True, slots=True)
 class FlankTolerances:
-    """Tolerances of the flanks of one gear by its class.
+    """Tolerances of the flanks of one gear by its class."""
 
-    Attributes
-    ----------
-    single_pitch : float
-        f_pT. [m]
-    profile_slope, profile_form : float
-        f_HalphaT, f_falphaT. [m]
-    helix_slope, helix_form : float
-        f_HbetaT, f_fbetaT. [m]
-    """
-
-    single_pitch: float
-    profile_slope: float
-    profile_form: float
-    helix_slope: float
-    helix_form: float
+    single_pitch: float  # f_pT. [m]
+    profile_slope: float  # f_HalphaT, f_falphaT. [m]
+    profile_form: float  # f_HalphaT, f_falphaT. [m]
+    helix_slope: float  # f_HbetaT, f_fbetaT. [m]
+    helix_form: float  # f_HbetaT, f_fbetaT. [m]
 
     @property
     def profile(self) -> float:
@@ -122,19 +106,15 @@ class FlankTolerances:
 
 
 def flank_tolerances(
-    accuracy_class: int, normal_module: float, reference_diameter: float, face_width: float
+    accuracy_class: int,  # 1 to 11.
+    normal_module: float,  # [m]
+    reference_diameter: float,  # [m]
+    face_width: float,  # [m]
 ) -> FlankTolerances:
     """Tolerances of ISO 1328-1:2013, Formulae 5 and 7 to 12 (second hand). Theory (G54).
 
     Not rounded as the standard rounds them, to 1, 0.5 or 0.1 um. It holds for m_n from 0.5 to
     70 mm, d from 5 mm to 15 m and b from 4 mm to 1.2 m.
-
-    Parameters
-    ----------
-    accuracy_class : int
-        1 to 11.
-    normal_module, reference_diameter, face_width : float
-        [m]
 
     Examples
     --------

@@ -10,16 +10,6 @@ import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
-__all__ = [
-    "admissible_angles",
-    "are_evenly_spaced",
-    "closing_number",
-    "nearest_admissible_angle",
-    "nearest_places",
-    "pin_angle",
-    "smallest_planet_gap",
-]
-
 
 def are_evenly_spaced(angles: Sequence[float]) -> bool:
     """Planets at these angles [rad] divide the carrier into equal parts."""
@@ -62,16 +52,14 @@ def smallest_planet_gap(
     return chord - 2 * tip_radius
 
 
-def closing_number(meshes: Sequence[tuple[Mapping[str, int], int]]) -> int:
+def closing_number(
+    # For each mesh the teeth of its gears on planets, by their bodies, and those of its central
+    # gear: negative for a ring gear, 0 between two planets.
+    meshes: Sequence[tuple[Mapping[str, int], int]],
+) -> int:
     """N: alike planets can stand at multiples of 1/N of a turn from another one. Theory (A6).
 
     0 if they can stand anywhere.
-
-    Parameters
-    ----------
-    meshes : sequence of tuple
-        For each mesh the teeth of its gears on planets, by their bodies, and those of its central
-        gear: negative for a ring gear, 0 between two planets.
     """
     bodies = dict.fromkeys(body for teeth, _ in meshes for body in teeth)
     rows = [[*(teeth.get(body, 0) for body in bodies), central] for teeth, central in meshes]

@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = ["ContactLines", "contact_lines"]
-
 FloatArray = NDArray[np.float64]
 
 # A line leaning less than this over the whole face, in base pitches, counts as straight (spur).
@@ -31,27 +29,16 @@ class ContactLines:
 
     Arrays of shape (positions, lines, segments) unless stated otherwise. A line that is not in
     contact has segments of zero length.
-
-    Attributes
-    ----------
-    position : ndarray, shape (positions,)
-        Mesh position, 0 <= tau < 1, in base pitches. [1]
-    weight : ndarray, shape (positions,)
-        Share of the mesh period that each position stands for; sums to 1. [1]
-    curvature1, curvature2 : ndarray
-        Transverse radii of curvature of the two members at the middle of each segment. [m]
-    face_position : ndarray
-        y at the middle of each segment, from the end of the face where contact begins. [m]
-    length : ndarray
-        Length of each segment along the contact line. [m]
     """
 
-    position: FloatArray
-    weight: FloatArray
+    position: FloatArray  # Mesh position, 0 <= tau < 1, in base pitches. [1]
+    weight: FloatArray  # Share of the mesh period that each position stands for; sums to 1. [1]
+    # Transverse radii of curvature of the two members at the middle of each segment. [m]
     curvature1: FloatArray
     curvature2: FloatArray
+    # y at the middle of each segment, from the end of the face where contact begins. [m]
     face_position: FloatArray
-    length: FloatArray
+    length: FloatArray  # Length of each segment along the contact line. [m]
 
     @property
     def total_length(self) -> FloatArray:
@@ -61,7 +48,11 @@ class ContactLines:
 
 
 @lru_cache(maxsize=64)
-def contact_lines(mesh: Mesh, positions: int, segments: int) -> ContactLines:
+def contact_lines(
+    mesh: Mesh,
+    positions: int,  # Mesh positions over one base pitch, about: each interval gets at least one.
+    segments: int,  # Segments on each contact line.
+) -> ContactLines:
     """Contact lines of `mesh` over one base pitch.
 
     Theory (G25), (G26).
@@ -69,14 +60,6 @@ def contact_lines(mesh: Mesh, positions: int, segments: int) -> ContactLines:
     Every line is cut into `segments` equal parts of its own length. The mesh positions are the
     middles of equal parts of the intervals between which lines enter and leave, so that averages
     over the mesh period converge with the second order for spur gears as well.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    positions : int
-        Mesh positions over one base pitch, about: each interval gets at least one.
-    segments : int
-        Segments on each contact line.
 
     Returns
     -------

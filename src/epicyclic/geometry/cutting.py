@@ -12,8 +12,6 @@ from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.outline import form_radius, tooth_outline
 from epicyclic.geometry.tools import RackTool, ShaperTool, Tool
 
-__all__ = ["cutting_tool", "fitted_tool", "longest_involute", "mated_tools", "stated_tool"]
-
 TOOL_HALVINGS = 30
 """Halvings of the rounding of a tool until it is known: to a billionth."""
 
@@ -102,18 +100,14 @@ def _sharp_undercut(gear: Gear) -> float:
 
 
 @lru_cache(maxsize=256)
-def fitted_tool(gear: Gear, rounding: float | None, needed: float) -> Tool:
+def fitted_tool(
+    gear: Gear,
+    rounding: float | None,  # Rounding of the tip of the tool, as stated; None if it is not. [m]
+    needed: float,  # Radius to which the involute must reach towards the root. [m]
+) -> Tool:
     """`cutting_tool`, its rounding reduced where it would take away involute that the mate needs.
 
     A stated rounding is kept.
-
-    Parameters
-    ----------
-    gear : Gear
-    rounding : float or None
-        Rounding of the tip of the tool, as stated; None if it is not. [m]
-    needed : float
-        Radius to which the involute must reach towards the root. [m]
 
     Raises
     ------

@@ -13,8 +13,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["BasicRack", "Gear", "inverse_involute", "involute"]
-
 
 def involute(angle: float) -> float:
     """Involute function inv(angle) = tan(angle) - angle. ISO 21771. Theory (G7)."""
@@ -36,21 +34,11 @@ def inverse_involute(value: float) -> float:
 
 @dataclass(frozen=True)
 class BasicRack:
-    """What gears that mesh have in common. ISO 21771.
+    """What gears that mesh have in common. ISO 21771."""
 
-    Attributes
-    ----------
-    transverse_module : float
-        m_t. [m]
-    transverse_pressure_angle : float
-        alpha_t at the reference circle. [rad]
-    helix_angle : float
-        beta at the reference circle, magnitude. [rad]
-    """
-
-    transverse_module: float
-    transverse_pressure_angle: float
-    helix_angle: float
+    transverse_module: float  # m_t. [m]
+    transverse_pressure_angle: float  # alpha_t at the reference circle. [rad]
+    helix_angle: float  # beta at the reference circle, magnitude. [rad]
 
     @property
     def normal_module(self) -> float:
@@ -75,36 +63,18 @@ class BasicRack:
 
 @dataclass(frozen=True)
 class Gear:
-    """One gear of a mesh.
+    """One gear of a mesh."""
 
-    Attributes
-    ----------
-    name : str
-        Its table in the case: ``"sun"``.
-    rack : BasicRack
-        Module, pressure angle and helix angle.
-    teeth : int
-        Number of teeth, positive.
-    internal : bool
-        True for a ring gear.
-    thickness_half_angle : float
-        Half the angle that the transverse tooth thickness takes at the reference circle. [rad]
-    tip_radius, root_radius : float
-        [m]
-    face_width : float
-        [m]
-    tip_chamfer : float
-        h_K, radial height of the chamfers of the tip corners; zero for sharp corners. [m]
-    """
-
-    name: str
-    rack: BasicRack
-    teeth: int
-    internal: bool
+    name: str  # Its table in the case: ``"sun"``.
+    rack: BasicRack  # Module, pressure angle and helix angle.
+    teeth: int  # Number of teeth, positive.
+    internal: bool  # True for a ring gear.
+    # Half the angle that the transverse tooth thickness takes at the reference circle. [rad]
     thickness_half_angle: float
-    tip_radius: float
-    root_radius: float
-    face_width: float
+    tip_radius: float  # [m]
+    root_radius: float  # [m]
+    face_width: float  # [m]
+    # h_K, radial height of the chamfers of the tip corners; zero for sharp corners. [m]
     tip_chamfer: float = 0.0
 
     @cached_property

@@ -19,16 +19,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.geometry.gear import (
-    Gear,
-    half_angle_from_profile_shift,
-    inverse_involute,
-    involute,
-)
+from epicyclic.geometry.gear import Gear, half_angle_from_profile_shift, inverse_involute, involute
 from epicyclic.geometry.tools import RackTool, ShaperTool, Tool
 from epicyclic.geometry.zero import zero_between
-
-__all__ = ["Cut", "RackCut", "ShaperCut", "default_tool", "fit_tool"]
 
 Floats = NDArray[np.float64]
 
@@ -54,29 +47,16 @@ a module may pass between two of them."""
 
 @dataclass(frozen=True, slots=True)
 class RackCut:
-    """Generation of an external gear by a rack whose pitch line rolls on the reference circle.
+    """Generation of an external gear by a rack whose pitch line rolls on the reference circle."""
 
-    Attributes
-    ----------
-    tool_radius : float
-        Rounding used, normal section. [m]
-    last_normal : float
-        Angle of the contact normal from the line of centres where the rounding ends. [rad]
-    last_curvature : float
-        Radius of curvature of the involute there, negative beyond its start: undercut. [m]
-    pitch_radius : float
-        r. [m]
-    stretch : float
-        Width of the rounding over its height in the transverse section. [1]
-    center_depth, center_offset : float
-        Centre of the rounding, below the pitch line and from the middle of the rack tooth. [m]
-    """
-
-    tool_radius: float
+    tool_radius: float  # Rounding used, normal section. [m]
+    # Angle of the contact normal from the line of centres where the rounding ends. [rad]
     last_normal: float
+    # Radius of curvature of the involute there, negative beyond its start: undercut. [m]
     last_curvature: float
-    pitch_radius: float
-    stretch: float
+    pitch_radius: float  # r. [m]
+    stretch: float  # Width of the rounding over its height in the transverse section. [1]
+    # Centre of the rounding, below the pitch line and from the middle of the rack tooth. [m]
     center_depth: float
     center_offset: float
 
@@ -104,24 +84,14 @@ class RackCut:
 
 @dataclass(frozen=True, slots=True)
 class ShaperCut:
-    """Generation of an internal gear by a pinion-type cutter.
+    """Generation of an internal gear by a pinion-type cutter."""
 
-    Attributes
-    ----------
-    tool_radius, last_normal, last_curvature
-        As for `RackCut`.
-    cutter_pitch_radius, pitch_radius : float
-        r_w of cutter and ring in the generating motion. [m]
-    center_radius, center_angle : float
-        Centre of the rounding about the cutter axis, from the middle of the cutter tooth.
-        [m], [rad]
-    """
-
-    tool_radius: float
-    last_normal: float
-    last_curvature: float
-    cutter_pitch_radius: float
-    pitch_radius: float
+    tool_radius: float  # As for `RackCut`.
+    last_normal: float  # As for `RackCut`.
+    last_curvature: float  # As for `RackCut`.
+    cutter_pitch_radius: float  # r_w of cutter and ring in the generating motion. [m]
+    pitch_radius: float  # r_w of cutter and ring in the generating motion. [m]
+    # Centre of the rounding about the cutter axis, from the middle of the cutter tooth. [m], [rad]
     center_radius: float
     center_angle: float
 
@@ -158,15 +128,14 @@ class ShaperCut:
         y = self.pitch_radius + (distance + self.tool_radius) * cosine
         return np.hypot(x, y), np.arctan2(x, y) - cutter_turn * self.ratio
 
-    def center_path(self, cutter_angle: Floats) -> tuple[Floats, Floats]:
+    def center_path(
+        self,
+        # Angle of that centre about the cutter axis, from the line of centres. [rad]
+        cutter_angle: Floats,
+    ) -> tuple[Floats, Floats]:
         """Centre of the rounding as the ring sees it; angles from the middle of the space.
 
         Theory (G35).
-
-        Parameters
-        ----------
-        cutter_angle : ndarray
-            Angle of that centre about the cutter axis, from the line of centres. [rad]
         """
         x = self.center_radius * np.sin(cutter_angle)
         y = self.center_distance + self.center_radius * np.cos(cutter_angle)

@@ -17,29 +17,17 @@ from numpy.typing import NDArray
 
 from epicyclic.geometry.gear import Gear, involute
 
-__all__ = ["Mesh"]
-
 Real = TypeVar("Real", float, NDArray[np.float64])
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """Two gears in mesh.
+    """Two gears in mesh."""
 
-    Attributes
-    ----------
-    name : str
-        ``"sun mesh"``, ``"ring mesh"`` or ``"mesh"``.
-    gear1, gear2 : Gear
-        Member 1 is external; member 2 external or internal.
-    center_distance : float
-        [m]
-    """
-
-    name: str
-    gear1: Gear
-    gear2: Gear
-    center_distance: float
+    name: str  # ``"sun mesh"``, ``"ring mesh"`` or ``"mesh"``.
+    gear1: Gear  # Member 1 is external; member 2 external or internal.
+    gear2: Gear  # Member 1 is external; member 2 external or internal.
+    center_distance: float  # [m]
 
     @property
     def internal(self) -> bool:

@@ -19,8 +19,6 @@ from epicyclic.geometry.contact_lines import ContactLines
 from epicyclic.geometry.gear import Gear
 from epicyclic.geometry.mesh import Mesh
 
-__all__ = ["FlankDeviations", "MicroGeometry", "Relief", "Topography", "active_profile"]
-
 FloatArray = NDArray[np.float64]
 
 _EXPONENTS = {"linear": 1, "parabolic": 2}
@@ -28,20 +26,11 @@ _EXPONENTS = {"linear": 1, "parabolic": 2}
 
 @dataclass(frozen=True, slots=True)
 class Relief:
-    """Material removed towards one end of a flank.
+    """Material removed towards one end of a flank."""
 
-    Attributes
-    ----------
-    amount : float
-        At the end. [m]
-    length : float
-        From the end to where the relief starts. [m]
-    shape : str
-        ``"linear"`` or ``"parabolic"``, tangent to the flank where it starts.
-    """
-
-    amount: float
-    length: float
+    amount: float  # At the end. [m]
+    length: float  # From the end to where the relief starts. [m]
+    # ``"linear"`` or ``"parabolic"``, tangent to the flank where it starts.
     shape: Literal["linear", "parabolic"] = "linear"
 
     def at(self, distance: FloatArray) -> FloatArray:
@@ -53,21 +42,11 @@ class Relief:
 
 @dataclass(frozen=True, slots=True)
 class Topography:
-    """Measured deviations of a flank: linear between the points, constant beyond them.
+    """Measured deviations of a flank: linear between the points, constant beyond them."""
 
-    Attributes
-    ----------
-    curvature : tuple of float
-        Rising roll lengths. [m]
-    face_position : tuple of float
-        Rising positions across the face width of the gear. [m]
-    deviation : tuple of tuple of float
-        One row for each roll length. [m]
-    """
-
-    curvature: tuple[float, ...]
-    face_position: tuple[float, ...]
-    deviation: tuple[tuple[float, ...], ...]
+    curvature: tuple[float, ...]  # Rising roll lengths. [m]
+    face_position: tuple[float, ...]  # Rising positions across the face width of the gear. [m]
+    deviation: tuple[tuple[float, ...], ...]  # One row for each roll length. [m]
 
     def at(self, curvature: FloatArray, face_position: FloatArray) -> FloatArray:
         """Deviation at points of the flank. [m]"""
@@ -88,52 +67,32 @@ class Topography:
 
 @dataclass(frozen=True, slots=True)
 class MicroGeometry:
-    """Deviations of the flanks of one gear on the side that works in one mesh.
+    """Deviations of the flanks of one gear on the side that works in one mesh."""
 
-    Attributes
-    ----------
-    tip_relief, root_relief : Relief or None
-        From the tip, and from the end of the active profile at the root; lengths of roll.
-    end_relief : Relief or None
-        From both ends of the face.
-    profile_crown, profile_slope : float
-        Over the active profile; the slope is positive if material is missing at the tip. [m]
-    lead_crown, lead_slope : float
-        Over the face width of the gear; the slope is positive if material is missing at the end
-        where contact ends. [m]
-    topography : Topography or None
-        Added to the rest.
-    """
-
+    # From the tip, and from the end of the active profile at the root; lengths of roll.
     tip_relief: Relief | None = None
     root_relief: Relief | None = None
-    end_relief: Relief | None = None
+    end_relief: Relief | None = None  # From both ends of the face.
+    # Over the active profile; the slope is positive if material is missing at the tip. [m]
     profile_crown: float = 0.0
     profile_slope: float = 0.0
+    # Over the face width of the gear; the slope is positive if material is missing at the end where
+    # contact ends. [m]
     lead_crown: float = 0.0
     lead_slope: float = 0.0
-    topography: Topography | None = None
+    topography: Topography | None = None  # Added to the rest.
 
     def deviation(
         self,
         gear: Gear,
+        # Roll lengths at the root end and at the tip end of the active profile. [m]
         active: tuple[float, float],
-        curvature: FloatArray,
-        face_position: FloatArray,
+        curvature: FloatArray,  # Roll lengths of the points. [m]
+        face_position: FloatArray,  # From the end of the face of the gear where contact begins. [m]
     ) -> FloatArray:
         """Material missing at points of the flank of `gear`.
 
         Theory (G38).
-
-        Parameters
-        ----------
-        gear : Gear
-        active : tuple of float
-            Roll lengths at the root end and at the tip end of the active profile. [m]
-        curvature : ndarray
-            Roll lengths of the points. [m]
-        face_position : ndarray
-            From the end of the face of the gear where contact begins. [m]
         """
         root, tip = active
         along = (curvature - root) / (tip - root)
@@ -158,18 +117,12 @@ class MicroGeometry:
 
 @dataclass(frozen=True, slots=True)
 class FlankDeviations:
-    """Everything that keeps the flanks of a mesh from touching along their whole contact lines.
-
-    Attributes
-    ----------
-    member1, member2 : MicroGeometry
-    misalignment : float
-        F_beta_x: how much further apart the flanks are at the end of the common face where contact
-        ends than where it begins, in the transverse plane of action. ISO 6336-1. [m]
-    """
+    """Everything that keeps the flanks of a mesh from touching along their whole contact lines."""
 
     member1: MicroGeometry = MicroGeometry()
     member2: MicroGeometry = MicroGeometry()
+    # F_beta_x: how much further apart the flanks are at the end of the common face where contact
+    # ends than where it begins, in the transverse plane of action. ISO 6336-1. [m]
     misalignment: float = 0.0
 
     def separation(self, mesh: Mesh, lines: ContactLines) -> FloatArray:

@@ -17,8 +17,6 @@ from epicyclic.geometry.generation import Cut, default_tool, fit_tool
 from epicyclic.geometry.tools import Tool
 from epicyclic.geometry.zero import zero_between
 
-__all__ = ["ToothOutline", "form_radius", "tooth_outline"]
-
 Floats = NDArray[np.float64]
 
 POINTS_PER_SECTION = 32
@@ -27,39 +25,24 @@ POINTS_PER_SECTION = 32
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ToothOutline:
-    """Right-hand half of one tooth, from the middle of the space to the middle of the tooth.
+    """Right-hand half of one tooth, from the middle of the space to the middle of the tooth."""
 
-    Attributes
-    ----------
-    teeth : int
-        Number of teeth of the gear.
-    internal : bool
-        True for a ring gear.
-    radius : ndarray, shape (n,)
-        Radius of each point, from root to tip: rising for external gears, falling for internal
-        ones. Read-only. [m]
-    half_angle : ndarray, shape (n,)
-        Angle of each point from the centre line of the tooth, from pi/z to zero. Read-only. [rad]
-    joints : tuple of int
-        Indices of the four points that end the root arc, the fillet, the involute and the tip
-        chamfer. A section without length has no points of its own, so two joints may be equal.
-    form_radius : float
-        r_Ff, where involute and fillet meet. [m]
-    undercut : bool
-        True if the fillet cuts the involute off above its start; the outline then has a corner at
-        the form radius.
-    fillet_tool_radius : float
-        Rounding of the tool that cut the fillet. Smaller than the one asked for if that did not
-        fit into the tip of the tool, which is then fully round. [m]
-    """
-
-    teeth: int
-    internal: bool
+    teeth: int  # Number of teeth of the gear.
+    internal: bool  # True for a ring gear.
+    # Radius of each point, from root to tip: rising for external gears, falling for internal ones.
+    # Read-only. [m]
     radius: Floats
+    # Angle of each point from the centre line of the tooth, from pi/z to zero. Read-only. [rad]
     half_angle: Floats
+    # Indices of the four points that end the root arc, the fillet, the involute and the tip
+    # chamfer. A section without length has no points of its own, so two joints may be equal.
     joints: tuple[int, int, int, int]
-    form_radius: float
+    form_radius: float  # r_Ff, where involute and fillet meet. [m]
+    # True if the fillet cuts the involute off above its start; the outline then has a corner at the
+    # form radius.
     undercut: bool
+    # Rounding of the tool that cut the fillet. Smaller than the one asked for if that did not fit
+    # into the tip of the tool, which is then fully round. [m]
     fillet_tool_radius: float
 
     def section(self, name: Literal["root", "fillet", "involute", "chamfer", "tip"]) -> slice:
@@ -68,14 +51,13 @@ class ToothOutline:
         first = ("root", "fillet", "involute", "chamfer", "tip").index(name)
         return slice(ends[first], ends[first + 1] + 1)
 
-    def points(self, teeth: int | None = None) -> Floats:
+    def points(
+        self,
+        # How many teeth, each from the middle of one space to the middle of the next; all if not
+        # given, and the last point is then the first again.
+        teeth: int | None = None,
+    ) -> Floats:
         """Outline of the whole gear, or of some teeth side by side.
-
-        Parameters
-        ----------
-        teeth : int, optional
-            How many teeth, each from the middle of one space to the middle of the next; all if not
-            given, and the last point is then the first again.
 
         Returns
         -------
@@ -98,7 +80,10 @@ class ToothOutline:
         return xy
 
 
-def form_radius(gear: Gear, tool: Tool | None = None) -> float:
+def form_radius(
+    gear: Gear,
+    tool: Tool | None = None,  # `default_tool` if not given.
+) -> float:
     """Root form radius r_Ff, where the involute meets the fillet.
 
     Theory (G34).
@@ -106,12 +91,6 @@ def form_radius(gear: Gear, tool: Tool | None = None) -> float:
     Without undercut this is the point that the last point of the tool flank generates: on the line
     of action, in closed form. With undercut it is where fillet and involute intersect; whether the
     undercut leaves the tooth on its root is not checked here.
-
-    Parameters
-    ----------
-    gear : Gear
-    tool : RackTool or ShaperTool, optional
-        `default_tool` if not given.
 
     Returns
     -------
@@ -128,18 +107,13 @@ def form_radius(gear: Gear, tool: Tool | None = None) -> float:
 
 
 def tooth_outline(
-    gear: Gear, tool: Tool | None = None, points: int = POINTS_PER_SECTION
+    gear: Gear,
+    tool: Tool | None = None,  # `default_tool` if not given.
+    # Points on each section, both ends counted: evenly spaced on the arcs and along the fillet, by
+    # roll angle on the involute. The chamfer, which is straight, has its two ends only.
+    points: int = POINTS_PER_SECTION,
 ) -> ToothOutline:
     """Outline of a tooth of `gear` as cut by `tool`.
-
-    Parameters
-    ----------
-    gear : Gear
-    tool : RackTool or ShaperTool, optional
-        `default_tool` if not given.
-    points : int
-        Points on each section, both ends counted: evenly spaced on the arcs and along the fillet,
-        by roll angle on the involute. The chamfer, which is straight, has its two ends only.
 
     Returns
     -------

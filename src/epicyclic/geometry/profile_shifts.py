@@ -10,8 +10,6 @@ import math
 
 from epicyclic.geometry.gear import BasicRack, inverse_involute, involute
 
-__all__ = ["closed_center_distance", "profile_shift_sum", "recommended_backlash", "thinning"]
-
 
 def thinning(rack: BasicRack, normal_backlash: float) -> float:
     """Profile shift taken from a mesh that gives it a normal backlash j_bn [m]. Theory (G45). [1]
@@ -22,17 +20,12 @@ def thinning(rack: BasicRack, normal_backlash: float) -> float:
 
 
 def profile_shift_sum(
-    rack: BasicRack, teeth: int, center_distance: float, normal_backlash: float = 0.0
+    rack: BasicRack,
+    teeth: int,  # z1 + z2, those of an internal gear negative.
+    center_distance: float,  # [m]
+    normal_backlash: float = 0.0,  # [m]
 ) -> float:
     """x1 + x2 at a centre distance. ISO 21771:2007, Eq. 62 and 63. Theory (G44), (G45). [1]
-
-    Parameters
-    ----------
-    rack : BasicRack
-    teeth : int
-        z1 + z2, those of an internal gear negative.
-    center_distance, normal_backlash : float
-        [m]
 
     Raises
     ------
@@ -60,19 +53,12 @@ def _sum_for(rack: BasicRack, teeth: int, change: float) -> float:
 
 
 def closed_center_distance(
-    rack: BasicRack, teeth: int, shift_sum: float, normal_backlash: float = 0.0
+    rack: BasicRack,
+    teeth: int,  # z1 + z2, those of an internal gear negative.
+    shift_sum: float,  # x1 + x2. [1]
+    normal_backlash: float = 0.0,  # j_bn. [m]
 ) -> float:
     """Centre distance a at which profile shifts leave this backlash. Theory (G44), (G45). [m]
-
-    Parameters
-    ----------
-    rack : BasicRack
-    teeth : int
-        z1 + z2, those of an internal gear negative.
-    shift_sum : float
-        x1 + x2. [1]
-    normal_backlash : float
-        j_bn. [m]
 
     Raises
     ------

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["RA_OVER_RQ", "RZ_BAND", "RZ_OVER_RA", "rq_of"]
-
 RA_OVER_RQ = math.sqrt(2 / math.pi)
 """Ra/Rq of a Gaussian profile. [1]"""
 
@@ -16,15 +14,11 @@ RZ_BAND = (4.0, 7.0)
 """Rz/Ra of real surfaces, a rule of thumb of the trade. [1]"""
 
 
-def rq_of(parameter: str, value: float) -> float:
+def rq_of(
+    parameter: str,  # ``"Rq"``, ``"Ra"`` (DIN EN ISO 4287) or ``"Rz"``.
+    value: float,  # [m]
+) -> float:
     """Rms roughness Rq of a surface of which another parameter is stated.
-
-    Parameters
-    ----------
-    parameter : str
-        ``"Rq"``, ``"Ra"`` (DIN EN ISO 4287) or ``"Rz"``.
-    value : float
-        [m]
 
     Returns
     -------

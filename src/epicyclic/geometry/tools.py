@@ -16,13 +16,9 @@ class RackTool:
 
     The tip line of the rack touches the root circle of the gear, and its teeth fill the spaces of
     the gear on the reference circle: tool addendum and profile shift follow from the gear.
-
-    Attributes
-    ----------
-    tip_radius : float
-        rho_fP, rounding of the tool tip in the normal section; zero for a sharp corner. [m]
     """
 
+    # rho_fP, rounding of the tool tip in the normal section; zero for a sharp corner. [m]
     tip_radius: float
 
     def __post_init__(self) -> None:
@@ -37,19 +33,12 @@ class ShaperTool:
     involute flank of the cutter. The generating centre distance is the one without backlash, where
     the cutter fills the spaces of the ring, and the tip radius of the cutter is the root radius of
     the ring less that distance. Infeed of the cutter is taken as axial.
-
-    Attributes
-    ----------
-    teeth : int
-        z_0.
-    tip_radius : float
-        Rounding of the tool tip in the transverse section; zero for a sharp corner. [m]
-    profile_shift_coefficient : float
-        x_0: new cutters have a positive one, reground ones a smaller. [1]
     """
 
-    teeth: int
+    teeth: int  # z_0.
+    # Rounding of the tool tip in the transverse section; zero for a sharp corner. [m]
     tip_radius: float
+    # x_0: new cutters have a positive one, reground ones a smaller. [1]
     profile_shift_coefficient: float = 0.0
 
     def __post_init__(self) -> None:

@@ -10,17 +10,6 @@ import math
 
 from epicyclic.geometry.gear import BasicRack, Gear, inverse_involute, involute
 
-__all__ = [
-    "dimension_over_pins",
-    "half_angle_from_pins",
-    "half_angle_from_span",
-    "pin_contact_radius",
-    "span",
-    "span_contact_radius",
-    "usual_pin",
-    "usual_span_teeth",
-]
-
 PIN = 1.7
 """Usual diameter of a measuring ball or pin over the normal module, near 1.68 to 1.73. [1]"""
 PIN_STEP = 0.05e-3

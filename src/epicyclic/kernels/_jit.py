@@ -22,8 +22,6 @@ from epicyclic.cache_folder import is_private, private_folder
 from epicyclic.kernels.apart import done_apart
 from epicyclic.kernels.compiling import listeners
 
-__all__ = ["cache_notes", "kernel"]
-
 P = ParamSpec("P")
 R = TypeVar("R")
 

@@ -19,8 +19,6 @@ from typing import NoReturn
 
 from epicyclic.kernels.compiling import listeners
 
-__all__ = ["done_apart"]
-
 if sys.platform == "linux":
     import fcntl
 

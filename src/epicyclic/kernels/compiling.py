@@ -4,7 +4,5 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-__all__ = ["listeners"]
-
 listeners: list[Callable[[], None]] = []
 """Called before each kernel is compiled; not for one whose machine code is kept on disk."""

@@ -22,8 +22,6 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = ["solve_all_positions", "solve_contact_loads"]
-
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
@@ -332,45 +330,25 @@ def careful_solution(
 
 @kernel
 def solve_contact_loads(
-    force: float,
-    compliance: FloatArray,
-    coupling: FloatArray,
-    separation: FloatArray,
-    length: FloatArray,
-    local_a: FloatArray,
-    local_b: float,
+    force: float,  # Normal force of the mesh. [N]
+    compliance: FloatArray,  # C: influence coefficients of both teeth. [m/N]
+    coupling: FloatArray,  # G: deflection of each line under a unit total force on each. [m/N]
+    separation: FloatArray,  # s: gap of the unloaded flanks along the common normal. [m]
+    length: FloatArray,  # Lengths of the segments; zero where a line is not in contact. [m]
+    local_a: FloatArray,  # A of delta_c. [m^2/N]
+    local_b: float,  # B of delta_c. [m^2/N]
+    # Forces to begin with, whatever their sum: the solution for a force next to this one saves most
+    # of the steps, the lengths do for a start from nothing. [N]
     start: FloatArray,
+    # Largest gap or penetration at loaded segments over the approach, and largest error of the
+    # balance over the force. [1]
     tolerance: float,
+    # Most iterations of the careful method, for which one segment may leave or join at a time.
     max_iterations: int,
 ) -> tuple[FloatArray, float, float, int]:
     """Forces on all segments of all lines.
 
     Theory (E5).
-
-    Parameters
-    ----------
-    force : float
-        Normal force of the mesh. [N]
-    compliance : ndarray, shape (lines, segments, segments)
-        C: influence coefficients of both teeth. [m/N]
-    coupling : ndarray, shape (lines, lines)
-        G: deflection of each line under a unit total force on each. [m/N]
-    separation : ndarray, shape (lines, segments)
-        s: gap of the unloaded flanks along the common normal. [m]
-    length : ndarray, shape (lines, segments)
-        Lengths of the segments; zero where a line is not in contact. [m]
-    local_a : ndarray, shape (lines, segments)
-        A of delta_c. [m^2/N]
-    local_b : float
-        B of delta_c. [m^2/N]
-    start : ndarray, shape (lines, segments)
-        Forces to begin with, whatever their sum: the solution for a force next to this one saves
-        most of the steps, the lengths do for a start from nothing. [N]
-    tolerance : float
-        Largest gap or penetration at loaded segments over the approach, and largest error of the
-        balance over the force. [1]
-    max_iterations : int
-        Most iterations of the careful method, for which one segment may leave or join at a time.
 
     Returns
     -------

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = ["covariance_sums", "covariances"]
-
 FloatArray = NDArray[np.float64]
 
 
@@ -28,19 +26,15 @@ def _add_squares(place: FloatArray, others: FloatArray, first: int, row: FloatAr
 
 
 @kernel
-def covariances(place: FloatArray, others: FloatArray, row: FloatArray) -> None:
+def covariances(
+    place: FloatArray,  # In units of the length over which things are alike.
+    others: FloatArray,  # One neighbour in each column: inner loops run along rows.
+    row: FloatArray,
+) -> None:
     """Write 1/(1 + r^2/2) of a place with each of its neighbours to `row`. Theory (O15). [1]
 
     The rational quadratic covariance of power 1: C. E. Rasmussen and C. K. I. Williams, Gaussian
     Processes for Machine Learning (2006), (4.19).
-
-    Parameters
-    ----------
-    place : ndarray, shape (8,)
-        In units of the length over which things are alike.
-    others : ndarray, shape (8, m)
-        One neighbour in each column: inner loops run along rows.
-    row : ndarray, shape (m,)
     """
     row[:] = 1.0
     _add_squares(place, others, 0, row)
@@ -49,17 +43,13 @@ def covariances(place: FloatArray, others: FloatArray, row: FloatArray) -> None:
 
 
 @kernel
-def covariance_sums(places: FloatArray, others: FloatArray, shares: FloatArray) -> FloatArray:
-    """Sum of the shares of all neighbours times their `covariances`, shape (n,). [1]
-
-    Parameters
-    ----------
-    places : ndarray, shape (n, 8)
-        The first four coordinates often stay as they are from one place to the next.
-    others : ndarray, shape (8, m)
-    shares : ndarray, shape (m,)
-        What each neighbour adds at its own place.
-    """
+def covariance_sums(
+    # The first four coordinates often stay as they are from one place to the next.
+    places: FloatArray,
+    others: FloatArray,
+    shares: FloatArray,  # What each neighbour adds at its own place.
+) -> FloatArray:
+    """Sum of the shares of all neighbours times their `covariances`, shape (n,). [1]"""
     sums = np.empty(places.shape[0])
     held, row = np.empty(shares.size), np.empty(shares.size)
     parts = np.empty(shares.size // 4)

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = ["along_path", "over_pressure"]
-
 Floats = NDArray[np.float64]
 
 
@@ -39,18 +37,15 @@ def _weighted(weights: Floats, row: Floats, k: int) -> float:
 
 
 @kernel
-def over_pressure(pressure: Floats, pressures: Floats, values: Floats) -> Floats:
+def over_pressure(
+    pressure: Floats,  # p_h, held within `pressures`. [Pa]
+    # Lowest and highest one of the points, which are even in the logarithm. [Pa]
+    pressures: Floats,
+    values: Floats,
+) -> Floats:
     """A quantity under a pressure, shape (n,).
 
     Theory (O16).
-
-    Parameters
-    ----------
-    pressure : ndarray, shape (n,)
-        p_h, held within `pressures`. [Pa]
-    pressures : ndarray, shape (2,)
-        Lowest and highest one of the points, which are even in the logarithm. [Pa]
-    values : ndarray, shape (k,)
     """
     found, weights = np.empty(pressure.size), np.empty(4)
     low = math.log(pressures[0])

@@ -10,23 +10,6 @@ from typing import NamedTuple
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = [
-    "BARUS",
-    "CARREAU",
-    "EYRING",
-    "LIMITING",
-    "NEWTONIAN",
-    "ROELANDS",
-    "TWO_SLOPE",
-    "ScaledFluid",
-    "density_ratio",
-    "flow_work",
-    "log_viscosity_ratio",
-    "mean_fluidity",
-    "mean_shear",
-    "thinning_factor",
-]
-
 BARUS, ROELANDS, TWO_SLOPE = 0, 1, 2
 """Codes of the viscosity-pressure laws."""
 NEWTONIAN, EYRING, LIMITING, CARREAU = 0, 1, 2, 3
@@ -43,44 +26,21 @@ CUBIC_START, CUBIC_END = 0.7, 1.4
 
 
 class ScaledFluid(NamedTuple):
-    """An oil in one contact.
+    """An oil in one contact."""
 
-    Attributes
-    ----------
-    law : int
-        `BARUS`, `ROELANDS` or `TWO_SLOPE`.
-    slope : float
-        d(ln mu)/dP at P = 0.
-    second : float
-        Roelands: p_h over his pole pressure. Two slopes: slope at high pressure.
-    third : float
-        Roelands: index z. Two slopes: transition pressure over p_h.
-    stiffening, packing : float
-        a and b of the density ratio (1 + a P)/(1 + b P).
-    poiseuille : float
-        1/lambda: factor of rho H^3/mu in the flow of the pressure gradient.
-    sliding : float
-        mu |u_s| R/(p_h b^2): Newtonian stress over p_h, times H over the viscosity ratio.
-    shear_law : int
-        `NEWTONIAN`, `EYRING`, `LIMITING` or `CARREAU`.
-    stress, stress_slope : float
-        Stress of the law of shear over p_h at P = 0, and its derivative in P.
-    exponent : float
-        n of the Carreau law.
-    """
-
-    law: int
-    slope: float
-    second: float
-    third: float
-    stiffening: float
-    packing: float
-    poiseuille: float
+    law: int  # `BARUS`, `ROELANDS` or `TWO_SLOPE`.
+    slope: float  # d(ln mu)/dP at P = 0.
+    second: float  # Roelands: p_h over his pole pressure. Two slopes: slope at high pressure.
+    third: float  # Roelands: index z. Two slopes: transition pressure over p_h.
+    stiffening: float  # a and b of the density ratio (1 + a P)/(1 + b P).
+    packing: float  # a and b of the density ratio (1 + a P)/(1 + b P).
+    poiseuille: float  # 1/lambda: factor of rho H^3/mu in the flow of the pressure gradient.
+    # mu |u_s| R/(p_h b^2): Newtonian stress over p_h, times H over the viscosity ratio.
     sliding: float
-    shear_law: int
-    stress: float
-    stress_slope: float
-    exponent: float
+    shear_law: int  # `NEWTONIAN`, `EYRING`, `LIMITING` or `CARREAU`.
+    stress: float  # Stress of the law of shear over p_h at P = 0, and its derivative in P.
+    stress_slope: float  # Stress of the law of shear over p_h at P = 0, and its derivative in P.
+    exponent: float  # n of the Carreau law.
 
 
 @kernel

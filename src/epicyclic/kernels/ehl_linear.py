@@ -14,24 +14,6 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = [
-    "BAND",
-    "GROUP",
-    "Groups",
-    "Space",
-    "apply_rows",
-    "coarse_matrix",
-    "deflect",
-    "factor_band",
-    "factor_dense",
-    "groups_for",
-    "near_coefficients",
-    "solve_dense",
-    "solve_linear",
-    "space_for",
-    "update_groups",
-]
-
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
@@ -58,18 +40,10 @@ class Space(NamedTuple):
 
 
 class Groups(NamedTuple):
-    """Deflection by unit pressure on the `included` nodes of each group; see `update_groups`.
-
-    Attributes
-    ----------
-    bends : ndarray, shape (groups, n)
-    across : ndarray, shape (n, groups)
-        The same by nodes, to be read in rows too.
-    included : ndarray of bool, shape (n,)
-    """
+    """Deflection by unit pressure on the `included` nodes of each group; see `update_groups`."""
 
     bends: FloatArray
-    across: FloatArray
+    across: FloatArray  # The same by nodes, to be read in rows too.
     included: BoolArray
 
 

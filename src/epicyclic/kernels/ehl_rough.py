@@ -37,8 +37,6 @@ from epicyclic.kernels.ehl_linear import (
     update_groups,
 )
 
-__all__ = ["Column", "march", "masses"]
-
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 

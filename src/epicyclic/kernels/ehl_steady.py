@@ -23,8 +23,6 @@ from epicyclic.kernels.ehl_fluid import (
     thinning_factor,
 )
 
-__all__ = ["deflection_matrix", "quadrature_weights", "shear_stresses", "solve_steady"]
-
 FloatArray = NDArray[np.float64]
 
 SMALLEST_FILM_SHARE = 0.2
@@ -206,38 +204,19 @@ def _balance_errors(
 
 @kernel
 def solve_steady(
-    x: FloatArray,
-    gap: FloatArray,
-    matrix: FloatArray,
-    load: float,
+    x: FloatArray,  # Nodes, rising; the pressure is zero at the first and the last.
+    gap: FloatArray,  # Undeformed gap at the nodes but for a constant.
+    matrix: FloatArray,  # `deflection_matrix` of `x`.
+    load: float,  # Integral of P over X.
     fluid: ScaledFluid,
-    guess: FloatArray,
-    approach: float,
-    tolerance: float,
+    guess: FloatArray,  # Pressures to start from; a node after x = 0 with none starts ruptured.
+    approach: float,  # H_0 to start from.
+    tolerance: float,  # Largest last step of P over the largest P, and of H over H, at every node.
     max_iterations: int,
 ) -> tuple[FloatArray, FloatArray, FloatArray, float, int, float]:
     """Pressure and film of a steady contact.
 
     Theory (H4), (H14), (H15).
-
-    Parameters
-    ----------
-    x : ndarray, shape (n,)
-        Nodes, rising; the pressure is zero at the first and the last.
-    gap : ndarray, shape (n,)
-        Undeformed gap at the nodes but for a constant.
-    matrix : ndarray, shape (n, n)
-        `deflection_matrix` of `x`.
-    load : float
-        Integral of P over X.
-    fluid : ScaledFluid
-    guess : ndarray, shape (n,)
-        Pressures to start from; a node after x = 0 with none starts ruptured.
-    approach : float
-        H_0 to start from.
-    tolerance : float
-        Largest last step of P over the largest P, and of H over H, at every node.
-    max_iterations : int
 
     Returns
     -------

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from epicyclic.kernels._jit import kernel
 from epicyclic.kernels.ehl_fluid import two_slopes
 
-__all__ = ["eyring_means"]
-
 FloatArray = NDArray[np.float64]
 
 LARGEST_EXPONENT = 300.0

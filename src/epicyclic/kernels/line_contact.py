@@ -12,17 +12,6 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = [
-    "equivalent_modulus",
-    "goksem_hargreaves_force",
-    "hertz_half_width",
-    "hertz_pressure",
-    "line_load_at_pressure",
-    "martin_force",
-    "pan_hamrock_central_film",
-    "pan_hamrock_minimum_film",
-]
-
 Real = TypeVar("Real", float, NDArray[np.float64])
 
 

@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = ["needle_rolling_loss_at", "rolling_loss_number_at", "sliding_friction_at"]
-
 FloatArray = NDArray[np.float64]
 
 # Talbot (2012), limits of the branches of Eq. 5.8 and 5.10. [1]
@@ -182,28 +180,17 @@ NEEDLE_LOSS_SCALE = 1e5
 
 @kernel
 def needle_rolling_loss(
-    p_h: float, u_r: float, mu_d: float, alpha_pv: float, r_eq: float, s_co: float, e_eq: float
+    p_h: float,  # Hertz pressure. [Pa]
+    u_r: float,  # Rolling speed. [m/s]
+    mu_d: float,  # Dynamic viscosity at the inlet. [Pa s]
+    alpha_pv: float,  # Pressure-viscosity coefficient. [1/Pa]
+    r_eq: float,  # Equivalent radius. [m]
+    s_co: float,  # Composite rms roughness. [m]
+    e_eq: float,  # Equivalent modulus. [Pa]
 ) -> float:
     """Rolling loss of a needle contact per length, Talbot (2012) Eq. 3.5 and Table 3.2. [W/m]
 
     Theory (B14).
-
-    Parameters
-    ----------
-    p_h : float
-        Hertz pressure. [Pa]
-    u_r : float
-        Rolling speed. [m/s]
-    mu_d : float
-        Dynamic viscosity at the inlet. [Pa s]
-    alpha_pv : float
-        Pressure-viscosity coefficient. [1/Pa]
-    r_eq : float
-        Equivalent radius. [m]
-    s_co : float
-        Composite rms roughness. [m]
-    e_eq : float
-        Equivalent modulus. [Pa]
     """
     a0, a1, a2 = 27.3758, 0.0169312, -0.00260401
     b1, b2, b3, b4 = 55.582, 0.179813, -0.097448, -1.33225

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = ["monotone_cubic"]
-
 Floats = NDArray[np.float64]
 
 
@@ -31,16 +29,12 @@ def _slope(values: Floats, n: int, column: int) -> float:
 
 @kernel
 def monotone_cubic(
-    first: float, spacing: float, values: Floats, at: Floats
+    first: float,  # Place of the first point, and spacing of all.
+    spacing: float,  # Place of the first point, and spacing of all.
+    values: Floats,
+    at: Floats,
 ) -> tuple[Floats, Floats]:
     """Values and slopes at some places; beyond the points their last value, slope zero.
-
-    Parameters
-    ----------
-    first, spacing : float
-        Place of the first point, and spacing of all.
-    values : ndarray, shape (n, k)
-    at : ndarray, shape (m,)
 
     Returns
     -------

@@ -24,8 +24,6 @@ from epicyclic.kernels.pocket_stage import (
     solve_stage,
 )
 
-__all__ = ["NEW_INERTIA", "SDIRK", "mark_fresh", "periodic_flow"]
-
 SDIRK = 1 - math.sqrt(0.5)
 """Coefficient of the two-stage, second-order, L-stable Runge-Kutta method. Alexander (1977). [1]"""
 EASE = 0.125
@@ -206,46 +204,29 @@ def _advance(
 
 @kernel
 def periodic_flow(
+    # As for `solve_stage`, with a first axis of 2 n + 1 times: the start of the period, then for
+    # each of n steps the inner point of the time stepping and the end of the step.
     shape: Shape,
-    live: Flags,
-    fluid: Fluid,
-    step: float,
-    shift: int,
+    live: Flags,  # Which cells are pockets during each step.
+    fluid: Fluid,  # As for `solve_stage`.
+    step: float,  # [s]
+    shift: int,  # Pockets by which the numbering moves on from one period to the next.
+    # Most periods; the change of the power from one period to the next, relative, below which the
+    # flow is periodic; and most Newton iterations. Fields may change by ten times that of their
+    # largest value.
     limits: tuple[int, float, int],
+    # Receives q (n, pockets, slices), velocities through axial faces (n, pockets, slices + 1) and
+    # gaps (n, pockets + 1, slices) [m/s] of the last period.
     history: Fields,
-    works: Floats,
+    works: Floats,  # Receives the boundary work over p_a of each step of the last period. [m^3]
+    # Receives for the last period: boundary work over p_a [m^3]; work lost in the flow over rho_m
+    # [m^5/s^2], that left in pockets at their end included; volumes at ambient density that come
+    # with new pockets, leave through the openings and go with the ended ones, and what is stored
+    # [m^3]; change of the power and of the fields [1]. The last one is raised by the iterations of
+    # all periods.
     figures: Floats,
 ) -> int:
     """Flow through the pockets, mesh period after mesh period until it repeats. Theory (Q18).
-
-    Parameters
-    ----------
-    shape : tuple of ndarray
-        As for `solve_stage`, with a first axis of 2 n + 1 times: the start of the period, then
-        for each of n steps the inner point of the time stepping and the end of the step.
-    live : ndarray of bool, shape (n, pockets, slices)
-        Which cells are pockets during each step.
-    fluid : tuple
-        As for `solve_stage`.
-    step : float
-        [s]
-    shift : int
-        Pockets by which the numbering moves on from one period to the next.
-    limits : tuple
-        Most periods; the change of the power from one period to the next, relative, below which the
-        flow is periodic; and most Newton iterations. Fields may change by ten times that of their
-        largest value.
-    history : tuple of ndarray
-        Receives q (n, pockets, slices), velocities through axial faces (n, pockets, slices + 1)
-        and gaps (n, pockets + 1, slices) [m/s] of the last period.
-    works : ndarray, shape (n,)
-        Receives the boundary work over p_a of each step of the last period. [m^3]
-    figures : ndarray, shape (9,)
-        Receives for the last period: boundary work over p_a [m^3]; work lost in the flow over
-        rho_m [m^5/s^2], that left in pockets at their end included; volumes at ambient density
-        that come with new pockets, leave through the openings and go with the ended ones, and
-        what is stored [m^3]; change of the power and of the fields [1]. The last one is raised by
-        the iterations of all periods.
 
     Returns
     -------

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = ["GAMMA", "Mixture", "choking_table", "donor", "mixture", "nozzle"]
-
 Floats = NDArray[np.float64]
 Mixture = tuple[float, float, float, float, float]
 """As from `mixture`."""

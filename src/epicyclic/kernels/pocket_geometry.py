@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = ["gap_feet", "gap_table", "pocket_outlines", "pocket_table"]
-
 Floats = NDArray[np.float64]
 Points = NDArray[np.complex128]
 
@@ -54,22 +52,16 @@ def _next_to_tip(flank: Points, first: int, rho: float, base: float, outward: fl
 
 @kernel
 def _closest(
-    point: complex, flank: Points, joints: Floats, gear: Floats
+    point: complex,  # In the frame of the stored flank. [m]
+    flank: Points,  # From the middle of the space to the tip corner. [m]
+    # Indices where the fillet begins, where it ends, and where the involute ends: at the tip
+    # corner, or at the chamfer, on which no foot lies.
+    joints: Floats,
+    # Base radius [m], half angle of the tooth at the base circle [rad], radii of curvature of the
+    # involute at its root and tip ends [m], +1 for an external gear, -1 for a ring.
+    gear: Floats,
 ) -> tuple[float, complex, int]:
     """Point of a flank closest to `point`. Theory (Q2).
-
-    Parameters
-    ----------
-    point : complex
-        In the frame of the stored flank. [m]
-    flank : ndarray of complex, shape (n,)
-        From the middle of the space to the tip corner. [m]
-    joints : ndarray, shape (3,)
-        Indices where the fillet begins, where it ends, and where the involute ends: at the tip
-        corner, or at the chamfer, on which no foot lies.
-    gear : ndarray, shape (5,)
-        Base radius [m], half angle of the tooth at the base circle [rad], radii of curvature of
-        the involute at its root and tip ends [m], +1 for an external gear, -1 for a ring.
 
     Returns
     -------
@@ -126,27 +118,18 @@ def _unplace(point: complex, turn: float, mirror: float, centre: float) -> compl
 
 @kernel
 def _gap(
-    phi: float,
-    leading: float,
+    phi: float,  # Angle of the tooth from the line of centres. [rad]
+    leading: float,  # +1 for the flank on the side that `phi` grows to, -1 for the other.
+    # Flank, joints and figures of gear 1, then of gear 2, as for `_closest`.
     gears: tuple[Points, Floats, Floats, Points, Floats, Floats],
+    # Coordinate of the axis of gear 2 [m], teeth of gears 1 and 2, +1 for an external mesh and -1
+    # for an internal one, operating pressure angle [rad], length of the line of action [m],
+    # clearances of the leading and the trailing flanks along the line of action [m].
     mesh: Floats,
 ) -> tuple[float, complex, complex, int, int]:
     """Gap between a flank of a tooth of gear 1 and the flank of gear 2 that it faces.
 
     Theory (Q1), (Q3).
-
-    Parameters
-    ----------
-    phi : float
-        Angle of the tooth from the line of centres. [rad]
-    leading : float
-        +1 for the flank on the side that `phi` grows to, -1 for the other.
-    gears : tuple
-        Flank, joints and figures of gear 1, then of gear 2, as for `_closest`.
-    mesh : ndarray, shape (8,)
-        Coordinate of the axis of gear 2 [m], teeth of gears 1 and 2, +1 for an external mesh and
-        -1 for an internal one, operating pressure angle [rad], length of the line of action [m],
-        clearances of the leading and the trailing flanks along the line of action [m].
 
     Returns
     -------
@@ -214,19 +197,12 @@ def _facing(phi: float, leading: float, mesh: Floats, gear2: Floats) -> tuple[fl
 
 @kernel
 def gap_table(
-    phi: Floats,
-    leading: float,
-    gears: tuple[Points, Floats, Floats, Points, Floats, Floats],
-    mesh: Floats,
+    phi: Floats,  # Angles of the tooth of gear 1 from the line of centres. [rad]
+    leading: float,  # As for `_gap`.
+    gears: tuple[Points, Floats, Floats, Points, Floats, Floats],  # As for `_gap`.
+    mesh: Floats,  # As for `_gap`.
 ) -> Floats:
     """Gap between two flanks and its middle at many angles. Theory (Q3).
-
-    Parameters
-    ----------
-    phi : ndarray, shape (n,)
-        Angles of the tooth of gear 1 from the line of centres. [rad]
-    leading, gears, mesh
-        As for `_gap`.
 
     Returns
     -------
@@ -418,22 +394,14 @@ def pocket_outlines(
 
 @kernel
 def pocket_table(
+    # For a tooth of gear 1 in a space of gear 2 the angle of that tooth, for a tooth of gear 2 in a
+    # space of gear 1 the angle of that space, from the line of centres. [rad]
     phi: Floats,
-    member: int,
-    gears: tuple[Points, Floats, Floats, Points, Floats, Floats],
-    mesh: Floats,
+    member: int,  # 1 or 2: whose tooth is in the space of the other.
+    gears: tuple[Points, Floats, Floats, Points, Floats, Floats],  # As for `_gap`.
+    mesh: Floats,  # As for `_gap`.
 ) -> Floats:
     """End area of a pocket and its centroid at many angles. Theory (Q4), (Q5).
-
-    Parameters
-    ----------
-    phi : ndarray, shape (n,)
-        For a tooth of gear 1 in a space of gear 2 the angle of that tooth, for a tooth of gear 2
-        in a space of gear 1 the angle of that space, from the line of centres. [rad]
-    member : int
-        1 or 2: whose tooth is in the space of the other.
-    gears, mesh
-        As for `_gap`.
 
     Returns
     -------

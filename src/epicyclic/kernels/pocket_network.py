@@ -16,8 +16,6 @@ from epicyclic.kernels._jit import kernel
 from epicyclic.kernels.pocket_flow import NEW_INERTIA, mark_fresh
 from epicyclic.kernels.pocket_stage import Flags, Floats, Fresh, Indices, downstream_share
 
-__all__ = ["periodic_network"]
-
 Openings = tuple[Floats, Floats, Floats, Floats]
 """Areas of axial faces and of gaps [m^2], distances from the cells before and behind them [m]."""
 Rules = tuple[float, float, bool]

@@ -14,21 +14,6 @@ from numpy.typing import NDArray
 from epicyclic.kernels._jit import kernel
 from epicyclic.kernels.pocket_fluid import GAMMA, Mixture, donor, mixture, nozzle
 
-__all__ = [
-    "Fields",
-    "Flags",
-    "Floats",
-    "Fluid",
-    "Fresh",
-    "Indices",
-    "Numbers",
-    "Shape",
-    "downstream_share",
-    "kinetic_shares",
-    "number",
-    "solve_stage",
-]
-
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Indices = NDArray[np.int64]
@@ -414,45 +399,29 @@ def _move(step: Floats, fields: Fields, numbers: Numbers) -> bool:
 
 @kernel
 def solve_stage(
+    # Volumes and their growth in the step (pockets, slices) [m^3], axial areas (pockets, slices +
+    # 1) and areas of the gaps (pockets + 1, slices) [m^2], distances of axial faces from the cells
+    # before and behind (2, pockets, slices + 1) and of gaps from the pockets before and behind (2,
+    # pockets + 1, slices) [m].
     shape: Shape,
+    # What the step starts from: excess mass V (rho/rho_m - 1) [m^3], velocities through axial faces
+    # and gaps [m/s].
     before: Fields,
+    # q, velocities through axial faces and through gaps: first guess, and the solution.
     fields: Fields,
-    numbers: Numbers,
+    numbers: Numbers,  # From `number`: cells, axial faces, count, width.
+    # Oil fraction, p_a/rho_m [m^2/s^2], choking table, whether differences are central; an empty
+    # table for the mean density of both sides at all openings, without choking.
     fluid: Fluid,
+    # Positive for the gaps and axial faces that have just opened, and the factor of their inertia.
     fresh: Fresh,
-    shares: Floats,
-    tau: float,
+    shares: Floats,  # From `kinetic_shares`.
+    tau: float,  # Time step. [s]
+    # Receives boundary work over p_a [m^3/s], power lost or stored in the flow over rho_m
+    # [m^5/s^3], volume that leaves to ambient at ambient density [m^3/s].
     rates: Floats,
 ) -> int:
     """One implicit Euler step by Newton's method. Theory (Q14), (Q15), (Q16).
-
-    Parameters
-    ----------
-    shape : tuple of ndarray
-        Volumes and their growth in the step (pockets, slices) [m^3], axial areas (pockets,
-        slices + 1) and areas of the gaps (pockets + 1, slices) [m^2], distances of axial faces from
-        the cells before and behind (2, pockets, slices + 1) and of gaps from the pockets before and
-        behind (2, pockets + 1, slices) [m].
-    before : tuple of ndarray
-        What the step starts from: excess mass V (rho/rho_m - 1) [m^3], velocities through
-        axial faces and gaps [m/s].
-    fields : tuple of ndarray
-        q, velocities through axial faces and through gaps: first guess, and the solution.
-    numbers : tuple
-        From `number`: cells, axial faces, count, width.
-    fluid : tuple
-        Oil fraction, p_a/rho_m [m^2/s^2], choking table, whether differences are central; an empty
-        table for the mean density of both sides at all openings, without choking.
-    fresh : tuple
-        Positive for the gaps and axial faces that have just opened, and the factor of their
-        inertia.
-    shares : ndarray, shape (2, pockets, slices)
-        From `kinetic_shares`.
-    tau : float
-        Time step. [s]
-    rates : ndarray, shape (3,)
-        Receives boundary work over p_a [m^3/s], power lost or stored in the flow over rho_m
-        [m^5/s^3], volume that leaves to ambient at ambient density [m^3/s].
 
     Returns
     -------

@@ -23,8 +23,6 @@ from numpy.typing import NDArray
 
 from epicyclic.kernels._jit import kernel
 
-__all__ = ["solve_roller_loads"]
-
 FloatArray = NDArray[np.float64]
 
 DEFLECTION_EXPONENT = 1.11
@@ -285,44 +283,19 @@ def clearance_scale(clearance: float) -> float:
 
 @kernel
 def solve_roller_loads(
-    load: FloatArray,
-    start: FloatArray,
-    psi: FloatArray,
-    y_over_l: FloatArray,
-    crown: FloatArray,
-    width: float,
-    clearance: float,
-    tolerance: float,
-    max_iterations: int,
-    held: bool = False,
-    near: bool = False,
+    load: FloatArray,  # F_x, F_y [N] and M_x/L, M_y/L [N], moments conjugate to the tilts.
+    start: FloatArray,  # Where the iteration starts. [m]
+    psi: FloatArray,  # Azimuth of each roller. [rad]
+    y_over_l: FloatArray,  # Axial position of the slices over the half-width of the bearing. [1]
+    crown: FloatArray,  # Crown drop at each slice. [m]
+    width: float,  # Slice width. [m]
+    clearance: float,  # Diametral clearance. [m]
+    tolerance: float,  # Largest residual force over the largest load. [1]
+    max_iterations: int,  # For each of the two nested iterations.
+    held: bool = False,  # True to keep the tilts of `start`.
+    near: bool = False,  # True if `start` is so near that its loaded lengths serve.
 ) -> tuple[FloatArray, FloatArray, int]:
     """Load intensity of every slice of every roller.
-
-    Parameters
-    ----------
-    load : ndarray, shape (4,)
-        F_x, F_y [N] and M_x/L, M_y/L [N], moments conjugate to the tilts.
-    start : ndarray, shape (4,)
-        Where the iteration starts. [m]
-    psi : ndarray, shape (rollers,)
-        Azimuth of each roller. [rad]
-    y_over_l : ndarray, shape (rows, slices)
-        Axial position of the slices over the half-width of the bearing. [1]
-    crown : ndarray, shape (slices,)
-        Crown drop at each slice. [m]
-    width : float
-        Slice width. [m]
-    clearance : float
-        Diametral clearance. [m]
-    tolerance : float
-        Largest residual force over the largest load. [1]
-    max_iterations : int
-        For each of the two nested iterations.
-    held : bool
-        True to keep the tilts of `start`.
-    near : bool
-        True if `start` is so near that its loaded lengths serve.
 
     Returns
     -------

@@ -10,19 +10,6 @@ from typing import Literal
 from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, NUMBER
 
-__all__ = [
-    "CHURNING_MODELS",
-    "Churning",
-    "ChurningModel",
-    "Dipped",
-    "SumpOil",
-    "acceleration_parameter",
-    "changenet_velex",
-    "churning_flags",
-    "iso_14179_1",
-    "wetted_area",
-]
-
 ChurningModel = Literal["changenet-velex", "iso-14179-1"]
 
 GRAVITY = 9.80665
@@ -41,35 +28,16 @@ RPM = math.pi / 30
 
 @dataclass(frozen=True, slots=True)
 class Dipped:
-    """A part that turns about a level axis and dips into oil.
+    """A part that turns about a level axis and dips into oil."""
 
-    Attributes
-    ----------
-    radius : float
-        Radius of the pitch circle, or of the outside of a part without teeth. [m]
-    tip_radius : float
-        [m]
-    width : float
-        [m]
-    depth : float
-        Depth of its lowest point below the oil at rest. [m]
-    module : float
-        Normal module; of a part without teeth, that of the gears beside it. [m]
-    teeth : int
-        0 for a part without teeth.
-    tooth_height : float
-        [m]
-    pressure_angle, helix_angle : float
-        Normal pressure angle and helix angle at the reference circle. [rad]
-    """
-
-    radius: float
-    tip_radius: float
-    width: float
-    depth: float
-    module: float
-    teeth: int = 0
-    tooth_height: float = 0.0
+    radius: float  # Radius of the pitch circle, or of the outside of a part without teeth. [m]
+    tip_radius: float  # [m]
+    width: float  # [m]
+    depth: float  # Depth of its lowest point below the oil at rest. [m]
+    module: float  # Normal module; of a part without teeth, that of the gears beside it. [m]
+    teeth: int = 0  # 0 for a part without teeth.
+    tooth_height: float = 0.0  # [m]
+    # Normal pressure angle and helix angle at the reference circle. [rad]
     pressure_angle: float = 0.0
     helix_angle: float = 0.0
 
@@ -86,36 +54,20 @@ class Dipped:
 
 @dataclass(frozen=True, slots=True)
 class SumpOil:
-    """The oil in a sump.
+    """The oil in a sump."""
 
-    Attributes
-    ----------
-    density : float
-        [kg/m^3]
-    kinematic_viscosity : float
-        [m^2/s]
-    volume : float
-        [m^3]
-    """
-
-    density: float
-    kinematic_viscosity: float
-    volume: float
+    density: float  # [kg/m^3]
+    kinematic_viscosity: float  # [m^2/s]
+    volume: float  # [m^3]
 
 
 @dataclass(frozen=True, slots=True)
 class Churning:
-    """A model of churning.
-
-    Attributes
-    ----------
-    title, source : str
-    torque : callable
-        From a part, its speed in rad/s and the oil to the torque in N m.
-    """
+    """A model of churning."""
 
     title: str
     source: str
+    # From a part, its speed in rad/s and the oil to the torque in N m.
     torque: Callable[[Dipped, float, SumpOil], float]
 
 
@@ -155,18 +107,15 @@ def acceleration_parameter(part: Dipped, speed: float) -> float:
     return speed**2 * math.cbrt(part.radius * part.width * part.module)
 
 
-def changenet_velex(part: Dipped, speed: float, oil: SumpOil) -> float:
+def changenet_velex(
+    part: Dipped,
+    speed: float,  # Against the housing. [rad/s]
+    oil: SumpOil,
+) -> float:
     """Churning torque after Changenet and Velex (2007), second hand. Theory (N3), (N5). [N m]
 
     C = rho omega^2 S_m R^3 C_m/2; C_m by the regime of flow, between the two regimes linear in the
     acceleration parameter.
-
-    Parameters
-    ----------
-    part : Dipped
-    speed : float
-        Against the housing. [rad/s]
-    oil : SumpOil
 
     Examples
     --------

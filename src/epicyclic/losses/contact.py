@@ -22,8 +22,6 @@ from epicyclic.lubricant.properties import OilState
 if TYPE_CHECKING:
     from epicyclic.losses.friction.base import FrictionModel
 
-__all__ = ["MeshContact", "mesh_contact"]
-
 FloatArray = NDArray[np.float64]
 
 
@@ -80,34 +78,19 @@ class MeshContact(LineContacts):
 
 
 def mesh_contact(
-    mesh: Mesh,
-    lines: ContactLines,
-    line_load: FloatArray,
+    mesh: Mesh,  # The mesh and its contact lines.
+    lines: ContactLines,  # The mesh and its contact lines.
+    line_load: FloatArray,  # Load per length of each segment. [N/m]
     *,
-    force: float,
-    speed1: float,
-    oil: OilState,
-    flanks: Flanks[float],
-    around: OilState | None = None,
+    force: float,  # Transverse force along the line of action, positive. [N]
+    speed1: float,  # Angular speed of member 1 relative to the carrier, positive. [rad/s]
+    oil: OilState,  # Oil at the contacts, and the surfaces.
+    flanks: Flanks[float],  # Oil at the contacts, and the surfaces.
+    around: OilState | None = None,  # Oil around the gears, if its temperature differs.
 ) -> MeshContact:
     """Conditions at the loaded segments of `lines`.
 
     Theory (C2).
-
-    Parameters
-    ----------
-    mesh, lines
-        The mesh and its contact lines.
-    line_load : ndarray, shape (positions, lines, segments)
-        Load per length of each segment. [N/m]
-    force : float
-        Transverse force along the line of action, positive. [N]
-    speed1 : float
-        Angular speed of member 1 relative to the carrier, positive. [rad/s]
-    oil, flanks
-        Oil at the contacts, and the surfaces.
-    around : OilState, optional
-        Oil around the gears, if its temperature differs.
     """
     loaded = (lines.length > 0) & (line_load > 0)
     speed2 = speed1 / mesh.ratio

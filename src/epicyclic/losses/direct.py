@@ -33,8 +33,6 @@ from epicyclic.oilmodel.structured import EYRING_STRESS, eyring_friction
 from epicyclic.status import Status
 from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, MILLIMETRE, NUMBER, Quantity, percent
 
-__all__ = ["DirectSettings", "EhlDirect", "contacts_told", "solver_range"]
-
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
 
@@ -84,55 +82,26 @@ def contacts_told(progress: Callable[[int, int], None]) -> Iterator[None]:
 
 @dataclass(frozen=True, slots=True)
 class DirectSettings:
-    """Numbers that the solver takes from the case.
+    """Numbers that the solver takes from the case."""
 
-    Attributes
-    ----------
-    laws : OilLaws
-        How the oil behaves under pressure and shear.
-    asperities : AsperityContact
-        Where surfaces touch.
-    effusivity : float or None
-        Effusivity of the gears; None for isothermal contacts. [W s^0.5/(m^2 K)]
-    correlation_length : float
-        Correlation length of both flanks. [m]
-    seed : int
-    error : float
-        Wanted mean error at contacts that take no part. [1]
-    most_contacts : int
-        Solved for a mesh, those for the error not counted.
-    """
-
-    laws: OilLaws
-    asperities: AsperityContact
+    laws: OilLaws  # How the oil behaves under pressure and shear.
+    asperities: AsperityContact  # Where surfaces touch.
+    # Effusivity of the gears; None for isothermal contacts. [W s^0.5/(m^2 K)]
     effusivity: float | None
-    correlation_length: float
+    correlation_length: float  # Correlation length of both flanks. [m]
     seed: int
-    error: float
-    most_contacts: int
+    error: float  # Wanted mean error at contacts that take no part. [1]
+    most_contacts: int  # Solved for a mesh, those for the error not counted.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Solved:
-    """The contacts of a mesh that were solved, and what to know about them.
+    """The contacts of a mesh that were solved, and what to know about them."""
 
-    Attributes
-    ----------
-    force : float
-        Transverse force of the mesh. [N]
-    place : ndarray, shape (n, 2)
-        As from `_place`, each over -1 to 1 within `limits`.
-    ratio : ndarray, shape (n,)
-        Friction over the closed form. [1]
-    limits : ndarray, shape (2, 2)
-        Least and largest values of both over the whole mesh.
-    remark : str
-    """
-
-    force: float
-    place: FloatArray
-    ratio: FloatArray
-    limits: FloatArray
+    force: float  # Transverse force of the mesh. [N]
+    place: FloatArray  # As from `_place`, each over -1 to 1 within `limits`.
+    ratio: FloatArray  # Friction over the closed form. [1]
+    limits: FloatArray  # Least and largest values of both over the whole mesh.
     remark: str
 
     def friction(self, contact: MeshContact) -> FloatArray:

@@ -22,8 +22,6 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.lubricant.properties import OilState
 from epicyclic.oilmodel.model import OilModel
 
-__all__ = ["RaceContacts", "tabulated"]
-
 FloatArray = NDArray[np.float64]
 
 POINTS, PRESSURES = 48, 32
@@ -65,34 +63,20 @@ class _Motion:
 
 @dataclass(frozen=True, eq=False)
 class RaceContacts(LineContacts):
-    """Rollers on the races of a bearing: under the same loads on each of them, without slip.
-
-    Attributes
-    ----------
-    races : tuple of float
-        Equivalent radius at each. [m]
-    speed : float
-        Rolling speed. [m/s]
-    oil : OilState
-    """
+    """Rollers on the races of a bearing: under the same loads on each of them, without slip."""
 
     oil: OilState
-    races: tuple[float, ...]
-    speed: float
+    races: tuple[float, ...]  # Equivalent radius at each. [m]
+    speed: float  # Rolling speed. [m/s]
 
 
 def tabulated(
-    model: OilModel, quantity: str, form: str, contacts: MeshContact | RaceContacts
+    model: OilModel,
+    quantity: str,  # As for its `value`.
+    form: str,  # As for its `value`.
+    contacts: MeshContact | RaceContacts,  # n of them.
 ) -> FloatArray:
     """`OilModel.value` at every contact of a mesh or bearing, interpolated. Theory (O16).
-
-    Parameters
-    ----------
-    model : OilModel
-    quantity, form : str
-        As for its `value`.
-    contacts : MeshContact or RaceContacts
-        n of them.
 
     Returns
     -------

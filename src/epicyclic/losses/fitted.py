@@ -26,8 +26,6 @@ from epicyclic.units import (
     Quantity,
 )
 
-__all__ = ["FittedFriction", "FittedRolling", "domain_ranges"]
-
 FloatArray = NDArray[np.float64]
 
 _LABELS: dict[str, tuple[str, Quantity]] = {
@@ -45,15 +43,7 @@ _LABELS: dict[str, tuple[str, Quantity]] = {
 
 @dataclass(frozen=True)
 class _Fit:
-    """What friction and rolling loss share that are fitted to the simulated contacts of one oil.
-
-    Attributes
-    ----------
-    model : OilModel
-    form : str
-    quantity : str
-        Which of the fits of the model.
-    """
+    """What friction and rolling loss share that are fitted to the simulated contacts of one oil."""
 
     name: ClassVar = "fitted"
     title: ClassVar = "fit to simulated contacts of the oil"
@@ -61,7 +51,7 @@ class _Fit:
 
     model: OilModel
     form: str
-    quantity: str
+    quantity: str  # Which of the fits of the model.
 
     @property
     def source(self) -> str:
@@ -106,13 +96,9 @@ class FittedRolling(_Fit):
 
     Beyond the loads and speeds of the simulations the loss goes on as that of the regressions,
     Theory (R5).
-
-    Attributes
-    ----------
-    quantity : str
-        ``"rolling_loss"`` of gear teeth or ``"bearing_rolling_loss"``.
     """
 
+    # ``"rolling_loss"`` of gear teeth or ``"bearing_rolling_loss"``.
     quantity: str = "rolling_loss"
 
     def loss_density(self, contact: LineContacts) -> FloatArray:

@@ -22,8 +22,6 @@ from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
 from epicyclic.losses.validity import ModelUse, Range, RegressionFluid, ValidityFlag, check_contacts
 from epicyclic.oilmodel.model import OilModel
 
-__all__ = ["FittedOrGoksem", "FittedOrSchlenk", "weight_of_fit"]
-
 FloatArray = NDArray[np.float64]
 Fit = TypeVar("Fit", FittedFriction, FittedRolling)
 
@@ -38,18 +36,14 @@ NO_LEAST = "slide_to_roll_ratio"
 """The condition without a lower limit: where little slides, little is lost, and fits go on."""
 
 
-def weight_of_fit(model: OilModel, quantity: str, contacts: LineContacts) -> FloatArray:
+def weight_of_fit(
+    model: OilModel,
+    quantity: str,  # A key of its fits.
+    contacts: LineContacts,  # n of them.
+) -> FloatArray:
     """Weight of a fit at each contact: 1 within its simulations, 0 far beyond them. [1]
 
     Theory (O11).
-
-    Parameters
-    ----------
-    model : OilModel
-    quantity : str
-        A key of its fits.
-    contacts : LineContacts
-        n of them.
 
     Returns
     -------

@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Literal
 
-__all__ = ["JET_METHOD", "JET_SOURCE", "NozzleSide", "jet_loss"]
-
 NozzleSide = Literal["in-mesh", "out-of-mesh", "radial"]
 JET_METHOD = "momentum of the oil of jets"
 JET_SOURCE = "Y. Ariura, T. Ueno, T. Sunaga, S. Sunamoto, Bull. JSME 16 (1973) 881, second hand"
@@ -18,22 +16,16 @@ _ALONG: Mapping[NozzleSide, float] = MappingProxyType(
 
 
 def jet_loss(
-    density: float, flow: float, pitch_speed: float, jet_speed: float, side: NozzleSide
+    density: float,  # [kg/m^3]
+    flow: float,  # [m^3/s]
+    pitch_speed: float,  # [m/s]
+    jet_speed: float,  # [m/s]
+    side: NozzleSide,
 ) -> float:
     """Power that brings the oil of jets to the speed of the teeth. Theory (N8). [W]
 
     Ariura et al. (1973), second hand: P = rho Q v_t (v_t + v_jet) against the teeth, as they part;
     v_t - v_jet with them, as they mesh. Oil faster than the teeth is taken to drive nothing.
-
-    Parameters
-    ----------
-    density : float
-        [kg/m^3]
-    flow : float
-        [m^3/s]
-    pitch_speed, jet_speed : float
-        [m/s]
-    side : NozzleSide
 
     Examples
     --------

@@ -29,76 +29,39 @@ from epicyclic.geometry.contact_lines import ContactLines, contact_lines
 from epicyclic.geometry.mesh import Mesh
 from epicyclic.geometry.micro_geometry import FlankDeviations
 
-__all__ = [
-    "LOAD_DISTRIBUTIONS",
-    "STIFFNESS_SHAPES",
-    "LineLoads",
-    "LoadDistribution",
-    "MeshLoad",
-    "load_shape",
-]
-
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class MeshLoad:
-    """A mesh and the force on it.
-
-    Attributes
-    ----------
-    mesh : Mesh
-    force : float
-        Transverse, tangent to the base circles. [N]
-    bodies : tuple of GearBody
-        Both members.
-    deviations : FlankDeviations
-    last : LoadedMesh or None
-        The same mesh under nearly the same load, from where a solution is found sooner.
-    """
+    """A mesh and the force on it."""
 
     mesh: Mesh
-    force: float
-    bodies: tuple[GearBody, GearBody]
+    force: float  # Transverse, tangent to the base circles. [N]
+    bodies: tuple[GearBody, GearBody]  # Both members.
     deviations: FlankDeviations = UNMODIFIED
+    # The same mesh under nearly the same load, from where a solution is found sooner.
     last: LoadedMesh | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LineLoads:
-    """Contact lines and the load on them.
-
-    Attributes
-    ----------
-    lines : ContactLines
-    line_load : ndarray, shape (positions, lines, segments)
-        [N/m]
-    elastic : LoadedMesh or None
-        Approach and stiffness, from a model that knows them.
-    """
+    """Contact lines and the load on them."""
 
     lines: ContactLines
-    line_load: FloatArray
-    elastic: LoadedMesh | None = None
+    line_load: FloatArray  # [N/m]
+    elastic: LoadedMesh | None = None  # Approach and stiffness, from a model that knows them.
 
 
 @dataclass(frozen=True, slots=True)
 class LoadDistribution:
-    """A model of the load along the contact lines.
-
-    Attributes
-    ----------
-    title, source : str
-    distribute : callable
-        From a `MeshLoad`, mesh positions and contact segments to `LineLoads`.
-    takes_deviations : bool
-        False if micro-geometry and misalignment do not matter to it.
-    """
+    """A model of the load along the contact lines."""
 
     title: str
     source: str
+    # From a `MeshLoad`, mesh positions and contact segments to `LineLoads`.
     distribute: Callable[[MeshLoad, int, int], LineLoads]
-    takes_deviations: bool = False
+    takes_deviations: bool = False  # False if micro-geometry and misalignment do not matter to it.
 
 
 def _uniform(mesh: Mesh, lines: ContactLines) -> FloatArray:
@@ -133,19 +96,14 @@ STIFFNESS_SHAPES: dict[str, Callable[[Mesh, ContactLines], FloatArray]] = {
 
 @lru_cache(maxsize=64)
 def load_shape(
-    mesh: Mesh, name: str, positions: int, segments: int
+    mesh: Mesh,
+    name: str,  # A key of `STIFFNESS_SHAPES`.
+    positions: int,  # As for `contact_lines`.
+    segments: int,  # As for `contact_lines`.
 ) -> tuple[ContactLines, FloatArray]:
     """Contact lines, and the line load on them for a unit transverse force.
 
     Theory (D2).
-
-    Parameters
-    ----------
-    mesh : Mesh
-    name : str
-        A key of `STIFFNESS_SHAPES`.
-    positions, segments : int
-        As for `contact_lines`.
 
     Returns
     -------

@@ -19,15 +19,6 @@ from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_range
 from epicyclic.text_file import csv_rows, read_text, refuse
 from epicyclic.units import CELSIUS, NEWTON, NEWTON_METRE, RPM, WATT, Quantity
 
-__all__ = [
-    "AXES",
-    "QUANTITIES",
-    "LossQuantity",
-    "LossTable",
-    "read_loss_table",
-    "table_problems",
-]
-
 FloatArray = NDArray[np.float64]
 LossQuantity = Literal["torque", "power"]
 
@@ -57,28 +48,19 @@ class LossTable:
 
     Theory (J17).
 
-    Attributes
-    ----------
-    quantity : str
-        ``"torque"`` or ``"power"``.
-    axes : mapping of str to ndarray
-        One or two of `AXES`, each with two or more rising points. [SI]
-    values : ndarray
-        Torque or power, never negative, one entry, or one row, for each point of the first axis.
-        [N m] or [W]
-    source : str
-        Where it comes from, for messages.
-
     Raises
     ------
     ValueError
         If `table_problems` finds any.
     """
 
-    quantity: LossQuantity
+    quantity: LossQuantity  # ``"torque"`` or ``"power"``.
+    # One or two of `AXES`, each with two or more rising points. [SI]
     axes: Mapping[str, FloatArray]
+    # Torque or power, never negative, one entry, or one row, for each point of the first axis. [N
+    # m] or [W]
     values: FloatArray
-    source: str = "table of the case"
+    source: str = "table of the case"  # Where it comes from, for messages.
 
     def __post_init__(self) -> None:
         problems = table_problems(self.quantity, self.axes, self.values)
@@ -134,19 +116,11 @@ class LossTable:
 
 
 def table_problems(
-    quantity: LossQuantity, axes: Mapping[str, Sequence[float] | FloatArray], values: object
+    quantity: LossQuantity,  # ``"torque"`` or ``"power"``.
+    axes: Mapping[str, Sequence[float] | FloatArray],  # [SI]
+    values: object,  # One entry, or one row, for each point of the first axis. [SI]
 ) -> list[Problem]:
-    """What is wrong with the points and values of a table, by the names of its axes.
-
-    Parameters
-    ----------
-    quantity : str
-        ``"torque"`` or ``"power"``.
-    axes : mapping of str to sequence of float
-        [SI]
-    values : sequence or ndarray
-        One entry, or one row, for each point of the first axis. [SI]
-    """
+    """What is wrong with the points and values of a table, by the names of its axes."""
     known = ", ".join(AXES)
     if not 1 <= len(axes) <= 2:
         allowed = f"must have one or two of the axes {known}."
@@ -193,18 +167,15 @@ def _value_problems(
     return []
 
 
-def read_loss_table(path: Path) -> LossTable:
+def read_loss_table(
+    path: Path,  # At most 1 MB and 10,000 rows.
+) -> LossTable:
     """A table from a CSV file, one row for each point.
 
     The header names one or two of the columns ``speed``, ``temperature`` and ``radial_force`` and
     either ``torque`` or ``power``, each with its unit: ``speed [rpm],torque [N*m]``. Of two axes,
     every point of one goes with every point of the other, in any order. Lines that begin with ``#``
     do not count; the separator is a comma, a semicolon or a tab.
-
-    Parameters
-    ----------
-    path : Path
-        At most 1 MB and 10,000 rows.
 
     Raises
     ------

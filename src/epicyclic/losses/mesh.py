@@ -24,15 +24,6 @@ from epicyclic.losses.friction.base import FrictionModel
 from epicyclic.losses.rolling import RollingModel
 from epicyclic.losses.validity import Flags, ModelUse, SomeFlags, ValidityFlag, check_contacts
 
-__all__ = [
-    "MeshLoss",
-    "local_loss",
-    "loss_factor_loss",
-    "mean_friction",
-    "ohlendorf_closed_form",
-    "ohlendorf_loss_factor",
-]
-
 FloatArray = NDArray[np.float64]
 
 
@@ -42,22 +33,13 @@ CLOSED_LIMIT = 1.0
 
 @dataclass(frozen=True, slots=True)
 class MeshLoss:
-    """Loss of one mesh.
+    """Loss of one mesh."""
 
-    Attributes
-    ----------
-    sliding, rolling : float
-        [W]
-    friction : ndarray, shape (n,)
-        Coefficient of friction at every point. [1]
-    heat : ndarray, shape (n,)
-        Heat of sliding friction at every point, averaged over the mesh period. [W]
-    flags : Flags or tuple of ValidityFlag
-    """
-
-    sliding: float
-    rolling: float
+    sliding: float  # [W]
+    rolling: float  # [W]
+    # Coefficient of friction at every point. [1]
     friction: FloatArray = field(default_factory=lambda: np.zeros(0))
+    # Heat of sliding friction at every point, averaged over the mesh period. [W]
     heat: FloatArray = field(default_factory=lambda: np.zeros(0))
     flags: SomeFlags = ()
 

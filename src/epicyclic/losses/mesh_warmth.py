@@ -11,40 +11,23 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.thermal.flash import flash_temperature, heat_share
 from epicyclic.thermal.solids import Solid
 
-__all__ = ["MeshWarmth", "flash_temperatures", "heat_share1", "mesh_warmth"]
-
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class MeshWarmth:
-    """Flash temperature of a mesh.
+    """Flash temperature of a mesh."""
 
-    Attributes
-    ----------
-    flash_mean : float
-        Weighted with the load over the mesh period. [K]
-    flash_max : float
-        Largest one. [K]
-    """
-
-    flash_mean: float
-    flash_max: float
+    flash_mean: float  # Weighted with the load over the mesh period. [K]
+    flash_max: float  # Largest one. [K]
 
 
 def mesh_warmth(
-    contact: MeshContact, friction: FloatArray, materials: tuple[Solid, Solid]
+    contact: MeshContact,
+    friction: FloatArray,  # Coefficient of friction at every point. [1]
+    materials: tuple[Solid, Solid],  # Materials of both gears.
 ) -> MeshWarmth:
-    """Flash temperature of a mesh in contact. Theory (W1).
-
-    Parameters
-    ----------
-    contact : MeshContact
-    friction : ndarray, shape (n,)
-        Coefficient of friction at every point. [1]
-    materials : tuple of Solid
-        Materials of both gears.
-    """
+    """Flash temperature of a mesh in contact. Theory (W1)."""
     flash = flash_temperatures(contact, friction, materials)
     load = contact.line_load * contact.weight
     return MeshWarmth(
@@ -53,17 +36,12 @@ def mesh_warmth(
     )
 
 
-def heat_share1(contact: MeshContact, heat: FloatArray, materials: tuple[Solid, Solid]) -> float:
-    """Share of the heat of sliding that gear 1 takes up. Theory (W2). [1]
-
-    Parameters
-    ----------
-    contact : MeshContact
-    heat : ndarray, shape (n,)
-        Of sliding friction at every point. [W]
-    materials : tuple of Solid
-        Materials of both gears.
-    """
+def heat_share1(
+    contact: MeshContact,
+    heat: FloatArray,  # Of sliding friction at every point. [W]
+    materials: tuple[Solid, Solid],  # Materials of both gears.
+) -> float:
+    """Share of the heat of sliding that gear 1 takes up. Theory (W2). [1]"""
     total = float(heat.sum())
     if not total > 0:
         return 0.5

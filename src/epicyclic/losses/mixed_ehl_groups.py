@@ -32,16 +32,6 @@ from epicyclic.units import (
     PER_GIGAPASCAL,
 )
 
-__all__ = [
-    "PRESSURE_VISCOSITY_RANGE",
-    "TALBOT_FLUID",
-    "VISCOSITY_RANGE",
-    "TalbotRegression",
-    "beyond_data",
-    "held_in_table",
-    "without_oil",
-]
-
 FloatArray = NDArray[np.float64]
 
 TALBOT_FLUID = RegressionFluid(
@@ -88,14 +78,9 @@ class TalbotRegression:
     """A regression of the 33,600 mixed-EHL simulations of an automatic transmission fluid.
 
     Conditions outside Table 5.1 are held at its limits, as `held_in_table` does.
-
-    Attributes
-    ----------
-    oil_held : bool
-        False to continue the formula beyond its oil.
     """
 
-    oil_held: bool = True
+    oil_held: bool = True  # False to continue the formula beyond its oil.
 
     made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
     ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES

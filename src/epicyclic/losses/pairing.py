@@ -17,8 +17,6 @@ from epicyclic import library
 from epicyclic.contact import LineContacts
 from epicyclic.oilmodel.model import OilModel, read_oil_model
 
-__all__ = ["equally_rough", "pairing_ratio"]
-
 FloatArray = NDArray[np.float64]
 
 SIMULATED = "atf-talbot-2012"
@@ -31,15 +29,11 @@ def equally_rough(contact: LineContacts) -> LineContacts:
     return contact.changed(roughness1=rougher, roughness2=rougher)
 
 
-def pairing_ratio(quantity: str, contact: LineContacts) -> FloatArray:
+def pairing_ratio(
+    quantity: str,  # ``"friction"`` or ``"rolling_loss"``.
+    contact: LineContacts,  # n of them.
+) -> FloatArray:
     """A quantity over what it is with both surfaces as rough as the rougher one. Theory (O13). [1]
-
-    Parameters
-    ----------
-    quantity : str
-        ``"friction"`` or ``"rolling_loss"``.
-    contact : LineContacts
-        n of them.
 
     Returns
     -------

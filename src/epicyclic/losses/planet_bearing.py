@@ -49,21 +49,6 @@ from epicyclic.units import (
     format_number,
 )
 
-__all__ = [
-    "FITTED_OR_PALMGREN",
-    "BearingLoss",
-    "RollerBearing",
-    "RollerLoads",
-    "fitted_rolling_loss",
-    "mixed_ehl_rolling_loss",
-    "palmgren_flags",
-    "palmgren_loss",
-    "radial_stiffness",
-    "roller_loads",
-    "roller_loads_next_to",
-    "tilting_moments",
-]
-
 FloatArray = NDArray[np.float64]
 
 FITTED_OR_PALMGREN = "fitted-or-palmgren"
@@ -123,42 +108,21 @@ PALMGREN_RANGES = (
 
 @dataclass(frozen=True, slots=True)
 class RollerBearing:
-    """A cylindrical roller or needle bearing.
-
-    Attributes
-    ----------
-    rows, rollers_per_row : int
-    roller_diameter, roller_length, inner_diameter : float
-        [m]
-    diametral_clearance : float
-        [m]
-    crown_drop : float
-        Crown drop of the profile at the ends of a roller. [m]
-    crown_length_fraction : float
-        Crowned part of the length, at each end. [1]
-    row_gap : float
-        Axial gap between the rollers of neighbouring rows. [m]
-    roller_roughness, race_roughness : float
-        rms. [m]
-    equivalent_modulus : float
-        E_eq. [Pa]
-    slices : int
-        On each roller.
-    """
+    """A cylindrical roller or needle bearing."""
 
     rows: int
     rollers_per_row: int
-    roller_diameter: float
-    roller_length: float
-    inner_diameter: float
-    diametral_clearance: float
-    crown_drop: float
-    crown_length_fraction: float
-    row_gap: float
-    roller_roughness: float
-    race_roughness: float
-    equivalent_modulus: float
-    slices: int
+    roller_diameter: float  # [m]
+    roller_length: float  # [m]
+    inner_diameter: float  # [m]
+    diametral_clearance: float  # [m]
+    crown_drop: float  # Crown drop of the profile at the ends of a roller. [m]
+    crown_length_fraction: float  # Crowned part of the length, at each end. [1]
+    row_gap: float  # Axial gap between the rollers of neighbouring rows. [m]
+    roller_roughness: float  # rms. [m]
+    race_roughness: float  # rms. [m]
+    equivalent_modulus: float  # E_eq. [Pa]
+    slices: int  # On each roller.
 
     @property
     def outer_diameter(self) -> float:
@@ -253,21 +217,14 @@ class BearingLoss:
 @lru_cache(maxsize=1024)
 def roller_loads(
     bearing: RollerBearing,
-    force_x: float,
-    force_y: float,
+    force_x: float,  # Radial load of the outer race. [N]
+    force_y: float,  # Radial load of the outer race. [N]
+    # moment_x, moment_y: Moments that tilt the outer race in the plane of the axis and x, and of
+    # the axis and y: a load F_x at height z has the moment_x F_x z. [N m]
     moment_x: float,
     moment_y: float,
 ) -> RollerLoads:
     """Load on every slice under radial forces and moments.
-
-    Parameters
-    ----------
-    bearing : RollerBearing
-    force_x, force_y : float
-        Radial load of the outer race. [N]
-    moment_x, moment_y : float
-        Moments that tilt the outer race in the plane of the axis and x, and of the axis and y: a
-        load F_x at height z has the moment_x F_x z. [N m]
 
     Raises
     ------
@@ -280,16 +237,15 @@ def roller_loads(
 
 
 def roller_loads_next_to(
-    last: RollerLoads, bearing: RollerBearing, force: float, moment_x: float, moment_y: float
+    last: RollerLoads,
+    # bearing, force, moment_x, moment_y: As for `roller_loads`, which has the same solution but for
+    # its tolerance.
+    bearing: RollerBearing,
+    force: float,
+    moment_x: float,
+    moment_y: float,
 ) -> RollerLoads:
-    """Load on every slice under nearly the load of `last`, which saves most of the work.
-
-    Parameters
-    ----------
-    last : RollerLoads
-    bearing, force, moment_x, moment_y
-        As for `roller_loads`, which has the same solution but for its tolerance.
-    """
+    """Load on every slice under nearly the load of `last`, which saves most of the work."""
     half_width = bearing.half_width
     load = np.array([force, 0.0, moment_x / half_width, moment_y / half_width])
     start = last.displacement * (1.0, 1.0, half_width, half_width)
@@ -350,17 +306,12 @@ def _slices(bearing: RollerBearing) -> tuple[FloatArray, FloatArray, FloatArray]
 
 
 def tilting_moments(
-    bearing: RollerBearing, force: float, tilt_x: float, tilt_y: float
+    bearing: RollerBearing,
+    force: float,  # [N]
+    tilt_x: float,  # In the planes of the axis and x, and of the axis and y. [rad]
+    tilt_y: float,  # In the planes of the axis and x, and of the axis and y. [rad]
 ) -> tuple[float, float]:
     """Moments that hold the outer race tilted under a radial force along x. Theory (B10). [N m]
-
-    Parameters
-    ----------
-    bearing : RollerBearing
-    force : float
-        [N]
-    tilt_x, tilt_y : float
-        In the planes of the axis and x, and of the axis and y. [rad]
 
     Raises
     ------
@@ -444,7 +395,7 @@ def fitted_rolling_loss(
     speed: float,
     oil: OilState,
     model: FittedRolling,
-    beyond: BearingLoss | None = None,
+    beyond: BearingLoss | None = None,  # That of Palmgren, which takes over beyond the simulations.
 ) -> BearingLoss:
     """Rolling loss of the contacts of all rollers with both races, fitted to simulated ones. [W]
 
@@ -452,12 +403,6 @@ def fitted_rolling_loss(
 
     What was simulated is one contact, and a roller has two; the published formula is evaluated once
     for a slice, as its source does.
-
-    Parameters
-    ----------
-    bearing, loads, speed, oil, model
-    beyond : BearingLoss, optional
-        That of Palmgren, which takes over beyond the simulations.
     """
     contacts = _contacts(bearing, loads, speed, oil, (bearing.outer_radius, bearing.inner_radius))
     if contacts is None:

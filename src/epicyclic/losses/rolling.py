@@ -12,17 +12,11 @@ from epicyclic.contact import LineContacts
 from epicyclic.kernels.line_contact import goksem_hargreaves_force, martin_force
 from epicyclic.kernels.mixed_ehl import rolling_loss_number_at
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.mixed_ehl_groups import (
-    TalbotRegression,
-    beyond_data,
-    held_in_table,
-)
+from epicyclic.losses.mixed_ehl_groups import TalbotRegression, beyond_data, held_in_table
 from epicyclic.losses.pairing import equally_rough, pairing_ratio
 from epicyclic.losses.validity import Range, RegressionFluid
 from epicyclic.oilmodel.regressions import regression_groups, rolling_scale
 from epicyclic.units import NUMBER
-
-__all__ = ["ROLLING_MODELS", "RollingModel"]
 
 FloatArray = NDArray[np.float64]
 

@@ -23,28 +23,6 @@ from epicyclic.losses.viscous import (
 from epicyclic.lubricant.properties import OilState
 from epicyclic.units import NUMBER
 
-__all__ = [
-    "AXIAL_RATIO",
-    "BEARING_TYPES",
-    "DEFAULT_COEFFICIENTS",
-    "DEFAULT_FLANGE_COEFFICIENTS",
-    "DEFAULT_VISCOUS_FACTORS",
-    "BearingLoad",
-    "BearingType",
-    "Cage",
-    "CatalogueBearing",
-    "FrictionPart",
-    "PalmgrenModel",
-    "TableModel",
-    "bearing_types",
-    "friction_load",
-    "harris_coefficient",
-    "load_flags",
-    "load_moment",
-    "minimum_load",
-    "static_load",
-]
-
 BearingType = Literal["deep-groove", "cylindrical", "tapered", "needle"]
 Cage = Literal["caged", "full-complement"]
 
@@ -101,43 +79,24 @@ AXIAL_RATIO = Range(
 
 @dataclass(frozen=True, slots=True)
 class BearingLoad:
-    """Load on a bearing.
+    """Load on a bearing."""
 
-    Attributes
-    ----------
-    radial, axial : float
-        Magnitudes. [N]
-    """
-
-    radial: float
-    axial: float
+    radial: float  # Magnitudes. [N]
+    axial: float  # Magnitudes. [N]
 
 
 @dataclass(frozen=True, slots=True)
 class CatalogueBearing:
-    """A rolling bearing as a catalogue states it.
+    """A rolling bearing as a catalogue states it."""
 
-    Attributes
-    ----------
-    type : str
-        One of `BEARING_TYPES`.
-    bore, outside_diameter, width : float
-        d, D and B. [m]
-    cage : str
-        ``"caged"`` or ``"full-complement"``.
-    dynamic_load_rating, static_load_rating : float
-        C and C0; NaN where they are unknown. [N]
-    axial_factor : float
-        Y of a tapered roller bearing, 0.4 cot of its contact angle; NaN for other types. [1]
-    """
-
-    type: BearingType
-    bore: float
-    outside_diameter: float
-    width: float = math.nan
-    cage: Cage = "caged"
-    dynamic_load_rating: float = math.nan
-    static_load_rating: float = math.nan
+    type: BearingType  # One of `BEARING_TYPES`.
+    bore: float  # d, D and B. [m]
+    outside_diameter: float  # d, D and B. [m]
+    width: float = math.nan  # d, D and B. [m]
+    cage: Cage = "caged"  # ``"caged"`` or ``"full-complement"``.
+    dynamic_load_rating: float = math.nan  # C and C0; NaN where they are unknown. [N]
+    static_load_rating: float = math.nan  # C and C0; NaN where they are unknown. [N]
+    # Y of a tapered roller bearing, 0.4 cot of its contact angle; NaN for other types. [1]
     axial_factor: float = math.nan
 
     @property
@@ -148,25 +107,13 @@ class CatalogueBearing:
 
 @dataclass(frozen=True, slots=True)
 class FrictionPart:
-    """One part of the friction of a bearing.
+    """One part of the friction of a bearing."""
 
-    Attributes
-    ----------
-    key : str
-        ``"mechanical"``, ``"viscous"``, ``"drag"`` or ``"friction"``.
-    by_load : bool
-        True if the part grows with the load.
-    watts : float
-        [W]
-    method, source : str
-        The model and where it is printed.
-    """
-
-    key: str
-    by_load: bool
-    watts: float
-    method: str
-    source: str
+    key: str  # ``"mechanical"``, ``"viscous"``, ``"drag"`` or ``"friction"``.
+    by_load: bool  # True if the part grows with the load.
+    watts: float  # [W]
+    method: str  # The model and where it is printed.
+    source: str  # The model and where it is printed.
 
 
 def bearing_types(model: str) -> tuple[BearingType, ...]:
@@ -248,21 +195,12 @@ def load_moment(
 
 @dataclass(frozen=True, slots=True)
 class PalmgrenModel:
-    """Load-dependent moment after Palmgren or Harris, with the viscous moment of both.
+    """Load-dependent moment after Palmgren or Harris, with the viscous moment of both."""
 
-    Attributes
-    ----------
-    viscous_factor : float
-        f0. [1]
-    constant : float or None
-        f1 after Palmgren; None to take that of Harris, `harris_coefficient`. [1]
-    flange_coefficient : float
-        f_f of a cylindrical roller bearing under axial force. [1]
-    """
-
-    viscous_factor: float
+    viscous_factor: float  # f0. [1]
+    # f1 after Palmgren; None to take that of Harris, `harris_coefficient`. [1]
     constant: float | None
-    flange_coefficient: float = 0.0
+    flange_coefficient: float = 0.0  # f_f of a cylindrical roller bearing under axial force. [1]
 
     terms: ClassVar = ("mechanical", "viscous")
 
@@ -357,30 +295,18 @@ class TableModel:
 
 
 def minimum_load(
-    bearing: CatalogueBearing,
-    speed: float,
-    viscosity: float,
+    bearing: CatalogueBearing,  # Tapered and needle rollers need its dynamic load rating.
+    speed: float,  # Speed of one ring against the other. [rad/s]
+    viscosity: float,  # Kinematic, of the oil. [m^2/s]
+    # k_r of the product table; by default 0.025 (deep groove) or 0.15 (cylindrical). [1]
     factor: float | None = None,
+    # Reference speed of a cylindrical roller bearing. Without it the part that grows with the speed
+    # is left out. [rad/s]
     reference_speed: float | None = None,
 ) -> float:
     """Load below which the rolling elements may slip, after SKF; NaN where it is unknown. [N]
 
     Theory (J13).
-
-    Parameters
-    ----------
-    bearing : CatalogueBearing
-        Tapered and needle rollers need its dynamic load rating.
-    speed : float
-        Speed of one ring against the other. [rad/s]
-    viscosity : float
-        Kinematic, of the oil. [m^2/s]
-    factor : float or None
-        k_r of the product table; by default 0.025 (deep groove) or 0.15 (cylindrical). [1]
-    reference_speed : float or None
-        Reference speed of a cylindrical roller bearing. Without it the part that grows with the
-        speed is left out.
-        [rad/s]
     """
     if bearing.type in ("tapered", "needle"):
         return MINIMUM_LOAD_SHARE * bearing.dynamic_load_rating

@@ -30,23 +30,6 @@ from epicyclic.losses.validity import ModelUse, ValidityFlag
 from epicyclic.losses.viscous import RPM
 from epicyclic.lubricant.properties import OilState
 
-__all__ = [
-    "STARVATION",
-    "BearingModel",
-    "ContactSeal",
-    "SkfConstants",
-    "SkfModel",
-    "SkfMoments",
-    "drag_variable",
-    "full_film_friction",
-    "skf_constants",
-    "skf_drag_moment",
-    "skf_load_variables",
-    "skf_moments",
-    "skf_reduction_factors",
-    "skf_series",
-]
-
 STARVATION: Mapping[str, float] = {
     "jet": 3e-8,
     "oil-bath": 3e-8,
@@ -70,50 +53,27 @@ _AXIAL_RATIO = replace(
 
 @dataclass(frozen=True, slots=True)
 class SkfConstants:
-    """Constants of one series in SKF's model.
+    """Constants of one series in SKF's model."""
 
-    Attributes
-    ----------
-    rolling_1, rolling_2 : float
-        R1 and R2 of G_rr.
-    sliding_1, sliding_2 : float
-        S1 and S2 of G_sl.
-    bearing_factor, roller_length_factor : float
-        K_Z and K_L. [1]
-    ball_rows : int
-        i_rw; 0 for rollers.
-    is_read : bool
-        True if R and S were checked against a publication; False if they are second hand.
-    """
-
-    rolling_1: float
-    rolling_2: float
-    sliding_1: float
-    sliding_2: float
-    bearing_factor: float
-    roller_length_factor: float
-    ball_rows: int
+    rolling_1: float  # R1 and R2 of G_rr.
+    rolling_2: float  # R1 and R2 of G_rr.
+    sliding_1: float  # S1 and S2 of G_sl.
+    sliding_2: float  # S1 and S2 of G_sl.
+    bearing_factor: float  # K_Z and K_L. [1]
+    roller_length_factor: float  # K_Z and K_L. [1]
+    ball_rows: int  # i_rw; 0 for rollers.
+    # True if R and S were checked against a publication; False if they are second hand.
     is_read: bool
 
 
 @dataclass(frozen=True, slots=True)
 class ContactSeal:
-    """Contact seals of a bearing, both together: K_S1 d_s^beta + K_S2.
+    """Contact seals of a bearing, both together: K_S1 d_s^beta + K_S2."""
 
-    Attributes
-    ----------
-    counterface_diameter : float
-        d_s. [m]
-    factor, exponent : float
-        K_S1 and beta, for d_s in mm and a moment in N mm.
-    constant : float
-        K_S2. [N m]
-    """
-
-    counterface_diameter: float
-    factor: float
-    exponent: float
-    constant: float
+    counterface_diameter: float  # d_s. [m]
+    factor: float  # K_S1 and beta, for d_s in mm and a moment in N mm.
+    exponent: float  # K_S1 and beta, for d_s in mm and a moment in N mm.
+    constant: float  # K_S2. [N m]
 
     @property
     def moment(self) -> float:
@@ -124,42 +84,24 @@ class ContactSeal:
 
 @dataclass(frozen=True, slots=True)
 class SkfMoments:
-    """Friction moments of SKF's model.
+    """Friction moments of SKF's model."""
 
-    Attributes
-    ----------
-    rolling, sliding, seal, drag : float
-        M_rr, M_sl, M_seal and M_drag. [N m]
-    """
-
-    rolling: float
-    sliding: float
-    seal: float
-    drag: float
+    rolling: float  # M_rr, M_sl, M_seal and M_drag. [N m]
+    sliding: float  # M_rr, M_sl, M_seal and M_drag. [N m]
+    seal: float  # M_rr, M_sl, M_seal and M_drag. [N m]
+    drag: float  # M_rr, M_sl, M_seal and M_drag. [N m]
 
 
 @dataclass(frozen=True, slots=True)
 class SkfModel:
-    """SKF's friction model of 2018.
-
-    Attributes
-    ----------
-    constants : SkfConstants
-    full_film_friction : float
-        mu_EHL, `full_film_friction`. [1]
-    starvation : float
-        K_rs, a value of `STARVATION`. [1]
-    oil_level : float
-        H above the lowest point of the outer raceway; 0 without an oil bath. [m]
-    drag_variable : float or None
-        V_M at this oil level; None for the estimate of `drag_variable`. [1]
-    seal : ContactSeal or None
-    """
+    """SKF's friction model of 2018."""
 
     constants: SkfConstants
-    full_film_friction: float
-    starvation: float = STARVATION["jet"]
+    full_film_friction: float  # mu_EHL, `full_film_friction`. [1]
+    starvation: float = STARVATION["jet"]  # K_rs, a value of `STARVATION`. [1]
+    # H above the lowest point of the outer raceway; 0 without an oil bath. [m]
     oil_level: float = 0.0
+    # V_M at this oil level; None for the estimate of `drag_variable`. [1]
     drag_variable: float | None = None
     seal: ContactSeal | None = None
 
@@ -403,21 +345,15 @@ def skf_drag_moment(
 
 
 def skf_moments(
-    model: SkfModel, bearing: CatalogueBearing, load: BearingLoad, speed: float, viscosity: float
+    model: SkfModel,
+    bearing: CatalogueBearing,
+    load: BearingLoad,
+    speed: float,  # Speed of one ring against the other. [rad/s]
+    viscosity: float,  # Kinematic, of the oil at its temperature in the bearing. [m^2/s]
 ) -> SkfMoments:
     """Friction moments of SKF's model of 2018.
 
     Theory (J8), (J9).
-
-    Parameters
-    ----------
-    model : SkfModel
-    bearing : CatalogueBearing
-    load : BearingLoad
-    speed : float
-        Speed of one ring against the other. [rad/s]
-    viscosity : float
-        Kinematic, of the oil at its temperature in the bearing. [m^2/s]
     """
     rolling, sliding = skf_load_variables(model.constants, bearing, load)
     at = _Printed.of(bearing, speed, viscosity)

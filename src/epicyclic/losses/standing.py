@@ -5,8 +5,6 @@ from __future__ import annotations
 from epicyclic.oilmodel.model import OilModel
 from epicyclic.units import percent
 
-__all__ = ["FITTED", "STANDING", "standing"]
-
 _GEAR_TESTS = "fitted to gear tests, whose scatter was not found in print"
 _OF_THE_CASE = "given by the case"
 _NOT_KNOWN = "no comparison with measurements was found"
@@ -59,19 +57,14 @@ FITTED = {"friction": "friction", "rolling": "rolling_loss", "bearing": "bearing
 """Which quantity of a fit each role takes."""
 
 
-def standing(role: str, name: str, model: OilModel | None = None, form: str = "") -> str:
+def standing(
+    role: str,  # ``"friction"``, ``"rolling"``, ``"bearing"`` of planets or ``"shaft_bearing"``.
+    name: str,  # Name of the model, as a case chooses it.
+    # The fitted models of the oil, for a name that begins with ``fitted``.
+    model: OilModel | None = None,
+    form: str = "",  # Which form of the fit; the first one if the file lacks it.
+) -> str:
     """What is known of the error of a model, as a phrase.
-
-    Parameters
-    ----------
-    role : str
-        ``"friction"``, ``"rolling"``, ``"bearing"`` of planets or ``"shaft_bearing"``.
-    name : str
-        Name of the model, as a case chooses it.
-    model : OilModel, optional
-        The fitted models of the oil, for a name that begins with ``fitted``.
-    form : str
-        Which form of the fit; the first one if the file lacks it.
 
     Examples
     --------

@@ -13,25 +13,6 @@ from numpy.typing import NDArray
 
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent
 
-__all__ = [
-    "OF_THIS_PACKAGE",
-    "OUT_OF_RANGE",
-    "SMALLEST_SHOWN_SHARE",
-    "Flags",
-    "ModelUse",
-    "Range",
-    "RegressionFluid",
-    "SomeFlags",
-    "ValidityFlag",
-    "check_ranges",
-    "describe_flags",
-    "flags_with_loss",
-    "held_in_range",
-    "range_left",
-    "range_text",
-    "share_text",
-]
-
 FloatArray = NDArray[np.float64]
 Real = TypeVar("Real", float, FloatArray)
 
@@ -46,29 +27,15 @@ OF_THIS_PACKAGE = "limit of this package; none is in print"
 
 @dataclass(frozen=True, eq=False)
 class Range:
-    """Range of one quantity in which a model was made.
+    """Range of one quantity in which a model was made."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the quantity among the values handed to `check_ranges`.
-    label : str
-        The same in words.
-    low, high : float or None
-        In the display unit of `unit`; None where there is no such limit.
-    unit : Quantity
-    source : str
-        Where the range is printed.
-    of : callable or None
-        From the conditions to the quantity, where these have no attribute `name`.
-    """
-
-    name: str
-    label: str
-    low: float | None
-    high: float | None
+    name: str  # Name of the quantity among the values handed to `check_ranges`.
+    label: str  # The same in words.
+    low: float | None  # In the display unit of `unit`; None where there is no such limit.
+    high: float | None  # In the display unit of `unit`; None where there is no such limit.
     unit: Quantity
-    source: str
+    source: str  # Where the range is printed.
+    # From the conditions to the quantity, where these have no attribute `name`.
     of: Callable[[Any], FloatArray | float] | None = None
 
     def found_in(self, conditions: object) -> FloatArray | float:
@@ -94,16 +61,9 @@ class Range:
 
 
 class RegressionFluid(NamedTuple):
-    """The fluid of the simulations behind a regression.
+    """The fluid of the simulations behind a regression."""
 
-    Attributes
-    ----------
-    key : str
-        What an oil states as its `friction_regression` if it is this fluid.
-    title : str
-    """
-
-    key: str
+    key: str  # What an oil states as its `friction_regression` if it is this fluid.
     title: str
 
 
@@ -197,19 +157,12 @@ def held_in_range(value: Real, item: Range) -> Real:
 
 def describe_flags(
     flags: Iterable[ValidityFlag],
+    # Loss that a model was used for; NaN if it is not known. [W]
     loss_of: Callable[[ModelUse], float] = lambda use: math.nan,
+    # Total loss; what concerns less than `SMALLEST_TOLD` of it is told in one sentence. [W]
     total: float = math.nan,
 ) -> tuple[str, ...]:
-    """One sentence for each quantity and range left, those that concern most of the loss first.
-
-    Parameters
-    ----------
-    flags : iterable of ValidityFlag
-    loss_of : callable
-        Loss that a model was used for; NaN if it is not known. [W]
-    total : float
-        Total loss; what concerns less than `SMALLEST_TOLD` of it is told in one sentence. [W]
-    """
+    """One sentence for each quantity and range left, those that concern most of the loss first."""
     concerned = flags_with_loss(flags, loss_of)
     small = [pair for pair in concerned if pair[0] < SMALLEST_TOLD * total]
     large = [pair for pair in concerned if pair not in small]
@@ -286,24 +239,14 @@ def share_text(share: float) -> str:
 def check_ranges(
     use: ModelUse,
     ranges: Iterable[Range],
+    # The quantities, in SI, by the names of their ranges.
     values: Mapping[str, FloatArray | float],
-    weight: FloatArray | float = 1.0,
-    part: float = 1.0,
+    weight: FloatArray | float = 1.0,  # The loss at each value.
+    part: float = 1.0,  # Part of the whole loss that the model is asked for here. [1]
 ) -> tuple[ValidityFlag, ...]:
     """Flags for every quantity that leaves its range.
 
     Theory (P8).
-
-    Parameters
-    ----------
-    use : ModelUse
-    ranges : iterable of Range
-    values : mapping of str to float or ndarray
-        The quantities, in SI, by the names of their ranges.
-    weight : ndarray or float
-        The loss at each value.
-    part : float
-        Part of the whole loss that the model is asked for here. [1]
     """
     left = [(item, values[item.name]) for item in ranges if not _holds(item, values[item.name])]
     return tuple(_flag(use, item, value, weight, part) for item, value in left)

@@ -5,29 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from epicyclic.losses.validity import (
-    OF_THIS_PACKAGE,
-    ModelUse,
-    Range,
-    ValidityFlag,
-    check_ranges,
-)
+from epicyclic.losses.validity import OF_THIS_PACKAGE, ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.units import NUMBER
-
-__all__ = [
-    "DRAG_METHOD",
-    "DRAG_SOURCE",
-    "SPEED_PARAMETER",
-    "VISCOUS_METHOD",
-    "VISCOUS_SOURCE",
-    "DiscDrag",
-    "bearing_viscous_loss",
-    "disc_drag",
-    "disc_drag_flags",
-    "speed_parameter",
-    "viscous_flags",
-]
 
 VISCOUS_METHOD = "viscous moment after Palmgren and Harris"
 VISCOUS_SOURCE = "T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991); Talbot (2012), Eq. 5.6"
@@ -72,7 +52,10 @@ _RIM = Range(
 
 
 def bearing_viscous_loss(
-    factor: float, kinematic_viscosity: float, speed: float, pitch_diameter: float
+    factor: float,  # f0. [1]
+    kinematic_viscosity: float,  # Viscosity of the oil, not of the mixture. [m^2/s]
+    speed: float,  # Speed of one ring against the other. [rad/s]
+    pitch_diameter: float,  # d_m. [m]
 ) -> float:
     """Viscous loss of a rolling bearing after Palmgren and Harris. [W]
 
@@ -81,17 +64,6 @@ def bearing_viscous_loss(
     M0 = 1e-7 f0 (nu n)^(2/3) d_m^3 for nu n >= 2000, else 160e-7 f0 d_m^3; N mm, mm^2/s, rpm, mm.
     Talbot (2012), Eq. 5.6 for the first branch; Harris, Rolling Bearing Analysis, 3rd ed. (1991)
     for both. They differ by 0.8 % where they meet.
-
-    Parameters
-    ----------
-    factor : float
-        f0. [1]
-    kinematic_viscosity : float
-        Viscosity of the oil, not of the mixture. [m^2/s]
-    speed : float
-        Speed of one ring against the other. [rad/s]
-    pitch_diameter : float
-        d_m. [m]
     """
     rpm = abs(speed) / RPM
     product = kinematic_viscosity * 1e6 * rpm
@@ -113,16 +85,10 @@ def speed_parameter(speed: float, pitch_diameter: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class DiscDrag:
-    """Drag of a disc.
+    """Drag of a disc."""
 
-    Attributes
-    ----------
-    rim, faces : float
-        Losses at the rim and at both faces. [W]
-    """
-
-    rim: float
-    faces: float
+    rim: float  # Losses at the rim and at both faces. [W]
+    faces: float  # Losses at the rim and at both faces. [W]
 
     @property
     def total(self) -> float:
@@ -130,7 +96,12 @@ class DiscDrag:
         return self.rim + self.faces
 
 
-def disc_drag(radius: float, width: float, speed: float, mixture: MixtureState) -> DiscDrag:
+def disc_drag(
+    radius: float,  # [m]
+    width: float,  # [m]
+    speed: float,  # Against the housing. [rad/s]
+    mixture: MixtureState,
+) -> DiscDrag:
     """Drag of a disc in the mixture: rim (Eq. 5.4) and both faces (Eq. 5.5).
 
     Theory (V3), (V6).
@@ -138,14 +109,6 @@ def disc_drag(radius: float, width: float, speed: float, mixture: MixtureState) 
     Seetharaman and Kahraman (2010), Talbot (2012), p. 130. The branches of the face formula do not
     meet; here the flow is laminar within the radius at which it turns turbulent, and the turbulent
     branch counts outside that radius only, after Prandtl.
-
-    Parameters
-    ----------
-    radius, width : float
-        [m]
-    speed : float
-        Against the housing. [rad/s]
-    mixture : MixtureState
     """
     omega = abs(speed)
     rim = 4 * math.pi * mixture.dynamic_viscosity * width * radius**2 * omega**2

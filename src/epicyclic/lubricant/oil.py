@@ -20,9 +20,6 @@ from epicyclic.units import (
     as_stated,
 )
 
-__all__ = ["Oil"]
-
-
 STEEPEST_DENSITY = -2.0
 """Oils lose 0.6 to 0.8 kg/m^3 for each kelvin; steeper lines may end below zero. [kg/(m^3 K)]"""
 

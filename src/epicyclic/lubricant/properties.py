@@ -22,8 +22,6 @@ import numpy as np
 
 from epicyclic.lubricant.oil import GoldLaw, Oil, RoelandsLaw
 
-__all__ = ["MixtureState", "OilState", "extrapolated_viscosity", "mixture_state", "oil_state"]
-
 ROELANDS_PRESSURE = 1.96e8
 """Pole pressure of Roelands' viscosity law. [Pa]"""
 ROELANDS_OFFSET = 9.67
@@ -50,55 +48,25 @@ SLOPE_STEP = 0.5
 
 @dataclass(frozen=True, slots=True)
 class OilState:
-    """Oil at one temperature and ambient pressure.
+    """Oil at one temperature and ambient pressure."""
 
-    Attributes
-    ----------
-    temperature : float
-        [K]
-    kinematic_viscosity : float
-        [m^2/s]
-    density : float
-        [kg/m^3]
-    dynamic_viscosity : float
-        [Pa s]
-    pressure_viscosity : float
-        alpha of d(ln mu)/dp at ambient pressure. [1/Pa]
-    thermoviscosity : float
-        beta = -d(ln nu)/dT. [1/K]
-    thermal_conductivity : float
-        [W/(m K)]
-    lubricant_factor : float
-        X_L of ISO/TR 14179-2. [1]
-    """
-
-    temperature: float
-    kinematic_viscosity: float
-    density: float
-    dynamic_viscosity: float
-    pressure_viscosity: float
-    thermoviscosity: float
-    thermal_conductivity: float
-    lubricant_factor: float
+    temperature: float  # [K]
+    kinematic_viscosity: float  # [m^2/s]
+    density: float  # [kg/m^3]
+    dynamic_viscosity: float  # [Pa s]
+    pressure_viscosity: float  # alpha of d(ln mu)/dp at ambient pressure. [1/Pa]
+    thermoviscosity: float  # beta = -d(ln nu)/dT. [1/K]
+    thermal_conductivity: float  # [W/(m K)]
+    lubricant_factor: float  # X_L of ISO/TR 14179-2. [1]
 
 
 @dataclass(frozen=True, slots=True)
 class MixtureState:
-    """Mixture of oil and air around the gears.
+    """Mixture of oil and air around the gears."""
 
-    Attributes
-    ----------
-    oil_fraction : float
-        xi, by volume at ambient pressure. [1]
-    density : float
-        [kg/m^3]
-    dynamic_viscosity : float
-        [Pa s]
-    """
-
-    oil_fraction: float
-    density: float
-    dynamic_viscosity: float
+    oil_fraction: float  # xi, by volume at ambient pressure. [1]
+    density: float  # [kg/m^3]
+    dynamic_viscosity: float  # [Pa s]
 
     @property
     def kinematic_viscosity(self) -> float:

@@ -12,8 +12,6 @@ from dataclasses import dataclass, replace
 
 from epicyclic.elements.base import ElementResult, Loss
 
-__all__ = ["NEAR", "STEEPEST", "Answer", "distance"]
-
 CAUTION = 2.0
 """How much larger the error of foretold losses is taken to be than its estimate. [1]"""
 STEEPEST = 3.0
@@ -28,19 +26,11 @@ ROUNDING = 1e-14
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The last answer of an element, and the one before.
+    """The last answer of an element, and the one before."""
 
-    Attributes
-    ----------
-    loads : mapping of str to float
-        As from `Element.loads`.
-    result : ElementResult
-    before : Answer or None
-        None if there is none, or none that the same losses at the same places belong to.
-    """
-
-    loads: Mapping[str, float]
+    loads: Mapping[str, float]  # As from `Element.loads`.
     result: ElementResult
+    # None if there is none, or none that the same losses at the same places belong to.
     before: Answer | None = None
 
     def followed_by(self, loads: Mapping[str, float], result: ElementResult) -> Answer:
@@ -48,17 +38,15 @@ class Answer:
         before = replace(self, before=None) if self._alike(loads, result) else None
         return Answer(loads, result, before)
 
-    def foretold(self, loads: Mapping[str, float], allowed: float) -> ElementResult | None:
+    def foretold(
+        self,
+        loads: Mapping[str, float],
+        allowed: float,  # Error of all losses together, relative. [1]
+    ) -> ElementResult | None:
         """What the element would answer; None if that may be off by more than `allowed`.
 
         Losses only: figures and flags are those of the last answer, to loads no farther off than
         `NEAR`.
-
-        Parameters
-        ----------
-        loads : mapping of str to float
-        allowed : float
-            Error of all losses together, relative. [1]
         """
         if self.before is None or not self._alike(loads, self.result):
             return None
@@ -112,22 +100,12 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """A step of the loads along the line through the last two of them, and beside it.
+    """A step of the loads along the line through the last two of them, and beside it."""
 
-    Attributes
-    ----------
-    part : float
-        How far it goes, over the step before. [1]
-    before, size : float
-        Size of the step before and of this one, relative to the largest load. [1]
-    aside : float
-        How far it ends beside the line, relative. [1]
-    """
-
-    part: float
-    before: float
-    size: float
-    aside: float
+    part: float  # How far it goes, over the step before. [1]
+    before: float  # Size of the step before and of this one, relative to the largest load. [1]
+    size: float  # Size of the step before and of this one, relative to the largest load. [1]
+    aside: float  # How far it ends beside the line, relative. [1]
 
     def error(self, watts: float, older: float) -> float:
         """Estimate of the error of a loss on the line from `older` to `watts`, relative.

@@ -17,8 +17,6 @@ from epicyclic.elements.base import HOUSING
 from epicyclic.machine.linear import solution_of
 from epicyclic.machine.machine import Machine, MeshRow, Operation, Terms
 
-__all__ = ["Balance", "Friction", "balance", "drives_first"]
-
 FloatArray = NDArray[np.float64]
 
 UNBALANCED = 1e-9
@@ -43,31 +41,18 @@ class Friction:
 
 @dataclass(frozen=True, slots=True)
 class Balance:
-    """Torques in balance.
+    """Torques in balance."""
 
-    Attributes
-    ----------
-    torques : mapping of str to float
-        From outside, on every body. [N m]
-    meshes : mapping of str to float
-        That each mesh takes up at its first gear, at the load of its driving gear. [N m]
-    couplings : mapping of str to float
-        That each clutch passes from its first to its second body. [N m]
-    powers : mapping of str to float
-        Rolling power of each mesh: what it would pass with its carrier at rest, positive if the
-        first gear drives. [W]
-    residual : float
-        Largest torque left over, relative to the largest one. [1]
-    unique : bool
-        False if meshes or clutches share a load in more than one possible way.
-    """
-
-    torques: Mapping[str, float]
+    torques: Mapping[str, float]  # From outside, on every body. [N m]
+    # That each mesh takes up at its first gear, at the load of its driving gear. [N m]
     meshes: Mapping[str, float]
+    # That each clutch passes from its first to its second body. [N m]
     couplings: Mapping[str, float]
+    # Rolling power of each mesh: what it would pass with its carrier at rest, positive if the first
+    # gear drives. [W]
     powers: Mapping[str, float]
-    residual: float
-    unique: bool
+    residual: float  # Largest torque left over, relative to the largest one. [1]
+    unique: bool  # False if meshes or clutches share a load in more than one possible way.
 
     @property
     def holds(self) -> bool:
@@ -78,24 +63,12 @@ class Balance:
 def balance(
     machine: Machine,
     operation: Operation,
-    speeds: Mapping[str, float],
-    drives: Mapping[str, bool],
-    efficiencies: Mapping[str, float],
+    speeds: Mapping[str, float],  # Speeds of all bodies. [rad/s]
+    drives: Mapping[str, bool],  # For each mesh, True if its first gear drives it.
+    efficiencies: Mapping[str, float],  # Efficiency of each mesh with its carrier at rest. [1]
     frictions: Iterable[Friction] = (),
 ) -> Balance:
-    """Torques and mesh loads from the balance of every body. Theory (T3), (T5).
-
-    Parameters
-    ----------
-    machine, operation
-    speeds : mapping of str to float
-        Speeds of all bodies. [rad/s]
-    drives : mapping of str to bool
-        For each mesh, True if its first gear drives it.
-    efficiencies : mapping of str to float
-        Efficiency of each mesh with its carrier at rest. [1]
-    frictions : iterable of Friction
-    """
+    """Torques and mesh loads from the balance of every body. Theory (T3), (T5)."""
     bodies = machine.bodies
     place = {body: index for index, body in enumerate(bodies)}
     unknown = _unknown_torques(operation, place)

@@ -14,8 +14,6 @@ from itertools import combinations, islice
 from epicyclic.machine.balance import Balance, balance, drives_first
 from epicyclic.machine.machine import Machine, Operation
 
-__all__ = ["Directions", "find_directions"]
-
 MOST_TRIED = 2000
 """Sets of directions that are tried; all of them for up to ten meshes that pass power."""
 MOST_FOLLOWED = 8
@@ -26,31 +24,23 @@ Drives = Mapping[str, bool]
 
 @dataclass(frozen=True, slots=True)
 class Directions:
-    """Directions of the rolling powers.
+    """Directions of the rolling powers."""
 
-    Attributes
-    ----------
-    drives : mapping of str to bool
-        For each mesh, True if its first gear drives it.
-    locking : bool
-        True if no directions agree with themselves and leave the output torque its lossless sign:
-        the machine is self-locking.
-    jammed : bool
-        True if no directions agree with themselves at all: no torque on the output lets the machine
-        turn with this torque on the input.
-    """
-
-    drives: Drives
+    drives: Drives  # For each mesh, True if its first gear drives it.
+    # True if no directions agree with themselves and leave the output torque its lossless sign: the
+    # machine is self-locking.
     locking: bool
+    # True if no directions agree with themselves at all: no torque on the output lets the machine
+    # turn with this torque on the input.
     jammed: bool = False
 
 
 def find_directions(
     machine: Machine,
     operation: Operation,
-    speeds: Mapping[str, float],
-    lossless: Balance,
-    efficiencies: Mapping[str, float],
+    speeds: Mapping[str, float],  # Speeds of all bodies. [rad/s]
+    lossless: Balance,  # Torques without losses.
+    efficiencies: Mapping[str, float],  # Efficiency of each mesh with its carrier at rest. [1]
 ) -> Directions:
     """The directions that count, with these efficiencies of the meshes. Theory (T4).
 
@@ -58,16 +48,6 @@ def find_directions(
     themselves those count whose output torque has the sign of the lossless one; without any the
     machine is self-locking, and the first that agree count: the output must be driven too. If none
     agree, it is jammed.
-
-    Parameters
-    ----------
-    machine, operation
-    speeds : mapping of str to float
-        Speeds of all bodies. [rad/s]
-    lossless : Balance
-        Torques without losses.
-    efficiencies : mapping of str to float
-        Efficiency of each mesh with its carrier at rest. [1]
     """
     start = drives_first(lossless.powers, dict.fromkeys(lossless.powers, True))
     wanted = lossless.torques[operation.output]

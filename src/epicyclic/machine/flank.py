@@ -17,53 +17,28 @@ from epicyclic.machine.settle import Answer
 from epicyclic.machine.solve import Solution
 from epicyclic.thermal.bulk import bulk_rise_of_flash, bulk_rise_of_loss
 
-__all__ = ["BULK_METHODS", "BulkMethod", "FlankModel"]
-
 BulkMethod = Literal["iso-6336-20", "iso-6336-22"]
 
 
 @dataclass(frozen=True, slots=True)
 class _Side:
-    """A mesh that warms a gear.
+    """A mesh that warms a gear."""
 
-    Attributes
-    ----------
-    element : str
-        Key of its set.
-    mesh : GearMesh
-    mates : int
-        Gears that the gear meets in it.
-    parallel : int
-        How many of this mesh the set has.
-    """
-
-    element: str
+    element: str  # Key of its set.
     mesh: GearMesh
-    mates: int
-    parallel: int
+    mates: int  # Gears that the gear meets in it.
+    parallel: int  # How many of this mesh the set has.
 
 
 @dataclass(frozen=True, slots=True)
 class FlankModel:
-    """Gears warmer than the oil by what their meshes do to them; nothing else is.
-
-    Attributes
-    ----------
-    machine : Machine
-    oil : float
-        Temperature of the oil. [K]
-    method : str
-        One of `BULK_METHODS`.
-    lubrication_factors : mapping of str to float
-        X_S of each set, by its key. [1]
-    fluids_at : callable
-        Oil and mixture at the temperatures of all nodes.
-    """
+    """Gears warmer than the oil by what their meshes do to them; nothing else is."""
 
     machine: Machine
-    oil: float
-    method: BulkMethod
-    lubrication_factors: Mapping[str, float]
+    oil: float  # Temperature of the oil. [K]
+    method: BulkMethod  # One of `BULK_METHODS`.
+    lubrication_factors: Mapping[str, float]  # X_S of each set, by its key. [1]
+    # Oil and mixture at the temperatures of all nodes.
     fluids_at: Callable[[Mapping[str, float]], Fluids]
 
     @property

@@ -8,8 +8,6 @@ from epicyclic.machine.balance import Friction
 from epicyclic.machine.machine import Machine
 from epicyclic.machine.solve import Solution, effects_of
 
-__all__ = ["stage_torques"]
-
 
 def stage_torques(machine: Machine, solution: Solution) -> dict[str, dict[str, float]]:
     """Torque that each set and each other part takes from every body and from the housing.

@@ -8,47 +8,22 @@ from dataclasses import dataclass
 from epicyclic.elements.reactions import ShaftLoad, Support, bearing_reactions, mesh_load
 from epicyclic.losses.shaft_bearing import BearingLoad
 
-__all__ = ["GearSeat", "ShaftLayout", "forces_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class GearSeat:
-    """A gear on a shaft, in one of its meshes.
+    """A gear on a shaft, in one of its meshes."""
 
-    Attributes
-    ----------
-    mesh : str
-        Key of the mesh.
-    lever : float
-        Torque of the mesh on the gear over the torque that the mesh takes up at its first gear. [1]
-    position : float
-        Along the shaft. [m]
-    radius : float
-        Operating radius. [m]
-    pressure_angle : float
-        Operating, transverse. [rad]
-    helix_tangent : float
-        tan(beta_w). [1]
-    hand : int
-        +1 for a right-handed helix of the teeth, -1 for a left-handed one.
-    direction : float
-        Direction of the vector from the axis of the gear to the pitch point. [rad]
-    internal : bool
-        True for a ring gear.
-    around : bool
-        True if several planets stand around the gear: their radial forces cancel.
-    """
-
-    mesh: str
+    mesh: str  # Key of the mesh.
+    # Torque of the mesh on the gear over the torque that the mesh takes up at its first gear. [1]
     lever: float
-    position: float
-    radius: float
-    pressure_angle: float
-    helix_tangent: float
-    hand: int
-    direction: float
-    internal: bool
-    around: bool
+    position: float  # Along the shaft. [m]
+    radius: float  # Operating radius. [m]
+    pressure_angle: float  # Operating, transverse. [rad]
+    helix_tangent: float  # tan(beta_w). [1]
+    hand: int  # +1 for a right-handed helix of the teeth, -1 for a left-handed one.
+    direction: float  # Direction of the vector from the axis of the gear to the pitch point. [rad]
+    internal: bool  # True for a ring gear.
+    around: bool  # True if several planets stand around the gear: their radial forces cancel.
 
     def load(self, torque: float) -> ShaftLoad:
         """BearingLoad of the mesh on the shaft."""
@@ -69,30 +44,17 @@ class GearSeat:
 
 @dataclass(frozen=True, slots=True)
 class ShaftLayout:
-    """What stands along a shaft whose bearing forces are computed.
+    """What stands along a shaft whose bearing forces are computed."""
 
-    Attributes
-    ----------
-    supports : mapping of str to Support
-        Its bearings, by the keys of their elements.
-    seats : tuple of GearSeat
-    """
-
-    supports: Mapping[str, Support]
+    supports: Mapping[str, Support]  # Its bearings, by the keys of their elements.
     seats: tuple[GearSeat, ...]
 
 
 def forces_of(
-    layouts: Iterable[ShaftLayout], torques: Mapping[str, float]
+    layouts: Iterable[ShaftLayout],
+    torques: Mapping[str, float],  # That each mesh takes up at its first gear. [N m]
 ) -> dict[str, BearingLoad]:
-    """Forces on the bearings of all shafts, by the keys of their elements.
-
-    Parameters
-    ----------
-    layouts : iterable of ShaftLayout
-    torques : mapping of str to float
-        That each mesh takes up at its first gear. [N m]
-    """
+    """Forces on the bearings of all shafts, by the keys of their elements."""
     forces: dict[str, BearingLoad] = {}
     for layout in layouts:
         loads = [seat.load(torques[seat.mesh]) for seat in layout.seats]

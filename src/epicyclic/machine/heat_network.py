@@ -33,8 +33,6 @@ from epicyclic.thermal import housing as shell
 from epicyclic.thermal.fluid import Fluid
 from epicyclic.thermal.network import Link, Network
 
-__all__ = ["AMBIENT", "COOLANT", "Change", "HeatSettings", "Housing", "NetworkModel"]
-
 AMBIENT = "air"
 COOLANT = "coolant"
 FUNCK = "ISO/TR 14179-2 (Funck 1985), second hand"
@@ -54,36 +52,19 @@ SMALLEST_HEAT = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Housing:
-    """What the housing gives to its surroundings. Areas in m^2, coefficients in W/(m^2 K).
+    """What the housing gives to its surroundings. Areas in m^2, coefficients in W/(m^2 K)."""
 
-    Attributes
-    ----------
-    method : str
-        ``"iso-14179-2"`` or ``"iso-14179-1"``.
-    area, inner_area : float
-    height, length : float
-        [m]
-    air_speed : float
-        [m/s]
-    emissivity, fin_factor : float
-        [1]
-    inner_coefficient, coefficient : float
-        From the oil to the wall; from the oil to the air.
-    foundation : float
-        [W/K]
-    """
-
-    method: Literal["iso-14179-2", "iso-14179-1"]
+    method: Literal["iso-14179-2", "iso-14179-1"]  # ``"iso-14179-2"`` or ``"iso-14179-1"``.
     area: float
     inner_area: float
-    height: float
-    length: float
-    air_speed: float
-    emissivity: float
-    fin_factor: float
-    inner_coefficient: float
-    coefficient: float
-    foundation: float
+    height: float  # [m]
+    length: float  # [m]
+    air_speed: float  # [m/s]
+    emissivity: float  # [1]
+    fin_factor: float  # [1]
+    inner_coefficient: float  # From the oil to the wall; from the oil to the air.
+    coefficient: float  # From the oil to the wall; from the oil to the air.
+    foundation: float  # [W/K]
 
     def outside(self, wall: float, air: float) -> float:
         """Coefficient from the wall to the air. Theory (W9), (W10), (W11). [W/(m^2 K)]"""
@@ -127,94 +108,46 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Wet:
-    """How oil gets to gears.
+    """How oil gets to gears."""
 
-    Attributes
-    ----------
-    bath : float
-        Share of them that dips into oil. [1]
-    effectiveness : float
-        Effectiveness of jets. [1]
-    """
-
-    bath: float
-    effectiveness: float
+    bath: float  # Share of them that dips into oil. [1]
+    effectiveness: float  # Effectiveness of jets. [1]
 
 
 @dataclass(frozen=True, slots=True)
 class HeatSettings:
-    """How heat leaves the parts of a machine.
+    """How heat leaves the parts of a machine."""
 
-    Attributes
-    ----------
-    inlet, outlet : float, float or None
-        Temperatures of the oil; the outlet where it was measured. [K]
-    flow : float
-        Flow of oil. [m^3/s]
-    wet : Wet
-        How oil gets to what is in no set.
-    wet_sets : mapping of str to Wet
-        How it gets to each set.
-    jet_shares : mapping of str to float
-        Shares of the flow that meet some of the nodes; what is left meets the others, as their heat
-        demands. [1]
-    press_fit : float
-        [W/(m^2 K)]
-    shaft : float
-        From a part to the shaft it is on. [W/K]
-    ambient, coolant : float
-        [K]
-    cooler_power : float
-        [W]
-    cooler : float
-        [W/K]
-    housing : Housing or None
-    changes : mapping of str to Change
-        By the key of the link.
-    oil_volume : float or None
-        [m^3]
-    housing_mass : float or None
-        Mass of steel that stores as much as the housing. [kg]
-    capacity_changes : mapping of str to Change
-        By the node.
-    """
-
-    inlet: float
-    outlet: float | None
-    flow: float
-    wet: Wet
-    wet_sets: Mapping[str, Wet]
+    inlet: float  # Temperatures of the oil; the outlet where it was measured. [K]
+    outlet: float | None  # Temperatures of the oil; the outlet where it was measured. [K]
+    flow: float  # Flow of oil. [m^3/s]
+    wet: Wet  # How oil gets to what is in no set.
+    wet_sets: Mapping[str, Wet]  # How it gets to each set.
+    # Shares of the flow that meet some of the nodes; what is left meets the others, as their heat
+    # demands. [1]
     jet_shares: Mapping[str, float]
-    press_fit: float
-    shaft: float
-    ambient: float
-    coolant: float
-    cooler_power: float
-    cooler: float
+    press_fit: float  # [W/(m^2 K)]
+    shaft: float  # From a part to the shaft it is on. [W/K]
+    ambient: float  # [K]
+    coolant: float  # [K]
+    cooler_power: float  # [W]
+    cooler: float  # [W/K]
     housing: Housing | None
-    changes: Mapping[str, Change]
-    oil_volume: float | None
-    housing_mass: float | None
-    capacity_changes: Mapping[str, Change]
+    changes: Mapping[str, Change]  # By the key of the link.
+    oil_volume: float | None  # [m^3]
+    housing_mass: float | None  # Mass of steel that stores as much as the housing. [kg]
+    capacity_changes: Mapping[str, Change]  # By the node.
 
 
 @dataclass(frozen=True)
 class NetworkModel:
-    """Heat flows between all parts of a machine, the oil and the surroundings.
-
-    Attributes
-    ----------
-    machine : Machine
-    settings : HeatSettings
-    fluids_at : callable
-        Oil and mixture at the temperatures of all nodes.
-    media_at : callable
-        The oil, and its mixture with air, as heat sees them, at a temperature.
-    """
+    """Heat flows between all parts of a machine, the oil and the surroundings."""
 
     machine: Machine
     settings: HeatSettings
+    # Oil and mixture at the temperatures of all nodes.
     fluids_at: Callable[[Mapping[str, float]], Fluids]
+    # The oil, and its mixture with air, as heat sees them, at a temperature.
     media_at: Callable[[float], tuple[Fluid, Fluid]]
 
     @property
@@ -335,19 +268,12 @@ class NetworkModel:
         return replace(network, links=(*links, *map(_as_the_oil, left))) if left else network
 
     def _fixed_links(
-        self, around: float, solution: Solution, heat: Mapping[str, float]
+        self,
+        around: float,  # Temperature of the oil, for its properties. [K]
+        solution: Solution,  # Speeds, and loads of the bearings.
+        heat: Mapping[str, float],  # That arises at each node, less the power of a cooler. [W]
     ) -> tuple[Link, ...]:
-        """All ways of the heat but that to the air.
-
-        Parameters
-        ----------
-        around : float
-            Temperature of the oil, for its properties. [K]
-        solution : Solution
-            Speeds, and loads of the bearings.
-        heat : mapping of str to float
-            That arises at each node, less the power of a cooler. [W]
-        """
+        """All ways of the heat but that to the air."""
         own = self.settings
         oil, mixture = self.media_at(around)
         carried = self._carried(oil, sum(heat.values()))

@@ -16,8 +16,6 @@ from epicyclic.elements.base import HOUSING
 from epicyclic.machine.linear import solution_of
 from epicyclic.machine.machine import Machine
 
-__all__ = ["Freedom", "freedom", "implied", "speeds_of"]
-
 FloatArray = NDArray[np.float64]
 
 SINGULAR = 1e-10
@@ -28,34 +26,19 @@ TOGETHER = 1e-12
 
 @dataclass(frozen=True, slots=True)
 class Freedom:
-    """What the constraints leave open.
+    """What the constraints leave open."""
 
-    Attributes
-    ----------
-    blocked : bool
-        True if the input cannot turn.
-    loose : tuple of str
-        Bodies whose speeds the given ones do not determine.
-    freedoms : int
-        Number of further speeds that would determine them. [1]
-    """
-
-    blocked: bool
-    loose: tuple[str, ...]
-    freedoms: int
+    blocked: bool  # True if the input cannot turn.
+    loose: tuple[str, ...]  # Bodies whose speeds the given ones do not determine.
+    freedoms: int  # Number of further speeds that would determine them. [1]
 
 
-def freedom(machine: Machine, driven: str, given: Sequence[str]) -> Freedom:
-    """What stays open with the speed of `driven`, and of the bodies `given`, known.
-
-    Parameters
-    ----------
-    machine : Machine
-    driven : str
-        The input.
-    given : sequence of str
-        Further bodies of given speed, held ones among them.
-    """
+def freedom(
+    machine: Machine,
+    driven: str,  # The input.
+    given: Sequence[str],  # Further bodies of given speed, held ones among them.
+) -> Freedom:
+    """What stays open with the speed of `driven`, and of the bodies `given`, known."""
     bodies = machine.bodies
     others = _matrix(machine, [body for body in given if body != driven])
     whole = np.vstack([others, _unit(bodies, driven)])

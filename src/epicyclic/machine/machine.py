@@ -8,37 +8,22 @@ from dataclasses import dataclass, field
 from epicyclic.elements.base import Element
 from epicyclic.machine.forces import ShaftLayout
 
-__all__ = ["Coupling", "Machine", "MeshRow", "Operation", "Terms"]
-
 Terms = tuple[tuple[str, float], ...]
 """Bodies with the coefficients of their speeds in a constraint."""
 
 
 @dataclass(frozen=True, slots=True)
 class MeshRow:
-    """Two gears in mesh, each on a body, seen from a carrier.
+    """Two gears in mesh, each on a body, seen from a carrier."""
 
-    Attributes
-    ----------
-    key : str
-        ``"P1.sun_mesh"``.
-    first, second, carrier : str
-        Bodies of gear 1, gear 2 and the carrier; `HOUSING` for axes that stand still.
-    teeth : tuple of float
-        Numbers of teeth of gear 1 and gear 2. [1]
-    internal : bool
-        True if gear 2 is a ring gear around gear 1.
-    efficiency : float
-        Given: power that leaves the mesh over power that enters, with the carrier at rest. Losses
-        of elements come on top. [1]
-    """
-
-    key: str
-    first: str
-    second: str
-    carrier: str
-    teeth: tuple[float, float]
-    internal: bool = False
+    key: str  # ``"P1.sun_mesh"``.
+    first: str  # Bodies of gear 1, gear 2 and the carrier; `HOUSING` for axes that stand still.
+    second: str  # Bodies of gear 1, gear 2 and the carrier; `HOUSING` for axes that stand still.
+    carrier: str  # Bodies of gear 1, gear 2 and the carrier; `HOUSING` for axes that stand still.
+    teeth: tuple[float, float]  # Numbers of teeth of gear 1 and gear 2. [1]
+    internal: bool = False  # True if gear 2 is a ring gear around gear 1.
+    # Given: power that leaves the mesh over power that enters, with the carrier at rest. Losses of
+    # elements come on top. [1]
     efficiency: float = 1.0
 
     def terms(self, first: float = 1.0, second: float = 1.0) -> Terms:
@@ -66,48 +51,27 @@ class Coupling:
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """How a machine is driven.
+    """How a machine is driven."""
 
-    Attributes
-    ----------
-    input, output : str
-        The body of given torque, and the one whose torque balances.
-    torque : float
-        On the input, from outside. [N m]
-    speeds : mapping of str to float
-        Given speeds: of the input, of bodies that are held, of bodies that are driven as well.
-        [rad/s]
-    torques : mapping of str to float
-        Further torques from outside. [N m]
-    """
-
-    input: str
-    output: str
-    torque: float
+    input: str  # The body of given torque, and the one whose torque balances.
+    output: str  # The body of given torque, and the one whose torque balances.
+    torque: float  # On the input, from outside. [N m]
+    # Given speeds: of the input, of bodies that are held, of bodies that are driven as well.
+    # [rad/s]
     speeds: Mapping[str, float]
+    # Further torques from outside. [N m]
     torques: Mapping[str, float] = field(default_factory=dict[str, float])
 
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """Bodies, what couples their speeds, and what loses power.
+    """Bodies, what couples their speeds, and what loses power."""
 
-    Attributes
-    ----------
-    bodies : tuple of str
-        All that can turn, without `HOUSING`.
-    rows : tuple of MeshRow
-    couplings : tuple of Coupling
-    elements : tuple of Element
-    resting : tuple of str
-        Shafts that are joined to nothing; what is on them stands still.
-    layouts : tuple of ShaftLayout
-        Gears and bearings along the shafts whose bearing forces are computed.
-    """
-
-    bodies: tuple[str, ...]
+    bodies: tuple[str, ...]  # All that can turn, without `HOUSING`.
     rows: tuple[MeshRow, ...]
     elements: tuple[Element, ...]
     couplings: tuple[Coupling, ...] = ()
+    # Gears and bearings along the shafts whose bearing forces are computed.
     layouts: tuple[ShaftLayout, ...] = ()
+    # Shafts that are joined to nothing; what is on them stands still.
     resting: tuple[str, ...] = ()

@@ -17,8 +17,6 @@ from epicyclic.machine.solve import Solution, solve_machine, start_of
 from epicyclic.thermal.network import Link
 from epicyclic.units import CELSIUS
 
-__all__ = ["AGREEMENT", "Answer", "Settled", "ThermalModel", "heat_of", "isothermal", "settle"]
-
 FloatArray = NDArray[np.float64]
 
 AGREEMENT = 3e-5
@@ -35,26 +33,14 @@ COLDEST, HOTTEST = 200.0, 770.0
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What the heat of the losses leads to.
+    """What the heat of the losses leads to."""
 
-    Attributes
-    ----------
-    temperatures : mapping of str to float
-        Temperatures of all nodes. [K]
-    links : tuple of Link
-        Ways of the heat; empty where temperatures follow from formulas.
-    flows : mapping of str to float
-        Heat through every link. [W]
-    given : mapping of str to float
-        Temperatures of nodes that are given. [K]
-    residual : float
-        Largest heat of a node that does not leave it, over all heat or the largest flow. [1]
-    """
-
-    temperatures: Mapping[str, float]
-    links: tuple[Link, ...] = ()
-    flows: Mapping[str, float] | None = None
+    temperatures: Mapping[str, float]  # Temperatures of all nodes. [K]
+    links: tuple[Link, ...] = ()  # Ways of the heat; empty where temperatures follow from formulas.
+    flows: Mapping[str, float] | None = None  # Heat through every link. [W]
+    # Temperatures of nodes that are given. [K]
     given: Mapping[str, float] = field(default_factory=dict[str, float])
+    # Largest heat of a node that does not leave it, over all heat or the largest flow. [1]
     residual: float = 0.0
 
 
@@ -74,22 +60,12 @@ class ThermalModel(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Settled:
-    """A machine whose temperatures and losses agree.
-
-    Attributes
-    ----------
-    solution : Solution
-    answer : Answer
-    evaluations : int
-        Evaluations of the losses.
-    change : float
-        Largest change of a temperature in the last of them. [K]
-    """
+    """A machine whose temperatures and losses agree."""
 
     solution: Solution
     answer: Answer
-    evaluations: int
-    change: float = 0.0
+    evaluations: int  # Evaluations of the losses.
+    change: float = 0.0  # Largest change of a temperature in the last of them. [K]
 
 
 def isothermal(solution: Solution) -> Settled:

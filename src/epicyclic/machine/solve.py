@@ -21,8 +21,6 @@ from epicyclic.machine.forces import forces_of
 from epicyclic.machine.kinematics import speeds_of
 from epicyclic.machine.machine import Machine, Operation
 
-__all__ = ["Solution", "Start", "effects_of", "lossless_state", "solve_machine", "start_of"]
-
 FloatArray = NDArray[np.float64]
 
 AGREEMENT = 5e-10
@@ -52,53 +50,27 @@ MOST_OF_A_MESH = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """A machine in balance.
+    """A machine in balance."""
 
-    Attributes
-    ----------
-    speeds, torques : mapping of str to float
-        Speeds of every body, and torques from outside. [rad/s], [N m]
-    couplings : mapping of str to float
-        Torque through each clutch. [N m]
-    meshes : mapping of str to float
-        Torque that each mesh takes up at its first gear, at the load of its driving gear. [N m]
-    drives : mapping of str to bool
-        For each mesh, True if its first gear drives it.
-    rolling : mapping of str to float
-        Rolling power of each mesh, positive if its first gear drives. [W]
-    results : mapping of str to ElementResult
-        By the key of the element.
-    given : mapping of str to Loss
-        Losses of the meshes of given efficiency, by the key of the mesh.
-    ratio : float or None
-        Speed of the input over that of the output; None if that stands still. [1]
-    self_locking : bool
-        True if the output must be driven too.
-    jammed : bool
-        True if the machine stands still, whatever the torque on the output.
-    unique : bool
-        False if meshes or clutches share a load in more than one possible way.
-    floating : frozenset of str
-        Meshes that next to no power passes: with the losses of either direction of the power it
-        has the other one, so that the teeth lie on neither flank.
-    state : State
-        That the elements saw.
-    """
-
-    speeds: Mapping[str, float]
-    torques: Mapping[str, float]
-    couplings: Mapping[str, float]
+    speeds: Mapping[str, float]  # Speeds of every body, and torques from outside. [rad/s], [N m]
+    torques: Mapping[str, float]  # Speeds of every body, and torques from outside. [rad/s], [N m]
+    couplings: Mapping[str, float]  # Torque through each clutch. [N m]
+    # Torque that each mesh takes up at its first gear, at the load of its driving gear. [N m]
     meshes: Mapping[str, float]
-    drives: Mapping[str, bool]
+    drives: Mapping[str, bool]  # For each mesh, True if its first gear drives it.
+    # Rolling power of each mesh, positive if its first gear drives. [W]
     rolling: Mapping[str, float]
-    results: Mapping[str, ElementResult]
-    given: Mapping[str, Loss]
+    results: Mapping[str, ElementResult]  # By the key of the element.
+    given: Mapping[str, Loss]  # Losses of the meshes of given efficiency, by the key of the mesh.
+    # Speed of the input over that of the output; None if that stands still. [1]
     ratio: float | None
-    self_locking: bool
-    jammed: bool
-    unique: bool
+    self_locking: bool  # True if the output must be driven too.
+    jammed: bool  # True if the machine stands still, whatever the torque on the output.
+    unique: bool  # False if meshes or clutches share a load in more than one possible way.
+    # Meshes that next to no power passes: with the losses of either direction of the power it has
+    # the other one, so that the teeth lie on neither flank.
     floating: frozenset[str]
-    state: State
+    state: State  # That the elements saw.
 
     @property
     def loss(self) -> float:
@@ -156,23 +128,12 @@ def _lossless(machine: Machine, operation: Operation, speeds: Mapping[str, float
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """What a solution starts from, whatever the oil.
+    """What a solution starts from, whatever the oil."""
 
-    Attributes
-    ----------
-    speeds : mapping of str to float
-        Speeds of all bodies. [rad/s]
-    lossless : Balance
-    directions : Directions
-        With the given efficiencies.
-    ratio : float or None
-        Speed of the input over that of the output. [1]
-    """
-
-    speeds: Mapping[str, float]
+    speeds: Mapping[str, float]  # Speeds of all bodies. [rad/s]
     lossless: Balance
-    directions: Directions
-    ratio: float | None
+    directions: Directions  # With the given efficiencies.
+    ratio: float | None  # Speed of the input over that of the output. [1]
 
 
 def start_of(machine: Machine, operation: Operation) -> Start:
@@ -188,19 +149,14 @@ def start_of(machine: Machine, operation: Operation) -> Start:
 
 
 def solve_machine(
-    machine: Machine, operation: Operation, fluids: Fluids | None, start: Start | None = None
+    machine: Machine,
+    operation: Operation,
+    fluids: Fluids | None,  # None if every loss is given.
+    start: Start | None = None,  # As from `start_of`, for solutions that differ in the oil only.
 ) -> Solution:
     """Torques and losses that agree.
 
     Theory (T5), (T6).
-
-    Parameters
-    ----------
-    machine, operation
-    fluids : Fluids or None
-        None if every loss is given.
-    start : Start, optional
-        As from `start_of`, for solutions that differ in the oil only.
 
     Raises
     ------
@@ -244,20 +200,12 @@ def solve_machine(
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """What the elements have answered, by their keys: each pass goes on from it.
+    """What the elements have answered, by their keys: each pass goes on from it."""
 
-    Attributes
-    ----------
-    idle : dict of str to object
-        As `State.idle`.
-    answers : dict of str to Answer
-        When they were last asked.
-    results, loads : dict
-        Their last answers, foretold ones among them, and the loads that these belong to.
-    """
-
-    idle: dict[str, Any] = field(default_factory=dict[str, Any])
+    idle: dict[str, Any] = field(default_factory=dict[str, Any])  # As `State.idle`.
+    # When they were last asked.
     answers: dict[str, Answer] = field(default_factory=dict[str, Answer])
+    # Their last answers, foretold ones among them, and the loads that these belong to.
     results: dict[str, ElementResult] = field(default_factory=dict[str, ElementResult])
     loads: dict[str, Mapping[str, float]] = field(default_factory=dict[str, Mapping[str, float]])
 
@@ -295,28 +243,16 @@ class _Pass:
 
 @dataclass
 class _Branch:
-    """One choice of the directions of the rolling powers.
+    """One choice of the directions of the rolling powers."""
 
-    Attributes
-    ----------
-    machine, operation, start, fluids, known
-        As everywhere here.
-    drives : mapping of str to bool
-        For each mesh, True if its first gear drives it.
-    braking : collection of str
-        Meshes whose losses are friction, whichever gear drives.
-    passes : int
-        So far.
-    """
-
-    machine: Machine
-    operation: Operation
-    start: Start
-    fluids: Fluids | None
-    known: _Known
-    drives: Mapping[str, bool]
-    braking: Collection[str] = ()
-    passes: int = 0
+    machine: Machine  # As everywhere here.
+    operation: Operation  # As everywhere here.
+    start: Start  # As everywhere here.
+    fluids: Fluids | None  # As everywhere here.
+    known: _Known  # As everywhere here.
+    drives: Mapping[str, bool]  # For each mesh, True if its first gear drives it.
+    braking: Collection[str] = ()  # Meshes whose losses are friction, whichever gear drives.
+    passes: int = 0  # So far.
 
     @cached_property
     def given(self) -> Mapping[str, float]:
@@ -505,21 +441,11 @@ def _agrees(old: Mapping[str, float], new: Mapping[str, float]) -> bool:
 
 def effects_of(
     machine: Machine,
-    powers: Mapping[str, float],
+    powers: Mapping[str, float],  # Rolling power of each mesh. [W]
     results: Iterable[ElementResult],
-    braking: Collection[str] = (),
+    braking: Collection[str] = (),  # Meshes whose losses are friction in any case.
 ) -> tuple[dict[str, float], list[Friction]]:
-    """Efficiencies of the meshes, and friction between bodies, that the losses stand for.
-
-    Parameters
-    ----------
-    machine : Machine
-    powers : mapping of str to float
-        Rolling power of each mesh. [W]
-    results : iterable of ElementResult
-    braking : collection of str
-        Meshes whose losses are friction in any case.
-    """
+    """Efficiencies of the meshes, and friction between bodies, that the losses stand for."""
     efficiencies = {row.key: row.efficiency for row in machine.rows}
     frictions = []
     for result in results:

@@ -18,9 +18,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from epicyclic.builders.build import layout_of
-from epicyclic.case.case import Case, PlanetaryCase, TrainCase
+from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.operating import AXES, STATE, STATE_KEY, axis_name
+from epicyclic.case.train import TrainCase
 from epicyclic.case.wording import written
 from epicyclic.elements.base import HOUSING
 from epicyclic.errors import InputError, Problem, raise_any
@@ -28,26 +29,15 @@ from epicyclic.maps.interpolation_error import written_values
 from epicyclic.maps.near_zero import resolving_texts, torque_interpolation
 from epicyclic.maps.tables import check_map, map_case
 from epicyclic.results.result import Layout, number_fields
+from epicyclic.sweeps.axes import Axis
 from epicyclic.sweeps.dataset import by_keys, to_dataset
 from epicyclic.sweeps.journal import Rows
-from epicyclic.sweeps.plan import Axis, SweepPlan, make_plan
+from epicyclic.sweeps.plan import SweepPlan, make_plan
 from epicyclic.sweeps.runner import Progress, Runner
 from epicyclic.units import NEWTON_METRE, RPM, WATT
 
 if TYPE_CHECKING:
     import xarray as xr
-
-__all__ = [
-    "MapPlan",
-    "checked_map",
-    "coordinates",
-    "held_shaft",
-    "loss_map",
-    "map_plan",
-    "states_left_out",
-    "stored_plan",
-    "to_map",
-]
 
 _OWN_AXES = {**AXES, STATE: STATE_KEY}
 _SHAFT_KEYS = (

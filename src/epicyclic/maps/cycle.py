@@ -23,8 +23,6 @@ from epicyclic.errors import Problem, raise_any
 from epicyclic.maps.cycle_source import Source, open_source
 from epicyclic.units import SECOND, Quantity
 
-__all__ = ["SHARE", "TIME", "Cycle", "Piece", "open_cycle"]
-
 Array = NDArray[np.float64]
 
 TIME, DURATION, SHARE = "time", "duration", "share"
@@ -57,50 +55,26 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """Some points of a cycle, with the time for which each stands.
+    """Some points of a cycle, with the time for which each stands."""
 
-    Attributes
-    ----------
-    speed, torque : array, shape (n,)
-        In rpm, N m.
-    temperature : array, shape (n,), or None
-        In degC; None if there is none.
-    state : array of int, shape (n,), or None
-        Numbers in `Cycle.states`; None if there is no such column.
-    duration : array, shape (n,)
-        [s]
-    """
-
-    speed: Array
-    torque: Array
-    temperature: Array | None
-    state: NDArray[np.intp] | None
-    duration: Array
+    speed: Array  # In rpm, N m.
+    torque: Array  # In rpm, N m.
+    temperature: Array | None  # In degC; None if there is none.
+    state: NDArray[np.intp] | None  # Numbers in `Cycle.states`; None if there is no such column.
+    duration: Array  # [s]
 
 
 @dataclass(frozen=True, slots=True)
 class Cycle:
-    """A checked duty cycle.
-
-    Attributes
-    ----------
-    source : Source
-    columns : mapping of str to Column
-        By quantity.
-    weighting : str
-        ``"time"``, ``"duration"`` or ``"share"``.
-    rows : int
-    ranges : mapping of str to (float, float)
-        Smallest and largest value of every quantity, in display units.
-    states : tuple of str
-        What its column of states has, in the order in which it appears; none without the column.
-    """
+    """A checked duty cycle."""
 
     source: Source
-    columns: Mapping[str, Column]
-    weighting: str
+    columns: Mapping[str, Column]  # By quantity.
+    weighting: str  # ``"time"``, ``"duration"`` or ``"share"``.
     rows: int
+    # Smallest and largest value of every quantity, in display units.
     ranges: Mapping[str, tuple[float, float]]
+    # What its column of states has, in the order in which it appears; none without the column.
     states: tuple[str, ...] = ()
 
     def pieces(self, celsius: float | None = None) -> Iterator[Piece]:
@@ -138,16 +112,14 @@ class Cycle:
         return np.array([place.get(text, math.nan) for text in texts])[codes]
 
 
-def open_cycle(table: Any, progress: Callable[[int, None], None] | None = None) -> Cycle:
+def open_cycle(
+    # A file that ends in .csv or .parquet, or columns by name. Names carry units, ``"speed
+    # [rpm]"``.
+    table: Any,
+    # Called with the number of rows so far, and None for that of all rows.
+    progress: Callable[[int, None], None] | None = None,
+) -> Cycle:
     """Read a whole cycle once and check it.
-
-    Parameters
-    ----------
-    table : str, Path, pandas.DataFrame or mapping
-        A file that ends in .csv or .parquet, or columns by name. Names carry units,
-        ``"speed [rpm]"``.
-    progress : callable, optional
-        Called with the number of rows so far, and None for that of all rows.
 
     Raises
     ------

@@ -16,8 +16,6 @@ from epicyclic.maps.parquet_pages import largest_page
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["Source", "open_source"]
-
 SUFFIXES = (".csv", ".parquet")
 _BLOCK_BYTES = 1 << 22
 _BATCH_ROWS, _PAGE_BYTES = 1 << 16, 1 << 20
@@ -29,19 +27,11 @@ _LONGEST_HEAD = 1 << 18
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Rows in pieces that fit into memory.
+    """Rows in pieces that fit into memory."""
 
-    Attributes
-    ----------
-    name : str
-        For messages.
-    headers : tuple of str
-    batches : callable
-        Pieces of the columns of some headers, each an array of `pyarrow` by header.
-    """
-
-    name: str
+    name: str  # For messages.
     headers: tuple[str, ...]
+    # Pieces of the columns of some headers, each an array of `pyarrow` by header.
     batches: Callable[[Sequence[str]], Iterator[Mapping[str, pa.Array]]]
 
 

@@ -34,32 +34,10 @@ from epicyclic.maps.lookup import Lookup, loss_power, make_lookup
 from epicyclic.maps.near_zero import resolving_zero
 from epicyclic.maps.tables import map_case
 from epicyclic.sweeps.runner import HERE, Progress, Runner
-from epicyclic.units import (
-    CELSIUS,
-    KILOJOULE,
-    NEWTON_METRE,
-    RPM,
-    SECOND,
-    Quantity,
-    format_number,
-)
+from epicyclic.units import CELSIUS, KILOJOULE, NEWTON_METRE, RPM, SECOND, Quantity, format_number
 
 if TYPE_CHECKING:
     import xarray as xr
-
-__all__ = [
-    "MODES",
-    "add_up",
-    "check_states",
-    "crowded",
-    "cycle_map",
-    "cycle_plan",
-    "duty_cycle",
-    "make_duty",
-    "parse_temperatures",
-    "point_of",
-    "texts_of",
-]
 
 Array = NDArray[np.float64]
 
@@ -208,43 +186,21 @@ def texts_of(values: Iterable[float], quantity: Quantity) -> list[str]:
 
 @dataclass(slots=True)
 class Totals:
-    """Sums over a cycle; arrays have a row for each of `MODES`, a column for each state or one.
+    """Sums over a cycle; arrays have a row for each of `MODES`, a column for each state or one."""
 
-    Attributes
-    ----------
-    node_work : array, shape (modes, nodes)
-        Angle turned through at each node of the map. [rad]
-    duration : array, shape (modes, states)
-        [s]
-    energy_in, energy_out : array, shape (modes, states)
-        [J]
-    outside : float
-        Duration outside of the map. [s]
-    """
-
-    node_work: Array
-    duration: Array
-    energy_in: Array
-    energy_out: Array
-    outside: float = 0.0
+    node_work: Array  # Angle turned through at each node of the map. [rad]
+    duration: Array  # [s]
+    energy_in: Array  # [J]
+    energy_out: Array  # [J]
+    outside: float = 0.0  # Duration outside of the map. [s]
 
 
 @dataclass(frozen=True, slots=True)
 class Sums:
-    """A cycle added up: once for each oil temperature, or once at its own temperatures.
-
-    Attributes
-    ----------
-    lookup : Lookup
-    celsius : tuple of float or None
-        Temperatures that were asked for.
-    clamp : bool
-    totals : tuple of Totals
-    samples : tuple of Sample
-    """
+    """A cycle added up: once for each oil temperature, or once at its own temperatures."""
 
     lookup: Lookup
-    celsius: tuple[float, ...] | None
+    celsius: tuple[float, ...] | None  # Temperatures that were asked for.
     clamp: bool
     totals: tuple[Totals, ...]
     samples: tuple[Sample, ...]

@@ -14,27 +14,16 @@ from epicyclic.maps.compute import MapPlan
 from epicyclic.maps.cycle import Cycle
 from epicyclic.maps.duty import cycle_plan
 
-__all__ = ["DutyPlan", "check_same", "digest_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class DutyPlan(MapPlan):
-    """The points of the map of a duty cycle.
-
-    Attributes
-    ----------
-    digest : str
-        Of the file of the cycle.
-    celsius : tuple of float or None
-        Oil inlet temperatures that were asked for. [degC]
-    clamp : bool
-        As for `duty_cycle`.
-    """
+    """The points of the map of a duty cycle."""
 
     kind: ClassVar[str] = "duty"
-    digest: str = field(kw_only=True)
+    digest: str = field(kw_only=True)  # Of the file of the cycle.
+    # Oil inlet temperatures that were asked for. [degC]
     celsius: tuple[float, ...] | None = field(kw_only=True)
-    clamp: bool = field(kw_only=True)
+    clamp: bool = field(kw_only=True)  # As for `duty_cycle`.
 
     @classmethod
     def of(

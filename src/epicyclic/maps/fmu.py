@@ -35,8 +35,6 @@ from epicyclic.units import CELSIUS, RPM, format_number
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["fmu_problems", "write_fmu"]
-
 _LIBRARIES = ("fmpy", "ziglang")
 _TARGETS = {
     "win64": ("x86_64-windows-gnu", ".dll"),

@@ -18,37 +18,21 @@ from epicyclic.whole_file import check_place, whole_file
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["FORMATS", "check_map_output", "files_of_map", "write_map"]
-
 Coordinates = Mapping[str, Sequence[Any]]
 
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """One format of a map.
+    """One format of a map."""
 
-    Attributes
-    ----------
-    suffix : str
-        Ending of its files; empty if it must be asked for by name.
-    about : str
-        What it is.
-    write : callable
-        Writes a map to a file.
-    problems : callable
-        What of the axes of a map the format cannot hold.
-    axes : tuple of str or None
-        Axes that may have several values; a map then has no gaps and one member held. None: any.
-    each_state : bool
-        True: a map of several states becomes several files.
-    """
-
-    suffix: str
-    about: str
-    write: Callable[[xr.Dataset, Path], None]
+    suffix: str  # Ending of its files; empty if it must be asked for by name.
+    about: str  # What it is.
+    write: Callable[[xr.Dataset, Path], None]  # Writes a map to a file.
+    # What of the axes of a map the format cannot hold.
     problems: Callable[[Coordinates], list[Problem]] = lambda axes: []
+    # Axes that may have several values; a map then has no gaps and one member held. None: any.
     axes: tuple[str, ...] | None = None
-    each_state: bool = False
+    each_state: bool = False  # True: a map of several states becomes several files.
 
 
 _SPACE = (*AXES, STATE)

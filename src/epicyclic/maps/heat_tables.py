@@ -25,8 +25,6 @@ from epicyclic.pocketing.table import FlowTables
 from epicyclic.thermal.network import Link
 from epicyclic.thermal.transient import Curves, Source, Transient
 
-__all__ = ["SPACING", "HeatSample", "HeatTables", "heat_samples"]
-
 Array = NDArray[np.float64]
 
 SPACING = 10.0
@@ -39,44 +37,22 @@ starts steeply, and they cost little."""
 
 @dataclass(frozen=True, slots=True)
 class HeatSample:
-    """What one solution tells, with all parts equally hot.
+    """What one solution tells, with all parts equally hot."""
 
-    Attributes
-    ----------
-    heat : mapping of Source to float
-        [W]
-    links : tuple of mapping of str to Link
-        Ways of the heat by their keys, at temperatures from this one to the next.
-    given : mapping of str to float
-        Temperatures that are given. [K]
-    """
-
-    heat: Mapping[Source, float]
+    heat: Mapping[Source, float]  # [W]
+    # Ways of the heat by their keys, at temperatures from this one to the next.
     links: tuple[Mapping[str, Link], ...]
-    given: Mapping[str, float]
+    given: Mapping[str, float]  # Temperatures that are given. [K]
 
 
 def heat_samples(
-    case: Case,
-    points: Sequence[Mapping[str, Any]],
-    knots: Sequence[float],
-    flow_tables: FlowTables,
-    told: Callable[[], None],
+    case: Case,  # Whose temperatures follow from a network.
+    points: Sequence[Mapping[str, Any]],  # Keys of the case that each point changes.
+    knots: Sequence[float],  # Temperatures. [K]
+    flow_tables: FlowTables,  # Tables of flows through pockets.
+    told: Callable[[], None],  # Called after each.
 ) -> list[list[HeatSample]]:
     """Samples of operating points at some temperatures.
-
-    Parameters
-    ----------
-    case : Case
-        Whose temperatures follow from a network.
-    points : sequence of mapping
-        Keys of the case that each point changes.
-    knots : sequence of float
-        Temperatures. [K]
-    flow_tables : mapping
-        Tables of flows through pockets.
-    told : callable
-        Called after each.
 
     Returns
     -------
@@ -165,14 +141,12 @@ class HeatTables:
         own = [(link.hot,) if link.cold == AMBIENT else (OIL,) for link in self.links]
         self._ways_at = self._weights(own)
 
-    def transient(self, heating: Array, flowing: Array) -> Transient:
-        """The gearbox at a mixture of the points.
-
-        Parameters
-        ----------
-        heating, flowing : array, shape (points,)
-            With which the heat, and the conductances, of the points are added up.
-        """
+    def transient(
+        self,
+        heating: Array,  # With which the heat, and the conductances, of the points are added up.
+        flowing: Array,  # With which the heat, and the conductances, of the points are added up.
+    ) -> Transient:
+        """The gearbox at a mixture of the points."""
         return Transient(
             self.capacities, self.given, self.sources, self.heat(heating), self.links,
             Curves(self._between, self._ways @ flowing, self._ways_at), self.taken,

@@ -28,16 +28,6 @@ from epicyclic.sweeps.runner import HERE, Runner
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "Deviation",
-    "Sample",
-    "changes_at",
-    "further_values",
-    "leave_out",
-    "solve_sample",
-    "written_values",
-]
-
 Array = NDArray[np.float64]
 _SEED = 0
 """The same cycle and map give the same sample."""
@@ -45,24 +35,13 @@ _SEED = 0
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """What interpolation adds to the energy lost.
+    """What interpolation adds to the energy lost."""
 
-    Attributes
-    ----------
-    energy : float
-        Estimate of the energy by interpolation less that by direct solution. [J]
-    standard_error : float
-        Standard error of the estimate, because only a sample is solved. [J]
-    largest : float
-        Largest deviation of the loss of one point of the sample, relative to its direct solution.
-    method : str
-        How it was found.
-    """
-
-    energy: float
-    standard_error: float
+    energy: float  # Estimate of the energy by interpolation less that by direct solution. [J]
+    standard_error: float  # Standard error of the estimate, because only a sample is solved. [J]
+    # Largest deviation of the loss of one point of the sample, relative to its direct solution.
     largest: float
-    method: str
+    method: str  # How it was found.
 
 
 class Sample:

@@ -22,8 +22,6 @@ from epicyclic.units import RPM, WATT
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Lookup", "loss_power", "make_lookup", "slack"]
-
 Array = NDArray[np.float64]
 
 _SUMS = ("load_dependent", "load_independent", "total", "input_power")
@@ -34,27 +32,15 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Lookup:
-    """A loss map, ready for interpolation.
+    """A loss map, ready for interpolation."""
 
-    Attributes
-    ----------
-    names : tuple of str
-        Names of the axes: speed, torque, temperature if there is an oil, state if there are any.
-    axes : tuple of array
-        Rising values of speed [rpm], torque [N m], temperature [degC]; states are numbered from 1.
-    states : tuple of str
-        Names of the states, none if there are none.
-    components : tuple of str
-        Names of the losses.
-    torques : array, shape (components, speeds, torques, ...)
-        Loss of each component over the magnitude of the speed. [N m]
-    """
-
+    # Names of the axes: speed, torque, temperature if there is an oil, state if there are any.
     names: tuple[str, ...]
+    # Rising values of speed [rpm], torque [N m], temperature [degC]; states are numbered from 1.
     axes: tuple[Array, ...]
-    states: tuple[str, ...]
-    components: tuple[str, ...]
-    torques: Array
+    states: tuple[str, ...]  # Names of the states, none if there are none.
+    components: tuple[str, ...]  # Names of the losses.
+    torques: Array  # Loss of each component over the magnitude of the speed. [N m]
 
     @property
     def size(self) -> int:
@@ -67,13 +53,11 @@ class Lookup:
         sums: Array = self.torques.sum(axis=0).ravel()
         return sums
 
-    def corners(self, *point: Array) -> tuple[NDArray[np.intp], Array]:
+    def corners(
+        self,
+        *point: Array,  # As the axes, in their units.
+    ) -> tuple[NDArray[np.intp], Array]:
         """The nodes around points, and their weights. A point outside is taken at the border.
-
-        Parameters
-        ----------
-        *point : arrays, shape (n,)
-            As the axes, in their units.
 
         Returns
         -------

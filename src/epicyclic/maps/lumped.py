@@ -15,15 +15,6 @@ from epicyclic.maps.tables import map_inputs
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "CAPACITY",
-    "CONDUCTANCE",
-    "SURROUNDINGS",
-    "check_axis",
-    "lumped",
-    "with_temperature_state",
-]
-
 CAPACITY, CONDUCTANCE = "lumped_heat_capacity", "lumped_conductance"
 SURROUNDINGS = "surroundings_temperature"
 """Attributes of a map whose temperature follows from its losses, in J/K, W/K and K."""

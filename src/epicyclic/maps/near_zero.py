@@ -24,8 +24,6 @@ from epicyclic.units import NEWTON_METRE, format_number, unit_text
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["resolving_texts", "resolving_zero", "torque_interpolation"]
-
 FloatArray = NDArray[np.float64]
 
 RATIO = 2.0
@@ -39,14 +37,11 @@ CLOSER_TO_ZERO = (1 / 8, 1 / 32)
 """Where it is checked too in the first interval on each side, from its end at zero. [1]"""
 
 
-def resolving_zero(torques: Iterable[float], crowd: int = CROWD) -> list[float]:
+def resolving_zero(
+    torques: Iterable[float],
+    crowd: int = CROWD,  # How many on each side.
+) -> list[float]:
     """`torques`, and on each side of zero that they reach more that crowd there, and zero.
-
-    Parameters
-    ----------
-    torques : iterable of float
-    crowd : int
-        How many on each side.
 
     Returns
     -------

@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, BinaryIO
 if TYPE_CHECKING:
     import pyarrow.parquet as pq
 
-__all__ = ["largest_page"]
-
 LARGEST_HEADER = 1 << 16
 """Bytes within which the header of a page must end; most have some twenty."""
 _STOP, _TRUE, _FALSE, _BYTE, _DOUBLE, _BINARY, _STRUCT = 0, 1, 2, 3, 7, 8, 12
@@ -22,17 +20,13 @@ _LISTS = (9, 10)
 _DEEPEST = 20
 
 
-def largest_page(path: Path, file: pq.ParquetFile, columns: Iterable[str], enough: int) -> int:
+def largest_page(
+    path: Path,
+    file: pq.ParquetFile,  # The same, open.
+    columns: Iterable[str],
+    enough: int,  # Size up to which it does not matter; columns of no more are not looked into.
+) -> int:
     """Size of the largest page of some columns, unpacked, or of the first beyond `enough`. [bytes]
-
-    Parameters
-    ----------
-    path : Path
-    file : ParquetFile
-        The same, open.
-    columns : iterable of str
-    enough : int
-        Size up to which it does not matter; columns of no more are not looked into.
 
     Raises
     ------

@@ -18,8 +18,6 @@ from epicyclic.units import CELSIUS, RPM, format_number
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["write_simscape"]
-
 _BREAKPOINTS = {"torque": "Trq_bpts", "speed": "omega_bpts", "temperature": "Temp_bpts"}
 _LEAST_EFFICIENCY = 1e-3
 """Stands for none: where the loss takes all of the power, and where there is no power."""

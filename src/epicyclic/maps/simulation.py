@@ -23,15 +23,6 @@ from epicyclic.units import RPM, format_number
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "gem_problems",
-    "modelica_problems",
-    "vecto_problems",
-    "write_gem",
-    "write_modelica",
-    "write_vecto",
-]
-
 _LEAST_VECTO_ROWS = 4
 _DIGITS = 10
 

@@ -19,19 +19,6 @@ from epicyclic.units import NEWTON_METRE, WATT
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "bare_map",
-    "check_gaps",
-    "check_map",
-    "driven_problem",
-    "map_case",
-    "map_inputs",
-    "stated",
-    "statements",
-    "write_csv",
-    "write_parquet",
-]
-
 _STATED = (
     "title",
     "source",

@@ -49,8 +49,6 @@ from epicyclic.units import (
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["warm_up"]
-
 Array = NDArray[np.float64]
 
 START = quantity_of(Temperature) or CELSIUS
@@ -200,25 +198,15 @@ def _parsed(case: Case, duration: Any, start: Any) -> tuple[float, float]:
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """A time in which the operation has one mean.
+    """A time in which the operation has one mean."""
 
-    Attributes
-    ----------
-    duration : float
-        [s]
-    heating, flowing : array, shape (points,)
-        With which the losses, and the conductances, at the points of the grid add up to their
-        means. [1]
-    coasting : array, shape (points,)
-        The part of `heating` for which power enters at the output, or nowhere. [1]
-    entering, leaving : float
-        Mean power that enters and leaves at the reference shaft; NaN if two are driven. [W]
-    """
-
-    duration: float
+    duration: float  # [s]
+    # With which the losses, and the conductances, at the points of the grid add up to their means.
+    # [1]
     heating: Array
-    coasting: Array
+    coasting: Array  # The part of `heating` for which power enters at the output, or nowhere. [1]
     flowing: Array
+    # Mean power that enters and leaves at the reference shaft; NaN if two are driven. [W]
     entering: float
     leaving: float
 
@@ -230,21 +218,11 @@ class _Step:
 
 @dataclass(frozen=True, slots=True)
 class _Drive:
-    """What a gearbox does, on a grid of operating points.
+    """What a gearbox does, on a grid of operating points."""
 
-    Attributes
-    ----------
-    points : sequence of mapping
-        Keys of the case that each point of the grid changes.
-    steps : tuple of _Step
-        One after the other, repeated.
-    plan : SweepPlan
-        The grid.
-    """
-
-    points: Sequence[Mapping[str, Any]]
-    steps: tuple[_Step, ...]
-    plan: SweepPlan
+    points: Sequence[Mapping[str, Any]]  # Keys of the case that each point of the grid changes.
+    steps: tuple[_Step, ...]  # One after the other, repeated.
+    plan: SweepPlan  # The grid.
 
     @property
     def mean(self) -> tuple[Array, Array]:
@@ -367,20 +345,11 @@ def _sampled(
 
 @dataclass(frozen=True, slots=True)
 class _Told:
-    """A course, with what is lost on it; arrays over time come last.
-
-    Attributes
-    ----------
-    course : Course
-    losses : array, shape (terms, t)
-        [W]
-    efficiency : array, shape (t,)
-        [1]
-    """
+    """A course, with what is lost on it; arrays over time come last."""
 
     course: Course
-    losses: Array
-    efficiency: Array
+    losses: Array  # [W]
+    efficiency: Array  # [1]
 
 
 def _run(

@@ -19,8 +19,6 @@ from epicyclic.status import Status
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["workbook_problems", "write_matlab", "write_workbook"]
-
 _MOST_ROWS = 1_048_574
 """Rows of a sheet of Excel below the two of names and units."""
 _LONG_TEXT = ("warnings",)

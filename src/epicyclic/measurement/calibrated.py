@@ -15,8 +15,6 @@ from epicyclic.case.uncertain_values import MODEL_FORM, model_form_of
 from epicyclic.measurement.fit_result import Fit, FittedParameter
 from epicyclic.units import CELSIUS
 
-__all__ = ["calibrated_case", "uncertainty_tables"]
-
 SHRUNK = 1 - 1e-6
 """Factor of coefficients of correlation, so that rounding leaves their matrix possible. [1]"""
 DIGITS = 8

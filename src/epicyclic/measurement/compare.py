@@ -29,8 +29,6 @@ from epicyclic.sweeps.unloaded import COMPUTED, LoadDependent
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["compare_measured"]
-
 BoolArray = NDArray[np.bool_]
 
 _EQUATION = re.compile(r"(?P<column>[^=]+)=(?P<value>.*)")

@@ -30,8 +30,6 @@ from epicyclic.sweeps.unloaded import LoadDependent
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["MeasuredComparison", "notes_on"]
-
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from epicyclic.measurement.table import Measurements
 
-__all__ = ["AS_GIVEN", "CALIBRATED", "ErrorFigures", "all_errors"]
-
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 

@@ -15,8 +15,6 @@ from epicyclic.text_file import check_archive, csv_rows, decode, read_bytes, ref
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Grid", "read_frame", "read_grid"]
-
 _NOUN = "measurement"
 _LARGEST_FILE = 10_000_000
 """Largest file, also of what a compressed file holds. [bytes]"""
@@ -28,20 +26,12 @@ _SHOWN_LINES = 5
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """Cells of a table.
-
-    Attributes
-    ----------
-    header : tuple of str
-    rows : tuple of (int, tuple of str)
-        Line in the file, or row of the sheet, and its cells; as many as the header has.
-    source : str
-        Where it comes from.
-    """
+    """Cells of a table."""
 
     header: tuple[str, ...]
+    # Line in the file, or row of the sheet, and its cells; as many as the header has.
     rows: tuple[tuple[int, tuple[str, ...]], ...]
-    source: str
+    source: str  # Where it comes from.
 
 
 def read_grid(path: Path) -> Grid:

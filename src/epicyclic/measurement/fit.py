@@ -25,8 +25,6 @@ from epicyclic.measurement.profile import PROFILED, profile_ends
 from epicyclic.measurement.residuals import Residuals
 from epicyclic.units import format_number
 
-__all__ = ["Tell", "fit_parameters"]
-
 FloatArray = NDArray[np.float64]
 Tell = Callable[[str], None]
 """Is told how a fit gets on, a sentence at a time."""

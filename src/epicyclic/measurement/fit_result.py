@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from epicyclic.measurement.identifiability import Combination
 
-__all__ = ["Fit", "FittedParameter"]
-
 FloatArray = NDArray[np.float64]
 
 

@@ -16,8 +16,6 @@ from epicyclic.measurement.profile import PROFILED
 from epicyclic.measurement.residuals import Residuals
 from epicyclic.units import format_number
 
-__all__ = ["fit_warnings"]
-
 FloatArray = NDArray[np.float64]
 
 CURVED = 2.0

@@ -19,8 +19,6 @@ from epicyclic.case.uncertain_values import UncertainValue, uncertain_values
 from epicyclic.measurement.intervals import SINGULAR
 from epicyclic.units import format_number
 
-__all__ = ["Combination", "combinations", "reaches"]
-
 FloatArray = NDArray[np.float64]
 
 NAMED = 0.2
@@ -31,28 +29,16 @@ TINY = 1e-300
 
 @dataclass(frozen=True, slots=True)
 class Combination:
-    """Inputs moved together, as far as they were known before the fit.
+    """Inputs moved together, as far as they were known before the fit."""
 
-    Attributes
-    ----------
-    keys : tuple of str
-        The inputs that move most, the first of them upwards.
-    units : tuple of str
-    start, moved : tuple of float
-        Their values in the case and after the move.
-    change : float
-        Root mean square change of the losses over their scatter: that which a linear model leaves,
-        and their uncertainty if that is more. [1]
-    told_apart : bool
-        Whether the points know this combination better than it was known before.
-    """
-
-    keys: tuple[str, ...]
+    keys: tuple[str, ...]  # The inputs that move most, the first of them upwards.
     units: tuple[str, ...]
-    start: tuple[float, ...]
-    moved: tuple[float, ...]
+    start: tuple[float, ...]  # Their values in the case and after the move.
+    moved: tuple[float, ...]  # Their values in the case and after the move.
+    # Root mean square change of the losses over their scatter: that which a linear model leaves,
+    # and their uncertainty if that is more. [1]
     change: float
-    told_apart: bool
+    told_apart: bool  # Whether the points know this combination better than it was known before.
 
     @property
     def text(self) -> str:
@@ -102,24 +88,12 @@ def _reach(value: UncertainValue) -> float:
 
 def combinations(
     parameters: Sequence[Parameter],
-    deviations: FloatArray,
-    derivatives: FloatArray,
-    reach: FloatArray,
+    deviations: FloatArray,  # At the start, over their uncertainty if `weighted`.
+    derivatives: FloatArray,  # There, of the deviations over the scaled parameters.
+    reach: FloatArray,  # See `reaches`.
     weighted: bool,
 ) -> tuple[Combination, ...]:
-    """Directions in which the points see parameters least, first. Theory (X2), (X3).
-
-    Parameters
-    ----------
-    parameters : sequence of Parameter, length p
-    deviations : ndarray, shape (n,)
-        At the start, over their uncertainty if `weighted`.
-    derivatives : ndarray, shape (n, p)
-        There, of the deviations over the scaled parameters.
-    reach : ndarray, shape (p,)
-        See `reaches`.
-    weighted : bool
-    """
+    """Directions in which the points see parameters least, first. Theory (X2), (X3)."""
     count = deviations.size
     outer, singular, directions = np.linalg.svd(derivatives * reach, full_matrices=False)
     left = deviations - outer @ (outer.T @ deviations)

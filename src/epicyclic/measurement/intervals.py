@@ -9,8 +9,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Linearised"]
-
 FloatArray = NDArray[np.float64]
 
 SINGULAR = 1e-7
@@ -19,28 +17,14 @@ SINGULAR = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """A solution with its derivatives.
-
-    Attributes
-    ----------
-    solution : ndarray, shape (p,)
-    deviations : ndarray, shape (n,)
-        Computed less measured, over the uncertainty if `weighted`.
-    derivatives : ndarray, shape (n, p)
-        Derivatives of the deviations.
-    at_bound : ndarray of bool, shape (p,)
-        Parameters that cannot move freely; they have no interval.
-    weighted : bool
-    confidence : float
-        [1]
-    """
+    """A solution with its derivatives."""
 
     solution: FloatArray
-    deviations: FloatArray
-    derivatives: FloatArray
-    at_bound: NDArray[np.bool_]
+    deviations: FloatArray  # Computed less measured, over the uncertainty if `weighted`.
+    derivatives: FloatArray  # Derivatives of the deviations.
+    at_bound: NDArray[np.bool_]  # Parameters that cannot move freely; they have no interval.
     weighted: bool
-    confidence: float
+    confidence: float  # [1]
 
     @property
     def sum_of_squares(self) -> float:

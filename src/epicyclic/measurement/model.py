@@ -18,8 +18,6 @@ from epicyclic.sweeps.plan import PointList
 from epicyclic.sweeps.runner import HERE, Runner
 from epicyclic.sweeps.unloaded import AS_TESTED, COMPUTED, LoadDependent, as_tested, with_unloaded
 
-__all__ = ["Computed", "MeasuredPoints"]
-
 FloatArray = NDArray[np.float64]
 
 _EXACT = {"numerics.pocket_interpolation": 0.0}
@@ -29,41 +27,23 @@ tables."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Computed:
-    """Computed losses.
+    """Computed losses."""
 
-    Attributes
-    ----------
-    loss : ndarray, shape (n,)
-        Computed loss where one was measured; NaN where the point failed. [W]
-    messages, warnings : tuple of str
-        Why a point failed, and what to know about it.
-    """
-
-    loss: FloatArray
-    messages: tuple[str, ...]
-    warnings: tuple[str, ...]
+    loss: FloatArray  # Computed loss where one was measured; NaN where the point failed. [W]
+    messages: tuple[str, ...]  # Why a point failed, and what to know about it.
+    warnings: tuple[str, ...]  # Why a point failed, and what to know about it.
 
 
 @dataclass(frozen=True, slots=True)
 class MeasuredPoints:
-    """A case at the points of a table of measurements.
-
-    Attributes
-    ----------
-    case : PlanetaryCase or GearPairCase
-    measured : Measurements
-    runner : Runner
-        With a folder as its journal; its progress starts again with every round.
-    load_dependent : {"computed", "as-tested"}
-        What load-dependent losses are.
-    lattice : FlowLattice, optional
-        Flows through pockets are read from it. Default: each is solved.
-    """
+    """A case at the points of a table of measurements."""
 
     case: Case
     measured: Measurements
+    # With a folder as its journal; its progress starts again with every round.
     runner: Runner = HERE
-    load_dependent: LoadDependent = COMPUTED
+    load_dependent: LoadDependent = COMPUTED  # What load-dependent losses are.
+    # Flows through pockets are read from it. Default: each is solved.
     lattice: FlowLattice | None = None
 
     def shared(self) -> MeasuredPoints:

@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 from epicyclic.measurement.intervals import Linearised
 from epicyclic.measurement.residuals import STEP, Residuals
 
-__all__ = ["PROFILED", "profile_ends"]
-
 FloatArray = NDArray[np.float64]
 
 PROFILED = 3
@@ -86,22 +84,12 @@ def _ask(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Valley:
-    """The neighbourhood of a solution.
-
-    Attributes
-    ----------
-    found : Linearised
-    deviations : ndarray, shape (n,)
-        At the solution.
-    bounds : ndarray, shape (p, 2)
-    growth : float
-        Growth of the sum of squares at the ends.
-    """
+    """The neighbourhood of a solution."""
 
     found: Linearised
-    deviations: FloatArray
+    deviations: FloatArray  # At the solution.
     bounds: FloatArray
-    growth: float
+    growth: float  # Growth of the sum of squares at the ends.
 
     def walk(self, parameter: int, side: int) -> Walk:
         """Where the sum of squares has grown enough on one side of a parameter."""
@@ -153,22 +141,13 @@ class _Valley:
 
 @dataclass(slots=True, eq=False)
 class _Way:
-    """The bottom of a valley on one side of a parameter.
-
-    Attributes
-    ----------
-    valley : _Valley
-    parameter : int
-        The one that is held.
-    derivatives : ndarray, shape (n, p)
-        Derivatives of the deviations; of the solution at first, then kept up to date after Broyden.
-    direction : ndarray, shape (p,)
-        From the solution to the bottom at the last place, for each unit of the parameter.
-    """
+    """The bottom of a valley on one side of a parameter."""
 
     valley: _Valley
-    parameter: int
+    parameter: int  # The one that is held.
+    # Derivatives of the deviations; of the solution at first, then kept up to date after Broyden.
     derivatives: FloatArray
+    # From the solution to the bottom at the last place, for each unit of the parameter.
     direction: FloatArray
 
     def lowest(self, offset: float) -> Walk:

@@ -22,8 +22,6 @@ from epicyclic.sweeps.plan import CasePlan, PointList
 from epicyclic.sweeps.runner import HERE, Runner
 from epicyclic.sweeps.unloaded import AS_TESTED, COMPUTED, LoadDependent
 
-__all__ = ["ComparisonPlan", "Question", "ask", "check_any"]
-
 BoolArray = NDArray[np.bool_]
 
 _GROUPS = ("temperature", "state", "speed")
@@ -32,23 +30,13 @@ _OUTLET = "thermal.oil_outlet_temperature"
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What is to be compared: a case, measurements, and what was measured.
-
-    Attributes
-    ----------
-    case : Case
-    grid : Grid
-        The measurements as they are in their file.
-    component, load_dependent, group
-        As for `compare_measured`.
-    table : Measurements
-    """
+    """What is to be compared: a case, measurements, and what was measured."""
 
     case: Case
-    grid: Grid
-    component: str
-    load_dependent: LoadDependent
-    group: str | None
+    grid: Grid  # The measurements as they are in their file.
+    component: str  # As for `compare_measured`.
+    load_dependent: LoadDependent  # As for `compare_measured`.
+    group: str | None  # As for `compare_measured`.
     table: Measurements
 
     def problems(self) -> Iterator[Problem]:

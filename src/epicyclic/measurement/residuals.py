@@ -13,8 +13,6 @@ from epicyclic.case.parameters import Parameter
 from epicyclic.errors import ConvergenceError
 from epicyclic.measurement.model import MeasuredPoints
 
-__all__ = ["STEP", "Residuals"]
-
 FloatArray = NDArray[np.float64]
 
 STEP = 1e-2
@@ -24,20 +22,12 @@ are found to 1e-3 of their power, which smaller steps would show. [1]"""
 
 @dataclass(slots=True)
 class Residuals:
-    """Deviations over weights at the points of calibration, and their derivatives. Theory (X1).
-
-    Attributes
-    ----------
-    points : MeasuredPoints
-    parameters : sequence of Parameter
-        Their values are given as ratios to the start values, "scaled".
-    used : ndarray of bool, shape (n,)
-        Points of the table that the fit sees.
-    """
+    """Deviations over weights at the points of calibration, and their derivatives. Theory (X1)."""
 
     points: MeasuredPoints
+    # Their values are given as ratios to the start values, "scaled".
     parameters: Sequence[Parameter]
-    used: NDArray[np.bool_]
+    used: NDArray[np.bool_]  # Points of the table that the fit sees.
     _known: dict[tuple[float, ...], FloatArray] = field(default_factory=dict)
     _offset: FloatArray | float = 0.0
 

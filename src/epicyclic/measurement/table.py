@@ -24,8 +24,6 @@ from epicyclic.errors import InputError, Problem, first_of, raise_any
 from epicyclic.measurement.files import Grid
 from epicyclic.units import WATT, Quantity, format_number
 
-__all__ = ["LOAD_DEPENDENT", "Measurements", "loss_names", "parse_measurements", "parts_of"]
-
 FloatArray = NDArray[np.float64]
 
 LOAD_DEPENDENT = "load_dependent"
@@ -115,15 +113,13 @@ class _Problems:
         return [*self.found, *cells]
 
 
-def parse_measurements(grid: Grid, case: Case, component: str = "total") -> Measurements:
+def parse_measurements(
+    grid: Grid,
+    case: Case,
+    # The loss that was measured, where the table has no column ``component``.
+    component: str = "total",
+) -> Measurements:
     """What the cells of a table mean for a case.
-
-    Parameters
-    ----------
-    grid : Grid
-    case : PlanetaryCase or GearPairCase
-    component : str
-        The loss that was measured, where the table has no column ``component``.
 
     Raises
     ------

@@ -10,8 +10,6 @@ from epicyclic import library
 from epicyclic.lubricant.oil import Oil
 from epicyclic.oilmodel.model import OilModel, read_oil_model
 
-__all__ = ["builtin_model", "changed_properties"]
-
 _SIMULATED = (
     "kinematic_viscosity",
     "density",
@@ -23,16 +21,13 @@ _SIMULATED = (
 """Properties that a solved contact depends on."""
 
 
-def builtin_model(oil: Oil) -> OilModel | None:
+def builtin_model(
+    oil: Oil,  # One that only bears the name, or of which a property was changed, has no models.
+) -> OilModel | None:
     """The models of a library oil; None if there are none, or the oil is not that of the library.
 
     `lubricant.pressure_viscosity_factor` of a case makes no other oil: the coefficient is a
     condition of every contact, and the domain of the fits tells how far it may be off.
-
-    Parameters
-    ----------
-    oil : Oil
-        One that only bears the name, or of which a property was changed, has no models.
 
     Examples
     --------

@@ -19,8 +19,6 @@ from epicyclic.oilmodel.nearby import NearbySimulations
 from epicyclic.oilmodel.regressions import Regression
 from epicyclic.oilmodel.structured import Structured
 
-__all__ = ["fit_quantity"]
-
 FloatArray = NDArray[np.float64]
 
 BEYOND = 3
@@ -32,18 +30,13 @@ DIGITS = 12
 
 
 def fit_quantity(
-    quantity: str, unit: str, states: LineContacts, target: FloatArray, weight: FloatArray
+    quantity: str,  # A key of `FORMS`.
+    unit: str,
+    states: LineContacts,
+    target: FloatArray,  # Simulated values above zero, and what each counts in the sum of squares.
+    weight: FloatArray,  # Simulated values above zero, and what each counts in the sum of squares.
 ) -> QuantityFit:
     """Every form of a quantity. Theory (O8).
-
-    Parameters
-    ----------
-    quantity : str
-        A key of `FORMS`.
-    unit : str
-    states : LineContacts
-    target, weight : ndarray, shape (n,)
-        Simulated values above zero, and what each counts in the sum of squares.
 
     Raises
     ------

@@ -28,18 +28,6 @@ from epicyclic.oilmodel.regressions import (
 from epicyclic.oilmodel.structured import STRUCTURED_FRICTION, STRUCTURED_ROLLING, Structured
 from epicyclic.text_file import read_text, sealed, unsealed
 
-__all__ = [
-    "FORMAT",
-    "FORMS",
-    "REGIMES",
-    "FitError",
-    "FittedForm",
-    "OilModel",
-    "QuantityFit",
-    "check_resistance",
-    "read_oil_model",
-]
-
 FloatArray = NDArray[np.float64]
 Form = Regression | Structured
 
@@ -225,17 +213,13 @@ class OilModel(_Data):
         """The oil that was simulated."""
         return Oil.model_validate(self.settings["lubricant"]["oil"])
 
-    def value(self, quantity: str, states: LineContacts, form: str = "") -> FloatArray:
-        """A quantity at every contact, conditions held in the domain. Theory (O2).
-
-        Parameters
-        ----------
-        quantity : str
-            A key of `fits`.
-        states : LineContacts
-        form : str
-            By default the first one of the file.
-        """
+    def value(
+        self,
+        quantity: str,  # A key of `fits`.
+        states: LineContacts,
+        form: str = "",  # By default the first one of the file.
+    ) -> FloatArray:
+        """A quantity at every contact, conditions held in the domain. Theory (O2)."""
         fit = self.fits[quantity]
         fitted = next((item for item in fit.forms if item.form == form), fit.forms[0])
         coefficients = np.array(fitted.coefficients)

@@ -15,8 +15,6 @@ from epicyclic.contact import CONDITIONS, LineContacts, contacts_at
 from epicyclic.kernels.covariance import covariance_sums, covariances
 from epicyclic.oilmodel.structured import SMALLEST_SLIP
 
-__all__ = ["MOST_SIMULATIONS", "NearbySimulations"]
-
 FloatArray = NDArray[np.float64]
 
 MOST_SIMULATIONS = 512
@@ -72,15 +70,13 @@ class NearbySimulations(BaseModel):
         return self
 
     @classmethod
-    def of(cls, states: LineContacts, excess: FloatArray, weight: FloatArray) -> NearbySimulations:
+    def of(
+        cls,
+        states: LineContacts,  # n of them.
+        excess: FloatArray,  # See the class.
+        weight: FloatArray,  # See the class.
+    ) -> NearbySimulations:
         """What `states` have over a form.
-
-        Parameters
-        ----------
-        states : LineContacts
-            n of them.
-        excess, weight : ndarray, shape (n,)
-            See the class.
 
         Raises
         ------

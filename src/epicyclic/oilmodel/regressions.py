@@ -21,16 +21,6 @@ from epicyclic.kernels.mixed_ehl import (
     ROLLING_LIMIT,
 )
 
-__all__ = [
-    "FRICTION_REGRESSION",
-    "NEEDLE_REGRESSION",
-    "ROLLING_REGRESSION",
-    "Regression",
-    "RegressionGroups",
-    "regression_groups",
-    "rolling_scale",
-]
-
 FloatArray = NDArray[np.float64]
 Columns = Callable[[LineContacts], Sequence[FloatArray | float]]
 
@@ -45,22 +35,13 @@ class Regression:
     """Branches in the film ratio, each the exponential of a sum, blended where they meet.
 
     Theory (O3).
-
-    Attributes
-    ----------
-    name, title : str
-    branches : tuple of callable
-        From conditions to the columns of each branch.
-    limits : tuple of float
-        Film ratios at which branches meet.
-    scale : callable
-        From conditions to the unit of the quantity.
     """
 
     name: str
     title: str
-    branches: tuple[Columns, ...]
-    limits: tuple[float, ...]
+    branches: tuple[Columns, ...]  # From conditions to the columns of each branch.
+    limits: tuple[float, ...]  # Film ratios at which branches meet.
+    # From conditions to the unit of the quantity.
     scale: Callable[[LineContacts], FloatArray | float]
 
     @property

@@ -20,14 +20,6 @@ from epicyclic.contact import LineContacts
 from epicyclic.kernels.eyring_friction import eyring_means
 from epicyclic.kernels.line_contact import pan_hamrock_central_film
 
-__all__ = [
-    "EYRING_STRESS",
-    "STRUCTURED_FRICTION",
-    "STRUCTURED_ROLLING",
-    "Structured",
-    "eyring_friction",
-]
-
 FloatArray = NDArray[np.float64]
 
 EYRING_STRESS = 5e6
@@ -61,25 +53,15 @@ _COSINES = np.cos(math.pi / 4 * (_NODES + 1))
 
 @dataclass(frozen=True)
 class Structured:
-    """A form that is not linear in its coefficients.
-
-    Attributes
-    ----------
-    name, title : str
-    labels : tuple of str
-        What each coefficient is.
-    start, low, high : tuple of float
-        Where the fit begins, and its bounds, which keep the form monotone.
-    function : callable
-        From conditions and coefficients to the quantity.
-    """
+    """A form that is not linear in its coefficients."""
 
     name: str
     title: str
-    labels: tuple[str, ...]
-    start: tuple[float, ...]
-    low: tuple[float, ...]
-    high: tuple[float, ...]
+    labels: tuple[str, ...]  # What each coefficient is.
+    start: tuple[float, ...]  # Where the fit begins, and its bounds, which keep the form monotone.
+    low: tuple[float, ...]  # Where the fit begins, and its bounds, which keep the form monotone.
+    high: tuple[float, ...]  # Where the fit begins, and its bounds, which keep the form monotone.
+    # From conditions and coefficients to the quantity.
     function: Callable[[LineContacts, FloatArray], FloatArray]
 
     @property
@@ -128,19 +110,11 @@ class Structured:
 
 
 def eyring_friction(
-    states: LineContacts, stress: float, light_load: float = LIGHT_LOAD
+    states: LineContacts,  # n of them.
+    stress: float,  # tau_0. [Pa]
+    light_load: float = LIGHT_LOAD,  # M of Moes at which the pressure is half that of Hertz. [1]
 ) -> FloatArray:
-    """Friction of an Eyring fluid under the pressure of Hertz in an even film. Theory (O4). [1]
-
-    Parameters
-    ----------
-    states : LineContacts
-        n of them.
-    stress : float
-        tau_0. [Pa]
-    light_load : float
-        M of Moes at which the pressure is half that of Hertz. [1]
-    """
+    """Friction of an Eyring fluid under the pressure of Hertz in an even film. Theory (O4). [1]"""
     film = states.radius * pan_hamrock_central_film(
         states.speed_number, states.material_number, states.load_number
     )

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 
 from epicyclic.plots.style import COLOURS, LINE_STYLES, label_of, legend_below
 
-__all__ = ["plot_roller_loads", "plot_roller_profile"]
-
 Floats = NDArray[np.float64]
 
 CIRCLES = 4
@@ -57,16 +55,11 @@ def plot_roller_loads(bearing: xr.Dataset, ax: Axes) -> Axes:
     return ax
 
 
-def _emptiest(azimuth: Floats, load: Floats) -> float:
-    """The direction that is farthest from all rollers that carry, in doubt downwards. [deg]
-
-    Parameters
-    ----------
-    azimuth : ndarray, shape (rollers,)
-        [rad]
-    load : ndarray, shape (rows, rollers)
-        [N]
-    """
+def _emptiest(
+    azimuth: Floats,  # [rad]
+    load: Floats,  # [N]
+) -> float:
+    """The direction that is farthest from all rollers that carry, in doubt downwards. [deg]"""
     carrying = azimuth[(load > SEEN * load.max()).any(axis=0)]
     places = np.radians(np.arange(0.0, 360.0, STEP))
     apart = np.abs(np.angle(np.exp(1j * (places[:, None] - carrying))))

@@ -59,8 +59,6 @@ from epicyclic.records.files import is_sweep
 from epicyclic.records.record import ResultRecord, sets_of
 from epicyclic.results.result import in_words
 
-__all__ = ["PLOTS", "Panel", "Plot", "about", "available", "figure_of", "in_inches", "panels_of"]
-
 Stored = ResultRecord | xr.Dataset
 MM_PER_INCH = 25.4
 SLIDE_WIDTHS = (6.4, 9.6, 12.8)
@@ -71,40 +69,21 @@ FLATTEST = 0.75
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """One Axes of a plot.
+    """One Axes of a plot."""
 
-    Attributes
-    ----------
-    subject : str
-        What it is of, ``"sun mesh"``; empty if it is of the whole.
-    draw : callable
-        Draws on Axes.
-    """
-
-    subject: str
-    draw: Callable[[Axes], Axes]
+    subject: str  # What it is of, ``"sun mesh"``; empty if it is of the whole.
+    draw: Callable[[Axes], Axes]  # Draws on Axes.
 
 
 @dataclass(frozen=True, slots=True)
 class Plot:
-    """One plot.
+    """One plot."""
 
-    Attributes
-    ----------
-    question : str
-        Which it answers.
-    panels : callable
-        The panels that a stored result or map has; none if it lacks what the plot shows.
-    projection : str or None
-        Projection of its Axes.
-    size : tuple of float
-        Width and height of one of its Axes. [inch]
-    """
-
-    question: str
+    question: str  # Which it answers.
+    # The panels that a stored result or map has; none if it lacks what the plot shows.
     panels: Callable[[Stored], list[Panel]]
-    projection: str | None = None
-    size: tuple[float, float] = PANEL
+    projection: str | None = None  # Projection of its Axes.
+    size: tuple[float, float] = PANEL  # Width and height of one of its Axes. [inch]
 
     @property
     def is_wide(self) -> bool:
@@ -399,25 +378,15 @@ def in_inches(size: tuple[float, float]) -> tuple[float, float]:
 
 
 def figure_of(
-    stored: Stored,
-    name: str,
+    stored: Stored,  # As `epicyclic.open_result` returns it.
+    name: str,  # One of `PLOTS`.
     *,
+    # Width and height; default: in the proportion of a slide. [mm]
     size: tuple[float, float] | None = None,
+    # Pixels an inch; default: such that the figure has the width of a slide in pixels.
     dpi: float | None = None,
 ) -> Figure:
-    """A plot as a figure, its panels side by side, the operating point below.
-
-    Parameters
-    ----------
-    stored : ResultRecord or xarray.Dataset
-        As `epicyclic.open_result` returns it.
-    name : str
-        One of `PLOTS`.
-    size : tuple of float, optional
-        Width and height; default: in the proportion of a slide. [mm]
-    dpi : float, optional
-        Pixels an inch; default: such that the figure has the width of a slide in pixels.
-    """
+    """A plot as a figure, its panels side by side, the operating point below."""
     panels = panels_of(stored, name)
     columns = 3 if len(panels) == 3 else math.ceil(math.sqrt(len(panels)))
     rows = math.ceil(len(panels) / columns)

@@ -21,8 +21,6 @@ from epicyclic.plots.style import (
 from epicyclic.units import format_number, unit_text
 from epicyclic.validation.chapters import Family, Mark
 
-__all__ = ["SOURCE", "branch_figure", "family_figure", "roller_figure"]
-
 STARS = ("*", "P", "X")
 """Markers of published numbers."""
 SOURCE = "Talbot (2012)"

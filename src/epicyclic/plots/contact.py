@@ -17,15 +17,6 @@ from epicyclic.ehl.rough import Frame
 from epicyclic.plots.style import COLOURS, gif_bytes, styled_figure
 from epicyclic.units import unit_text
 
-__all__ = [
-    "contact_animation",
-    "contact_figure",
-    "plot_film",
-    "plot_pressure",
-    "plot_shear_stress",
-    "plot_temperature",
-]
-
 FloatArray = NDArray[np.float64]
 
 GIGAPASCAL, MEGAPASCAL, MICROMETRE, MILLIMETRE = 1e9, 1e6, 1e-6, 1e-3

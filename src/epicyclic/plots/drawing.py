@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 from epicyclic.plots.style import COLOURS, legend_below
 from epicyclic.results.result import in_words
 
-__all__ = ["layer_of", "plot_gear_set", "plot_teeth"]
-
 Floats = NDArray[np.float64]
 
 FILLS = {
@@ -36,14 +34,11 @@ HEIGHT_SHARE = 0.5
 MARGIN = 1.04
 
 
-def plot_gear_set(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
-    """All gears at their places, to scale, seen along the axis.
-
-    Parameters
-    ----------
-    gears : mapping of str to xarray.Dataset
-        As `epicyclic.analysis.shapes.gear_shapes` returns them.
-    """
+def plot_gear_set(
+    gears: Mapping[str, xr.Dataset],  # As `epicyclic.analysis.shapes.gear_shapes` returns them.
+    ax: Axes,
+) -> Axes:
+    """All gears at their places, to scale, seen along the axis."""
     low, high = np.full(2, math.inf), np.full(2, -math.inf)
     fills = _fills(gears)
     order = sorted(gears.items(), key=_is_behind)

@@ -8,8 +8,6 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyBboxPatch
 
-__all__ = ["INK", "SOFT", "Arrow", "draw_box", "fit"]
-
 INK, SOFT = "#1a1d21", "#5b6470"
 """Colours of words and of edges."""
 _ROUND = 0.04
@@ -18,19 +16,12 @@ _ROUND = 0.04
 
 @dataclass(frozen=True, slots=True)
 class Arrow:
-    """How heads of arrows follow from widths.
+    """How heads of arrows follow from widths."""
 
-    Attributes
-    ----------
-    reach, length : tuple of float
-        Half the width of a head, and its length: at least, and over the width of the arrow.
-    share : float
-        Of the arrow, for the head at most.
-    """
-
+    # Half the width of a head, and its length: at least, and over the width of the arrow.
     reach: tuple[float, float]
     length: tuple[float, float]
-    share: float
+    share: float  # Of the arrow, for the head at most.
 
     def corners(
         self, start: float, tip: float, middle: float, width: float, *, upright: bool = False

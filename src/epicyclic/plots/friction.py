@@ -12,8 +12,6 @@ from epicyclic.analysis.compare import FrictionComparison, recommended
 from epicyclic.plots.style import COLOURS, legend_below, styled_figure, write_beside
 from epicyclic.units import decimals_of
 
-__all__ = ["friction_figure", "plot_friction_models"]
-
 ROW_HEIGHT = 0.3
 """Height of one bar. [inch]"""
 ROOM = 1.45

@@ -24,8 +24,6 @@ from epicyclic.results.heat import HeatBalance
 from epicyclic.results.result import in_words
 from epicyclic.units import CELSIUS, format_number, unit_text
 
-__all__ = ["heat_figure", "plot_heat_network"]
-
 FLOW, PAPER = "#5b7fa6", "#ffffff"
 COLOURS = "YlOrRd"
 DARKEST = 0.62
@@ -66,38 +64,17 @@ class _Flow:
 
 @dataclass(frozen=True, slots=True)
 class _Layout:
-    """What is drawn where.
-
-    Attributes
-    ----------
-    heat : HeatBalance
-    flows : tuple of _Flow
-        Between two nodes one, in its direction.
-    columns : mapping of str to float
-        x of each part.
-    shafts : mapping of str to tuple of str
-        Parts on each shaft.
-    outlets : mapping of str to float
-        x of what takes heat from the oil.
-    edge : float
-        Where the columns end at the right.
-    rows : tuple of float
-        y of parts, oil, and housing.
-    spacing : float
-        Spacing of the columns.
-    scale : float
-        Width of an arrow over its heat. [inch/W]
-    """
+    """What is drawn where."""
 
     heat: HeatBalance
-    flows: tuple[_Flow, ...]
-    columns: Mapping[str, float]
-    shafts: Mapping[str, tuple[str, ...]]
-    outlets: Mapping[str, float]
-    edge: float
-    rows: tuple[float, float, float]
-    spacing: float
-    scale: float
+    flows: tuple[_Flow, ...]  # Between two nodes one, in its direction.
+    columns: Mapping[str, float]  # x of each part.
+    shafts: Mapping[str, tuple[str, ...]]  # Parts on each shaft.
+    outlets: Mapping[str, float]  # x of what takes heat from the oil.
+    edge: float  # Where the columns end at the right.
+    rows: tuple[float, float, float]  # y of parts, oil, and housing.
+    spacing: float  # Spacing of the columns.
+    scale: float  # Width of an arrow over its heat. [inch/W]
 
     @property
     def width(self) -> float:

@@ -26,23 +26,6 @@ from epicyclic.plots.style import (
 )
 from epicyclic.units import format_number, unit_text
 
-__all__ = [
-    "at_temperatures",
-    "draw_lines",
-    "left_out_line",
-    "limits_of",
-    "limits_of_band",
-    "limits_of_half_width",
-    "map_at",
-    "map_line",
-    "plot_band_lines",
-    "plot_half_width",
-    "plot_map",
-    "plot_map_lines",
-    "plot_map_parts",
-    "shown_panels",
-]
-
 FloatArray = NDArray[np.float64]
 Limits = tuple[float, float] | None
 
@@ -144,16 +127,14 @@ def limits_of(data: xr.Dataset, name: str) -> Limits:
     return (float(known.min()), float(known.max())) if known.size else None
 
 
-def plot_map(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Axes:
-    """`name` over speed and torque, with lines of equal value.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        As `map_at` returns them.
-    limits : tuple of float, optional
-        Limits of the scale of colours, from `limits_of`; default: those of `data`.
-    """
+def plot_map(
+    data: xr.Dataset,  # As `map_at` returns them.
+    name: str,
+    ax: Axes,
+    # Limits of the scale of colours, from `limits_of`; default: those of `data`.
+    limits: Limits = None,
+) -> Axes:
+    """`name` over speed and torque, with lines of equal value."""
     values = in_percent(data[name]).transpose("torque", "speed")
     if min(values.shape) < 2 or not np.isfinite(values).any():
         longest = "torque" if data.sizes["torque"] > data.sizes["speed"] else "speed"
@@ -191,16 +172,13 @@ def plot_map(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Ax
     return ax
 
 
-def draw_lines(ax: Axes, field: tuple[Any, Any, Any], levels: Sequence[float] | int) -> None:
-    """Lines of equal value, some of them with it.
-
-    Parameters
-    ----------
-    field : tuple of array
-        Places across and up, values.
-    levels : sequence of float or int
-        Values of the lines, of which the highest have labels; or about how many there are.
-    """
+def draw_lines(
+    ax: Axes,
+    field: tuple[Any, Any, Any],  # Places across and up, values.
+    # Values of the lines, of which the highest have labels; or about how many there are.
+    levels: Sequence[float] | int,
+) -> None:
+    """Lines of equal value, some of them with it."""
     low, high = float(np.nanmin(field[2])), float(np.nanmax(field[2]))
     even = isinstance(levels, int)
     wanted = MaxNLocator(levels).tick_values(low, high) if isinstance(levels, int) else levels
@@ -315,16 +293,12 @@ def plot_map_parts(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None)
     return ax
 
 
-def plot_half_width(data: xr.Dataset, ax: Axes, limits: Limits = None) -> Axes:
-    """Half the width of the 95 % band of the total loss, over the loss, over speed and torque.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        As `map_at` returns them, from a map with its uncertainty.
-    limits : tuple of float, optional
-        Limits of the scale of colours, from `limits_of_half_width`.
-    """
+def plot_half_width(
+    data: xr.Dataset,  # As `map_at` returns them, from a map with its uncertainty.
+    ax: Axes,
+    limits: Limits = None,  # Limits of the scale of colours, from `limits_of_half_width`.
+) -> Axes:
+    """Half the width of the 95 % band of the total loss, over the loss, over speed and torque."""
     share = _half_width(data)
     known = data.assign({HALF_WIDTH: share}).sel(
         speed=share.notnull().any([dim for dim in share.dims if dim != "speed"])

@@ -12,8 +12,6 @@ from epicyclic.records.contents import ResultContents
 from epicyclic.results.result import in_words
 from epicyclic.units import decimals_of, percent, power_unit
 
-__all__ = ["plot_loss_sum", "plot_losses"]
-
 GROUP_COLOURS = {"load-dependent": COLOURS[0], "load-independent": COLOURS[4]}
 SUM_COLOUR = "0.45"
 ROOM = 1.32

@@ -17,8 +17,6 @@ from epicyclic.measurement.deviations import AS_GIVEN, CALIBRATED
 from epicyclic.plots.style import COLOURS, styled_figure
 from epicyclic.units import format_number, percent, unit_text
 
-__all__ = ["measured_figure", "plot_parity", "plot_points", "plot_residuals"]
-
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 

@@ -16,16 +16,6 @@ from numpy.typing import NDArray
 from epicyclic.plots.style import COLOUR_MAP, closed_period, label_of, legend_below, styled_figure
 from epicyclic.units import format_number
 
-__all__ = [
-    "mesh_figure",
-    "plot_along_path",
-    "plot_mesh_stiffness",
-    "plot_pair_loads",
-    "plot_plane_of_action",
-    "plot_transmission_error",
-    "top_of_scale",
-]
-
 FloatArray = NDArray[np.float64]
 
 FRICTION = "friction_coefficient"

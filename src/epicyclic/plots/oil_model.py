@@ -21,8 +21,6 @@ from epicyclic.plots.style import (
 )
 from epicyclic.units import percent
 
-__all__ = ["oil_model_figure", "plot_against_simulations", "plot_over_film_ratio"]
-
 FloatArray = NDArray[np.float64]
 Simulated = Mapping[str, tuple[LineContacts, FloatArray]]
 

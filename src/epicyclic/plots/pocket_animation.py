@@ -20,8 +20,6 @@ from epicyclic.plots.pocket_section import Section, roll_angles
 from epicyclic.plots.pockets import plot_power
 from epicyclic.plots.style import gif_bytes, label_of, styled_figure
 
-__all__ = ["MeshScene", "pocket_animation"]
-
 FloatArray = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
@@ -38,16 +36,12 @@ PRESSURE_UNITS = ((1.0, "bar", 0.1), (1e2, "kPa", 1e-3), (1e5, "Pa", 0.0))
 """Units over a bar, and the pressure in bar from which on they are read easily."""
 
 
-def pocket_animation(mesh: xr.Dataset, progress: Progress = lambda done, total: None) -> bytes:
-    """One mesh period as an animated GIF.
-
-    Parameters
-    ----------
-    mesh : Dataset
-        As `epicyclic.pocket_details` returns it.
-    progress : callable, optional
-        Called with the number of finished frames and of all frames.
-    """
+def pocket_animation(
+    mesh: xr.Dataset,  # As `epicyclic.pocket_details` returns it.
+    # Called with the number of finished frames and of all frames.
+    progress: Progress = lambda done, total: None,
+) -> bytes:
+    """One mesh period as an animated GIF."""
     scene = MeshScene(mesh)
     positions = mesh.sizes["mesh_position"]
     moments = np.linspace(0, positions, min(FRAMES, positions), endpoint=False).astype(int)

@@ -21,8 +21,6 @@ from numpy.typing import NDArray
 from epicyclic.plots.style import COLOURS, styled_figure
 from epicyclic.results.result import of_gear
 
-__all__ = ["Section", "roll_angles", "section_figure"]
-
 FloatArray = NDArray[np.float64]
 
 PANELS, COLUMNS = 6, 3
@@ -39,16 +37,11 @@ DEPTH = 4.0
 """How far a body reaches beyond the roots of its teeth. [tooth heights]"""
 
 
-def section_figure(mesh: xr.Dataset, end: str = "first") -> Figure:
-    """One pocket through its life, between the teeth and the other pockets.
-
-    Parameters
-    ----------
-    mesh : Dataset
-        As `epicyclic.pocket_details` returns it.
-    end : str
-        ``"first"`` or ``"last"`` end of the face.
-    """
+def section_figure(
+    mesh: xr.Dataset,  # As `epicyclic.pocket_details` returns it.
+    end: str = "first",  # ``"first"`` or ``"last"`` end of the face.
+) -> Figure:
+    """One pocket through its life, between the teeth and the other pockets."""
     section = Section(mesh, end)
     title = f"{mesh.attrs['title']}, {end} end of the face"
     with styled_figure(PANELS // COLUMNS, COLUMNS, title) as (figure, axes):
@@ -159,15 +152,12 @@ class Section:
         ax.spines[["left", "bottom"]].set_visible(False)
         self._draw_scale(ax)
 
-    def move(self, moment: int, colours: Any) -> None:
-        """Move what was drawn last to another mesh position.
-
-        Parameters
-        ----------
-        moment : int
-        colours : ndarray, shape (pockets, 4)
-            Colours of the pockets, in the order of `pockets`.
-        """
+    def move(
+        self,
+        moment: int,
+        colours: Any,  # Colours of the pockets, in the order of `pockets`.
+    ) -> None:
+        """Move what was drawn last to another mesh position."""
         for body, points in zip(self._bodies, self._rows_of_teeth(moment), strict=True):
             body.set_verts([points])
         self._pockets.set_verts(self._drawn(moment))

@@ -22,24 +22,17 @@ from epicyclic.plots.style import (
 from epicyclic.units import format_number, unit_text
 from epicyclic.validation.pocketing import PublishedStudy
 
-__all__ = ["study_figure"]
-
 PUBLISHED = "Talbot (2012)"
 MOST_COLUMNS = 3
 SAME = 1e-6
 """Values that differ less than this are the same. [1]"""
 
 
-def study_figure(study: xr.Dataset, published: PublishedStudy | None = None) -> Figure:
-    """Loss over one parameter, a panel and a curve for each value of the others.
-
-    Parameters
-    ----------
-    study : Dataset
-        As `epicyclic.pocketing_study` returns it.
-    published : PublishedStudy, optional
-        Marked where it lies.
-    """
+def study_figure(
+    study: xr.Dataset,  # As `epicyclic.pocketing_study` returns it.
+    published: PublishedStudy | None = None,  # Marked where it lies.
+) -> Figure:
+    """Loss over one parameter, a panel and a curve for each value of the others."""
     *panels, _, _ = study["pocketing_loss"].dims
     places = list(itertools.product(*(range(study.sizes[panel]) for panel in panels)))
     exponents = "speed_exponent" in study

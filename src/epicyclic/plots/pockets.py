@@ -29,16 +29,6 @@ from epicyclic.plots.style import (
 from epicyclic.results.result import in_words, of_gear
 from epicyclic.units import known_text
 
-__all__ = [
-    "plot_areas",
-    "plot_gaps",
-    "plot_life_with_scale",
-    "plot_over_life",
-    "plot_power",
-    "plot_volumes",
-    "pocket_figure",
-]
-
 OVER_LIFE = ("pressure", "axial_speed", "contact_gap_speed", "backlash_gap_speed")
 """Variables drawn over the life of a pocket."""
 DRAWN_SLICES = 9
@@ -107,19 +97,16 @@ def plot_gaps(mesh: xr.Dataset, ax: Axes) -> Axes:
     return _over_roll(mesh, ax, "Gaps at the first end", "gap, µm")
 
 
-def plot_over_life(mesh: xr.Dataset, name: str, kind: int, ax: Axes) -> Axes:
+def plot_over_life(
+    mesh: xr.Dataset,
+    # ``"pressure"``, ``"axial_speed"``, ``"contact_gap_speed"`` or ``"backlash_gap_speed"``.
+    name: str,
+    kind: int,  # 0: a tooth of member 1 in a space of member 2; 1: the other way round.
+    ax: Axes,
+) -> Axes:
     """Pressure or a speed in some slices, or between them, through the life of a pocket.
 
     Dark lines are near the first end of the face, light ones near the last.
-
-    Parameters
-    ----------
-    mesh : Dataset
-    name : str
-        ``"pressure"``, ``"axial_speed"``, ``"contact_gap_speed"`` or ``"backlash_gap_speed"``.
-    kind : int
-        0: a tooth of member 1 in a space of member 2; 1: the other way round.
-    ax : Axes
     """
     values = mesh[name][kind]
     across = str(values.dims[-1])

@@ -20,8 +20,6 @@ from epicyclic.records.contents import ResultContents
 from epicyclic.records.power_flow import Line, Link, TrainFlow, power_flow
 from epicyclic.units import RPM, format_number, known_text, percent, torque_text, unit_text
 
-__all__ = ["SLIDE", "plot_power_flow"]
-
 SLIDE = (13.33, 7.5)
 """Width and height. [inch]"""
 THROUGH, CIRCULATING, LOST = COLOURS[0], COLOURS[4], COLOURS[1]
@@ -57,28 +55,15 @@ class _Tap:
 
 @dataclass(frozen=True, slots=True)
 class _Layout:
-    """What is drawn where.
-
-    Attributes
-    ----------
-    flow : TrainFlow
-    columns, lanes : mapping of str to float
-        x of each set and y of each line that passes power.
-    taps : mapping of str to _Tap
-        By line.
-    width, spacing : float
-        Width of a column, and spacing of lanes.
-    scale : float
-        Width of an arrow over its power. [inch/W]
-    """
+    """What is drawn where."""
 
     flow: TrainFlow
-    columns: Mapping[str, float]
-    lanes: Mapping[str, float]
-    taps: Mapping[str, _Tap]
-    width: float
-    spacing: float
-    scale: float = 0.0
+    columns: Mapping[str, float]  # x of each set and y of each line that passes power.
+    lanes: Mapping[str, float]  # x of each set and y of each line that passes power.
+    taps: Mapping[str, _Tap]  # By line.
+    width: float  # Width of a column, and spacing of lanes.
+    spacing: float  # Width of a column, and spacing of lanes.
+    scale: float = 0.0  # Width of an arrow over its power. [inch/W]
 
     @property
     def box(self) -> float:

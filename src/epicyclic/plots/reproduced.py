@@ -17,22 +17,12 @@ from epicyclic.validation.pocketing import published_study, study_again
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Reproduced", "reproduce"]
-
 
 @dataclass(frozen=True)
 class Reproduced:
-    """A figure of the source, computed again.
+    """A figure of the source, computed again."""
 
-    Attributes
-    ----------
-    number : str
-        In the source.
-    data : xarray.Dataset
-    picture : Figure
-    """
-
-    number: str
+    number: str  # In the source.
     data: xr.Dataset
     picture: Figure
 

@@ -28,29 +28,6 @@ from epicyclic.units import format_number, unit_text
 if TYPE_CHECKING:
     from matplotlib.animation import Animation
 
-__all__ = [
-    "COLOURS",
-    "COLOUR_MAP",
-    "LINE_STYLES",
-    "MARKERS",
-    "PANEL",
-    "STYLE",
-    "TITLE_CHARACTERS",
-    "caption_below",
-    "closed_period",
-    "figure_bytes",
-    "gif_bytes",
-    "in_percent",
-    "label_logarithms",
-    "label_of",
-    "legend_below",
-    "legend_of_figure",
-    "room_of",
-    "styled_figure",
-    "title_of",
-    "write_beside",
-]
-
 FloatArray = NDArray[np.float64]
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -106,32 +83,16 @@ STYLE: Any = {
 def styled_figure(
     rows: int,
     columns: int,
-    title: str,
+    title: str,  # As it is, without mathematics; none if empty.
     *,
-    panel: tuple[float, float] = PANEL,
-    projection: str | None = None,
+    panel: tuple[float, float] = PANEL,  # Width and height of one of the Axes. [inch]
+    projection: str | None = None,  # ``"polar"``.
+    # Width and height of the whole; default: that of all panels. [inch]
     size: tuple[float, float] | None = None,
-    dpi: float | None = None,
-    caption: str = "",
+    dpi: float | None = None,  # Pixels an inch; default: such that it is `PIXELS` wide.
+    caption: str = "",  # Below all, as the operating point; none if empty.
 ) -> Iterator[tuple[Figure, Any]]:
-    """A figure and its array of Axes, drawn in the style of the package.
-
-    Parameters
-    ----------
-    rows, columns : int
-    title : str
-        As it is, without mathematics; none if empty.
-    panel : tuple of float
-        Width and height of one of the Axes. [inch]
-    projection : str, optional
-        ``"polar"``.
-    size : tuple of float, optional
-        Width and height of the whole; default: that of all panels. [inch]
-    dpi : float, optional
-        Pixels an inch; default: such that it is `PIXELS` wide.
-    caption : str
-        Below all, as the operating point; none if empty.
-    """
+    """A figure and its array of Axes, drawn in the style of the package."""
     with mpl.rc_context(STYLE):
         size = size or (panel[0] * columns, panel[1] * rows)
         figure = Figure(figsize=size, dpi=dpi or PIXELS / size[0], layout="constrained")

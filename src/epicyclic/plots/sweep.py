@@ -34,18 +34,6 @@ from epicyclic.plots.style import (
 from epicyclic.records.files import is_sweep
 from epicyclic.units import format_number, unit_text
 
-__all__ = [
-    "LEFT_OUT",
-    "fields_of",
-    "plot_sweep_field",
-    "plot_sweep_lines",
-    "plot_sweep_parallel",
-    "shown_results",
-    "sweep_line",
-    "thinned",
-    "varied",
-]
-
 FloatArray = NDArray[np.float64]
 
 RESULTS = ("total", "efficiency")

@@ -23,8 +23,6 @@ from epicyclic.plots.drawing import layer_of, plot_gear_set, plot_teeth
 from epicyclic.plots.mesh import top_of_scale
 from epicyclic.plots.style import COLOUR_MAP, COLOURS, label_of, styled_figure
 
-__all__ = ["POSITION", "Layer", "Turning", "turning_mesh", "turning_set"]
-
 Floats = NDArray[np.float64]
 
 POSITION = "position"
@@ -39,45 +37,26 @@ LINE_WIDTH = 4.0
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """A gear that turns on paper.
+    """A gear that turns on paper."""
 
-    Attributes
-    ----------
-    name : str
-        Name of its layer in a picture.
-    x, y : float
-        Its centre, from the left and the top of the picture. [point]
-    start, rate : float
-        How far it is turned against the clock at phase 0 from how it is drawn, and for each mesh
-        period. [deg]
-    """
-
-    name: str
-    x: float
-    y: float
+    name: str  # Name of its layer in a picture.
+    x: float  # Its centre, from the left and the top of the picture. [point]
+    y: float  # Its centre, from the left and the top of the picture. [point]
+    # How far it is turned against the clock at phase 0 from how it is drawn, and for each mesh
+    # period. [deg]
     start: float
     rate: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Turning:
-    """A drawing with what turns in it.
-
-    Attributes
-    ----------
-    figure : Figure
-    ax : Axes
-        On which the gears are.
-    gears : dict of str to tuple of float
-        By layer: centre in the coordinates of `ax`, start and rate as of `Layer`.
-    phases : tuple of float
-        Phases of the positions that are layers, in mesh periods.
-    """
+    """A drawing with what turns in it."""
 
     figure: Figure
-    ax: Axes
+    ax: Axes  # On which the gears are.
+    # By layer: centre in the coordinates of `ax`, start and rate as of `Layer`.
     gears: dict[str, tuple[float, float, float, float]]
-    phases: tuple[float, ...]
+    phases: tuple[float, ...]  # Phases of the positions that are layers, in mesh periods.
 
     def layers(self) -> list[Layer]:
         """The gears where they are on the picture, once that has been written."""
@@ -91,18 +70,13 @@ class Turning:
 
 
 def turning_set(
-    gears: Mapping[str, xr.Dataset], title: str, caption: str, phase: float = 0.0
+    # Gears of one set, as `epicyclic.analysis.shapes.gear_shapes` returns them.
+    gears: Mapping[str, xr.Dataset],
+    title: str,
+    caption: str,
+    phase: float = 0.0,  # At which it is drawn. [mesh periods of the first gear]
 ) -> Turning:
-    """A set seen along its axis, from its carrier.
-
-    Parameters
-    ----------
-    gears : mapping of str to xarray.Dataset
-        Gears of one set, as `epicyclic.analysis.shapes.gear_shapes` returns them.
-    title, caption : str
-    phase : float
-        At which it is drawn. [mesh periods of the first gear]
-    """
+    """A set seen along its axis, from its carrier."""
     turns = {name: _degrees_per_period(gears, name) for name in gears}
     turned = {
         name: gear.assign(direction=gear["direction"] + phase * turns[name])
@@ -129,27 +103,15 @@ def _degrees_per_period(gears: Mapping[str, xr.Dataset], name: str) -> float:
 
 
 def turning_mesh(
-    view: xr.Dataset,
-    gears: Mapping[str, xr.Dataset],
-    mesh: xr.Dataset,
+    view: xr.Dataset,  # As `epicyclic.analysis.shapes.mesh_views` returns it.
+    gears: Mapping[str, xr.Dataset],  # Gears of its set.
+    mesh: xr.Dataset,  # As `epicyclic.mesh_details` returns it.
     title: str,
     caption: str,
+    # The only one that is drawn; default: all, in layers. [mesh periods]
     phase: float | None = None,
 ) -> Turning:
-    """Teeth in mesh beside their contact lines on the plane of action.
-
-    Parameters
-    ----------
-    view : xarray.Dataset
-        As `epicyclic.analysis.shapes.mesh_views` returns it.
-    gears : mapping of str to xarray.Dataset
-        Gears of its set.
-    mesh : xarray.Dataset
-        As `epicyclic.mesh_details` returns it.
-    title, caption : str
-    phase : float, optional
-        The only one that is drawn; default: all, in layers. [mesh periods]
-    """
+    """Teeth in mesh beside their contact lines on the plane of action."""
     phases = mesh["roll_angle"].to_numpy() / float(mesh.attrs["pitch_angle_deg"])
     shown = range(len(phases)) if phase is None else [_nearest(phases, phase % 1)]
     now = 0.0 if phase is None else phase % 1

@@ -17,18 +17,6 @@ from epicyclic.units import format_number, power_unit
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "WIDE",
-    "band_figure",
-    "banded",
-    "drivers_figure",
-    "mean_shares",
-    "plot_band",
-    "plot_drivers",
-    "plot_shares",
-    "shares_figure",
-]
-
 MOST_DRIVERS = 12
 TICKS = 6
 """Most ticks under a distribution: its values have many digits."""
@@ -71,14 +59,11 @@ def mean_shares(data: xr.Dataset) -> xr.DataArray:
     return (shares.fillna(0.0) * weights).sum(weights.dims) / weights.sum()
 
 
-def plot_shares(data: xr.Dataset, ax: Axes) -> Axes:
-    """Shares of inputs and models in the variance of the total loss over a map: mean and range.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        A map with its uncertainty.
-    """
+def plot_shares(
+    data: xr.Dataset,  # A map with its uncertainty.
+    ax: Axes,
+) -> Axes:
+    """Shares of inputs and models in the variance of the total loss over a map: mean and range."""
     mean = mean_shares(data)
     mean = mean.sortby(mean)[-MOST_DRIVERS:]
     drivers = [str(key) for key in mean["driver"].values]
@@ -109,14 +94,11 @@ def _name(key: str) -> str:
     return f"model: {key.removeprefix(MODEL_FORM)}" if key.startswith(MODEL_FORM) else key
 
 
-def plot_drivers(data: xr.Dataset, ax: Axes) -> Axes:
-    """Change of the total loss for one standard deviation of each input and model, largest first.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        As `epicyclic.uncertainty` returns it.
-    """
+def plot_drivers(
+    data: xr.Dataset,  # As `epicyclic.uncertainty` returns it.
+    ax: Axes,
+) -> Axes:
+    """Change of the total loss for one standard deviation of each input and model, in order."""
     change = data["contribution"].sel(result="total")
     change = change[change != 0]
     change = change.sortby(abs(change))[-MOST_DRIVERS:]

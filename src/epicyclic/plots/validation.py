@@ -14,8 +14,6 @@ from epicyclic.plots.style import COLOURS, write_beside
 from epicyclic.units import format_number, percent, unit_text
 from epicyclic.validation.compare import Comparison
 
-__all__ = ["deviations_size", "plot_deviations"]
-
 SHOWN = 0.40
 """Differences beyond it are drawn at the edge, with their number. [1]"""
 WIDTH, ROW, REST = 8.2, 0.32, 1.0

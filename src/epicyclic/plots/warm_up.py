@@ -12,8 +12,6 @@ from epicyclic.results.result import in_words
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["warm_up_figure"]
-
 _MINUTE, _HOUR = 60.0, 3600.0
 _PANEL = (7.0, 3.2)
 _MOST_NODES = 7

@@ -14,8 +14,6 @@ from epicyclic.kernels.monotone_cubic import monotone_cubic
 from epicyclic.kernels.pocket_flow import SDIRK
 from epicyclic.pocketing.geometry import PocketGeometry
 
-__all__ = ["Cells", "pocket_cells"]
-
 Floats = NDArray[np.float64]
 
 SLICES_PER_PITCH = 10
@@ -29,33 +27,19 @@ class Cells:
     """All cells at all times of a period, as the kernel takes them. Arrays are read-only.
 
     The times are the start of the period, and for each step its inner point and its end.
-
-    Attributes
-    ----------
-    volume : ndarray, shape (2 steps + 1, pockets, slices)
-        [m^3]
-    growth : ndarray, shape (2 steps, pockets, slices)
-        Growth of the volume in a stage of a step, at the rate of the end of the stage. [m^3]
-    axial, gap : ndarray, shape (2 steps + 1, pockets (+ 1), slices (+ 1))
-        Areas of openings. [m^2]
-    axial_reach, gap_reach : ndarray, shape (2 steps + 1, 2, pockets (+ 1), slices (+ 1))
-        Distances of openings from the cells before and behind. [m]
-    live : ndarray of bool, shape (steps, pockets, slices)
-        Which cells are pockets.
-    place, station, face
-        As for `PocketFlow`.
     """
 
-    volume: Floats
+    volume: Floats  # [m^3]
+    # Growth of the volume in a stage of a step, at the rate of the end of the stage. [m^3]
     growth: Floats
-    axial: Floats
-    gap: Floats
-    axial_reach: Floats
-    gap_reach: Floats
-    live: NDArray[np.bool_]
-    place: Floats
-    station: Floats
-    face: Floats
+    axial: Floats  # Areas of openings. [m^2]
+    gap: Floats  # Areas of openings. [m^2]
+    axial_reach: Floats  # Distances of openings from the cells before and behind. [m]
+    gap_reach: Floats  # Distances of openings from the cells before and behind. [m]
+    live: NDArray[np.bool_]  # Which cells are pockets.
+    place: Floats  # As for `PocketFlow`.
+    station: Floats  # As for `PocketFlow`.
+    face: Floats  # As for `PocketFlow`.
 
     @property
     def shape(self) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
@@ -72,23 +56,15 @@ class Cells:
 
 @lru_cache(maxsize=32)
 def pocket_cells(
-    geometry: PocketGeometry, slices: int, steps: int, end: float | None, inner: float = SDIRK
+    geometry: PocketGeometry,
+    slices: int,  # Across the face, at least; more where the helix turns far.
+    steps: int,  # Time steps in one pitch.
+    # Width of the first and of the last slice, if the face is wide enough; None for `slices` equal
+    # ones, however far the helix turns. [m]
+    end: float | None,
+    inner: float = SDIRK,  # Where in a step its inner point lies. [1]
 ) -> Cells:
-    """Cells of the pockets. Theory (Q7), (Q23).
-
-    Parameters
-    ----------
-    geometry : PocketGeometry
-    slices : int
-        Across the face, at least; more where the helix turns far.
-    steps : int
-        Time steps in one pitch.
-    end : float or None
-        Width of the first and of the last slice, if the face is wide enough; None for `slices`
-        equal ones, however far the helix turns. [m]
-    inner : float
-        Where in a step its inner point lies. [1]
-    """
+    """Cells of the pockets. Theory (Q7), (Q23)."""
     pitch = geometry.pitch
     face = _faces(geometry, slices, end)
     width = np.diff(face)
@@ -129,18 +105,12 @@ def pocket_cells(
     return cells
 
 
-def _reaches(width: Floats, centroid: Floats, middle: Floats) -> tuple[Floats, Floats]:
-    """`Cells.axial_reach` and `Cells.gap_reach`.
-
-    Parameters
-    ----------
-    width : ndarray, shape (slices,)
-        [m]
-    centroid : ndarray, shape (times, pockets, slices + 1, 2)
-        Centroids of the sections of the pockets. [m]
-    middle : ndarray, shape (times, pockets + 1, slices, 2)
-        Middles of the gaps. [m]
-    """
+def _reaches(
+    width: Floats,  # [m]
+    centroid: Floats,  # Centroids of the sections of the pockets. [m]
+    middle: Floats,  # Middles of the gaps. [m]
+) -> tuple[Floats, Floats]:
+    """`Cells.axial_reach` and `Cells.gap_reach`."""
     cell = _mean_of_ends(centroid)
     axial = np.zeros((len(centroid), 2, *centroid.shape[1:3]))
     axial[:, 0, :, 1:] = np.hypot(width / 2, np.linalg.norm(centroid[:, :, 1:] - cell, axis=-1))

@@ -25,16 +25,6 @@ from epicyclic.pocketing.network import (
     study_flow,
 )
 
-__all__ = [
-    "NETWORK_MODELS",
-    "POCKETING_MODELS",
-    "PocketFlow",
-    "PocketModel",
-    "automatic_pocketing",
-    "pocket_flow",
-    "sound_speed",
-]
-
 Floats = NDArray[np.float64]
 
 PocketModel = Literal[
@@ -64,61 +54,34 @@ FINER = (1, 2, 4)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PocketFlow:
-    """One period of the flow through the pockets of a mesh. Arrays are read-only.
+    """One period of the flow through the pockets of a mesh. Arrays are read-only."""
 
-    Attributes
-    ----------
-    power : float
-        Mean power that the teeth put into the fluid, from the work at the boundaries. [W]
-    power_from_flow : float
-        The same from what the flow loses: kinetic energy, unexpanded pressure at choked openings,
-        and what ended pockets leave behind; of "talbot-2012" the work at the boundaries. [W]
-    mass_error : float
-        What comes in less what goes out and what is stored, over what comes in, in a period. [1]
-    periods : int
-        Mesh periods from rest until the flow repeated.
-    periodic : bool
-        False if it did not; powers are then means of the last half of the periods.
-    sound_speed : float
-        Speed of sound of the mixture in the model at ambient pressure; infinite for an
-        incompressible one. [m/s]
-    angle : ndarray, shape (steps,)
-        Rotation of gear 1 at the end of each step, one pitch in all. [rad]
-    place : ndarray, shape (pockets,)
-        Angle of each pocket at the beginning, at the first end of the face: of its tooth or space
-        of gear 1 from the line of centres. [rad]
-    station : ndarray, shape (slices + 1,)
-        Angle that the helix turns from the first end of the face to both ends of each slice. [rad]
-    face : ndarray, shape (slices + 1,)
-        Distance from the first end of the face to both ends of each slice. [m]
-    live : ndarray of bool, shape (steps, pockets, slices)
-        Which cells are pockets. Pockets follow each other along the mesh: a tooth of gear 1 in a
-        space of gear 2 at even places, a tooth of gear 2 in a space of gear 1 at odd ones.
-    pressure : ndarray, shape (steps, pockets, slices)
-        Above ambient; zero where there is no pocket. [Pa]
-    axial_speed : ndarray, shape (steps, pockets, slices + 1)
-        [m/s]
-    gap_speed : ndarray, shape (steps, pockets + 1, slices)
-        Through the gaps between pockets. [m/s]
-    instant_power : ndarray, shape (steps,)
-        Mean power of the teeth during each step. [W]
-    """
-
+    # Mean power that the teeth put into the fluid, from the work at the boundaries. [W]
     power: float
+    # The same from what the flow loses: kinetic energy, unexpanded pressure at choked openings, and
+    # what ended pockets leave behind; of "talbot-2012" the work at the boundaries. [W]
     power_from_flow: float
+    # What comes in less what goes out and what is stored, over what comes in, in a period. [1]
     mass_error: float
-    periods: int
-    periodic: bool
+    periods: int  # Mesh periods from rest until the flow repeated.
+    periodic: bool  # False if it did not; powers are then means of the last half of the periods.
+    # Speed of sound of the mixture in the model at ambient pressure; infinite for an incompressible
+    # one. [m/s]
     sound_speed: float
-    angle: Floats
+    angle: Floats  # Rotation of gear 1 at the end of each step, one pitch in all. [rad]
+    # Angle of each pocket at the beginning, at the first end of the face: of its tooth or space of
+    # gear 1 from the line of centres. [rad]
     place: Floats
+    # Angle that the helix turns from the first end of the face to both ends of each slice. [rad]
     station: Floats
-    face: Floats
+    face: Floats  # Distance from the first end of the face to both ends of each slice. [m]
+    # Which cells are pockets. Pockets follow each other along the mesh: a tooth of gear 1 in a
+    # space of gear 2 at even places, a tooth of gear 2 in a space of gear 1 at odd ones.
     live: NDArray[np.bool_]
-    pressure: Floats
-    axial_speed: Floats
-    gap_speed: Floats
-    instant_power: Floats
+    pressure: Floats  # Above ambient; zero where there is no pocket. [Pa]
+    axial_speed: Floats  # [m/s]
+    gap_speed: Floats  # Through the gaps between pockets. [m/s]
+    instant_power: Floats  # Mean power of the teeth during each step. [W]
 
     @property
     def speed_max(self) -> float:
@@ -134,36 +97,20 @@ class PocketFlow:
 @lru_cache(maxsize=256)
 def pocket_flow(
     geometry: PocketGeometry,
+    # Speed of gear 1 against the line of centres, not zero; its sign does not matter. [rad/s]
     speed: float,
-    mixture: MixtureState,
-    pressure: float,
-    model: PocketModel = "incompressible",
-    slices: int = 24,
-    steps: int = 32,
+    mixture: MixtureState,  # At ambient pressure.
+    pressure: float,  # Ambient; for "incompressible" ambient pressure less that of a void. [Pa]
+    model: PocketModel = "incompressible",  # Key of `POCKETING_MODELS`.
+    slices: int = 24,  # Across the common face width, at least; more where the helix turns far.
+    steps: int = 32,  # Time steps in one pitch.
+    # Width of the slice at either end of the face, in normal modules. [1] "talbot-2012" has its own
+    # resolution.
     end_length: float = 1.0,
 ) -> PocketFlow:
     """Periodic flow through the pockets.
 
     Theory (Q11).
-
-    Parameters
-    ----------
-    geometry : PocketGeometry
-    speed : float
-        Speed of gear 1 against the line of centres, not zero; its sign does not matter. [rad/s]
-    mixture : MixtureState
-        At ambient pressure.
-    pressure : float
-        Ambient; for "incompressible" ambient pressure less that of a void. [Pa]
-    model : str
-        Key of `POCKETING_MODELS`.
-    slices : int
-        Across the common face width, at least; more where the helix turns far.
-    steps : int
-        Time steps in one pitch.
-    end_length : float
-        Width of the slice at either end of the face, in normal modules. [1]
-        "talbot-2012" has its own resolution.
 
     Returns
     -------

@@ -22,14 +22,6 @@ from epicyclic.geometry.outline import tooth_outline
 from epicyclic.geometry.tools import Tool
 from epicyclic.kernels import pocket_geometry as kernels
 
-__all__ = [
-    "PocketGeometry",
-    "contact_clearances",
-    "gap_feet",
-    "pocket_geometry",
-    "pocket_outlines",
-]
-
 Floats = NDArray[np.float64]
 
 ANGLES = 769
@@ -47,36 +39,20 @@ class PocketGeometry:
 
     The first index of `area`, `centroid` and `life` is the member whose tooth is in a space of the
     other, less one. Arrays are read-only.
-
-    Attributes
-    ----------
-    mesh : Mesh
-    life : ndarray, shape (2, 2)
-        Angles of birth and death of a pocket: of the tooth of gear 1, or of the space of gear 1 in
-        which a tooth of gear 2 is, from the line of centres. [rad]
-    angle : ndarray, shape (2, n)
-        Angles of `area` and `centroid`, evenly spaced, from a little before the life to a little
-        after it. [rad]
-    area : ndarray, shape (2, n)
-        End area of the pocket. [m^2]
-    centroid : ndarray, shape (2, n, 2)
-        About the axis of gear 1, the line of centres along x. [m]
-    gap_angle : ndarray, shape (n,)
-        Angles of the gaps: of the tooth of gear 1 that they belong to. [rad]
-    gap : ndarray, shape (2, n)
-        Narrowest gap at the leading and at the trailing flank of that tooth. [m]
-    gap_middle : ndarray, shape (2, n, 2)
-        As `centroid`. [m]
     """
 
     mesh: Mesh
+    # Angles of birth and death of a pocket: of the tooth of gear 1, or of the space of gear 1 in
+    # which a tooth of gear 2 is, from the line of centres. [rad]
     life: Floats
+    # Angles of `area` and `centroid`, evenly spaced, from a little before the life to a little
+    # after it. [rad]
     angle: Floats
-    area: Floats
-    centroid: Floats
-    gap_angle: Floats
-    gap: Floats
-    gap_middle: Floats
+    area: Floats  # End area of the pocket. [m^2]
+    centroid: Floats  # About the axis of gear 1, the line of centres along x. [m]
+    gap_angle: Floats  # Angles of the gaps: of the tooth of gear 1 that they belong to. [rad]
+    gap: Floats  # Narrowest gap at the leading and at the trailing flank of that tooth. [m]
+    gap_middle: Floats  # As `centroid`. [m]
 
     @property
     def pitch(self) -> float:
@@ -86,19 +62,13 @@ class PocketGeometry:
 
 @lru_cache(maxsize=32)
 def pocket_geometry(
-    mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool, angles: int = ANGLES
+    mesh: Mesh,
+    # The tools that cut members 1 and 2, as for `tooth_outline`.
+    tools: tuple[Tool | None, Tool | None],
+    drives1: bool,  # True if member 1 drives, which puts the contact on its leading flanks.
+    angles: int = ANGLES,  # Angles in each table.
 ) -> PocketGeometry:
     """Pockets of `mesh`.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    tools : tuple
-        The tools that cut members 1 and 2, as for `tooth_outline`.
-    drives1 : bool
-        True if member 1 drives, which puts the contact on its leading flanks.
-    angles : int
-        Angles in each table.
 
     Returns
     -------
@@ -137,18 +107,14 @@ def pocket_geometry(
 
 
 def pocket_outlines(
-    mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool, member: int, angle: Floats
+    mesh: Mesh,  # As for `pocket_geometry`.
+    tools: tuple[Tool | None, Tool | None],  # As for `pocket_geometry`.
+    drives1: bool,  # As for `pocket_geometry`.
+    member: int,  # 1 or 2: whose tooth is in the space of the other.
+    # Angle of that tooth of gear 1, or of that space of gear 1, from the line of centres. [rad]
+    angle: Floats,
 ) -> NDArray[np.complex128]:
     """Outlines of the pockets of `mesh`, for pictures.
-
-    Parameters
-    ----------
-    mesh, tools, drives1
-        As for `pocket_geometry`.
-    member : int
-        1 or 2: whose tooth is in the space of the other.
-    angle : ndarray, shape (n,)
-        Angle of that tooth of gear 1, or of that space of gear 1, from the line of centres. [rad]
 
     Returns
     -------
@@ -161,18 +127,13 @@ def pocket_outlines(
 
 
 def gap_feet(
-    mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool, leading: bool, angle: Floats
+    mesh: Mesh,  # As for `pocket_geometry`.
+    tools: tuple[Tool | None, Tool | None],  # As for `pocket_geometry`.
+    drives1: bool,  # As for `pocket_geometry`.
+    leading: bool,  # True for the leading flank of the tooth of gear 1, False for the trailing one.
+    angle: Floats,  # Angle of that tooth from the line of centres. [rad]
 ) -> NDArray[np.complex128]:
     """Points of both flanks where the gap between them is narrowest, for pictures.
-
-    Parameters
-    ----------
-    mesh, tools, drives1
-        As for `pocket_geometry`.
-    leading : bool
-        True for the leading flank of the tooth of gear 1, False for the trailing one.
-    angle : ndarray, shape (n,)
-        Angle of that tooth from the line of centres. [rad]
 
     Returns
     -------

@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.similarity import FlowFamily, FlowFigures, from_scaled, scaled_figures
 
-__all__ = ["FlowMemory"]
-
 Floats = NDArray[np.float64]
 
 CURVATURE = 20.0

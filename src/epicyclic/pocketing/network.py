@@ -18,16 +18,6 @@ from epicyclic.kernels.pocket_network import periodic_network
 from epicyclic.pocketing.cells import Cells, pocket_cells
 from epicyclic.pocketing.geometry import PocketGeometry
 
-__all__ = [
-    "PERIODS_MOST",
-    "PERIOD_TOLERANCE",
-    "POCKETS_PER_PITCH",
-    "NetworkFlow",
-    "bounded_flow",
-    "study_flow",
-    "void_number",
-]
-
 Floats = NDArray[np.float64]
 
 POCKETS_PER_PITCH = 2
@@ -42,37 +32,18 @@ STUDY_SLICES, STUDY_STEPS = 12, 48
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NetworkFlow:
-    """One period of the flow at density 1 and speed 1. Arrays are read-only.
-
-    Attributes
-    ----------
-    cells : Cells
-    power, power_from_flow : float
-        As for `PocketFlow`, over density and cube of the speed. [m^5]
-    mass_error : float
-        [1]
-    periods : int
-        Negative if the flow did not repeat.
-    pressure : ndarray, shape (steps, pockets, slices)
-        Over density and square of the speed. [m^2]
-    axial_speed, gap_speed : ndarray, shape (steps, pockets (+ 1), slices (+ 1))
-        Over the speed. [m]
-    instant_power : ndarray, shape (steps,)
-        [m^5]
-    damped : ndarray, shape (steps,)
-        Work of each step that the method of time stepping damps. [m^5]
-    """
+    """One period of the flow at density 1 and speed 1. Arrays are read-only."""
 
     cells: Cells
-    power: float
-    power_from_flow: float
-    mass_error: float
-    periods: int
-    pressure: Floats
-    axial_speed: Floats
-    gap_speed: Floats
-    instant_power: Floats
-    damped: Floats
+    power: float  # As for `PocketFlow`, over density and cube of the speed. [m^5]
+    power_from_flow: float  # As for `PocketFlow`, over density and cube of the speed. [m^5]
+    mass_error: float  # [1]
+    periods: int  # Negative if the flow did not repeat.
+    pressure: Floats  # Over density and square of the speed. [m^2]
+    axial_speed: Floats  # Over the speed. [m]
+    gap_speed: Floats  # Over the speed. [m]
+    instant_power: Floats  # [m^5]
+    damped: Floats  # Work of each step that the method of time stepping damps. [m^5]
 
 
 def void_number(geometry: PocketGeometry, slices: int, steps: int, end_length: float) -> float:
@@ -82,18 +53,14 @@ def void_number(geometry: PocketGeometry, slices: int, steps: int, end_length: f
 
 
 def bounded_flow(
-    geometry: PocketGeometry, number: float, slices: int, steps: int, end_length: float
+    geometry: PocketGeometry,
+    # Speed over the root of ambient pressure less that of a void, over density. [1/m]
+    number: float,
+    slices: int,  # As for `pocket_flow`.
+    steps: int,  # As for `pocket_flow`.
+    end_length: float,  # As for `pocket_flow`.
 ) -> NetworkFlow:
-    """Flow whose pressures do not fall below that of a void. Theory (Q25), (Q26), (Q27).
-
-    Parameters
-    ----------
-    geometry : PocketGeometry
-    number : float
-        Speed over the root of ambient pressure less that of a void, over density. [1/m]
-    slices, steps, end_length
-        As for `pocket_flow`.
-    """
+    """Flow whose pressures do not fall below that of a void. Theory (Q25), (Q26), (Q27)."""
     free = _free_flow(geometry, slices, steps, end_length)
     if number <= void_number(geometry, slices, steps, end_length):
         return free

@@ -22,15 +22,6 @@ from epicyclic.pocketing.geometry import PocketGeometry, pocket_geometry
 from epicyclic.pocketing.network import void_number
 from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT, Quantity
 
-__all__ = [
-    "FLOW_NUMBERS",
-    "FlowFamily",
-    "FlowFigures",
-    "flow_figures",
-    "from_scaled",
-    "scaled_figures",
-]
-
 Floats = NDArray[np.float64]
 
 LEAST_NUMBER = 1e-3
@@ -40,41 +31,21 @@ and at next to no speed pressures drown in rounding. [1/m]"""
 
 @dataclass(frozen=True, slots=True)
 class FlowFigures:
-    """What a result reports of the flow through the pockets of a mesh.
+    """What a result reports of the flow through the pockets of a mesh."""
 
-    Attributes
-    ----------
-    power : float
-        [W]
-    difference : float
-        Difference of the power from the energy balance, relative. [1]
-    pressure_max, pressure_min : float
-        Above ambient. [Pa]
-    speed_max : float
-        [m/s]
-    periods : int
-        Mesh periods until the flow repeated.
-    periodic : bool
-        False if it did not.
-    nodes : int
-        Number of flows in the table that these figures were read from; zero for the flow itself.
-    error : float
-        Largest error of the power in that table, relative, measured at flows left out of it; NaN
-        for the flow itself. [1]
-    file : str
-        Name of the file that holds this table; empty if there is none.
-    """
-
-    power: float
-    difference: float
-    pressure_max: float
-    pressure_min: float
-    speed_max: float
-    periods: int = 0
-    periodic: bool = True
+    power: float  # [W]
+    difference: float  # Difference of the power from the energy balance, relative. [1]
+    pressure_max: float  # Above ambient. [Pa]
+    pressure_min: float  # Above ambient. [Pa]
+    speed_max: float  # [m/s]
+    periods: int = 0  # Mesh periods until the flow repeated.
+    periodic: bool = True  # False if it did not.
+    # Number of flows in the table that these figures were read from; zero for the flow itself.
     nodes: int = 0
+    # Largest error of the power in that table, relative, measured at flows left out of it; NaN for
+    # the flow itself. [1]
     error: float = math.nan
-    file: str = ""
+    file: str = ""  # Name of the file that holds this table; empty if there is none.
 
 
 FLOW_NUMBERS: dict[str, tuple[str, Quantity]] = {

@@ -20,8 +20,6 @@ from epicyclic.pocketing.similarity import FlowFamily
 from epicyclic.pocketing.table import FlowTable
 from epicyclic.text_file import sealed, unsealed
 
-__all__ = ["ATTRIBUTE", "StoredTables", "read_stored", "store", "stored_table"]
-
 ATTRIBUTE = "flows"
 """Attribute of the NetCDF file that holds the tables as JSON."""
 _KEY = "models.pocketing_table"

@@ -20,8 +20,6 @@ from numpy.typing import NDArray
 from epicyclic.lubricant.properties import MixtureState
 from epicyclic.pocketing.similarity import FlowFamily, FlowFigures, from_scaled
 
-__all__ = ["FlowTable", "FlowTables", "make_tables", "table_around"]
-
 Floats = NDArray[np.float64]
 
 WIDEST = math.log(2.0)
@@ -36,28 +34,15 @@ _kept: dict[tuple[FlowFamily, float], Floats] = {}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FlowTable:
-    """Scaled figures of a family of flows over its number.
+    """Scaled figures of a family of flows over its number."""
 
-    Attributes
-    ----------
-    number : ndarray, shape (n,)
-        Rising. [1/m]
-    scaled : ndarray, shape (n, 5)
-        As from `scaled_figures`; NaN where the flow does not repeat.
-    readable : ndarray of bool, shape (n - 1,)
-        Whether the table may be read between two of its numbers.
-    error : float
-        Largest error of the power in what is readable, each measured at a number before that was
-        added to the table. [1]
-    file : str
-        Name of the file that it was read from; empty if from none.
-    """
-
-    number: Floats
-    scaled: Floats
-    readable: NDArray[np.bool_]
+    number: Floats  # Rising. [1/m]
+    scaled: Floats  # As from `scaled_figures`; NaN where the flow does not repeat.
+    readable: NDArray[np.bool_]  # Whether the table may be read between two of its numbers.
+    # Largest error of the power in what is readable, each measured at a number before that was
+    # added to the table. [1]
     error: float
-    file: str = ""
+    file: str = ""  # Name of the file that it was read from; empty if from none.
 
     def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures | None:
         """Figures of a flow; None where the table has none. Parameters as for `pocket_flow`."""
@@ -105,19 +90,11 @@ def interpolate(place: Floats, values: Floats, at: float) -> Floats:
 
 
 def make_tables(
-    asked: Mapping[FlowFamily, Iterable[float]], bound: float, threads: int | None = None
+    asked: Mapping[FlowFamily, Iterable[float]],  # [1/m]
+    bound: float,  # Largest error of the power between the numbers of a table. [1]
+    threads: int | None = None,  # Flows solved at once; default: one on each core.
 ) -> dict[FlowFamily, FlowTable]:
-    """Tables for the numbers asked of each family.
-
-    Parameters
-    ----------
-    asked : mapping of FlowFamily to iterable of float
-        [1/m]
-    bound : float
-        Largest error of the power between the numbers of a table. [1]
-    threads : int, optional
-        Flows solved at once; default: one on each core.
-    """
+    """Tables for the numbers asked of each family."""
     growing = {family: _Growing(numbers, bound) for family, numbers in asked.items()}
     with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
         while True:

@@ -13,8 +13,6 @@ from epicyclic.errors import Problem
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["RUN_AGAIN", "field_problems", "map_problems", "sweep_problems"]
-
 RUN_AGAIN = (
     "Write it again: epicyclic run CASE --save FILE.nc, or epicyclic map CASE ... -o FILE.nc."
 )

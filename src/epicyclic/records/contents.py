@@ -15,19 +15,6 @@ from epicyclic.results.heat import HeatBalance, HeatWay
 from epicyclic.results.result import Result
 from epicyclic.units import CELSIUS
 
-__all__ = [
-    "Heat",
-    "MapContents",
-    "Measure",
-    "Member",
-    "RecordContents",
-    "ResultContents",
-    "SweepContents",
-    "Validity",
-    "contents_of",
-    "set_of",
-]
-
 
 class _Part(BaseModel):
     """Unknown keys, of a later version, are kept."""

@@ -21,8 +21,6 @@ from epicyclic.whole_file import check_place, whole_file
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["is_stored", "is_sweep", "open_map", "open_result", "save_result"]
-
 Stated = TypeVar("Stated", bound=BaseModel)
 
 SUFFIX = ".nc"

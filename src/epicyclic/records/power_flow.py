@@ -9,40 +9,22 @@ from epicyclic.elements.base import HOUSING
 from epicyclic.records.contents import ResultContents
 from epicyclic.units import RPM
 
-__all__ = ["Line", "Link", "Stage", "TrainFlow", "power_flow"]
-
 NO_POWER = 1e-9
 """Power and torque, relative to the largest one, that is none. [1]"""
 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """Shafts that turn together: one, or several that closed clutches join.
+    """Shafts that turn together: one, or several that closed clutches join."""
 
-    Attributes
-    ----------
-    key : str
-        The shafts, ``"input+third"``.
-    shafts : tuple of str
-    speed : float
-        [rad/s]
-    torque : float
-        From outside. [N m]
-    passed : float
-        That it passes on: what parts and the outside bring in. [N m]
-    clutches : mapping of str to float
-        Torque through each of its clutches. [N m]
-    role : str
-        ``"input"``, ``"output"``, ``"held"``, ``"at rest"`` without a brake of its own,
-        ``"driven"``, ``"loaded"``, ``"idle"``, or empty for a shaft that passes power on.
-    """
-
-    key: str
+    key: str  # The shafts, ``"input+third"``.
     shafts: tuple[str, ...]
-    speed: float
-    torque: float
-    passed: float
-    clutches: Mapping[str, float]
+    speed: float  # [rad/s]
+    torque: float  # From outside. [N m]
+    passed: float  # That it passes on: what parts and the outside bring in. [N m]
+    clutches: Mapping[str, float]  # Torque through each of its clutches. [N m]
+    # ``"input"``, ``"output"``, ``"held"``, ``"at rest"`` without a brake of its own, ``"driven"``,
+    # ``"loaded"``, ``"idle"``, or empty for a shaft that passes power on.
     role: str
 
     @property
@@ -53,62 +35,34 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """What joins a set or part to a line.
-
-    Attributes
-    ----------
-    stage, line : str
-    members : tuple of str
-        Members of the set, ``("sun",)``; empty for other parts.
-    torque : float
-        That the stage takes from the line. [N m]
-    power : float
-        That enters the stage here. [W]
-    circulating : float
-        How much of it returns to where it came from; of the sign of `power`. [W]
-    """
+    """What joins a set or part to a line."""
 
     stage: str
     line: str
-    members: tuple[str, ...]
-    torque: float
-    power: float
+    members: tuple[str, ...]  # Members of the set, ``("sun",)``; empty for other parts.
+    torque: float  # That the stage takes from the line. [N m]
+    power: float  # That enters the stage here. [W]
+    # How much of it returns to where it came from; of the sign of `power`. [W]
     circulating: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """A set, bearing, seal or drag.
-
-    Attributes
-    ----------
-    key : str
-    loss : float
-        [W]
-    rolling : mapping of str to float
-        Rolling power of its meshes, ``"sun_mesh"``. [W]
-    """
+    """A set, bearing, seal or drag."""
 
     key: str
-    loss: float
+    loss: float  # [W]
+    # Rolling power of its meshes, ``"sun_mesh"``. [W]
     rolling: Mapping[str, float] = field(default_factory=dict[str, float])
 
 
 @dataclass(frozen=True, slots=True)
 class TrainFlow:
-    """The power flow of a train.
-
-    Attributes
-    ----------
-    lines : mapping of str to Line
-    stages : mapping of str to Stage
-    links : tuple of Link
-        Also those of lines at rest, which carry torque but no power.
-    """
+    """The power flow of a train."""
 
     lines: Mapping[str, Line]
     stages: Mapping[str, Stage]
-    links: tuple[Link, ...]
+    links: tuple[Link, ...]  # Also those of lines at rest, which carry torque but no power.
 
     def of_stage(self, key: str) -> tuple[Link, ...]:
         """The links of a stage."""
@@ -163,35 +117,19 @@ def power_flow(result: ResultContents) -> TrainFlow:
 
 
 def _flow(
-    speeds: Mapping[str, float],
-    torques: Mapping[str, float],
+    speeds: Mapping[str, float],  # Speeds of every shaft, and torques from outside. [rad/s], [N m]
+    torques: Mapping[str, float],  # Speeds of every shaft, and torques from outside. [rad/s], [N m]
+    # Torque that each stage takes from each shaft. [N m]
     stages: Mapping[str, Mapping[str, float]],
-    losses: Mapping[str, float],
+    losses: Mapping[str, float],  # Losses of each stage. [W]
     *,
-    clutches: Mapping[str, float] | None = None,
-    rolling: Mapping[str, float] | None = None,
-    ends: Sequence[str] = (),
+    clutches: Mapping[str, float] | None = None,  # Torque through each closed clutch. [N m]
+    rolling: Mapping[str, float] | None = None,  # Rolling power of each mesh. [W]
+    ends: Sequence[str] = (),  # Input and output shaft.
+    # Members of each shaft that has a name of its own.
     shafts: Mapping[str, Sequence[str]] | None = None,
 ) -> TrainFlow:
-    """The power flow of the numbers that a result holds.
-
-    Parameters
-    ----------
-    speeds, torques : mapping of str to float
-        Speeds of every shaft, and torques from outside. [rad/s], [N m]
-    stages : mapping of str to mapping of str to float
-        Torque that each stage takes from each shaft. [N m]
-    losses : mapping of str to float
-        Losses of each stage. [W]
-    clutches : mapping of str to float, optional
-        Torque through each closed clutch. [N m]
-    rolling : mapping of str to float, optional
-        Rolling power of each mesh. [W]
-    ends : sequence of str, optional
-        Input and output shaft.
-    shafts : mapping of str to sequence of str, optional
-        Members of each shaft that has a name of its own.
-    """
+    """The power flow of the numbers that a result holds."""
     joined = clutches or {}
     groups = _groups(speeds, joined)
     largest = max((abs(torque) for own in stages.values() for torque in own.values()), default=0.0)

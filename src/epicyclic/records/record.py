@@ -24,8 +24,6 @@ from epicyclic.units import known_text
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["ResultRecord", "growing_record", "record", "sets_of"]
-
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ResultRecord:
@@ -95,10 +93,6 @@ class _GrowingRecord(ResultRecord):
 
 def growing_record(case: Case) -> ResultRecord:
     """Solve a case, and compute each group of fields when it is first asked for.
-
-    Parameters
-    ----------
-    case : PlanetaryCase, GearPairCase or TrainCase
 
     Returns
     -------

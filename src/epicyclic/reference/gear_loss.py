@@ -4,34 +4,23 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["equal_sharing_loss_factor", "uniform_load_loss_factor"]
-
 
 def equal_sharing_loss_factor(
-    teeth1: int,
-    teeth2: int,
+    teeth1: int,  # Tooth numbers of pinion and gear, both positive.
+    teeth2: int,  # Tooth numbers of pinion and gear, both positive.
+    # tip_ratio1, tip_ratio2: eps_1, eps_2: path of contact from the pitch point to the tip of the
+    # pinion and to that of the gear, over the transverse base pitch; each at most 1, their sum at
+    # least 1. [1]
     tip_ratio1: float,
     tip_ratio2: float,
-    base_helix_angle: float = 0.0,
+    base_helix_angle: float = 0.0,  # beta_b. [rad]
     *,
-    internal: bool = False,
+    internal: bool = False,  # True if member 2 is a ring.
 ) -> float:
     """Ohlendorf's H_V: tooth pairs in contact share the load equally, friction is constant.
 
     H_V = pi (u +- 1)/(z1 u cos(beta_b)) (1 - eps_alpha + eps_1^2 + eps_2^2), minus for internal
     meshes.
-
-    Parameters
-    ----------
-    teeth1, teeth2 : int
-        Tooth numbers of pinion and gear, both positive.
-    tip_ratio1, tip_ratio2 : float
-        eps_1, eps_2: path of contact from the pitch point to the tip of the pinion and to that of
-        the gear, over the transverse base pitch; each at most 1, their sum at least 1. [1]
-    base_helix_angle : float
-        beta_b. [rad]
-    internal : bool
-        True if member 2 is a ring.
 
     Returns
     -------
@@ -50,23 +39,18 @@ def equal_sharing_loss_factor(
 
 
 def uniform_load_loss_factor(
-    teeth1: int,
-    teeth2: int,
-    tip_ratio1: float,
-    tip_ratio2: float,
-    base_helix_angle: float = 0.0,
+    teeth1: int,  # As for `equal_sharing_loss_factor`, without its limits.
+    teeth2: int,  # As for `equal_sharing_loss_factor`, without its limits.
+    tip_ratio1: float,  # As for `equal_sharing_loss_factor`, without its limits.
+    tip_ratio2: float,  # As for `equal_sharing_loss_factor`, without its limits.
+    base_helix_angle: float = 0.0,  # As for `equal_sharing_loss_factor`, without its limits.
     *,
-    internal: bool = False,
+    internal: bool = False,  # As for `equal_sharing_loss_factor`, without its limits.
 ) -> float:
     """Loss factor for a uniform load along contact lines of constant total length.
 
     The last bracket of Ohlendorf's formula becomes (eps_1^2 + eps_2^2)/eps_alpha. Exact for
     integer eps_alpha or eps_beta, the limit for wide helical gears.
-
-    Parameters
-    ----------
-    teeth1, teeth2, tip_ratio1, tip_ratio2, base_helix_angle, internal
-        As for `equal_sharing_loss_factor`, without its limits.
 
     Returns
     -------

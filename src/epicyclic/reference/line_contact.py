@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-__all__ = ["HertzContact", "contact_modulus", "hertz_line_contact"]
-
 
 class HertzContact(NamedTuple):
     """Half-width [m] and largest pressure [Pa] of a contact."""
@@ -15,15 +13,13 @@ class HertzContact(NamedTuple):
     pressure: float
 
 
-def contact_modulus(e1: float, nu1: float, e2: float, nu2: float) -> float:
+def contact_modulus(
+    e1: float,  # Elastic moduli. [Pa]
+    nu1: float,  # Poisson's ratios. [1]
+    e2: float,  # Elastic moduli. [Pa]
+    nu2: float,  # Poisson's ratios. [1]
+) -> float:
     """Johnson's E*, with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
-
-    Parameters
-    ----------
-    e1, e2 : float
-        Elastic moduli. [Pa]
-    nu1, nu2 : float
-        Poisson's ratios. [1]
 
     Returns
     -------
@@ -37,17 +33,12 @@ def contact_modulus(e1: float, nu1: float, e2: float, nu2: float) -> float:
     return 1 / ((1 - nu1**2) / e1 + (1 - nu2**2) / e2)
 
 
-def hertz_line_contact(load: float, radius: float, modulus: float) -> HertzContact:
+def hertz_line_contact(
+    load: float,  # P, per length. [N/m]
+    radius: float,  # R, with 1/R = 1/R1 + 1/R2 for two cylinders. [m]
+    modulus: float,  # E* of `contact_modulus`. [Pa]
+) -> HertzContact:
     """Contact of a cylinder of `radius` with a plane: a^2 = 4 P R/(pi E*), p_0 = 2 P/(pi a).
-
-    Parameters
-    ----------
-    load : float
-        P, per length. [N/m]
-    radius : float
-        R, with 1/R = 1/R1 + 1/R2 for two cylinders. [m]
-    modulus : float
-        E* of `contact_modulus`. [Pa]
 
     Returns
     -------

@@ -9,38 +9,20 @@ from __future__ import annotations
 
 import math
 
-__all__ = [
-    "STIFFNESS_CORRECTION",
-    "face_load_factor",
-    "mesh_stiffness",
-    "theoretical_single_stiffness",
-]
-
 STIFFNESS_CORRECTION = 0.8
 """C_M: measured over theoretical stiffness of solid gears. ISO 6336-1. [1]"""
 
 
 def theoretical_single_stiffness(
-    teeth1: int,
-    teeth2: float,
-    helix_angle: float = 0.0,
-    shift1: float = 0.0,
-    shift2: float = 0.0,
-    dedendum: float = 1.25,
-    normal_pressure_angle: float = math.radians(20.0),
+    teeth1: int,  # `teeth2` is infinite for an internal gear.
+    teeth2: float,  # `teeth2` is infinite for an internal gear.
+    helix_angle: float = 0.0,  # [rad]
+    shift1: float = 0.0,  # Profile-shift coefficients.
+    shift2: float = 0.0,  # Profile-shift coefficients.
+    dedendum: float = 1.25,  # h_fP/m_n.
+    normal_pressure_angle: float = math.radians(20.0),  # [rad]
 ) -> float:
     """c'_th C_B cos(beta): largest stiffness of one pair of teeth per face width, without C_M.
-
-    Parameters
-    ----------
-    teeth1, teeth2 : float
-        `teeth2` is infinite for an internal gear.
-    helix_angle, normal_pressure_angle : float
-        [rad]
-    shift1, shift2 : float
-        Profile-shift coefficients.
-    dedendum : float
-        h_fP/m_n.
 
     Returns
     -------
@@ -69,19 +51,14 @@ def mesh_stiffness(single: float, transverse_contact_ratio: float) -> float:
     return single * (0.75 * transverse_contact_ratio + 0.25)
 
 
-def face_load_factor(misalignment: float, stiffness: float, mean_load: float) -> float:
+def face_load_factor(
+    misalignment: float,  # Gap at one end of the face. [m]
+    stiffness: float,  # Per face width. [N/m^2]
+    mean_load: float,  # Per face width. [N/m]
+) -> float:
     """K_Hbeta of evenly spread springs under a wedge-shaped gap.
 
     1 + F c/(2 w) while the whole width is in contact, sqrt(2 F c/w) when it is not.
-
-    Parameters
-    ----------
-    misalignment : float
-        Gap at one end of the face. [m]
-    stiffness : float
-        Per face width. [N/m^2]
-    mean_load : float
-        Per face width. [N/m]
     """
     ratio = misalignment * stiffness / mean_load
     return 1 + ratio / 2 if ratio <= 2 else math.sqrt(2 * ratio)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-__all__ = ["planetary_efficiency"]
 
-
-def planetary_efficiency(teeth_sun: int, teeth_ring: int, mesh_loss: float, held: str) -> float:
+def planetary_efficiency(
+    teeth_sun: int,  # z_s and z_r, both positive.
+    teeth_ring: int,  # z_s and z_r, both positive.
+    # L: loss of the sun-planet and planet-ring meshes over the power through them. [1]
+    mesh_loss: float,
+    held: str,  # ``"sun"``, ``"ring"`` or ``"carrier"``.
+) -> float:
     """Efficiency when only the meshes lose power, to first order in the loss.
 
     Only the power that rolls through the meshes relative to the carrier is subject to loss. With
@@ -20,15 +24,6 @@ def planetary_efficiency(teeth_sun: int, teeth_ring: int, mesh_loss: float, held
     ============  =================
 
     whichever of the other two members drives.
-
-    Parameters
-    ----------
-    teeth_sun, teeth_ring : int
-        z_s and z_r, both positive.
-    mesh_loss : float
-        L: loss of the sun-planet and planet-ring meshes over the power through them. [1]
-    held : str
-        ``"sun"``, ``"ring"`` or ``"carrier"``.
 
     Returns
     -------

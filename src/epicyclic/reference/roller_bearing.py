@@ -9,22 +9,17 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-__all__ = ["aligned_roller_loads", "radial_load_integral"]
 
-
-def radial_load_integral(load_zone: float, exponent: float) -> float:
+def radial_load_integral(
+    # epsilon = (1 - P_d/(2 delta_r))/2, with diametral clearance P_d and displacement delta_r: 0.5
+    # without clearance. [1]
+    load_zone: float,
+    exponent: float,  # n of Q = K delta^n: 1.5 for balls, 1.11 for rollers. [1]
+) -> float:
     """Sjoevall's integral J_r, for bearings with many rollers.
 
     J_r = 1/(2 pi) int [1 - (1 - cos psi)/(2 epsilon)]^n cos(psi) dpsi over the loaded arc. The most
     loaded of Z rollers carries F/(Z J_r).
-
-    Parameters
-    ----------
-    load_zone : float
-        epsilon = (1 - P_d/(2 delta_r))/2, with diametral clearance P_d and displacement delta_r:
-        0.5 without clearance. [1]
-    exponent : float
-        n of Q = K delta^n: 1.5 for balls, 1.11 for rollers. [1]
 
     Returns
     -------
@@ -45,24 +40,15 @@ def radial_load_integral(load_zone: float, exponent: float) -> float:
 
 
 def aligned_roller_loads(
-    force: float, rollers: int, clearance: float, stiffness: float, exponent: float
+    force: float,  # F, positive. [N]
+    rollers: int,  # Number of rollers, evenly spaced.
+    clearance: float,  # Diametral clearance P_d. [m]
+    stiffness: float,  # K of both contacts of a roller in series. [N/m^n]
+    exponent: float,  # n. [1]
 ) -> NDArray[np.float64]:
     """Load of every roller, the first one standing under the force.
 
     The displacement delta_r solves F = sum Q cos(psi), Q = K max(delta_r cos(psi) - P_d/2, 0)^n.
-
-    Parameters
-    ----------
-    force : float
-        F, positive. [N]
-    rollers : int
-        Number of rollers, evenly spaced.
-    clearance : float
-        Diametral clearance P_d. [m]
-    stiffness : float
-        K of both contacts of a roller in series. [N/m^n]
-    exponent : float
-        n. [1]
 
     Returns
     -------

@@ -4,24 +4,14 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["cylinder_power", "laminar_disc_power", "turbulent_disc_power"]
-
 
 def laminar_disc_power(
-    radius: float, speed: float, density: float, kinematic_viscosity: float
+    radius: float,  # [m]
+    speed: float,  # omega. [rad/s]
+    density: float,  # [kg/m^3]
+    kinematic_viscosity: float,  # nu, with Re = omega r^2/nu up to about 3e5. [m^2/s]
 ) -> float:
     """Both faces of a disc in laminar flow: C_M = 3.87 Re^-1/2, P = C_M rho omega^3 r^5/2.
-
-    Parameters
-    ----------
-    radius : float
-        [m]
-    speed : float
-        omega. [rad/s]
-    density : float
-        [kg/m^3]
-    kinematic_viscosity : float
-        nu, with Re = omega r^2/nu up to about 3e5. [m^2/s]
 
     Returns
     -------
@@ -38,14 +28,12 @@ def laminar_disc_power(
 
 
 def turbulent_disc_power(
-    radius: float, speed: float, density: float, kinematic_viscosity: float
+    radius: float,  # As for `laminar_disc_power`, Re above about 3e5.
+    speed: float,  # As for `laminar_disc_power`, Re above about 3e5.
+    density: float,  # As for `laminar_disc_power`, Re above about 3e5.
+    kinematic_viscosity: float,  # As for `laminar_disc_power`, Re above about 3e5.
 ) -> float:
     """Both faces of a disc in turbulent flow: C_M = 0.146 Re^-1/5, P = C_M rho omega^3 r^5/2.
-
-    Parameters
-    ----------
-    radius, speed, density, kinematic_viscosity : float
-        As for `laminar_disc_power`, Re above about 3e5.
 
     Returns
     -------
@@ -61,19 +49,15 @@ def turbulent_disc_power(
     return 0.146 * math.pow(reynolds, -0.2) * density * speed**3 * radius**5 / 2
 
 
-def cylinder_power(radius: float, length: float, speed: float, dynamic_viscosity: float) -> float:
+def cylinder_power(
+    radius: float,  # [m]
+    length: float,  # [m]
+    speed: float,  # omega. [rad/s]
+    dynamic_viscosity: float,  # mu. [Pa s]
+) -> float:
     """A cylinder in an unbounded viscous fluid: shear stress 2 mu omega at its surface.
 
     Exact solution of the Navier-Stokes equations, v = omega r^2/R.
-
-    Parameters
-    ----------
-    radius, length : float
-        [m]
-    speed : float
-        omega. [rad/s]
-    dynamic_viscosity : float
-        mu. [Pa s]
 
     Returns
     -------

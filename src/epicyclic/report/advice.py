@@ -14,8 +14,6 @@ from epicyclic.report.page import Listing
 from epicyclic.results.result import Result, in_words
 from epicyclic.units import known_text, percent
 
-__all__ = ["advice_texts", "band_texts", "driver_name", "result_json"]
-
 MOST = 3
 """Inputs and models that are named after a band."""
 LIMITS = "What limits the trust in it"

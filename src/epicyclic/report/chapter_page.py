@@ -12,8 +12,6 @@ from epicyclic.report.validation_page import comparison_sections
 from epicyclic.results.result import versions
 from epicyclic.validation.compare import Comparison, summary
 
-__all__ = ["chapter_html"]
-
 
 def chapter_html(chapter: str, figures: Sequence[Reproduced], rows: Sequence[Comparison]) -> str:
     """All figures of a chapter and its published numbers, as one page that needs nothing else."""

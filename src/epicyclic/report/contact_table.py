@@ -12,8 +12,6 @@ from epicyclic.report.tables import number_table
 from epicyclic.status import Status
 from epicyclic.units import MICROMETRE, Quantity, unit_text
 
-__all__ = ["contact_tables"]
-
 
 def contact_tables(result: ContactResult) -> RenderableType:
     """Figures of a contact and how its solution ended."""

@@ -17,8 +17,6 @@ from epicyclic.report.shown import MISSING
 from epicyclic.report.tables import as_on_page, titled
 from epicyclic.units import unit_text
 
-__all__ = ["data_sheet"]
-
 MM, UM = 1e3, 1e6
 _GearRow = tuple[str, str, Callable[[GearSheet], str]]
 _MeshRow = tuple[str, str, Callable[[MeshSheet], str]]

@@ -13,8 +13,6 @@ from epicyclic.plots.style import STYLE, styled_figure
 from epicyclic.report.explore import explorable
 from epicyclic.report.page import Drawing
 
-__all__ = ["draw", "svg_text"]
-
 PANEL = (4.3, 3.1)
 """Width and height of a figure in a page. [inch]"""
 _PROLOGUE = re.compile(r".*?(?=<svg)", re.DOTALL)

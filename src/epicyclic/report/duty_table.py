@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-__all__ = ["duty_json", "duty_rows", "duty_tables"]
-
 
 def duty_tables(data: xr.Dataset) -> RenderableType:
     """Energy in, out and lost by component, for each temperature that was asked for."""

@@ -18,8 +18,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
 from matplotlib.projections.polar import PolarAxes
 
-__all__ = ["explorable"]
-
 DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 DIGITS = 7
 """Significant digits of values in the page."""

@@ -16,8 +16,6 @@ from epicyclic.plots.style import COLOUR_MAP
 from epicyclic.report.page import Explorer, Item, Listing
 from epicyclic.units import WATT, unit_text
 
-__all__ = ["EXPLORER_LEAD", "explorer_items"]
-
 EXPLORER_LEAD = (
     "Move a slider, by hand or with the arrow keys, or click into a picture. Dots are computed "
     "points; between them every number is interpolated linearly, and the efficiency is that of the "
@@ -34,15 +32,12 @@ MAIN = ("total", "input_power", "efficiency")
 """Without which there is nothing to explore."""
 
 
-def explorer_items(data: xr.Dataset) -> tuple[Item, ...]:
-    """Sliders over all axes, losses at a point, a curve and a map; none without a varied axis.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        A loss map or a sweep. If not all of its numbers fit into a page, the figures of the parts
-        are left out, then the single losses, then the explorer; the page says so.
-    """
+def explorer_items(
+    # A loss map or a sweep. If not all of its numbers fit into a page, the figures of the parts are
+    # left out, then the single losses, then the explorer; the page says so.
+    data: xr.Dataset,
+) -> tuple[Item, ...]:
+    """Sliders over all axes, losses at a point, a curve and a map; none without a varied axis."""
     axes = [str(dim) for dim in data["total"].dims if data.sizes[dim] > 1]
     if not axes:
         return ()

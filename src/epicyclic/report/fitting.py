@@ -10,8 +10,6 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Column, Table
 from rich.text import Text
 
-__all__ = ["FittedTable"]
-
 GAP = 3
 """Between two columns, the spaces on both sides of a line that is not drawn."""
 LONGEST_WORD = 24

@@ -10,23 +10,16 @@ import xarray as xr
 from epicyclic.report.page import Cell, Table
 from epicyclic.units import format_number, unit_text
 
-__all__ = ["grid_table"]
-
 MOST_COLUMNS = 9
 """Most columns of a table of values; larger maps are shown at evenly spaced points."""
 
 
-def grid_table(point: xr.Dataset, title: str, cell: Callable[[int, int], Cell]) -> Table:
-    """A table of what `cell` says of speeds and torques, by their numbers.
-
-    Parameters
-    ----------
-    point : xarray.Dataset
-        A map over speed and torque, as `map_at` makes it.
-    title : str
-    cell : callable
-        Content for the number of a speed and of a torque.
-    """
+def grid_table(
+    point: xr.Dataset,  # A map over speed and torque, as `map_at` makes it.
+    title: str,
+    cell: Callable[[int, int], Cell],  # Content for the number of a speed and of a torque.
+) -> Table:
+    """A table of what `cell` says of speeds and torques, by their numbers."""
     speeds, torques = (_some(point.sizes[axis]) for axis in ("speed", "torque"))
     rows = tuple(
         (Cell(format_number(float(point["speed"][i]))), *(cell(i, j) for j in torques))

@@ -22,8 +22,6 @@ from epicyclic.results.heat import HeatBalance, HeatWay
 from epicyclic.results.result import Result, in_words
 from epicyclic.units import CELSIUS, format_number, percent, unit_text
 
-__all__ = ["found_text", "heat_items", "remarks", "ways_items"]
-
 NOT_LOOKED_AT = (
     "How warm the flanks get was not looked at: with models.friction = ehl-direct that takes "
     "minutes. Ask with models.temperatures = flank."

@@ -30,8 +30,6 @@ from epicyclic.report.result_tables import key_figures
 from epicyclic.report.sweep_page import sweep_key_figures, sweep_sections
 from epicyclic.report.uncertainty_tables import band_figures, uncertainty_items
 
-__all__ = ["items_html", "page_html", "report_html"]
-
 KINDS = {
     "planetary": "Power losses of a planetary gear set",
     "gear_pair": "Power losses of a gear pair",

@@ -16,8 +16,6 @@ from epicyclic.case.train import form_of_set
 from epicyclic.report.page import Cell, Table
 from epicyclic.units import format_number, unit_text
 
-__all__ = ["input_tables"]
-
 MEMBERS = ("sun", "planet", "ring", "pinion", "gear")
 TITLES = {"gears": "All gears", "sun": "Gears", "pinion": "Gears"}
 NOT_SHOWN = ("kind", "title")
@@ -51,23 +49,15 @@ _ONLY_WITH: dict[tuple[str, str], tuple[tuple[str, ...], tuple[str, ...]]] = {
 
 
 def input_tables(
-    inputs: Mapping[str, Any],
-    given: Mapping[str, Any],
+    inputs: Mapping[str, Any],  # The case with its defaults.
+    given: Mapping[str, Any],  # The case as it was given; defaults are marked.
+    # The models that were used. Defaults of keys that have no effect with them are left out.
     models: Mapping[str, str] = MappingProxyType({}),
 ) -> list[Table]:
     """The inputs, one table for each table of the case, gears side by side.
 
     Of a train the tables of each set, and bearings, seals and drags side by side. Tables without
     effect, because every loss is given, are left out.
-
-    Parameters
-    ----------
-    inputs : mapping
-        The case with its defaults.
-    given : mapping
-        The case as it was given; defaults are marked.
-    models : mapping of str to str, optional
-        The models that were used. Defaults of keys that have no effect with them are left out.
     """
     source = _Source(KINDS[inputs["kind"]], given, _used(inputs, models))
     if inputs["kind"] != "train":

@@ -19,8 +19,6 @@ from epicyclic.units import (
     unit_text,
 )
 
-__all__ = ["case_table", "oil_sheet", "oil_table"]
-
 
 def case_table() -> RenderableType:
     """Built-in cases and the words that name their variants."""

@@ -15,8 +15,6 @@ from epicyclic.report.page import Cell, Listing, Table, aligned
 from epicyclic.report.shown import MISSING
 from epicyclic.units import format_number, percent, unit_text
 
-__all__ = ["map_band_tables"]
-
 LEAST = 0.02
 """Largest share in the variance at any point, from which an input is shown. [1]"""
 

@@ -33,8 +33,6 @@ from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.status import Status
 from epicyclic.units import unit_text
 
-__all__ = ["map_key_figures", "map_sections", "validity_items", "versions_of"]
-
 _WHITE = "White: no power is passed on, or the point failed."
 _FOUND = re.compile(r"(Out of range: .*?) -?\d[^;]*;")
 _SMALL = "Out of range, each"

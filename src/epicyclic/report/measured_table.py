@@ -17,8 +17,6 @@ from epicyclic.report.tables import number_table, plain_table
 from epicyclic.sweeps.unloaded import AS_TESTED
 from epicyclic.units import unit_text
 
-__all__ = ["fitted_comment", "measured_tables"]
-
 MOST_POINTS = 40
 """Points that are shown; JSON and the table in Python have all."""
 

@@ -15,8 +15,6 @@ from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import plain_table
 from epicyclic.units import unit_text
 
-__all__ = ["mesh_tables"]
-
 _OVER_PERIOD = ("transmission_error", "mesh_stiffness")
 _EXTREMES = (
     "line_load",

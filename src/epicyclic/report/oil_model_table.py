@@ -13,8 +13,6 @@ from epicyclic.report.shown import shown
 from epicyclic.report.tables import number_table, plain_table
 from epicyclic.units import percent, unit_text
 
-__all__ = ["oil_model_tables"]
-
 INPUTS = (
     "lubricant.pressure_law",
     "lubricant.shear_law",

@@ -10,25 +10,6 @@ from typing import Any
 
 from epicyclic.report.shown import MISSING, shown
 
-__all__ = [
-    "Cell",
-    "Drawing",
-    "Drawings",
-    "Explorer",
-    "Gallery",
-    "Item",
-    "KeyFigure",
-    "Listing",
-    "Row",
-    "Section",
-    "Table",
-    "aligned",
-    "gallery",
-    "number",
-    "tenths",
-]
-
-
 SHORT = 6
 """Lines of a table that is not divided between pages."""
 LINE = 60

@@ -8,8 +8,6 @@ from types import ModuleType
 
 from epicyclic.errors import InputError, Problem
 
-__all__ = ["check_pdf", "report_pdf"]
-
 
 def check_pdf() -> None:
     """Raise `InputError` if WeasyPrint, which is optional, cannot be used."""
@@ -29,13 +27,10 @@ def _weasyprint() -> ModuleType:
         raise InputError([problem], "the command") from None
 
 
-def report_pdf(page: str) -> bytes:
+def report_pdf(
+    page: str,  # As `report_html` returns it.
+) -> bytes:
     """A page as PDF, of its still figures.
-
-    Parameters
-    ----------
-    page : str
-        As `report_html` returns it.
 
     Raises
     ------

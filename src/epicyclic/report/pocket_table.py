@@ -18,8 +18,6 @@ from epicyclic.report.tables import plain_table
 from epicyclic.results.result import of_gear
 from epicyclic.units import unit_text
 
-__all__ = ["pocket_tables"]
-
 FloatArray = NDArray[np.float64]
 
 _BALANCE = (

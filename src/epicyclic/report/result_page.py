@@ -46,8 +46,6 @@ from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.results.result import in_words
 from epicyclic.units import format_number, percent, unit_text
 
-__all__ = ["result_section", "result_sections", "versions_line"]
-
 
 def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
     """All chapters for which the record has content."""

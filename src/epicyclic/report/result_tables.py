@@ -10,23 +10,6 @@ from epicyclic.report.shown import MISSING, error_text, shown
 from epicyclic.results.result import in_words
 from epicyclic.units import known_text, large_unit, percent, unit_text
 
-__all__ = [
-    "Labels",
-    "bearing_tables",
-    "flow_units",
-    "key_figures",
-    "label_of",
-    "losses_table",
-    "members_table",
-    "mesh_tables",
-    "oil_table",
-    "planets_table",
-    "scaled",
-    "share_row",
-    "standing_items",
-    "users_text",
-]
-
 Unit = tuple[str, float]
 """Its name in print and its size."""
 Labels = Mapping[str, str]

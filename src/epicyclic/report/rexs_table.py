@@ -11,24 +11,14 @@ from epicyclic.errors import Problem
 from epicyclic.exchange.rexs.importing import RexsImport
 from epicyclic.report.tables import plain_table
 
-__all__ = ["import_tables"]
-
 
 def import_tables(
-    found: RexsImport, given: Collection[str], problems: Sequence[Problem], notes: Sequence[str]
+    found: RexsImport,
+    given: Collection[str],  # Keys that the user set.
+    problems: Sequence[Problem],  # Problems of the case as it is.
+    notes: Sequence[str],  # What is to be known beside the notes of the import itself.
 ) -> RenderableType:
-    """Summary of an import.
-
-    Parameters
-    ----------
-    found : RexsImport
-    given : collection of str
-        Keys that the user set.
-    problems : sequence of Problem
-        Problems of the case as it is.
-    notes : sequence of str
-        What is to be known beside the notes of the import itself.
-    """
+    """Summary of an import."""
     head = Text(f"REXS {found.version}, {found.component}: {len(found.origins)} keys", "bold")
     parts: list[RenderableType] = [head]
     lacking = found.lacking(given)

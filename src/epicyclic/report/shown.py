@@ -6,8 +6,6 @@ import math
 
 from epicyclic.units import format_number, percent
 
-__all__ = ["MISSING", "error_text", "shown"]
-
 MISSING = "-"
 """Stands where there is no number."""
 

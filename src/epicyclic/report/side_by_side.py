@@ -13,20 +13,13 @@ from epicyclic.report.result_tables import key_figures
 from epicyclic.report.shown import MISSING
 from epicyclic.units import percent
 
-__all__ = ["side_by_side"]
-
 
 def side_by_side(
-    first: ResultContents, second: ResultContents, names: tuple[str, str]
+    first: ResultContents,
+    second: ResultContents,
+    names: tuple[str, str],  # What they are called.
 ) -> Iterator[Table]:
-    """Key figures, losses and inputs of two results.
-
-    Parameters
-    ----------
-    first, second : ResultContents
-    names : tuple of str
-        What they are called.
-    """
+    """Key figures, losses and inputs of two results."""
     figures = [
         {figure.label: _with_unit(figure) for figure in key_figures(result)}
         for result in (first, second)

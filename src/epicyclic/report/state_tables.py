@@ -11,8 +11,6 @@ from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import plain_table
 from epicyclic.units import format_number
 
-__all__ = ["state_tables"]
-
 
 def state_tables(case: TrainCase) -> RenderableType:
     """Shafts of a train with their members, and the ratio of every state."""

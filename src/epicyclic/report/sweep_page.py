@@ -14,8 +14,6 @@ from epicyclic.report.page import Cell, Drawings, KeyFigure, Section, Table, gal
 from epicyclic.status import Status
 from epicyclic.units import format_number, unit_text
 
-__all__ = ["sweep_key_figures", "sweep_sections"]
-
 MOST_ROWS = 12
 """Most rows of the table of points."""
 _POINTS_LEAD = "The points with the least total loss, and the one with the largest."

@@ -42,16 +42,6 @@ from epicyclic.report.train_tables import (
 )
 from epicyclic.results.result import Result, number_fields
 
-__all__ = [
-    "as_on_page",
-    "friction_table",
-    "number_table",
-    "plain_table",
-    "result_tables",
-    "terminal",
-    "titled",
-]
-
 PIPE_WIDTH = 100
 """Width of tables that do not go to a terminal. [characters]"""
 
@@ -63,18 +53,12 @@ def terminal() -> Console:
 
 
 def result_tables(
-    result: Result, remarks: Sequence[str] = (), known: Sequence[str | page.Listing] = ()
+    result: Result,
+    remarks: Sequence[str] = (),  # On its temperatures.
+    # How well the total loss and the efficiency are known.
+    known: Sequence[str | page.Listing] = (),
 ) -> RenderableType:
-    """Everything an engineer reads first: losses, figures, warnings, sources.
-
-    Parameters
-    ----------
-    result : Result
-    remarks : sequence of str
-        On its temperatures.
-    known : sequence of str or Listing
-        How well the total loss and the efficiency are known.
-    """
+    """Everything an engineer reads first: losses, figures, warnings, sources."""
     contents = contents_of(result)
     labels = {field.key: field.label for field in number_fields(result.layout)}
     parts: list[RenderableType] = [_headline(contents)]

@@ -13,16 +13,6 @@ from epicyclic.report.shown import shown
 from epicyclic.results.result import in_words
 from epicyclic.units import percent, unit_text
 
-__all__ = [
-    "clutches_table",
-    "locking_text",
-    "part_tables",
-    "rolling_table",
-    "shafts_table",
-    "sums_table",
-    "terms_table",
-]
-
 SHORT_HEADS = {
     "radial_force": "radial",
     "axial_force": "axial",

@@ -21,13 +21,6 @@ from epicyclic.units import known_text, percent, unit_text
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "band_figures",
-    "pair_tables",
-    "uncertainty_items",
-    "uncertainty_tables",
-]
-
 LEAST = 0.005
 """Share in the variance from which an input or a model is named. [1]"""
 NO_SHARE = 1e-3

@@ -21,18 +21,11 @@ from epicyclic.report.page import (
     Table,
     number,
 )
-from epicyclic.report.validation_table import (
-    closure_table,
-    published_text,
-    remarks,
-    verdict_text,
-)
+from epicyclic.report.validation_table import closure_table, published_text, remarks, verdict_text
 from epicyclic.results.result import versions
 from epicyclic.units import percent, unit_text
 from epicyclic.validation.closures import ClosureFigure
 from epicyclic.validation.compare import Comparison, by_topic, summary
-
-__all__ = ["comparison_sections", "validation_html"]
 
 MOST_ROWS = 8
 """Most rows of one picture."""
@@ -50,19 +43,11 @@ _WIDTHS = (32, 8, 8, 8, 8, 15, 21)
 
 def validation_html(
     rows: Sequence[Comparison],
-    closures: Sequence[ClosureFigure] = (),
+    closures: Sequence[ClosureFigure] = (),  # Open figures of pocketing losses.
+    # Called with the numbers of pictures drawn and to draw.
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> str:
-    """Every published figure, pictured and listed, as one page that needs nothing else.
-
-    Parameters
-    ----------
-    rows : sequence of Comparison
-    closures : sequence of ClosureFigure
-        Open figures of pocketing losses.
-    progress : callable, optional
-        Called with the numbers of pictures drawn and to draw.
-    """
+    """Every published figure, pictured and listed, as one page that needs nothing else."""
     return page_html(
         title="Published figures, computed",
         kind="Validation",

@@ -16,15 +16,6 @@ from epicyclic.validation.closures import CLOSURES, STUDY, ClosureFigure
 from epicyclic.validation.compare import Comparison, summary
 from epicyclic.validation.settled import Estimate, SettledFigure
 
-__all__ = [
-    "closure_table",
-    "published_text",
-    "remarks",
-    "settled_table",
-    "validation_table",
-    "verdict_text",
-]
-
 _STYLES = {"agrees": "green", "differs": "bold red", "calibrated": "dim", "no verdict": "dim"}
 
 

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-__all__ = ["html", "plot", "save", "table"]
-
 FILES = (".nc", ".json", ".html", ".pdf")
 
 

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-__all__ = ["duration_text", "warm_up_rows", "warm_up_tables"]
-
 _UNITS = (("h", 3600.0), ("min", 60.0), ("s", 1.0))
 _SHOWN_CONSTANTS = 4
 

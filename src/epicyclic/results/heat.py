@@ -10,8 +10,6 @@ from typing import Any
 from epicyclic.elements.base import OIL
 from epicyclic.units import CELSIUS
 
-__all__ = ["HeatBalance", "HeatWay"]
-
 
 @dataclass(frozen=True, slots=True)
 class HeatWay:

@@ -8,8 +8,6 @@ from typing import Any
 
 from epicyclic.units import known_text
 
-__all__ = ["OilSupply"]
-
 
 @dataclass(frozen=True, slots=True)
 class OilSupply:

@@ -11,8 +11,6 @@ from epicyclic.results.result import Result, in_words
 from epicyclic.status import Status
 from epicyclic.units import GIGAPASCAL, WATT
 
-__all__ = ["judged"]
-
 NEGLIGIBLE = 1e-3
 """A loss that is below zero by a smaller share of the sum of all magnitudes is an error of the
 numerics: the power of pockets is a small difference of large ones. [1]"""

@@ -31,21 +31,6 @@ from epicyclic.units import CELSIUS, DEGREE, NEWTON_METRE, RPM, WATT, known_text
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = [
-    "Layout",
-    "LossTerm",
-    "MemberState",
-    "NumberField",
-    "PowerFlow",
-    "Result",
-    "Train",
-    "in_words",
-    "number_fields",
-    "of_gear",
-    "origin",
-    "versions",
-]
-
 LOSSES_OF_ROLES = {
     "friction": "sliding",
     "rolling": "rolling",
@@ -132,33 +117,20 @@ class PowerFlow:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """What the results of a case consist of, known before they are.
+    """What the results of a case consist of, known before they are."""
 
-    Attributes
-    ----------
-    losses, members, meshes, bearings : tuple of str
-        Keys of the loss terms, shafts, meshes of computed losses, and planet bearings.
-    shares : bool
-        True if there are planets that share a load.
-    rolling : tuple of str
-        Keys of the meshes of a train, whose rolling power is stated; empty for a single set.
-    parts : tuple
-        Keys of further elements with the type of their figures.
-    fluid : bool
-        False if nothing is computed that needs an oil.
-    nodes : tuple of str
-        Parts whose temperatures follow from the losses.
-    """
-
+    # Keys of the loss terms, shafts, meshes of computed losses, and planet bearings.
     losses: tuple[str, ...]
     members: tuple[str, ...]
     meshes: tuple[str, ...]
     bearings: tuple[str, ...] = ()
-    shares: bool = False
+    shares: bool = False  # True if there are planets that share a load.
+    # Keys of the meshes of a train, whose rolling power is stated; empty for a single set.
     rolling: tuple[str, ...] = ()
+    # Keys of further elements with the type of their figures.
     parts: tuple[tuple[str, type[DataclassInstance]], ...] = ()
-    fluid: bool = True
-    nodes: tuple[str, ...] = ()
+    fluid: bool = True  # False if nothing is computed that needs an oil.
+    nodes: tuple[str, ...] = ()  # Parts whose temperatures follow from the losses.
 
 
 @dataclass(frozen=True, slots=True)
@@ -529,20 +501,12 @@ def _json_value(value: Any) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class NumberField:
-    """One number that every result of a kind has.
+    """One number that every result of a kind has."""
 
-    Attributes
-    ----------
-    key, label, unit : str
-        As in `Figure`.
-    read : callable
-        Takes it from a result; NaN where there is none.
-    """
-
-    key: str
-    label: str
-    unit: str
-    read: Callable[[Result], float]
+    key: str  # As in `Figure`.
+    label: str  # As in `Figure`.
+    unit: str  # As in `Figure`.
+    read: Callable[[Result], float]  # Takes it from a result; NaN where there is none.
 
 
 @lru_cache(maxsize=16)

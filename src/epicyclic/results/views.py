@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-__all__ = ["Views"]
-
 _MADE_BY = "epicyclic.report.views"
 
 
@@ -24,14 +22,13 @@ class Views:
 
     __slots__ = ()
 
-    def table(self, of: str = "losses") -> pd.DataFrame:
+    def table(
+        self,
+        # ``"losses"``: power, share of the total, group and method of every loss and sum.
+        # ``"numbers"``: value, unit and label of every number, as sweeps store them.
+        of: str = "losses",
+    ) -> pd.DataFrame:
         """Losses, or every number, as a table.
-
-        Parameters
-        ----------
-        of : str
-            ``"losses"``: power, share of the total, group and method of every loss and sum.
-            ``"numbers"``: value, unit and label of every number, as sweeps store them.
 
         Returns
         -------
@@ -50,21 +47,15 @@ class Views:
 
     def plot(
         self,
+        # Its name, ``"power-flow"``; an unknown one is answered with those that there are.
         what: str = "losses",
         *,
+        # Width and height; default: those of a slide. [mm]
         size: tuple[float, float] | None = None,
+        # Pixels an inch; default: such that the picture is as wide as a slide of 1920 pixels.
         dpi: float | None = None,
     ) -> Figure:
         """One of the pictures of ``epicyclic plot``.
-
-        Parameters
-        ----------
-        what : str
-            Its name, ``"power-flow"``; an unknown one is answered with those that there are.
-        size : tuple of float, optional
-            Width and height; default: those of a slide. [mm]
-        dpi : float, optional
-            Pixels an inch; default: such that the picture is as wide as a slide of 1920 pixels.
 
         Returns
         -------
@@ -79,14 +70,13 @@ class Views:
         figure: Figure = _made("plot", self, what, size, dpi)
         return figure
 
-    def save(self, path: str | Path) -> None:
+    def save(
+        self,
+        # ``.nc``: everything, for `open_result`, reports and plots; ``.json``: the numbers;
+        # ``.html`` or ``.pdf``: the report.
+        path: str | Path,
+    ) -> None:
         """Keep the result in a file, whole or not at all.
-
-        Parameters
-        ----------
-        path : str or Path
-            ``.nc``: everything, for `open_result`, reports and plots; ``.json``: the numbers;
-            ``.html`` or ``.pdf``: the report.
 
         Raises
         ------

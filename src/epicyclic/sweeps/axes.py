@@ -20,20 +20,6 @@ from epicyclic.case.wording import refused, written
 from epicyclic.errors import Problem
 from epicyclic.units import Quantity
 
-__all__ = [
-    "MOST_POINTS",
-    "ROW",
-    "Axis",
-    "coordinate_of",
-    "field_problem",
-    "listed",
-    "make_axis",
-    "make_group",
-    "make_rows",
-    "too_many",
-    "unit_of",
-]
-
 MOST_POINTS = 1_000_000
 """Rows of more points do not fit into memory."""
 ROW = "row"
@@ -44,27 +30,13 @@ _LARGEST_WHOLE = 2**53
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One dimension of a sweep: a key and its values.
+    """One dimension of a sweep: a key and its values."""
 
-    Attributes
-    ----------
-    key : str
-        Dotted key of the case, or `ROW`.
-    values : tuple
-        As a case file has them.
-    coordinate : tuple of float or str
-        The same as numbers in `unit`, or as names.
-    unit : str
-        Display unit; ``"1"`` for pure numbers, empty for names.
-    together : tuple of Axis
-        Other keys, whose values change with these.
-    """
-
-    key: str
-    values: tuple[Any, ...]
-    coordinate: tuple[float | str, ...]
-    unit: str
-    together: tuple[Axis, ...] = ()
+    key: str  # Dotted key of the case, or `ROW`.
+    values: tuple[Any, ...]  # As a case file has them.
+    coordinate: tuple[float | str, ...]  # The same as numbers in `unit`, or as names.
+    unit: str  # Display unit; ``"1"`` for pure numbers, empty for names.
+    together: tuple[Axis, ...] = ()  # Other keys, whose values change with these.
 
     @property
     def keys(self) -> tuple[Axis, ...]:

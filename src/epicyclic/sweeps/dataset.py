@@ -25,17 +25,6 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-__all__ = [
-    "FORMATS",
-    "by_keys",
-    "check_output",
-    "csv_safe",
-    "to_dataset",
-    "to_table",
-    "write_dataset",
-    "write_netcdf",
-]
-
 FORMATS = (".nc", ".csv", ".parquet")
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """What formulas of spreadsheets begin with."""

@@ -15,8 +15,6 @@ from typing import Any
 
 from epicyclic.units import one_of, pure_number
 
-__all__ = ["FUNCTIONS", "Expression", "parse_expression"]
-
 Value = Any
 """A float, or a pint quantity."""
 Lookup = Callable[[str], Value]
@@ -64,17 +62,10 @@ _KNOWN = f"{', '.join([*FUNCTIONS, _CASE])}"
 
 @dataclass(frozen=True, slots=True)
 class Expression:
-    """A tree of allowed parts.
-
-    Attributes
-    ----------
-    tree : ast.expr
-    keys : tuple of str
-        Keys whose values it takes at a point.
-    """
+    """A tree of allowed parts."""
 
     tree: ast.expr
-    keys: tuple[str, ...]
+    keys: tuple[str, ...]  # Keys whose values it takes at a point.
 
     def value(self, at_point: Lookup, in_case: Lookup) -> Value:
         """Its value with those of keys at a point, and in the case.

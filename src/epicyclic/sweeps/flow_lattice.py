@@ -28,8 +28,6 @@ from epicyclic.sweeps.plan import PointList
 if TYPE_CHECKING:
     from epicyclic.case.case import Case
 
-__all__ = ["FlowLattice", "NearbyPoints"]
-
 Floats = NDArray[np.float64]
 
 PER_OCTAVE = 16

@@ -23,8 +23,6 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from epicyclic.errors import InputError, Problem
 from epicyclic.status import Status
 
-__all__ = ["NOT_COMPUTED", "Journal", "Row", "Rows", "read_heading"]
-
 NOT_COMPUTED = "not computed"
 """Status of the points of other shards."""
 
@@ -38,19 +36,12 @@ more bytes counts as several."""
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One finished point of a study.
+    """One finished point of a study."""
 
-    Attributes
-    ----------
-    status, message, warnings : str
-        How it ended, why it failed, what to know.
-    numbers : dict of str to float
-        As `Result.numbers` names them; empty if it failed.
-    """
-
-    status: str
-    message: str = ""
-    warnings: str = ""
+    status: str  # How it ended, why it failed, what to know.
+    message: str = ""  # How it ended, why it failed, what to know.
+    warnings: str = ""  # How it ended, why it failed, what to know.
+    # As `Result.numbers` names them; empty if it failed.
     numbers: dict[str, float] = field(default_factory=dict)
 
 
@@ -117,17 +108,10 @@ _RECORD, _HEADING = TypeAdapter(_Record), TypeAdapter(_Heading)
 
 @dataclass(frozen=True, slots=True)
 class Journal:
-    """Finished points on disk.
-
-    Attributes
-    ----------
-    path : Path
-    fingerprint : str
-        Fingerprint of the plan; a journal of another plan is not touched.
-    """
+    """Finished points on disk."""
 
     path: Path
-    fingerprint: str
+    fingerprint: str  # Fingerprint of the plan; a journal of another plan is not touched.
 
     def read(self) -> dict[int, Row]:
         """Finished points by number; none if there is no file.

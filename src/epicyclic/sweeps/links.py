@@ -20,8 +20,6 @@ from epicyclic.sweeps.axes import coordinate_of, field_problem
 from epicyclic.sweeps.expression import parse_expression
 from epicyclic.units import format_number, in_unit, with_unit
 
-__all__ = ["Point", "check_links", "keys_behind"]
-
 Links = Mapping[str, str]
 _WHOLE = 1e-9
 """A result that is nearer to a whole number is that number."""
@@ -29,20 +27,11 @@ _WHOLE = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """A point of a sweep: values of varied keys, and those that follow.
-
-    Attributes
-    ----------
-    case : Case
-    changes : mapping
-        Varied keys with their values.
-    links : mapping of str to str
-        Keys with the expressions that they follow.
-    """
+    """A point of a sweep: values of varied keys, and those that follow."""
 
     case: Case
-    changes: Mapping[str, Any]
-    links: Links
+    changes: Mapping[str, Any]  # Varied keys with their values.
+    links: Links  # Keys with the expressions that they follow.
 
     def followed(self) -> dict[str, Any]:
         """All keys that change, with their values as a case file has them.

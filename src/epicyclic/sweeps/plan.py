@@ -16,10 +16,11 @@ import numpy as np
 
 from epicyclic.analysis.solve import solve
 from epicyclic.case.base import FILE_KEYS
-from epicyclic.case.case import Case, TrainCase, build_case
+from epicyclic.case.case import Case, build_case
 from epicyclic.case.fields import is_whole_number
 from epicyclic.case.keys import field_at
 from epicyclic.case.plain import plain
+from epicyclic.case.train import TrainCase
 from epicyclic.case.values import parse_value
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.pocketing.table import FlowTables
@@ -38,17 +39,6 @@ from epicyclic.sweeps.links import Point, check_links, keys_behind
 from epicyclic.sweeps.pockets import flow_tables
 from epicyclic.sweeps.runner import Plan
 from epicyclic.units import format_number
-
-__all__ = [
-    "Axis",
-    "CasePlan",
-    "PointList",
-    "SweepPlan",
-    "make_plan",
-    "parse_links",
-    "parse_together",
-    "parse_vary",
-]
 
 _RANGE = re.compile(
     r"\s*(?P<start>[^:,]+?)\s*:\s*(?P<stop>[^:,]+?)\s*:\s*(?P<count>\d+)\s*(?P<unit>[^:,\d][^:,]*)?"
@@ -72,16 +62,10 @@ _OPERATING_TABLES = (
 
 @dataclass(frozen=True, slots=True)
 class CasePlan(Plan):
-    """Cases to be solved: one case, and what each point changes in it.
-
-    Attributes
-    ----------
-    case : Case
-    flow_tables : mapping
-        Tables of flows through pockets that points share, see `prepared`.
-    """
+    """Cases to be solved: one case, and what each point changes in it."""
 
     case: Case
+    # Tables of flows through pockets that points share, see `prepared`.
     flow_tables: FlowTables = field(default_factory=dict, kw_only=True, repr=False)
 
     @property
@@ -241,25 +225,15 @@ class PointList(CasePlan):
 
 def make_plan(
     case: Case,
+    # Dotted keys to their values, as a case file has them.
     vary: Mapping[str, Iterable[Any]] | None = None,
     *,
+    # Groups of keys whose values change together.
     together: Iterable[Mapping[str, Iterable[Any]]] = (),
-    points: Mapping[str, Iterable[Any]] | None = None,
-    links: Mapping[str, str] | None = None,
+    points: Mapping[str, Iterable[Any]] | None = None,  # The columns of a table of points.
+    links: Mapping[str, str] | None = None,  # Keys to expressions of others.
 ) -> SweepPlan:
     """Check what is to be varied.
-
-    Parameters
-    ----------
-    case : PlanetaryCase or GearPairCase
-    vary : mapping of str to iterable, optional
-        Dotted keys to their values, as a case file has them.
-    together : iterable of mapping, optional
-        Groups of keys whose values change together.
-    points : mapping of str to iterable, optional
-        The columns of a table of points.
-    links : mapping of str to str, optional
-        Keys to expressions of others.
 
     Raises
     ------

@@ -32,8 +32,6 @@ from epicyclic.sweeps.journal import Row
 from epicyclic.sweeps.runner import Plan
 from epicyclic.units import NUMBER, Quantity
 
-__all__ = ["NUMBERS", "PARAMETERS", "STUDIES", "StudyAxis", "StudyPlan", "make_study"]
-
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
@@ -62,23 +60,12 @@ PARAMETERS = {
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """Which curves and panels a figure over one parameter has.
+    """Which curves and panels a figure over one parameter has."""
 
-    Attributes
-    ----------
-    figure : str
-        Figure of Talbot (2012).
-    panels : tuple of str
-        Parameters with one panel for each value.
-    curves : str
-        Parameter with one curve for each value.
-    levels : mapping of str to tuple of float
-        Values of these: helix angles in degrees, the others over those of the case.
-    """
-
-    figure: str
-    panels: tuple[str, ...]
-    curves: str
+    figure: str  # Figure of Talbot (2012).
+    panels: tuple[str, ...]  # Parameters with one panel for each value.
+    curves: str  # Parameter with one curve for each value.
+    # Values of these: helix angles in degrees, the others over those of the case.
     levels: Mapping[str, tuple[float, ...]]
 
 
@@ -132,25 +119,15 @@ class StudyAxis:
 
 @dataclass(frozen=True, slots=True)
 class StudyPlan(Plan):
-    """All points of some studies of one mesh, each point once.
-
-    Attributes
-    ----------
-    case : Case
-    duty : MeshDuty
-    axes : dict of str to tuple of StudyAxis
-        By study: panels, curves, and last the parameter itself.
-    points : tuple of PocketVariant
-    given : dict
-        What was asked for, as `make_study` takes it.
-    """
+    """All points of some studies of one mesh, each point once."""
 
     kind: ClassVar[str] = "study"
     case: Case
     duty: MeshDuty
+    # By study: panels, curves, and last the parameter itself.
     axes: dict[str, tuple[StudyAxis, ...]]
     points: tuple[PocketVariant, ...]
-    given: dict[str, Any]
+    given: dict[str, Any]  # What was asked for, as `make_study` takes it.
 
     @classmethod
     def again(cls, content: Mapping[str, Any], source: str) -> StudyPlan:

@@ -27,8 +27,6 @@ from epicyclic.sweeps.runner import Progress, Runner
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["pocketing_study", "study_datasets"]
-
 
 def pocketing_study(
     case: Case,

@@ -29,15 +29,6 @@ from epicyclic.sweeps.runner import Plan, Progress, Runner
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "SPEED",
-    "TEMPERATURE",
-    "TablePlan",
-    "make_table_plan",
-    "pocketing_table",
-    "table_dataset",
-]
-
 SPEED, TEMPERATURE = AXES["speed"], AXES["temperature"]
 
 _PER_OCTAVE = 256

@@ -16,8 +16,6 @@ from epicyclic.pocketing.table import FlowTables, make_tables
 if TYPE_CHECKING:
     from epicyclic.sweeps.plan import CasePlan
 
-__all__ = ["flow_tables"]
-
 _LIKE_SPEED = (
     STATE_KEY,
     AXES["speed"],

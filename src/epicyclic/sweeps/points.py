@@ -17,8 +17,6 @@ from epicyclic.text_file import read_text, refuse
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["columns_of"]
-
 _LARGEST_FILE = 10_000_000
 """[bytes]"""
 _HEADER = re.compile(r"(?P<key>[^\[\]]+?)\s*(\[(?P<unit>[^\[\]]*)\])?")

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-__all__ = ["sweep"]
-
 
 def sweep(
     case: Case,

@@ -29,17 +29,6 @@ from epicyclic.status import Status
 from epicyclic.sweeps.journal import Journal, Row, Rows
 from epicyclic.whole_file import make_folder
 
-__all__ = [
-    "HERE",
-    "Plan",
-    "Progress",
-    "Runner",
-    "failed_row",
-    "fingerprint",
-    "parse_shard",
-    "share_of",
-]
-
 Progress = Callable[..., None]
 Batch = list[tuple[int, Row]]
 
@@ -115,32 +104,18 @@ def fingerprint(plan: Plan) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Runner:
-    """How the points of a plan are computed: all with the same rows.
+    """How the points of a plan are computed: all with the same rows."""
 
-    Attributes
-    ----------
-    jobs : int, optional
-        Worker processes. Default: one for each core if the work is worth it, else none.
-    dask : str, optional
-        Address of the scheduler of a Dask cluster that takes their place.
-    shard : (int, int), optional
-        Which share of the points, and of how many: (2, 8). Default: all.
-    journal : str or Path, optional
-        Keeps finished points.
-    progress : callable, optional
-        Called with the number of finished points and of all, or of those of the share.
-    tell_failures : bool
-        Whether it is called with the number of failed points too.
-    output : mapping
-        How the rows are to be written, kept in the journal.
-    """
-
+    # Worker processes. Default: one for each core if the work is worth it, else none.
     jobs: int | None = None
-    dask: str | None = None
+    dask: str | None = None  # Address of the scheduler of a Dask cluster that takes their place.
+    # Which share of the points, and of how many: (2, 8). Default: all.
     shard: tuple[int, int] | None = None
-    journal: str | Path | None = None
+    journal: str | Path | None = None  # Keeps finished points.
+    # Called with the number of finished points and of all, or of those of the share.
     progress: Progress | None = None
-    tell_failures: bool = False
+    tell_failures: bool = False  # Whether it is called with the number of failed points too.
+    # How the rows are to be written, kept in the journal.
     output: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

@@ -11,8 +11,6 @@ from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.sweeps.journal import NOT_COMPUTED, Journal, Rows, read_heading
 from epicyclic.sweeps.runner import Plan, fingerprint, share_of
 
-__all__ = ["gather"]
-
 
 class PlanKind(Protocol):
     """A class of plans."""
@@ -22,16 +20,10 @@ class PlanKind(Protocol):
 
 
 def gather(
-    files: Sequence[Path], kinds: Mapping[str, PlanKind]
+    files: Sequence[Path],  # Journals of all shards.
+    kinds: Mapping[str, PlanKind],  # Classes of plans by `Plan.kind`.
 ) -> tuple[Plan, Rows, dict[str, Any]]:
     """The plan of which `files` hold shards, all its points, and how they are to be written.
-
-    Parameters
-    ----------
-    files : sequence of Path
-        Journals of all shards.
-    kinds : mapping
-        Classes of plans by `Plan.kind`.
 
     Raises
     ------

@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 from epicyclic.case.operating import AXES
 from epicyclic.sweeps.journal import Rows
 
-__all__ = ["AS_TESTED", "COMPUTED", "LoadDependent", "as_tested", "with_unloaded"]
-
 Points = tuple[dict[str, Any], ...]
 
 LoadDependent = Literal["computed", "as-tested"]

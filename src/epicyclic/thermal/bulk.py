@@ -10,17 +10,6 @@ import math
 from collections.abc import Mapping
 from types import MappingProxyType
 
-__all__ = [
-    "LUBRICATION_FACTORS",
-    "bulk_rise_of_flash",
-    "bulk_rise_of_integral_flash",
-    "bulk_rise_of_loss",
-    "mates_factor",
-    "mean_friction",
-    "relief_factor",
-    "roughness_factor",
-]
-
 LUBRICATION_FACTORS: Mapping[str, float] = MappingProxyType(
     {"spray": 1.2, "dip": 1.0, "spray-and-dip": 1.0, "submerged": 0.2}
 )
@@ -33,32 +22,19 @@ MICROMETRE = 1e6
 
 
 def mean_friction(
+    # Transverse tangential force on the base circle over the face width, with the load factors.
+    # [N/m]
     line_load: float,
-    sum_speed: float,
-    radius: float,
-    viscosity: float,
-    roughness_factor: float,
+    sum_speed: float,  # Sum of the surface speeds at the pitch point, 2 v_t sin(alpha_wt). [m/s]
+    radius: float,  # Equivalent radius of curvature at the pitch point, normal section. [m]
+    viscosity: float,  # Viscosity of the oil at its inlet temperature, dynamic. [Pa s]
+    roughness_factor: float,  # X_R, from `roughness_factor`. [1]
+    # X_L: mineral oil 1.0, PAO and ester 0.8, polyglycol 0.7, phosphate ester 0.75. [1]
     lubricant_factor: float,
 ) -> float:
     """Mean coefficient of friction of ISO/TS 6336-22, second hand. [1]
 
     Theory (W5).
-
-    Parameters
-    ----------
-    line_load : float
-        Transverse tangential force on the base circle over the face width, with the load factors.
-        [N/m]
-    sum_speed : float
-        Sum of the surface speeds at the pitch point, 2 v_t sin(alpha_wt). [m/s]
-    radius : float
-        Equivalent radius of curvature at the pitch point, normal section. [m]
-    viscosity : float
-        Viscosity of the oil at its inlet temperature, dynamic. [Pa s]
-    roughness_factor : float
-        X_R, from `roughness_factor`. [1]
-    lubricant_factor : float
-        X_L: mineral oil 1.0, PAO and ester 0.8, polyglycol 0.7, phosphate ester 0.75. [1]
 
     Examples
     --------
@@ -71,17 +47,13 @@ def mean_friction(
     return 0.045 * math.pow(group, 0.2) * thin * roughness_factor * lubricant_factor
 
 
-def roughness_factor(roughness: float, radius: float) -> float:
+def roughness_factor(
+    roughness: float,  # Ra, mean of both flanks. [m]
+    radius: float,  # Equivalent radius of curvature at the pitch point, normal section. [m]
+) -> float:
     """X_R = 2.2 (Ra/rho)^0.25 of ISO/TS 6336-22, um and mm, second hand. [1]
 
     Theory (W5).
-
-    Parameters
-    ----------
-    roughness : float
-        Ra, mean of both flanks. [m]
-    radius : float
-        Equivalent radius of curvature at the pitch point, normal section. [m]
 
     Examples
     --------
@@ -91,19 +63,17 @@ def roughness_factor(roughness: float, radius: float) -> float:
     return 2.2 * math.pow(roughness * MICROMETRE / (radius * MM), 0.25)
 
 
-def relief_factor(tip_contact_ratio: float, relief_share: float) -> float:
+def relief_factor(
+    # The greater of eps_1 and eps_2, parts of the transverse contact ratio. [1]
+    tip_contact_ratio: float,
+    # Tip relief over the one that takes up the deflection of the teeth, C_a/C_eff, at most 1. [1]
+    relief_share: float,
+) -> float:
     """X_Ca of ISO/TS 6336-22, second hand: tip relief cools. [1]
 
     Theory (W6).
 
     For flanks without adequate tip relief the rise is taken with 1 instead.
-
-    Parameters
-    ----------
-    tip_contact_ratio : float
-        The greater of eps_1 and eps_2, parts of the transverse contact ratio. [1]
-    relief_share : float
-        Tip relief over the one that takes up the deflection of the teeth, C_a/C_eff, at most 1. [1]
 
     Examples
     --------
@@ -116,26 +86,15 @@ def relief_factor(tip_contact_ratio: float, relief_share: float) -> float:
 
 
 def bulk_rise_of_loss(
-    loss: float,
-    center_distance: float,
-    face_width: float,
-    lubrication_factor: float,
-    relief_factor: float = 1.0,
+    loss: float,  # Load-dependent loss of the mesh, P mu_m H_V. [W]
+    center_distance: float,  # [m]
+    face_width: float,  # [m]
+    lubrication_factor: float,  # X_S, one of `LUBRICATION_FACTORS`. [1]
+    relief_factor: float = 1.0,  # X_Ca. [1]
 ) -> float:
     """Bulk temperature above that of the oil, ISO/TS 6336-22, second hand. [K]
 
     Theory (W4).
-
-    Parameters
-    ----------
-    loss : float
-        Load-dependent loss of the mesh, P mu_m H_V. [W]
-    center_distance, face_width : float
-        [m]
-    lubrication_factor : float
-        X_S, one of `LUBRICATION_FACTORS`. [1]
-    relief_factor : float
-        X_Ca. [1]
 
     Examples
     --------
@@ -149,19 +108,14 @@ def bulk_rise_of_loss(
     return 7400 * math.pow(density, 0.72) * lubrication_factor / (1.2 * relief_factor)
 
 
-def bulk_rise_of_flash(mean_flash: float, lubrication_factor: float, mates: int = 1) -> float:
+def bulk_rise_of_flash(
+    mean_flash: float,  # Flash temperature, mean along the path of contact. [K]
+    lubrication_factor: float,  # X_S, one of `LUBRICATION_FACTORS`. [1]
+    mates: int = 1,  # How many gears are in mesh with this one.
+) -> float:
     """Bulk temperature above that of the oil, ISO/TS 6336-20, second hand. [K]
 
     Theory (W7).
-
-    Parameters
-    ----------
-    mean_flash : float
-        Flash temperature, mean along the path of contact. [K]
-    lubrication_factor : float
-        X_S, one of `LUBRICATION_FACTORS`. [1]
-    mates : int
-        How many gears are in mesh with this one.
 
     Examples
     --------
@@ -186,17 +140,13 @@ def mates_factor(mates: int) -> float:
     return (1 + mates) / 2
 
 
-def bulk_rise_of_integral_flash(integral_flash: float, lubrication_factor: float) -> float:
+def bulk_rise_of_integral_flash(
+    integral_flash: float,  # Mean flash temperature of the integral temperature method. [K]
+    lubrication_factor: float,  # X_S, one of `LUBRICATION_FACTORS`. [1]
+) -> float:
     """Bulk temperature above that of the oil, ISO/TS 6336-21, second hand. [K]
 
     Theory (W8).
-
-    Parameters
-    ----------
-    integral_flash : float
-        Mean flash temperature of the integral temperature method. [K]
-    lubrication_factor : float
-        X_S, one of `LUBRICATION_FACTORS`. [1]
 
     Examples
     --------

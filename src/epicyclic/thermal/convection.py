@@ -9,14 +9,6 @@ from numpy.typing import NDArray
 
 from epicyclic.thermal.fluid import Fluid
 
-__all__ = [
-    "cylinder_in_air",
-    "dipped_disc",
-    "disc_coefficient",
-    "roller_conductance",
-    "room_convection",
-]
-
 FloatArray = NDArray[np.float64]
 
 TRANSITION_REYNOLDS = 2.4e5
@@ -24,7 +16,10 @@ TRANSITION_REYNOLDS = 2.4e5
 
 
 def disc_coefficient(
-    fluid: Fluid, speed: float, outer_radius: float, inner_radius: float = 0.0
+    fluid: Fluid,
+    speed: float,  # Against the fluid, of either sign. [rad/s]
+    outer_radius: float,  # [m]
+    inner_radius: float = 0.0,  # Inner radius of an annulus; 0 for a disc. [m]
 ) -> float:
     """Mean heat transfer coefficient of one face of a disc turning in a fluid at rest. [W/(m^2 K)]
 
@@ -32,16 +27,6 @@ def disc_coefficient(
 
     Area mean of the laminar coefficient within the radius of transition and the turbulent one
     outside. The face is equally hot all over, the fluid around it free of walls.
-
-    Parameters
-    ----------
-    fluid : Fluid
-    speed : float
-        Against the fluid, of either sign. [rad/s]
-    outer_radius : float
-        [m]
-    inner_radius : float
-        Inner radius of an annulus; 0 for a disc. [m]
 
     Examples
     --------
@@ -98,19 +83,15 @@ def dipped_disc(fluid: Fluid, speed: float, diameter: float) -> float:
     return nusselt * fluid.conductivity / diameter
 
 
-def cylinder_in_air(speed: float, radius: float) -> float:
+def cylinder_in_air(
+    speed: float,  # Against the air, of either sign. [rad/s]
+    radius: float,  # [m]
+) -> float:
     """Heat transfer coefficient of a shaft turning in air. [W/(m^2 K)]
 
     Theory (W18).
 
     Film law of the program Thermca, second hand.
-
-    Parameters
-    ----------
-    speed : float
-        Against the air, of either sign. [rad/s]
-    radius : float
-        [m]
 
     Examples
     --------
@@ -120,17 +101,15 @@ def cylinder_in_air(speed: float, radius: float) -> float:
     return 3.75 * math.pow(abs(speed), 0.7) * math.pow(radius, 0.4)
 
 
-def room_convection(surface_temperature: float, air_temperature: float) -> float:
+def room_convection(
+    surface_temperature: float,  # [K]
+    air_temperature: float,  # [K]
+) -> float:
     """Heat transfer coefficient of a surface at rest in a room, without radiation. [W/(m^2 K)]
 
     Theory (W19).
 
     Film law of the program Thermca, second hand.
-
-    Parameters
-    ----------
-    surface_temperature, air_temperature : float
-        [K]
 
     Examples
     --------
@@ -141,13 +120,15 @@ def room_convection(surface_temperature: float, air_temperature: float) -> float
 
 
 def roller_conductance(
+    # inner_half_width, outer_half_width: Half-width of the Hertz contacts of each roller, or slice
+    # of a roller. [m]
     inner_half_width: FloatArray,
     outer_half_width: FloatArray,
-    length: FloatArray | float,
-    roller_diameter: float,
-    inner_pitch: float,
-    outer_pitch: float,
-    conductivity: float,
+    length: FloatArray | float,  # Length of the same. [m]
+    roller_diameter: float,  # [m]
+    inner_pitch: float,  # Distance of neighbouring contacts along each race. [m]
+    outer_pitch: float,  # Distance of neighbouring contacts along each race. [m]
+    conductivity: float,  # Conductivity of races and rollers. [W/(m K)]
 ) -> float:
     """Heat from race to race through loaded rollers, by the temperature difference. [W/K]
 
@@ -155,19 +136,6 @@ def roller_conductance(
 
     Derived here: constriction of the heat in either race and in the roller, contacts at rest and
     dry. Rollers that touch one race only, with half-width 0, lead nothing.
-
-    Parameters
-    ----------
-    inner_half_width, outer_half_width : ndarray
-        Half-width of the Hertz contacts of each roller, or slice of a roller. [m]
-    length : ndarray or float
-        Length of the same. [m]
-    roller_diameter : float
-        [m]
-    inner_pitch, outer_pitch : float
-        Distance of neighbouring contacts along each race. [m]
-    conductivity : float
-        Conductivity of races and rollers. [W/(m K)]
 
     Examples
     --------

@@ -7,27 +7,20 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["effusivity", "flash_temperature", "heat_share"]
-
 FloatArray = NDArray[np.float64]
 Numbers = FloatArray | float
 
 
-def effusivity(conductivity: float, heat_capacity: float, density: float) -> float:
+def effusivity(
+    conductivity: float,  # [W/(m K)]
+    heat_capacity: float,  # [J/(kg K)]
+    density: float,  # [kg/m^3]
+) -> float:
     """Thermal effusivity e = sqrt(k c rho) of a solid. [W s^0.5/(m^2 K)]
 
     Theory (W1).
 
     The square root of the thermal contact coefficient B_M of ISO/TS 6336-20 to -22.
-
-    Parameters
-    ----------
-    conductivity : float
-        [W/(m K)]
-    heat_capacity : float
-        [J/(kg K)]
-    density : float
-        [kg/m^3]
 
     Examples
     --------
@@ -40,14 +33,14 @@ def effusivity(conductivity: float, heat_capacity: float, density: float) -> flo
 
 
 def flash_temperature(
-    friction: Numbers,
-    line_load: Numbers,
-    sliding_speed: Numbers,
-    speed1: Numbers,
-    speed2: Numbers,
-    half_width: Numbers,
-    effusivity1: float,
-    effusivity2: float,
+    friction: Numbers,  # Coefficient of friction mu. [1]
+    line_load: Numbers,  # W'. [N/m]
+    sliding_speed: Numbers,  # u_s, of either sign. [m/s]
+    speed1: Numbers,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
+    speed2: Numbers,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
+    half_width: Numbers,  # b of Hertz. [m]
+    effusivity1: float,  # [W s^0.5/(m^2 K)]
+    effusivity2: float,  # [W s^0.5/(m^2 K)]
 ) -> FloatArray:
     """Largest rise of the surface temperature in a line contact above that of the bodies. [K]
 
@@ -57,21 +50,6 @@ def flash_temperature(
     width of Hertz, shared so that both surfaces are equally hot. The bodies are half-spaces that
     move fast: u b/kappa above about 10 for each, kappa its thermal diffusivity. Arguments are
     numbers or arrays, point by point; 0 without load or speed.
-
-    Parameters
-    ----------
-    friction : ndarray or float
-        Coefficient of friction mu. [1]
-    line_load : ndarray or float
-        W'. [N/m]
-    sliding_speed : ndarray or float
-        u_s, of either sign. [m/s]
-    speed1, speed2 : ndarray or float
-        Speeds of the surfaces across the contact line, of either sign. [m/s]
-    half_width : ndarray or float
-        b of Hertz. [m]
-    effusivity1, effusivity2 : float
-        [W s^0.5/(m^2 K)]
 
     Examples
     --------
@@ -88,20 +66,16 @@ def flash_temperature(
 
 
 def heat_share(
-    speed1: Numbers, speed2: Numbers, effusivity1: float, effusivity2: float
+    speed1: Numbers,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
+    speed2: Numbers,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
+    effusivity1: float,  # [W s^0.5/(m^2 K)]
+    effusivity2: float,  # [W s^0.5/(m^2 K)]
 ) -> FloatArray:
     """Share of the frictional heat that goes into body 1. [1]
 
     Theory (W3).
 
     H. Blok (1937). With both surfaces at rest it is the limit of equal speeds.
-
-    Parameters
-    ----------
-    speed1, speed2 : ndarray or float
-        Speeds of the surfaces across the contact line, of either sign. [m/s]
-    effusivity1, effusivity2 : float
-        [W s^0.5/(m^2 K)]
 
     Examples
     --------

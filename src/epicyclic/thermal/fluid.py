@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from epicyclic.lubricant.properties import AIR_GAS_CONSTANT, MixtureState, air_viscosity
 
-__all__ = ["Fluid", "air", "air_conductivity", "mixture", "oil_conductivity", "oil_heat_capacity"]
-
 AIR_HEAT_CAPACITY = 1004.7
 """3.5 R of dry air, ISO 2533. [J/(kg K)]"""
 KELVIN = 273.15
@@ -17,24 +15,12 @@ KELVIN = 273.15
 
 @dataclass(frozen=True, slots=True)
 class Fluid:
-    """What heat transfer to a fluid depends on.
+    """What heat transfer to a fluid depends on."""
 
-    Attributes
-    ----------
-    density : float
-        [kg/m^3]
-    dynamic_viscosity : float
-        [Pa s]
-    conductivity : float
-        [W/(m K)]
-    heat_capacity : float
-        At constant pressure. [J/(kg K)]
-    """
-
-    density: float
-    dynamic_viscosity: float
-    conductivity: float
-    heat_capacity: float
+    density: float  # [kg/m^3]
+    dynamic_viscosity: float  # [Pa s]
+    conductivity: float  # [W/(m K)]
+    heat_capacity: float  # At constant pressure. [J/(kg K)]
 
     @property
     def kinematic_viscosity(self) -> float:
@@ -47,20 +33,17 @@ class Fluid:
         return self.dynamic_viscosity * self.heat_capacity / self.conductivity
 
 
-def oil_conductivity(temperature: float, specific_gravity: float) -> float:
+def oil_conductivity(
+    temperature: float,  # [K]
+    # Density at 15.6 degC over that of water at the same temperature, 999 kg/m^3. [1]
+    specific_gravity: float,
+) -> float:
     """Thermal conductivity of a petroleum oil. [W/(m K)]
 
     Theory (W22).
 
     C. S. Cragoe, Natl. Bur. Stand. Misc. Publ. 97 (1929), second hand; petroleum liquids from 0 to
     200 degC, of specific gravity 0.75 to 0.95. Within 10 %.
-
-    Parameters
-    ----------
-    temperature : float
-        [K]
-    specific_gravity : float
-        Density at 15.6 degC over that of water at the same temperature, 999 kg/m^3. [1]
 
     Examples
     --------

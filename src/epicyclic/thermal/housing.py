@@ -14,20 +14,6 @@ import numpy as np
 
 from epicyclic.thermal.fluid import air
 
-__all__ = [
-    "FAN_COEFFICIENTS",
-    "OVERALL_COEFFICIENTS",
-    "fan_coefficient",
-    "fin_conductance",
-    "fin_factor",
-    "forced_convection",
-    "foundation_conductance",
-    "free_convection",
-    "overall_coefficient",
-    "radiation",
-    "shaft_conductance",
-]
-
 OVERALL_COEFFICIENTS: Mapping[str, tuple[float, float]] = MappingProxyType(
     {"small-confined": (10.0, 14.0), "large-indoor": (17.0, 20.0), "outdoor": (19.0, 24.0)}
 )
@@ -49,17 +35,14 @@ GRAVITY = 9.80665
 """Standard acceleration of free fall. [m/s^2]"""
 
 
-def free_convection(height: float, housing_temperature: float, air_temperature: float) -> float:
+def free_convection(
+    height: float,  # Height of the housing. [m]
+    housing_temperature: float,  # [K]
+    air_temperature: float,  # [K]
+) -> float:
     """Coefficient of free convection from a housing, ISO/TR 14179-2. [W/(m^2 K)]
 
     Theory (W9).
-
-    Parameters
-    ----------
-    height : float
-        Height of the housing. [m]
-    housing_temperature, air_temperature : float
-        [K]
 
     Examples
     --------
@@ -71,12 +54,12 @@ def free_convection(height: float, housing_temperature: float, air_temperature: 
 
 
 def forced_convection(
-    air_speed: float,
-    length: float,
-    height: float,
-    housing_temperature: float,
-    air_temperature: float,
-    pressure: float = STANDARD_PRESSURE,
+    air_speed: float,  # [m/s]
+    length: float,  # Length of the housing along the flow. [m]
+    height: float,  # Height of the housing. [m]
+    housing_temperature: float,  # [K]
+    air_temperature: float,  # [K]
+    pressure: float = STANDARD_PRESSURE,  # Pressure of the air. [Pa]
 ) -> float:
     """Coefficient of convection from a housing in moving air, ISO/TR 14179-2. [W/(m^2 K)]
 
@@ -84,19 +67,6 @@ def forced_convection(
 
     The buoyancy of the warm air enters through the Reynolds number. Air has the temperature midway
     between housing and surroundings.
-
-    Parameters
-    ----------
-    air_speed : float
-        [m/s]
-    length : float
-        Length of the housing along the flow. [m]
-    height : float
-        Height of the housing. [m]
-    housing_temperature, air_temperature : float
-        [K]
-    pressure : float
-        Pressure of the air. [Pa]
 
     Examples
     --------
@@ -111,17 +81,14 @@ def forced_convection(
     return 0.0086 * math.pow(mixed, 0.64) / length
 
 
-def radiation(emissivity: float, housing_temperature: float, air_temperature: float) -> float:
+def radiation(
+    emissivity: float,  # 0.9 painted, 0.15 to 0.25 bare aluminium, second hand. [1]
+    housing_temperature: float,  # [K]
+    air_temperature: float,  # [K]
+) -> float:
     """Coefficient of radiation to surroundings as warm as the air, ISO/TR 14179-2. [W/(m^2 K)]
 
     Theory (W11).
-
-    Parameters
-    ----------
-    emissivity : float
-        0.9 painted, 0.15 to 0.25 bare aluminium, second hand. [1]
-    housing_temperature, air_temperature : float
-        [K]
 
     Examples
     --------
@@ -132,29 +99,17 @@ def radiation(emissivity: float, housing_temperature: float, air_temperature: fl
 
 
 def overall_coefficient(
+    # From the wall to the air: convection, times the factor of its fins, plus radiation. [W/(m^2
+    # K)]
     outside: float,
-    inside: float = SPLASHED_WALL,
-    area_ratio: float = 1.0,
-    wall_thickness: float = 0.0,
-    wall_conductivity: float = 50.0,
+    inside: float = SPLASHED_WALL,  # From the oil to the wall. [W/(m^2 K)]
+    area_ratio: float = 1.0,  # Outer over inner area of the housing. [1]
+    wall_thickness: float = 0.0,  # [m]
+    wall_conductivity: float = 50.0,  # [W/(m K)]
 ) -> float:
     """Coefficient from the oil to the air, for the outer area, ISO/TR 14179-2. [W/(m^2 K)]
 
     Theory (W12).
-
-    Parameters
-    ----------
-    outside : float
-        From the wall to the air: convection, times the factor of its fins, plus radiation.
-        [W/(m^2 K)]
-    inside : float
-        From the oil to the wall. [W/(m^2 K)]
-    area_ratio : float
-        Outer over inner area of the housing. [1]
-    wall_thickness : float
-        [m]
-    wall_conductivity : float
-        [W/(m K)]
 
     Examples
     --------
@@ -166,31 +121,19 @@ def overall_coefficient(
 
 
 def fin_factor(
-    convection: float,
+    convection: float,  # Coefficient of convection without fins. [W/(m^2 K)]
+    # Area of the housing as if it had no fins, for which the factor holds. [m^2]
     plain_area: float,
-    fin_area: float,
-    fin_height: float,
-    fin_thickness: float,
-    conductivity: float,
+    fin_area: float,  # Area of both faces of all fins, less what they cover of the housing. [m^2]
+    fin_height: float,  # [m]
+    fin_thickness: float,  # [m]
+    conductivity: float,  # Conductivity of the fins. [W/(m K)]
 ) -> float:
     """Factor on the convection of a housing that has fins; radiation gains nothing. [1]
 
     Theory (W13).
 
     The efficiency is that of a straight fin of constant thickness, general knowledge.
-
-    Parameters
-    ----------
-    convection : float
-        Coefficient of convection without fins. [W/(m^2 K)]
-    plain_area : float
-        Area of the housing as if it had no fins, for which the factor holds. [m^2]
-    fin_area : float
-        Area of both faces of all fins, less what they cover of the housing. [m^2]
-    fin_height, fin_thickness : float
-        [m]
-    conductivity : float
-        Conductivity of the fins. [W/(m K)]
 
     Examples
     --------
@@ -203,26 +146,17 @@ def fin_factor(
 
 
 def fin_conductance(
-    coefficient: float, perimeter: float, area: float, length: float, conductivity: float
+    coefficient: float,  # From the rod to the air. [W/(m^2 K)]
+    perimeter: float,  # Through which the cross-section gives heat to the air. [m]
+    area: float,  # Area of the cross-section. [m^2]
+    length: float,  # [m]
+    conductivity: float,  # [W/(m K)]
 ) -> float:
     """Heat that a rod leads from a housing to the air, by the temperature of its root. [W/K]
 
     Theory (W14).
 
     ISO/TR 14179-2 for foundations and shaft ends; the end of the rod is insulated.
-
-    Parameters
-    ----------
-    coefficient : float
-        From the rod to the air. [W/(m^2 K)]
-    perimeter : float
-        Through which the cross-section gives heat to the air. [m]
-    area : float
-        Area of the cross-section. [m^2]
-    length : float
-        [m]
-    conductivity : float
-        [W/(m K)]
 
     Examples
     --------
@@ -234,24 +168,15 @@ def fin_conductance(
 
 
 def foundation_conductance(
-    coefficient: float, width: float, thickness: float, length: float, conductivity: float
+    coefficient: float,  # From the plate to the air. [W/(m^2 K)]
+    width: float,  # Width of the joint to the housing. [m]
+    thickness: float,  # [m]
+    length: float,  # From the housing to the edge of the plate. [m]
+    conductivity: float,  # [W/(m K)]
 ) -> float:
     """`fin_conductance` of a plate that gives heat to the air on one face. [W/K]
 
     Theory (W14).
-
-    Parameters
-    ----------
-    coefficient : float
-        From the plate to the air. [W/(m^2 K)]
-    width : float
-        Width of the joint to the housing. [m]
-    thickness : float
-        [m]
-    length : float
-        From the housing to the edge of the plate. [m]
-    conductivity : float
-        [W/(m K)]
 
     Examples
     --------
@@ -262,20 +187,15 @@ def foundation_conductance(
 
 
 def shaft_conductance(
-    coefficient: float, diameter: float, length: float, conductivity: float
+    # From the shaft to the air, as `epicyclic.thermal.convection.cylinder_in_air`. [W/(m^2 K)]
+    coefficient: float,
+    diameter: float,  # [m]
+    length: float,  # [m]
+    conductivity: float,  # [W/(m K)]
 ) -> float:
     """`fin_conductance` of a shaft end of circular cross-section. [W/K]
 
     Theory (W14).
-
-    Parameters
-    ----------
-    coefficient : float
-        From the shaft to the air, as `epicyclic.thermal.convection.cylinder_in_air`. [W/(m^2 K)]
-    diameter, length : float
-        [m]
-    conductivity : float
-        [W/(m K)]
 
     Examples
     --------
@@ -286,15 +206,12 @@ def shaft_conductance(
     return fin_conductance(coefficient, math.pi * diameter, area, length, conductivity)
 
 
-def fan_coefficient(air_speed: float) -> float:
+def fan_coefficient(
+    air_speed: float,  # [m/s]
+) -> float:
     """Overall coefficient with a fan on a shaft, ISO/TR 14179-1. [W/(m^2 K)]
 
     Linear between `FAN_COEFFICIENTS`, held at the first and the last.
-
-    Parameters
-    ----------
-    air_speed : float
-        [m/s]
 
     Examples
     --------

@@ -13,36 +13,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Link", "Network"]
-
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A way for heat.
+    """A way for heat."""
 
-    Attributes
-    ----------
-    key : str
-        ``"sun-oil"``.
-    hot, cold : str
-        Nodes whose temperatures drive the heat.
-    conductance : float
-        Heat over the difference of the two temperatures. [W/K]
-    method, source : str
-        How the conductance is found, and where that is printed.
-    into : str
-        Node that the heat goes to; empty for `cold`.
-    """
-
-    key: str
-    hot: str
-    cold: str
-    conductance: float
-    method: str = ""
-    source: str = ""
-    into: str = ""
+    key: str  # ``"sun-oil"``.
+    hot: str  # Nodes whose temperatures drive the heat.
+    cold: str  # Nodes whose temperatures drive the heat.
+    conductance: float  # Heat over the difference of the two temperatures. [W/K]
+    method: str = ""  # How the conductance is found, and where that is printed.
+    source: str = ""  # How the conductance is found, and where that is printed.
+    into: str = ""  # Node that the heat goes to; empty for `cold`.
 
     @property
     def target(self) -> str:
@@ -52,28 +36,17 @@ class Link:
 
 @dataclass(frozen=True)
 class Network:
-    """Nodes of unknown temperature, nodes of given temperature, and links between them.
+    """Nodes of unknown temperature, nodes of given temperature, and links between them."""
 
-    Attributes
-    ----------
-    nodes : tuple of str
-        Nodes of unknown temperature.
-    given : mapping of str to float
-        Nodes of given temperature. [K]
-    links : tuple of Link
-    """
-
-    nodes: tuple[str, ...]
-    given: Mapping[str, float]
+    nodes: tuple[str, ...]  # Nodes of unknown temperature.
+    given: Mapping[str, float]  # Nodes of given temperature. [K]
     links: tuple[Link, ...]
 
-    def steady(self, heat: Mapping[str, float]) -> dict[str, float]:
+    def steady(
+        self,
+        heat: Mapping[str, float],  # That arises at each node. [W]
+    ) -> dict[str, float]:
         """Temperatures at which the heat that arises leaves again. Theory (W26).
-
-        Parameters
-        ----------
-        heat : mapping of str to float
-            That arises at each node. [W]
 
         Returns
         -------

@@ -6,26 +6,14 @@ from dataclasses import dataclass
 
 from epicyclic.thermal.flash import effusivity
 
-__all__ = ["Solid"]
-
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """What a body is made of.
+    """What a body is made of."""
 
-    Attributes
-    ----------
-    conductivity : float
-        [W/(m K)]
-    heat_capacity : float
-        [J/(kg K)]
-    density : float
-        [kg/m^3]
-    """
-
-    conductivity: float
-    heat_capacity: float
-    density: float
+    conductivity: float  # [W/(m K)]
+    heat_capacity: float  # [J/(kg K)]
+    density: float  # [kg/m^3]
 
     @property
     def effusivity(self) -> float:

@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.thermal.network import Link
 
-__all__ = ["Course", "Curves", "Source", "Transient"]
-
 FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-6
@@ -29,39 +27,21 @@ LEAST_RELATIVE = 1e-12
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A part of a loss that heats one node.
+    """A part of a loss that heats one node."""
 
-    Attributes
-    ----------
-    term : str
-        The loss.
-    into : str
-        The node.
-    at : tuple of str
-        Nodes at whose mean temperature the loss arises.
-    """
-
-    term: str
-    into: str
-    at: tuple[str, ...]
+    term: str  # The loss.
+    into: str  # The node.
+    at: tuple[str, ...]  # Nodes at whose mean temperature the loss arises.
 
 
 @dataclass(frozen=True, slots=True)
 class Curves:
-    """Quantities over temperature; beyond the last knots they stay as they are there.
+    """Quantities over temperature; beyond the last knots they stay as they are there."""
 
-    Attributes
-    ----------
-    knots : array, shape (k,)
-        Rising. [K]
-    coefficients : array, shape (4, k - 1, n)
-        Coefficients of the powers of the distance from the knot below, the highest first.
-    weights : array, shape (n, nodes)
-        With which the temperatures of the nodes make the one of each quantity. [1]
-    """
-
-    knots: FloatArray
+    knots: FloatArray  # Rising. [K]
+    # Coefficients of the powers of the distance from the knot below, the highest first.
     coefficients: FloatArray
+    # With which the temperatures of the nodes make the one of each quantity. [1]
     weights: FloatArray
 
     def read(self, temperatures: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -77,22 +57,12 @@ class Curves:
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """Temperatures over time, and the energies that make them.
+    """Temperatures over time, and the energies that make them."""
 
-    Attributes
-    ----------
-    times : array, shape (t,)
-        [s]
-    temperatures : array, shape (nodes, t)
-        [K]
-    gained, given_off : array, shape (t,)
-        Energy that arose, and that left for nodes of given temperature. [J]
-    """
-
-    times: FloatArray
-    temperatures: FloatArray
-    gained: FloatArray
-    given_off: FloatArray
+    times: FloatArray  # [s]
+    temperatures: FloatArray  # [K]
+    gained: FloatArray  # Energy that arose, and that left for nodes of given temperature. [J]
+    given_off: FloatArray  # Energy that arose, and that left for nodes of given temperature. [J]
 
 
 class _Ways(NamedTuple):
@@ -116,32 +86,15 @@ class _Ways(NamedTuple):
 
 @dataclass(frozen=True)
 class Transient:
-    """Nodes that store heat. Theory (W32).
+    """Nodes that store heat. Theory (W32)."""
 
-    Attributes
-    ----------
-    capacities : mapping of str to float
-        Capacities of the nodes, in their order. [J/K]
-    given : mapping of str to float
-        Nodes of given temperature. [K]
-    sources : tuple of Source
-    heat : Curves
-        Heat of each source. [W]
-    links : tuple of Link
-        Their own conductances do not matter.
-    conductance : Curves
-        Conductance of each link. [W/K]
-    taken : mapping of str to float
-        Heat that leaves nodes at all times: that of a cooler. [W]
-    """
-
-    capacities: Mapping[str, float]
-    given: Mapping[str, float]
+    capacities: Mapping[str, float]  # Capacities of the nodes, in their order. [J/K]
+    given: Mapping[str, float]  # Nodes of given temperature. [K]
     sources: Sequence[Source]
-    heat: Curves
-    links: Sequence[Link]
-    conductance: Curves
-    taken: Mapping[str, float]
+    heat: Curves  # Heat of each source. [W]
+    links: Sequence[Link]  # Their own conductances do not matter.
+    conductance: Curves  # Conductance of each link. [W/K]
+    taken: Mapping[str, float]  # Heat that leaves nodes at all times: that of a cooler. [W]
 
     @cached_property
     def _ways(self) -> _Ways:
@@ -194,18 +147,12 @@ class Transient:
         return stored / ways.inertia[:, None], heat.sum(axis=0), ways.leaves @ flows
 
     def integrate(
-        self, start: FloatArray, times: FloatArray, tolerance: float = TOLERANCE
+        self,
+        start: FloatArray,  # [K]
+        times: FloatArray,  # Rising. [s]
+        tolerance: float = TOLERANCE,  # Error of the temperatures in each step. [K]
     ) -> Course:
         """The course from temperatures `start` at the first of `times`. Theory (W32).
-
-        Parameters
-        ----------
-        start : array, shape (nodes,)
-            [K]
-        times : array, shape (t,)
-            Rising. [s]
-        tolerance : float
-            Error of the temperatures in each step. [K]
 
         Raises
         ------

@@ -30,19 +30,6 @@ from epicyclic.validation.pocketing import FIGURES_AGAIN
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "CHAPTERS",
-    "ROLLER_FIGURES",
-    "TOPICS",
-    "Family",
-    "Mark",
-    "bearing_families",
-    "joined",
-    "loaded_and_unloaded",
-    "roller_loads_over",
-    "set_families",
-]
-
 FloatArray = NDArray[np.float64]
 PLANETS = 3
 """Planets of the set whose planet bearing chapter 3 studies."""
@@ -54,60 +41,33 @@ ROLLER_FIGURES = {"3.3": "branch", "3.7": "roller", "3.9": "clearance", "3.12": 
 
 @dataclass(frozen=True)
 class Lever:
-    """What a family varies along one of its directions.
-
-    Attributes
-    ----------
-    name, label, unit : str
-    values : tuple of float or str
-        In `unit`.
-    changes : callable
-        From a value to the keys of the case that it changes.
-    """
+    """What a family varies along one of its directions."""
 
     name: str
     label: str
     unit: str
-    values: tuple[Any, ...]
+    values: tuple[Any, ...]  # In `unit`.
+    # From a value to the keys of the case that it changes.
     changes: Callable[[Any], Mapping[str, Any]]
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A published number on a figure.
-
-    Attributes
-    ----------
-    label : str
-    over, value : float
-        Where it lies.
-    panel : float or str
-        In which panel.
-    """
+    """A published number on a figure."""
 
     label: str
-    over: float
-    value: float
-    panel: float | str
+    over: float  # Where it lies.
+    value: float  # Where it lies.
+    panel: float | str  # In which panel.
 
 
 @dataclass(frozen=True)
 class Family:
-    """A figure of the source: data over (panels, curves, over), and what is published of it.
+    """A figure of the source: data over (panels, curves, over), and what is published of it."""
 
-    Attributes
-    ----------
-    figure : str
-        Its number in the source.
-    title : str
-    data : xarray.Dataset
-        With one variable of three dimensions, the first of `variables`.
-    marks : tuple of Mark
-    """
-
-    figure: str
+    figure: str  # Its number in the source.
     title: str
-    data: xr.Dataset
+    data: xr.Dataset  # With one variable of three dimensions, the first of `variables`.
     marks: tuple[Mark, ...] = ()
 
     @property

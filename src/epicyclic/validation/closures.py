@@ -12,8 +12,6 @@ from typing import Any
 from epicyclic.analysis.solve import solve
 from epicyclic.case.case import read_case
 
-__all__ = ["CLOSURES", "STUDY", "ClosureFigure", "closure_figures", "open_figures"]
-
 STUDY = "Talbot (2012), section 4.4"
 CLOSURES = ("incompressible", "isentropic", "mean-density", "talbot-2012")
 """Models that are compared; "central-differences" has no solution for some of the figures."""
@@ -21,29 +19,16 @@ CLOSURES = ("incompressible", "isentropic", "mean-density", "talbot-2012")
 
 @dataclass(frozen=True, slots=True)
 class ClosureFigure:
-    """One open figure of the study.
-
-    Attributes
-    ----------
-    what, unit, source : str
-    low, high : float
-        What is published; equal for a value.
-    tolerance : float
-        By how much a value may miss that and yet hold. [1]
-    cause : str
-        Why that tolerance.
-    computed : dict of str to float
-        By model, as `CLOSURES`.
-    """
+    """One open figure of the study."""
 
     what: str
     unit: str
     source: str
-    low: float
-    high: float
-    tolerance: float
-    cause: str
-    computed: dict[str, float]
+    low: float  # What is published; equal for a value.
+    high: float  # What is published; equal for a value.
+    tolerance: float  # By how much a value may miss that and yet hold. [1]
+    cause: str  # Why that tolerance.
+    computed: dict[str, float]  # By model, as `CLOSURES`.
 
     def holds(self, model: str) -> bool:
         """Whether the value of a model is in the band, or within the tolerance of it."""

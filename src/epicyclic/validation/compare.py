@@ -11,8 +11,6 @@ from typing import Any, Literal
 from epicyclic.validation.closures import CLOSURES, ClosureFigure
 from epicyclic.validation.compute import FIGURES
 
-__all__ = ["Comparison", "by_topic", "compare_published", "published_figures", "summary"]
-
 Verdict = Literal["agrees", "differs", "calibrated", "no verdict"]
 _TOPICS = {
     "Planet bearings": ("planet_bearing_loss", "planet_bearing_ratio", "azimuth_of_gained_rollers"),
@@ -35,42 +33,24 @@ FILES = ("published.toml", "programs.toml")
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """One published figure and the computed one.
-
-    Attributes
-    ----------
-    what, topic, unit, source : str
-    low, high : float
-        The published value, twice, or the published range.
-    computed : float
-    tolerance : float
-        Relative to the published value. [1]
-    cause : str
-        Why that tolerance.
-    role : str
-        ``"validation"``, ``"calibration"`` or ``"context"``.
-    settled : str
-        How the tolerance was: ``"print"``, the rounding of what is printed, or ``"in view"`` of the
-        computed figure.
-    inferred : str
-        How the published value follows from what is printed; empty if it is printed itself.
-    reason : str
-        Why there is no verdict; empty if there is.
-    """
+    """One published figure and the computed one."""
 
     what: str
     topic: str
     unit: str
     source: str
-    low: float
-    high: float
+    low: float  # The published value, twice, or the published range.
+    high: float  # The published value, twice, or the published range.
     computed: float
-    tolerance: float
-    cause: str
-    role: str
+    tolerance: float  # Relative to the published value. [1]
+    cause: str  # Why that tolerance.
+    role: str  # ``"validation"``, ``"calibration"`` or ``"context"``.
+    # How the tolerance was: ``"print"``, the rounding of what is printed, or ``"in view"`` of the
+    # computed figure.
     settled: str = ""
+    # How the published value follows from what is printed; empty if it is printed itself.
     inferred: str = ""
-    reason: str = ""
+    reason: str = ""  # Why there is no verdict; empty if there is.
 
     @property
     def difference(self) -> float:
@@ -120,15 +100,12 @@ def _topic(figure: Mapping[str, Any]) -> str:
     return next(topic for topic, names in _TOPICS.items() if name in names)
 
 
-def summary(rows: Sequence[Comparison], closures: Sequence[ClosureFigure] = ()) -> str:
-    """How many figures agree, and how much each kind of agreement says.
-
-    Parameters
-    ----------
-    rows : sequence of Comparison
-    closures : sequence of ClosureFigure
-        Open figures of pocketing losses, which are counted apart.
-    """
+def summary(
+    rows: Sequence[Comparison],
+    # Open figures of pocketing losses, which are counted apart.
+    closures: Sequence[ClosureFigure] = (),
+) -> str:
+    """How many figures agree, and how much each kind of agreement says."""
     return " ".join((*_sentences(rows), *_of_closures(closures)))
 
 

@@ -24,11 +24,7 @@ from epicyclic.case.case import GearPairCase, PlanetaryCase, read_case
 from epicyclic.elasticity.loaded_mesh import LoadedMesh
 from epicyclic.kernels.line_contact import hertz_half_width
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.friction.base import (
-    pitch_point_radius,
-    pitch_point_sum_speed,
-    specific_load,
-)
+from epicyclic.losses.friction.base import pitch_point_radius, pitch_point_sum_speed, specific_load
 from epicyclic.losses.mesh import ohlendorf_loss_factor
 from epicyclic.losses.planet_bearing import roller_loads
 from epicyclic.results.result import Result
@@ -39,13 +35,7 @@ from epicyclic.thermal.bulk import (
     roughness_factor,
 )
 from epicyclic.thermal.flash import effusivity, flash_temperature
-from epicyclic.validation.programs import (
-    PROGRAM_FIGURES,
-    mesh_stiffness_of,
-    single_stiffness_of,
-)
-
-__all__ = ["FIGURES", "LoadedTests", "loaded_conditions", "source_case"]
+from epicyclic.validation.programs import PROGRAM_FIGURES, mesh_stiffness_of, single_stiffness_of
 
 TEST_TORQUES = (250, 500, 750, 1000)
 """Loaded tests: torque on the sun. [N m]"""

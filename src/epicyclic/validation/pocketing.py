@@ -17,8 +17,6 @@ from epicyclic.validation.compare import published_figures
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["FIGURES_AGAIN", "PublishedStudy", "published_study", "study_again"]
-
 EXAMPLE = "talbot-2012-pair"
 _SAME = ("gears", "pinion", "gear", "lubricant", "surroundings")
 """Tables in which a case must agree with the example."""
@@ -26,24 +24,15 @@ _SAME = ("gears", "pinion", "gear", "lubricant", "surroundings")
 
 @dataclass(frozen=True, slots=True)
 class PublishedStudy:
-    """Values that the text of the source prints, in display units.
+    """Values that the text of the source prints, in display units."""
 
-    Attributes
-    ----------
-    helix_angle, face_width, speed, loss : float
-        A loss and where it holds. [deg], [mm], [rpm], [W]
-    exponent : float
-        Exponent of the speed in the loss of the spur pair. [1]
-    bands : tuple of (float, float, float, float)
-        Helix angle, face width, and the losses between which the one at `speed` lies, by the axes
-        of the figures. [deg], [mm], [W], [W]
-    """
-
-    helix_angle: float
-    face_width: float
-    speed: float
-    loss: float
-    exponent: float
+    helix_angle: float  # A loss and where it holds. [deg], [mm], [rpm], [W]
+    face_width: float  # A loss and where it holds. [deg], [mm], [rpm], [W]
+    speed: float  # A loss and where it holds. [deg], [mm], [rpm], [W]
+    loss: float  # A loss and where it holds. [deg], [mm], [rpm], [W]
+    exponent: float  # Exponent of the speed in the loss of the spur pair. [1]
+    # Helix angle, face width, and the losses between which the one at `speed` lies, by the axes of
+    # the figures. [deg], [mm], [W], [W]
     bands: tuple[tuple[float, float, float, float], ...] = ()
 
 

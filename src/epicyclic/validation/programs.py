@@ -22,8 +22,6 @@ from epicyclic.losses.friction.base import pitch_point_pressure
 from epicyclic.losses.mesh import ohlendorf_closed_form, ohlendorf_loss_factor
 from epicyclic.results.result import Result
 
-__all__ = ["PROGRAM_FIGURES", "mesh_stiffness_of", "single_stiffness_of"]
-
 _GEOMETRY: dict[str, Callable[[Mesh], float]] = {
     "pressure_angle": lambda mesh: math.degrees(mesh.operating_pressure_angle),
     "path_of_contact": lambda mesh: 1e3 * (mesh.path_end - mesh.path_start),

@@ -20,8 +20,6 @@ from epicyclic.sweeps.unloaded import as_tested, with_unloaded
 from epicyclic.validation.compare import published_figures
 from epicyclic.validation.compute import FIGURES, LoadedTests, loaded_conditions, source_case
 
-__all__ = ["Estimate", "SettledFigure", "estimates", "settled_figures"]
-
 _MODEL = "models.temperatures"
 _OF_TESTS = ("branch_slope", "load_dependent_loss", "loss_share")
 """Figures that follow from the loaded tests."""
@@ -29,47 +27,29 @@ _OF_TESTS = ("branch_slope", "load_dependent_loss", "loss_share")
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """An input of the heat network that is not published.
-
-    Attributes
-    ----------
-    key, what : str
-    low, value, high : float or str
-        As a case file has them.
-    origin : str
-    """
+    """An input of the heat network that is not published."""
 
     key: str
     what: str
-    low: float | str
-    value: float | str
-    high: float | str
+    low: float | str  # As a case file has them.
+    value: float | str  # As a case file has them.
+    high: float | str  # As a case file has them.
     origin: str
 
 
 @dataclass(frozen=True, slots=True)
 class SettledFigure:
-    """A figure of the loaded tests, with load-dependent losses as a test rig forms them.
-
-    Attributes
-    ----------
-    what, unit : str
-    published : tuple of float
-        The published value, or the ends of its range; empty where none is known here.
-    inlet, flank, network : float
-        By how temperatures follow.
-    low, high : float
-        The least and the most of the network with all combinations of `estimates`.
-    """
+    """A figure of the loaded tests, with load-dependent losses as a test rig forms them."""
 
     what: str
     unit: str
+    # The published value, or the ends of its range; empty where none is known here.
     published: tuple[float, ...]
-    inlet: float
-    flank: float
-    network: float
-    low: float
-    high: float
+    inlet: float  # By how temperatures follow.
+    flank: float  # By how temperatures follow.
+    network: float  # By how temperatures follow.
+    low: float  # The least and the most of the network with all combinations of `estimates`.
+    high: float  # The least and the most of the network with all combinations of `estimates`.
 
 
 class _Test(NamedTuple):

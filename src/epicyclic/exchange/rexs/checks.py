@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from epicyclic.case.build import pair_mesh, planetary_meshes
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import PairSet
 from epicyclic.case.train_tables import PlanetarySet as PlanetaryTable
 from epicyclic.exchange.rexs.model import Component, Model
@@ -16,8 +17,6 @@ from epicyclic.exchange.rexs.trains import Train
 from epicyclic.geometry import mesh as geometry
 from epicyclic.geometry.gear import involute
 from epicyclic.units import DEGREE, MILLIMETRE, Quantity, format_number
-
-__all__ = ["closing_shift", "file_notes", "geometry_notes", "shift_notes"]
 
 AGREES = 1e-3
 """Relative difference up to which figures of two programs agree."""

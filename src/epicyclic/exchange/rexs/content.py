@@ -11,8 +11,6 @@ from epicyclic.errors import Problem, raise_any
 from epicyclic.exchange.rexs.model import Attribute, Component, Model, Relation, refuse
 from epicyclic.exchange.rexs.vocabulary import versions
 
-__all__ = ["Content", "RawComponent", "RawRelation", "build_model"]
-
 _SHOWN = 20
 """Problems of one file that are told."""
 

@@ -14,8 +14,6 @@ from epicyclic.exchange.rexs.model import Attribute, Component
 from epicyclic.exchange.rexs.vocabulary import term
 from epicyclic.units import format_number
 
-__all__ = ["Amount", "Draft", "Lack", "amount_text", "at"]
-
 DIGITS = 15
 """Significant digits that a number has in REXS at most."""
 
@@ -81,26 +79,13 @@ def at(components: Sequence[Component]) -> str:
 
 @dataclass(slots=True)
 class Draft:
-    """What is known of a case.
+    """What is known of a case."""
 
-    Attributes
-    ----------
-    tables : dict
-        The tables of the case, complete or not.
-    origins : dict of str to str
-        Where the value of each key comes from.
-    lacks : dict of str to Lack
-    notes : list of str
-        What the user should know.
-    problems : list of Problem
-        Values that cannot be read.
-    """
-
-    tables: dict[str, Any]
-    origins: dict[str, str] = field(default_factory=dict)
+    tables: dict[str, Any]  # The tables of the case, complete or not.
+    origins: dict[str, str] = field(default_factory=dict)  # Where the value of each key comes from.
     lacks: dict[str, Lack] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
-    problems: list[Problem] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)  # What the user should know.
+    problems: list[Problem] = field(default_factory=list)  # Values that cannot be read.
 
     def give(self, key: str, value: Any, origin: str) -> None:
         """Set a key."""

@@ -6,7 +6,8 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from epicyclic.case.case import TrainCase, read_case
+from epicyclic.case.case import read_case
+from epicyclic.case.train import TrainCase
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.exchange.rexs.content import build_model
@@ -20,8 +21,6 @@ from epicyclic.exchange.rexs.trains import Train, chosen_train
 from epicyclic.exchange.rexs.vocabulary import versions
 from epicyclic.results.result import Result
 from epicyclic.whole_file import whole_file
-
-__all__ = ["rexs_bytes", "write_rexs"]
 
 
 def write_rexs(

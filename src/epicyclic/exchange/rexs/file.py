@@ -19,8 +19,6 @@ from epicyclic.text_file import read_bytes
 if TYPE_CHECKING:
     from epicyclic.exchange.rexs.content import Content
 
-__all__ = ["Document", "is_rexs", "new_document", "read_document", "stem"]
-
 _XML, _JSON, _ZIP = (".rexs", ".rexs.xml"), (".rexsj", ".rexs.json"), (".rexsz", ".rexs.zip")
 
 LARGEST = 20_000_000
@@ -36,21 +34,11 @@ _LARGEST_REST = 50_000_000
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A file that has been read.
+    """A file that has been read."""
 
-    Attributes
-    ----------
-    content : Content
-        Its parts.
-    member : str
-        Name of the member of the archive that holds them; empty without an archive.
-    others : tuple of (ZipInfo, bytes)
-        The other members of the archive.
-    """
-
-    content: Content
-    member: str = ""
-    others: tuple[tuple[zipfile.ZipInfo, bytes], ...] = ()
+    content: Content  # Its parts.
+    member: str = ""  # Name of the member of the archive that holds them; empty without an archive.
+    others: tuple[tuple[zipfile.ZipInfo, bytes], ...] = ()  # The other members of the archive.
 
     def to_bytes(self) -> bytes:
         """The file."""
@@ -88,14 +76,12 @@ def new_document(path: str | Path, head: dict[str, str]) -> Document:
     return Document(content, "rexs-model.rexs" if name.endswith(_ZIP) else "")
 
 
-def read_document(path: Path, *, with_others: bool = False) -> Document:
+def read_document(
+    path: Path,
+    *,
+    with_others: bool = False,  # Read the other members of an archive too, for writing them again.
+) -> Document:
     """Read a file, whatever its name says of its form.
-
-    Parameters
-    ----------
-    path : Path
-    with_others : bool
-        Read the other members of an archive too, for writing them again.
 
     Raises
     ------

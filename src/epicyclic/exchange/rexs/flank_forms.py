@@ -13,8 +13,6 @@ from epicyclic.exchange.rexs.draft import Draft, Lack
 from epicyclic.exchange.rexs.gears import flanks_of
 from epicyclic.exchange.rexs.model import Component, Model
 
-__all__ = ["micro_geometry"]
-
 
 @dataclass(frozen=True, slots=True)
 class _Form:

@@ -14,8 +14,6 @@ from epicyclic.exchange.rexs.model import Component, Model
 from epicyclic.exchange.rexs.sets import is_internal
 from epicyclic.geometry.roughness import RA_OVER_RQ
 
-__all__ = ["flanks_of", "gear_table", "shared_table"]
-
 _TOOLS = ("rack_shaped_tool", "cutter_wheel_tool")
 
 

@@ -24,8 +24,6 @@ from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, choose
 from epicyclic.exchange.rexs.train_draft import train_draft
 from epicyclic.exchange.rexs.trains import Train, chosen_train
 
-__all__ = ["RexsImport", "read_rexs"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RexsImport:
@@ -63,13 +61,12 @@ class RexsImport:
     _model: Model
     _chosen: PlanetarySet | Pair | Train
 
-    def case(self, changes: Mapping[str, Any] | None = None) -> Case:
+    def case(
+        self,
+        # Dotted keys to values, as in `PlanetaryCase.updated`.
+        changes: Mapping[str, Any] | None = None,
+    ) -> Case:
         """The case, with some keys set.
-
-        Parameters
-        ----------
-        changes : mapping of str to object, optional
-            Dotted keys to values, as in `PlanetaryCase.updated`.
 
         Raises
         ------
@@ -88,14 +85,11 @@ class RexsImport:
             lack for lack in self.missing if not any(_is_below(lack.key, key) for key in given)
         )
 
-    def text(self, changes: Mapping[str, Any] | None = None) -> str:
-        """The commented case file: for every value its origin, for every other key what is known.
-
-        Parameters
-        ----------
-        changes : mapping of str to object, optional
-            Keys to set.
-        """
+    def text(
+        self,
+        changes: Mapping[str, Any] | None = None,  # Keys to set.
+    ) -> str:
+        """The commented case file: the origin of every value, for other keys what is known."""
         tables, about = dict(self.tables), dict(self.origins)
         for lack in self.lacking(changes or ()):
             about[lack.key] = f"{'NEEDED. ' if lack.needed else ''}{lack}"

@@ -12,8 +12,6 @@ from epicyclic.case.wording import one_line
 from epicyclic.exchange.rexs.content import RawComponent, RawRelation
 from epicyclic.exchange.rexs.model import Attribute, Coded, Component, Relation, refuse
 
-__all__ = ["JsonContent"]
-
 
 class JsonContent:
     """A file in JSON, as its objects."""

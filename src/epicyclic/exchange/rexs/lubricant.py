@@ -8,8 +8,6 @@ from epicyclic.exchange.rexs.draft import Amount, Draft, Lack
 from epicyclic.exchange.rexs.model import Component, Model
 from epicyclic.exchange.rexs.vocabulary import oil_kind
 
-__all__ = ["lubricant_table", "temperature"]
-
 _KINDS = (
     "lubricant_type_iso_6336_2019",
     "lubricant_type_iso_6336_2006",

@@ -16,8 +16,6 @@ from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.exchange.rexs.vocabulary import term, types_of, unit_of
 
-__all__ = ["Attribute", "Coded", "Component", "Model", "Relation", "refuse"]
-
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _CODES = {"float64": "<f8", "float32": "<f4", "int32": "<i4"}
 
@@ -162,20 +160,12 @@ class Relation:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """The content of a file.
-
-    Attributes
-    ----------
-    version : str
-    components : mapping of int to Component
-    relations : tuple of Relation
-    load_cases : mapping of int to mapping
-        For each load case the components with the attributes that it changes.
-    """
+    """The content of a file."""
 
     version: str
     components: Mapping[int, Component]
     relations: tuple[Relation, ...]
+    # For each load case the components with the attributes that it changes.
     load_cases: Mapping[int, Mapping[int, Component]] = field(default_factory=dict)
 
     def of_type(self, component_type: str) -> list[Component]:

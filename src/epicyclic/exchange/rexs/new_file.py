@@ -23,17 +23,6 @@ from epicyclic.geometry.roughness import RA_OVER_RQ
 from epicyclic.lubricant.oil import Oil
 from epicyclic.lubricant.properties import oil_state
 
-__all__ = [
-    "Builder",
-    "add_load",
-    "add_pair",
-    "add_planetary",
-    "add_shaft",
-    "case_parts",
-    "hold",
-    "surroundings",
-]
-
 _CELSIUS = 273.15
 
 _OIL_TYPES = {

@@ -23,8 +23,6 @@ from epicyclic.exchange.rexs.new_file import (
     surroundings,
 )
 
-__all__ = ["train_parts"]
-
 _TYPES = {
     "deep-groove": "radial_grooved_ball_bearing",
     "cylindrical": "radial_roller_bearing",

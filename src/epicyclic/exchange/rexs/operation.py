@@ -9,8 +9,6 @@ from epicyclic.exchange.rexs.draft import Amount, Draft, amount_text
 from epicyclic.exchange.rexs.model import Component, Model
 from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, fixed_by, rigid_parts
 
-__all__ = ["pair_operation", "planetary_operation", "speed_and_torque", "speed_of", "stated_load"]
-
 _WATTS = {"W": 1.0, "kW": 1e3}
 
 

@@ -9,8 +9,6 @@ from epicyclic.exchange.rexs.draft import Draft, Lack, amount_text
 from epicyclic.exchange.rexs.model import Component, Model
 from epicyclic.exchange.rexs.sets import PlanetarySet, rigid_parts
 
-__all__ = ["bearing_table", "carrier_table", "planet_angles", "planet_bearings"]
-
 _ROLLING = ("rolling_bearing_with_catalog_geometry", "rolling_bearing_with_detailed_geometry")
 _ROLLERS = ("radial_needle_roller_bearing", "radial_roller_bearing")
 """Types of bearings that the planet bearing of a case can be."""

@@ -25,8 +25,6 @@ from epicyclic.exchange.rexs.vocabulary import CUSTOM, id_in, rexs_unit, term, w
 from epicyclic.results.result import Result
 from epicyclic.units import RPM, format_number
 
-__all__ = ["check_match", "write_results"]
-
 
 def write_results(
     content: Content, model: Model, chosen: PlanetarySet | Pair | Train, result: Result

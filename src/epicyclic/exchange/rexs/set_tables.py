@@ -13,8 +13,6 @@ from epicyclic.exchange.rexs.model import Model
 from epicyclic.exchange.rexs.sets import Pair, PlanetarySet, is_internal
 from epicyclic.units import format_number
 
-__all__ = ["set_tables"]
-
 ROUNDING = 1e-3
 """Sum of the profile shifts of a mesh, as printed with three decimals, less the exact sum. [1]"""
 

@@ -10,22 +10,6 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.exchange.rexs.model import Component, Model
 from epicyclic.exchange.rexs.vocabulary import types_of
 
-__all__ = [
-    "Joint",
-    "Mesh",
-    "Pair",
-    "PlanetarySet",
-    "choose",
-    "fixed_by",
-    "gear_sets",
-    "is_rigid",
-    "is_switched",
-    "joints",
-    "read_stage",
-    "rigid_links",
-    "rigid_parts",
-]
-
 GEARS = ("cylindrical_gear", "ring_gear")
 
 _RIGID = (
@@ -72,27 +56,15 @@ class Pair:
 
 @dataclass(frozen=True, slots=True)
 class PlanetarySet:
-    """One sun, planets that are all alike, one ring.
+    """One sun, planets that are all alike, one ring."""
 
-    Attributes
-    ----------
-    component : Component
-        The planetary stage.
-    sun, ring : Component
-    planets : tuple of Component
-    sun_meshes, ring_meshes : tuple of Mesh
-        One for each planet.
-    shafts : dict of str to tuple of Component
-        Shafts of sun, ring, carrier, planet and pin.
-    """
-
-    component: Component
+    component: Component  # The planetary stage.
     sun: Component
     ring: Component
     planets: tuple[Component, ...]
-    sun_meshes: tuple[Mesh, ...]
-    ring_meshes: tuple[Mesh, ...]
-    shafts: dict[str, tuple[Component, ...]]
+    sun_meshes: tuple[Mesh, ...]  # One for each planet.
+    ring_meshes: tuple[Mesh, ...]  # One for each planet.
+    shafts: dict[str, tuple[Component, ...]]  # Shafts of sun, ring, carrier, planet and pin.
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:

@@ -15,8 +15,6 @@ from epicyclic.exchange.rexs.operation import speed_of
 from epicyclic.exchange.rexs.sets import Joint, Pair
 from epicyclic.exchange.rexs.trains import Shaft, Train
 
-__all__ = ["shaft_parts"]
-
 FloatArray = NDArray[np.float64]
 
 _TYPES = {

@@ -16,8 +16,6 @@ from epicyclic.exchange.rexs.shaft_parts import shaft_parts
 from epicyclic.exchange.rexs.train_operation import train_operation
 from epicyclic.exchange.rexs.trains import Train
 
-__all__ = ["train_draft"]
-
 _OTHER_STAGES = ("bevel_stage", "worm_stage")
 _HELIX = "helix_angle_reference_diameter"
 

@@ -11,8 +11,6 @@ from epicyclic.exchange.rexs.model import Component, Model
 from epicyclic.exchange.rexs.operation import speed_and_torque, speed_of, stated_load
 from epicyclic.exchange.rexs.trains import Shaft, Train
 
-__all__ = ["train_operation"]
-
 _LOAD = "external_load"
 
 

@@ -23,8 +23,6 @@ from epicyclic.exchange.rexs.sets import (
     rigid_links,
 )
 
-__all__ = ["Shaft", "Switch", "Train", "chosen_train"]
-
 MOST_STAGES, MOST_BEARINGS = 40, 400
 """A file with more than this is not a gear unit."""
 
@@ -33,24 +31,13 @@ _LONGEST_NAME = 32
 
 @dataclass(frozen=True, slots=True)
 class Shaft:
-    """What turns together, always.
+    """What turns together, always."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the shaft in the case; if the file has none there, the name of its first member.
-    parts : mapping of int to Component
-        Shafts, gears, loads.
-    members : tuple of str
-        Members of sets, ``"S1.sun"``.
-    held : Component or None
-        What joins it to the casing.
-    """
-
+    # Name of the shaft in the case; if the file has none there, the name of its first member.
     name: str
-    parts: Mapping[int, Component]
-    members: tuple[str, ...]
-    held: Component | None
+    parts: Mapping[int, Component]  # Shafts, gears, loads.
+    members: tuple[str, ...]  # Members of sets, ``"S1.sun"``.
+    held: Component | None  # What joins it to the casing.
 
     @property
     def components(self) -> tuple[Component, ...]:

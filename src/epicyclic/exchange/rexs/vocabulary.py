@@ -10,46 +10,19 @@ from typing import Any
 
 from epicyclic.units import Quantity
 
-__all__ = [
-    "CUSTOM",
-    "Term",
-    "id_in",
-    "oil_kind",
-    "rexs_unit",
-    "term",
-    "types_of",
-    "unit_of",
-    "versions",
-    "written",
-]
-
 CUSTOM = "custom_epicyclic_"
 """Start of the ids of attributes that the standard does not have."""
 
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """An attribute of the standard.
+    """An attribute of the standard."""
 
-    Attributes
-    ----------
-    id : str
-        As in the newest version.
-    type : str
-        Value type, ``"floating_point"``.
-    unit : str
-        Name of the unit in REXS; ``"none"`` for pure numbers and text.
-    former : tuple of (str, str)
-        Earlier ids, each with the version that brought it.
-    since : str
-        The version that brought `id`.
-    """
-
-    id: str
-    type: str
-    unit: str
-    former: tuple[tuple[str, str], ...]
-    since: str
+    id: str  # As in the newest version.
+    type: str  # Value type, ``"floating_point"``.
+    unit: str  # Name of the unit in REXS; ``"none"`` for pure numbers and text.
+    former: tuple[tuple[str, str], ...]  # Earlier ids, each with the version that brought it.
+    since: str  # The version that brought `id`.
 
     @property
     def ids(self) -> tuple[str, ...]:

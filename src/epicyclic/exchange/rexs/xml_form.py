@@ -12,8 +12,6 @@ from epicyclic.case.wording import one_line
 from epicyclic.exchange.rexs.content import RawComponent, RawRelation
 from epicyclic.exchange.rexs.model import Attribute, Coded, Component, Relation, refuse
 
-__all__ = ["XmlContent"]
-
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
 
 _BEFORE_ROOT = re.compile(r"\ufeff?(?:\s+|<\?.*?\?>|<!--.*?-->)*", re.DOTALL)

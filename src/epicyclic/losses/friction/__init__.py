@@ -36,27 +36,14 @@ DRY_FRICTION = 0.10
 
 @dataclass(frozen=True, slots=True)
 class FrictionSettings:
-    """Numbers that some models take from the case.
+    """Numbers that some models take from the case."""
 
-    Attributes
-    ----------
-    constant : float
-        Coefficient of the model constant. [1]
-    boundary, fluid : float
-        Coefficients of dry and of separated contact in the film-share models. [1]
-    table : FrictionMap or None
-    oil_held : bool
-        False to continue the model mixed-ehl beyond its oil.
-    load_factor : float
-        K_A K_gamma, for the model niemann-winter. [1]
-    """
-
-    constant: float
-    boundary: float
-    fluid: float
+    constant: float  # Coefficient of the model constant. [1]
+    boundary: float  # Coefficients of dry and of separated contact in the film-share models. [1]
+    fluid: float  # Coefficients of dry and of separated contact in the film-share models. [1]
     table: FrictionMap | None = None
-    oil_held: bool = True
-    load_factor: float = 1.0
+    oil_held: bool = True  # False to continue the model mixed-ehl beyond its oil.
+    load_factor: float = 1.0  # K_A K_gamma, for the model niemann-winter. [1]
 
 
 def _table(settings: FrictionSettings) -> FrictionModel:

@@ -13,15 +13,6 @@ from epicyclic.kernels.line_contact import hertz_pressure
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.validity import Range, RegressionFluid
 
-__all__ = [
-    "FrictionModel",
-    "mean_roughness_ra",
-    "pitch_point_pressure",
-    "pitch_point_radius",
-    "pitch_point_sum_speed",
-    "specific_load",
-]
-
 FloatArray = NDArray[np.float64]
 
 

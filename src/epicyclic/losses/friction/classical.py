@@ -18,15 +18,7 @@ from epicyclic.losses.friction.base import (
     specific_load,
 )
 from epicyclic.losses.validity import OF_THIS_PACKAGE, Range, RegressionFluid, held_in_range
-from epicyclic.units import (
-    GIGAPASCAL,
-    METRE_PER_SECOND,
-    MICROMETRE,
-    NEWTON_PER_MM,
-    NUMBER,
-)
-
-__all__ = ["BenedictKelley", "NiemannWinter", "Schlenk"]
+from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, MICROMETRE, NEWTON_PER_MM, NUMBER
 
 FloatArray = NDArray[np.float64]
 

@@ -21,8 +21,6 @@ from epicyclic.losses.friction.base import mean_roughness_ra
 from epicyclic.losses.validity import Range, RegressionFluid
 from epicyclic.units import NUMBER
 
-__all__ = ["Doleschel", "Matsumoto"]
-
 FloatArray = NDArray[np.float64]
 
 _FILM_SOURCE = "films of Pan and Hamrock, J. Tribol. 111 (1989) 246"
@@ -36,20 +34,14 @@ FILM_RANGES = (
 
 @dataclass(frozen=True, slots=True)
 class _FilmShare(ABC):
-    """mu = xi mu_b + (1 - xi) mu_f. Theory (F8).
-
-    Attributes
-    ----------
-    boundary, fluid : float
-        mu_b and mu_f. [1]
-    """
+    """mu = xi mu_b + (1 - xi) mu_f. Theory (F8)."""
 
     made_for: ClassVar[RegressionFluid | None] = None
     takes_oil_temperature: ClassVar[bool] = False
     ranges: ClassVar[tuple[Range, ...]] = FILM_RANGES
 
-    boundary: float
-    fluid: float
+    boundary: float  # mu_b and mu_f. [1]
+    fluid: float  # mu_b and mu_f. [1]
 
     @abstractmethod
     def share(self, contact: MeshContact) -> FloatArray:

@@ -11,10 +11,7 @@ from numpy.typing import NDArray
 from epicyclic.contact import LineContacts
 from epicyclic.kernels.mixed_ehl import sliding_friction_at
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.mixed_ehl_groups import (
-    TalbotRegression,
-    held_in_table,
-)
+from epicyclic.losses.mixed_ehl_groups import TalbotRegression, held_in_table
 from epicyclic.losses.pairing import equally_rough, pairing_ratio
 from epicyclic.losses.validity import OF_THIS_PACKAGE, Range, RegressionFluid, held_in_range
 from epicyclic.oilmodel.regressions import regression_groups
@@ -26,8 +23,6 @@ from epicyclic.units import (
     MILLIPASCAL_SECOND,
     NUMBER,
 )
-
-__all__ = ["MixedEhl", "PairedFriction", "Xu2007"]
 
 FloatArray = NDArray[np.float64]
 

@@ -12,8 +12,6 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.validity import Range, RegressionFluid
 from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, NUMBER, Quantity
 
-__all__ = ["Constant", "FrictionMap"]
-
 FloatArray = NDArray[np.float64]
 
 _AXES: dict[str, tuple[str, Quantity]] = {
@@ -48,13 +46,6 @@ class FrictionMap:
     """Linear interpolation in a table over one or two local quantities, constant beyond it.
 
     Theory (F17).
-
-    Attributes
-    ----------
-    axes : tuple of (str, tuple of float)
-        Name of a quantity of `MeshContact` and its rising points, SI.
-    values : tuple
-        Coefficients, one (nested) entry for each point.
     """
 
     name: ClassVar = "table"
@@ -63,7 +54,9 @@ class FrictionMap:
     made_for: ClassVar[RegressionFluid | None] = None
     takes_oil_temperature: ClassVar[bool] = False
 
+    # Name of a quantity of `MeshContact` and its rising points, SI.
     axes: tuple[tuple[str, tuple[float, ...]], ...]
+    # Coefficients, one (nested) entry for each point.
     values: tuple[float, ...] | tuple[tuple[float, ...], ...]
 
     @property
