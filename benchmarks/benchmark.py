@@ -30,10 +30,9 @@ import numpy as np
 import pandas as pd
 
 import epicyclic as ep
-from epicyclic.analysis.contact import solve_contact
-from epicyclic.case.contact import load_contact_case
 from epicyclic.case.train_text import train_text
-from epicyclic.sweeps.runner import Runner
+from epicyclic.plugins.contact_solver.contact import load_contact_case, solve_contact
+from epicyclic.study.sweeps.runner import Runner
 
 REPEATS = 5
 MATRIX = {
@@ -216,10 +215,30 @@ def duty_seconds() -> tuple[float, float]:
 
 def clear_caches() -> None:
     from epicyclic.case import build, flanks
-    from epicyclic.elasticity import loaded_mesh, mesh_compliance, tooth_plate
-    from epicyclic.geometry import contact_lines
-    from epicyclic.losses import load_distribution, planet_bearing
-    from epicyclic.pocketing import cells, fluid, geometry, network
+    from epicyclic.contact import (
+        elastic_teeth as mesh_compliance,
+    )
+    from epicyclic.contact import (
+        elastic_teeth as tooth_plate,
+    )
+    from epicyclic.contact import (
+        loaded_mesh,
+    )
+    from epicyclic.gears import flanks as contact_lines
+    from epicyclic.losses import contact as load_distribution
+    from epicyclic.losses import planet_bearing
+    from epicyclic.losses import (
+        pocket_flow as fluid,
+    )
+    from epicyclic.losses import (
+        pocket_flow as network,
+    )
+    from epicyclic.losses import (
+        pocket_geometry as cells,
+    )
+    from epicyclic.losses import (
+        pocket_geometry as geometry,
+    )
 
     for function in (
         fluid.pocket_flow,
@@ -253,8 +272,8 @@ def compliance_seconds(segments: int) -> tuple[float, float]:
         Load of both meshes at one operating point. [s]
     """
     from epicyclic.case import build, flanks
-    from epicyclic.elasticity.loaded_mesh import load_mesh_elastically
-    from epicyclic.elasticity.mesh_compliance import mesh_compliance
+    from epicyclic.contact.elastic_teeth import mesh_compliance
+    from epicyclic.contact.loaded_mesh import load_mesh_elastically
 
     case = test_article()
     meshes = build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)
@@ -322,9 +341,17 @@ def pocket_seconds() -> tuple[float, float, float, float]:
         operating point at a new speed, the flow known.
     """
     from epicyclic.builders.build import build
-    from epicyclic.pocketing import cells, geometry, network
-    from epicyclic.pocketing.fluid import PocketModel, pocket_flow
-    from epicyclic.pocketing.geometry import pocket_geometry
+    from epicyclic.losses import (
+        pocket_flow as network,
+    )
+    from epicyclic.losses import (
+        pocket_geometry as cells,
+    )
+    from epicyclic.losses import (
+        pocket_geometry as geometry,
+    )
+    from epicyclic.losses.pocket_flow import PocketModel, pocket_flow
+    from epicyclic.losses.pocket_geometry import pocket_geometry
 
     case = test_article()
     built = build(case)
@@ -365,8 +392,7 @@ CAMPAIGN_SIZE = 24
 
 def campaign_seconds(runner: Runner) -> float:
     """Simulations for an oil, kept and written."""
-    from epicyclic.campaigns.campaign import make_campaign
-    from epicyclic.campaigns.folder import CampaignFolder
+    from epicyclic.plugins.contact_solver.campaign import CampaignFolder, make_campaign
 
     with tempfile.TemporaryDirectory() as folder:
         place = CampaignFolder(Path(folder), make_campaign("atf-talbot-2012", size=CAMPAIGN_SIZE))
@@ -398,7 +424,7 @@ def show_campaign() -> None:
 
 def direct_seconds() -> float:
     """Both meshes of the published set with every contact solved that is needed."""
-    from epicyclic.losses import direct
+    from epicyclic.plugins.contact_solver import direct
 
     direct._friction.cache_clear()
     case = ep.load_case("talbot-2012").updated({"models.friction": "ehl-direct"})
@@ -524,7 +550,7 @@ def show_app(point: float) -> None:
     if find_spec("nicegui") is None:
         print("left out: it needs the extra app")
         return
-    from epicyclic.app import tasks
+    from epicyclic.plugins.app import worker as tasks
 
     moving = itertools.cycle(points())
 

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 import epicyclic as ep
-from epicyclic.plots.measured import plot_points
+from epicyclic.show.plots.measured import plot_points
 
 case = ep.load_case("talbot-2012")
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 
 import epicyclic as ep
-from epicyclic.plots.pocket_section import section_figure
+from epicyclic.show.plots.pockets import section_figure
 
 case = ep.load_case("talbot-2012-pair")
 print(f"pocketing loss: {ep.solve(case).losses['mesh_pocketing']:.1f} W")

@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.campaigns.fit import simulated_quantities
-from epicyclic.campaigns.folder import open_folder
-from epicyclic.contact import LineContacts
+from epicyclic.contact.fitted_models import regression_groups, rolling_scale
+from epicyclic.contact.line_contact import LineContacts
 from epicyclic.kernels.line_contact import goksem_hargreaves_force, martin_force
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss, rolling_loss_number, sliding_friction
-from epicyclic.oilmodel.regressions import regression_groups, rolling_scale
+from epicyclic.plugins.contact_solver.campaign import open_folder
+from epicyclic.plugins.contact_solver.fit import simulated_quantities
 
 FloatArray = NDArray[np.float64]
 

@@ -20,13 +20,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from epicyclic.analysis.contact import solve_contact
-from epicyclic.case.contact import load_contact_case
 from epicyclic.case.values import parse_value
-from epicyclic.contact import LineContacts, contacts_at
+from epicyclic.contact.fitted_models import regression_groups
+from epicyclic.contact.line_contact import LineContacts, contacts_at
 from epicyclic.kernels.mixed_ehl import sliding_friction
-from epicyclic.lubricant.properties import oil_state
-from epicyclic.oilmodel.regressions import regression_groups
+from epicyclic.oil.properties import oil_state
+from epicyclic.plugins.contact_solver.contact import load_contact_case, solve_contact
 
 LEVELS = {
     "temperature": (25.0, 50.0, 75.0, 100.0),

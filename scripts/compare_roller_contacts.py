@@ -21,6 +21,7 @@ from scipy.optimize import brentq
 import epicyclic as ep
 from epicyclic.builders.build import build
 from epicyclic.builders.planetary import roller_bearing
+from epicyclic.contact.fitted_models import read_oil_model
 from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.planet_bearing import (
     RollerBearing,
@@ -28,8 +29,7 @@ from epicyclic.losses.planet_bearing import (
     mixed_ehl_rolling_loss,
     roller_loads,
 )
-from epicyclic.lubricant.properties import OilState
-from epicyclic.oilmodel.model import read_oil_model
+from epicyclic.oil.properties import OilState
 
 PUBLISHED = {"40 degC": 236.0, "60 degC": 195.0, "90 degC": 181.0}
 """Oil inlet temperature: loss of one planet bearing, Talbot (2012), p. 70. [W]"""

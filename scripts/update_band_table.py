@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from epicyclic.bands.published import measured_figures
-from epicyclic.report.validation_table import band_markdown
+from epicyclic.validation.compare import measured_figures
+from epicyclic.validation.pages import band_markdown
 
 PAGE = Path(__file__).parents[1] / "docs" / "validation.md"
 TABLE = re.compile(r"^\| Measured figure \|.*?\n\n", re.DOTALL | re.MULTILINE)

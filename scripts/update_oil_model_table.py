@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from epicyclic import library
-from epicyclic.oilmodel.model import OilModel, read_oil_model
+from epicyclic.contact.fitted_models import OilModel, read_oil_model
 
 PAGE = Path(__file__).parents[1] / "docs" / "how-to" / "characterise-oil.md"
 TABLE = re.compile(r"^\| Oil \|.*?\n\n", re.DOTALL | re.MULTILINE)

@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from epicyclic.contact import Flanks
-from epicyclic.geometry.mesh import Mesh
-from epicyclic.losses.contact import MeshContact, mesh_contact
-from epicyclic.losses.load_distribution import load_shape
-from epicyclic.lubricant.properties import OilState
+from epicyclic.contact.line_contact import Flanks
+from epicyclic.gears.mesh import Mesh
+from epicyclic.losses.contact import MeshContact, load_shape, mesh_contact
+from epicyclic.oil.properties import OilState
 
 STEEL = 227.47e9
 """Equivalent modulus of two steel flanks. [Pa]"""

@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
-from epicyclic.geometry.gear import Gear, half_angle_from_profile_shift, involute
-from epicyclic.geometry.mesh import Mesh
+from epicyclic.gears.gear import Gear, half_angle_from_profile_shift, involute
+from epicyclic.gears.mesh import Mesh
 
 MODULE = 2e-3
 """Of the gears, near enough: sets how far the tools reach and move. [m]"""

@@ -1,6 +1,6 @@
 """Entry point of the command: ``epicyclic`` and ``python -m epicyclic``.
 
-Imports take a second or two. Until `epicyclic.cli.interrupt` watches, Ctrl-C ends the process at
+Imports take a second or two. Until `epicyclic.cli.main` watches, Ctrl-C ends the process at
 once: nothing has been begun, and libraries may swallow or wrap an exception.
 """
 
@@ -11,8 +11,8 @@ import os
 import signal
 from typing import NoReturn
 
-from epicyclic.cli.exit_codes import EXIT_INTERRUPTED
-from epicyclic.garbage import look_seldom
+from epicyclic.cli.common import EXIT_INTERRUPTED
+from epicyclic.files import look_seldom
 
 
 def main() -> None:

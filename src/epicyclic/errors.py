@@ -1,14 +1,17 @@
-"""Exceptions of the package, and the text of their messages.
-
-Bad input is described by `Problem` objects, one per mistake, and reported all together by one
-`InputError`. Nothing here imports the rest of the package.
-"""
+"""Exceptions of the package, the text of their messages, and how a computation ended."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from itertools import pairwise
+
+# Exceptions of the package, and the text of their messages.
+#
+# Bad input is described by `Problem` objects, one per mistake, and reported all together by one
+# `InputError`. Nothing here imports the rest of the package.
+
 
 MOST_SHOWN, LONGEST_PROBLEM = 50, 1500
 """Problems in one message, and characters of each; `InputError.problems` has all of them."""
@@ -121,3 +124,16 @@ def is_interrupt(error: BaseException) -> bool:
             return True
         chain = chain.__cause__
     return False
+
+
+# How a computation ended.
+
+
+class Status(StrEnum):
+    """Every result carries one."""
+
+    CONVERGED = "converged"
+    FAILED = "failed"
+    UNPHYSICAL = "unphysical"
+    """There are numbers, but they cannot be: a loss below zero, energy that does not balance, or
+    contacts that carry or resist with more than any can."""

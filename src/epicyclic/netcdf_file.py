@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.errors import InputError, printable
-from epicyclic.text_file import refuse
+from epicyclic.files import refuse
 
 if TYPE_CHECKING:
     import netCDF4

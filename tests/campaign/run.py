@@ -26,9 +26,8 @@ from typing import Any, ClassVar
 
 from campaign.cases import POINTS, WHOLE, drawn_case, is_whole
 from campaign.outcomes import FAULTS, outcome_of
-from epicyclic.status import Status
-from epicyclic.sweeps.journal import Journal, Row
-from epicyclic.sweeps.runner import Plan, Runner, fingerprint, parse_shard
+from epicyclic.errors import Status
+from epicyclic.study.sweeps.runner import Journal, Plan, Row, Runner, fingerprint, parse_shard
 
 __all__ = ["CampaignPlan", "Counts", "counted"]
 

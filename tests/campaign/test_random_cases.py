@@ -12,7 +12,7 @@ import epicyclic as ep
 from campaign.cases import drawn_case, drawn_design
 from campaign.outcomes import FAULTS, outcome_of
 from campaign.run import CampaignPlan, counted
-from epicyclic.losses import direct
+from epicyclic.plugins.contact_solver import direct
 
 TABLE = Path(__file__).parents[2] / "docs" / "development" / "campaign.csv"
 

@@ -307,8 +307,8 @@ def test_an_unexpected_error_is_one_line(monkeypatch, capsys):
         raise RuntimeError("something new")
 
     # what takes the function over when it is imported must not find the broken one
-    importlib.import_module("epicyclic.bands.quick")
-    monkeypatch.setattr("epicyclic.analysis.solve.solve", broken)
+    importlib.import_module("epicyclic.study.bands.quick")
+    monkeypatch.setattr("epicyclic.study.solve.solve", broken)
     monkeypatch.setattr("sys.argv", ["epicyclic", "run", "talbot-2012"])
     with pytest.raises(SystemExit) as ended:
         main()
@@ -329,7 +329,7 @@ def test_an_interruption_ends_with_130(monkeypatch, capsys, wrapped):
             raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("epicyclic.analysis.solve.solve", interrupted)
+    monkeypatch.setattr("epicyclic.study.solve.solve", interrupted)
     monkeypatch.setattr("sys.argv", ["epicyclic", "run", "talbot-2012"])
     with pytest.raises(SystemExit) as ended:
         main()

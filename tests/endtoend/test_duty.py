@@ -16,9 +16,9 @@ from click.testing import CliRunner
 
 import epicyclic as ep
 from epicyclic.cli.duty import duty
-from epicyclic.maps import cycle_source
-from epicyclic.maps.interpolation_error import Sample
-from epicyclic.maps.lookup import loss_power, make_lookup
+from epicyclic.study.maps import cycle as cycle_source
+from epicyclic.study.maps.compute import Sample
+from epicyclic.study.maps.tables import loss_power, make_lookup
 from limits import is_soon
 
 SPEEDS = (0.0, 500.0, 2000.0, 4000.0)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from epicyclic.whole_file import PREFIX
+from epicyclic.files import PREFIX
 from limits import is_soon
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")

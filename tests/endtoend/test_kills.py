@@ -11,7 +11,7 @@ import time
 import pytest
 from test_shards import COMMANDS, FAILS, content
 
-from epicyclic.whole_file import PREFIX
+from epicyclic.files import PREFIX
 
 pytestmark = [
     pytest.mark.slow,

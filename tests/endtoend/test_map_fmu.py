@@ -13,8 +13,8 @@ from fmpy.validation import validate_fmu
 from scipy.integrate import solve_ivp
 
 import epicyclic as ep
-from epicyclic.maps import fmu
-from epicyclic.maps.lookup import loss_power, make_lookup
+from epicyclic.plugins.simulators import fmu
+from epicyclic.study.maps.tables import loss_power, make_lookup
 
 HOW_TO = Path(__file__).parents[2] / "docs" / "how-to" / "fmu.md"
 

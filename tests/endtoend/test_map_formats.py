@@ -15,9 +15,9 @@ import rumoca
 import scipy.io
 
 import epicyclic as ep
-from epicyclic.maps import simulation
-from epicyclic.maps.formats import FORMATS
-from epicyclic.maps.workbook import workbook_problems
+from epicyclic.plugins.simulators import tables as simulation
+from epicyclic.plugins.simulators.workbook import workbook_problems
+from epicyclic.study.maps.formats import FORMATS
 
 HOW_TO = Path(__file__).parents[2] / "docs" / "how-to" / "loss-map.md"
 

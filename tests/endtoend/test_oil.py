@@ -16,11 +16,10 @@ import pandas as pd
 import pytest
 
 import epicyclic as ep
-from epicyclic.campaigns.campaign import make_campaign
-from epicyclic.campaigns.fit import fit_campaigns, simulated_quantities
-from epicyclic.campaigns.folder import CampaignFolder, open_folder
-from epicyclic.oilmodel.model import read_oil_model
-from epicyclic.sweeps.runner import Runner
+from epicyclic.contact.fitted_models import read_oil_model
+from epicyclic.plugins.contact_solver.campaign import CampaignFolder, make_campaign, open_folder
+from epicyclic.plugins.contact_solver.fit import fit_campaigns, simulated_quantities
+from epicyclic.study.sweeps.runner import Runner
 
 # contacts that take a tenth of a second
 RANGES = {
@@ -271,7 +270,7 @@ def test_campaigns_are_fitted_together(finished, epicyclic, tmp_path):
 
 def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
     # the friction of each contact stands in for a solution: a power of load and radius
-    from epicyclic.losses import direct
+    from epicyclic.plugins.contact_solver import direct
 
     calls = []
 
@@ -301,7 +300,7 @@ def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
 
 
 def test_contacts_are_solved_once_for_all_passes_between_torques_and_losses(monkeypatch):
-    from epicyclic.losses import direct
+    from epicyclic.plugins.contact_solver import direct
 
     calls = []
 
@@ -325,7 +324,7 @@ def test_contacts_are_solved_once_for_all_passes_between_torques_and_losses(monk
 
 
 def test_contacts_under_an_even_load_differ_in_their_position_only(monkeypatch):
-    from epicyclic.losses import direct
+    from epicyclic.plugins.contact_solver import direct
 
     def friction(line, *_):
         return 0.05 * (line.radius / 0.01) ** 0.3, 1.0
@@ -358,8 +357,9 @@ def test_roughness_that_the_grid_loses_is_not_fitted(finished, tmp_path):
 
 
 def test_contacts_of_a_mesh_are_told_where_output_is_redirected(monkeypatch, capsys):
-    from epicyclic.cli import progress, single
-    from epicyclic.losses import direct
+    from epicyclic.cli import case as single
+    from epicyclic.cli import common as progress
+    from epicyclic.plugins.contact_solver import direct
 
     monkeypatch.setattr(progress, "EVERY", 0.0)
     case = ep.load_case("talbot-2012-pair").updated({"models.friction": "ehl-direct"})
@@ -373,7 +373,7 @@ def test_contacts_of_a_mesh_are_told_where_output_is_redirected(monkeypatch, cap
     [(4000, 0.97, ()), (0.3, 0.97, ("less than 0.01 m/s",)), (4000, 0.87, ("resolve 87 % of",))],
 )
 def test_creeping_speed_and_lost_roughness_are_told(monkeypatch, rpm, kept, told):
-    from epicyclic.losses import direct
+    from epicyclic.plugins.contact_solver import direct
 
     shares = iter([1.0, kept])
     monkeypatch.setattr(direct, "_friction", lambda *_: (0.05, next(shares, 1.0)))
@@ -385,8 +385,8 @@ def test_creeping_speed_and_lost_roughness_are_told(monkeypatch, rpm, kept, told
 
 
 def test_oil_and_heat_of_the_contact_solver_reach_every_contact(monkeypatch):
-    from epicyclic.ehl.rheology import LimitingStress, TwoSlope
-    from epicyclic.losses import direct
+    from epicyclic.plugins.contact_solver import direct
+    from epicyclic.plugins.contact_solver.conditions import LimitingStress, TwoSlope
 
     calls = []
 
@@ -435,7 +435,7 @@ def test_laws_of_the_contact_solver_have_all_they_need():
 
 
 def test_too_many_unsolved_contacts_are_no_result(monkeypatch):
-    from epicyclic.losses import direct
+    from epicyclic.plugins.contact_solver import direct
 
     monkeypatch.setattr(direct, "_friction", lambda line, *_: (np.nan, 1.0))
     case = ep.load_case("talbot-2012-pair").updated(PAIR | {"models.friction": "ehl-direct"})
@@ -445,9 +445,8 @@ def test_too_many_unsolved_contacts_are_no_result(monkeypatch):
 
 @pytest.mark.slow
 def test_direct_contacts_of_smooth_flanks_are_those_of_the_solver():
-    from epicyclic.ehl.conditions import ContactOil, LineContact
-    from epicyclic.ehl.rheology import Roelands
-    from epicyclic.ehl.steady import solve_smooth
+    from epicyclic.plugins.contact_solver.conditions import ContactOil, LineContact, Roelands
+    from epicyclic.plugins.contact_solver.steady import solve_smooth
 
     changes = PAIR | {
         "models.friction": "ehl-direct",

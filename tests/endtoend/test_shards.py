@@ -17,10 +17,9 @@ import xarray as xr
 
 import epicyclic as ep
 from epicyclic.cli.main import main
-from epicyclic.sweeps import plan as plans
-from epicyclic.sweeps.journal import Rows
-from epicyclic.sweeps.plan import make_plan
-from epicyclic.sweeps.runner import Runner, share_of
+from epicyclic.study.sweeps import plan as plans
+from epicyclic.study.sweeps.plan import make_plan
+from epicyclic.study.sweeps.runner import Rows, Runner, share_of
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAIR = (
@@ -494,7 +493,7 @@ def test_a_journal_in_a_file_is_refused_where_it_is_a_folder(call, tmp_path):
 
 
 def test_a_cluster_of_another_version_is_refused(cluster, monkeypatch):
-    from epicyclic.sweeps import runner
+    from epicyclic.study.sweeps import runner
 
     version = runner.metadata.version("epicyclic")
     told = iter([version, "0.0.0"])  # here, then in the worker, which is in this process
@@ -525,7 +524,7 @@ def test_an_interruption_cancels_what_the_cluster_has_left(cluster, tmp_path):
 
 
 def test_columns_hold_what_was_added():
-    from epicyclic.sweeps.journal import Row
+    from epicyclic.study.sweeps.runner import Row
 
     rows = Rows(3)
     rows.add(2, Row("converged", numbers={"total": 1.5}))

@@ -16,7 +16,7 @@ import pytest
 import xarray as xr
 
 import epicyclic as ep
-from epicyclic.sweeps.dataset import by_keys
+from epicyclic.study.sweeps.run import by_keys
 
 QUIET = os.environ | {"EPICYCLIC_PROGRESS": "0"}
 """However slow the machine is, nothing is said on the way."""
@@ -134,7 +134,7 @@ def test_any_error_of_one_point_is_a_row(case, monkeypatch):
             raise RuntimeError("broken")
         return ep.solve(changed)
 
-    monkeypatch.setattr("epicyclic.sweeps.plan.solve", solve)
+    monkeypatch.setattr("epicyclic.study.sweeps.plan.solve", solve)
     result = ep.sweep(case, {"planet.count": [3, 4, 5]}, jobs=1)
     assert list(result["status"].values) == ["converged", "failed", "converged"]
     assert result["message"].values[1] == "RuntimeError: broken"
@@ -144,7 +144,7 @@ def test_an_interruption_in_compiled_code_ends_the_sweep(case, monkeypatch):
     def solve(changed, **_):
         raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
 
-    monkeypatch.setattr("epicyclic.sweeps.plan.solve", solve)
+    monkeypatch.setattr("epicyclic.study.sweeps.plan.solve", solve)
     with pytest.raises(KeyboardInterrupt):
         ep.sweep(case, {"planet.count": [3, 4]}, jobs=1)
 
@@ -293,7 +293,7 @@ def test_output_may_be_a_link(tmp_path, epicyclic):
 
 def test_an_interruption_while_the_file_is_written_keeps_the_points(tmp_path, monkeypatch):
     from epicyclic.cli.main import main
-    from epicyclic.sweeps import dataset
+    from epicyclic.study.sweeps import run as dataset
 
     write = dataset.to_table
 

@@ -13,8 +13,8 @@ import scipy.io
 import xarray as xr
 
 import epicyclic as ep
-from epicyclic.maps import fmu
-from epicyclic.maps.compute import map_plan
+from epicyclic.plugins.simulators import fmu
+from epicyclic.study.maps.compute import map_plan
 
 SPEED = ["0 rpm", "1000 rpm", "3000 rpm"]
 TORQUE = ["-200 N*m", "0 N*m", "200 N*m"]

@@ -10,8 +10,8 @@ from rich.console import Console
 
 import epicyclic as ep
 from epicyclic.case.uncertain_values import uncertain_values
-from epicyclic.geometry import accuracy
-from epicyclic.geometry.accuracy import fit_allowances, flank_tolerances, named_fit
+from epicyclic.gears import measures as accuracy
+from epicyclic.gears.measures import fit_allowances, flank_tolerances, named_fit
 from epicyclic.report.data_sheet import data_sheet
 
 PAIR = {

@@ -10,10 +10,10 @@ import pytest
 from rich.console import Console
 
 import epicyclic as ep
-from epicyclic.analysis.compare import compare_friction
 from epicyclic.builders.build import build
 from epicyclic.builders.models import resolve_models
 from epicyclic.report.tables import result_tables
+from epicyclic.study.friction import compare_friction
 
 IDENTITY = 1e-12  # rounding only
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from epicyclic.elements.base import LOAD_DEPENDENT, ElementResult, Loss
-from epicyclic.machine.answers import NEAR, Answer, distance
+from epicyclic.machine.element import LOAD_DEPENDENT, ElementResult, Loss
+from epicyclic.machine.solve import NEAR, Answer, distance
 
 
 def result(watts, mesh="S.mesh"):

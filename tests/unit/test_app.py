@@ -14,20 +14,17 @@ pytest.importorskip("nicegui", reason="optional")
 from nicegui import ui
 
 import app_tasks
-from epicyclic.app import tasks
-from epicyclic.app.desk import Desk, built_in, opened, received
-from epicyclic.app.form import form_of
-from epicyclic.app.guard import LARGEST_BODY, Guard
-from epicyclic.app.latest import Latest
-from epicyclic.app.serve import names_of
-from epicyclic.app.shelves import Shelves
-from epicyclic.app.views import _values
-from epicyclic.app.worker import Ended, Worker, WorkError
 from epicyclic.case.case import build_case
 from epicyclic.case.fields import all_keys
 from epicyclic.case.operating import OPERATING
 from epicyclic.errors import InputError
 from epicyclic.library import minimal_case
+from epicyclic.plugins.app import worker as tasks
+from epicyclic.plugins.app.case_form import Desk, Shelves, built_in, form_of, opened, received
+from epicyclic.plugins.app.guard import LARGEST_BODY, Guard
+from epicyclic.plugins.app.serve import names_of
+from epicyclic.plugins.app.views import _values
+from epicyclic.plugins.app.worker import Ended, Latest, Worker, WorkError
 from listed_trains import ravigneaux
 
 TOKEN, HOST = "the-token", "127.0.0.1:4711"
@@ -136,7 +133,7 @@ def test_what_is_put_back_is_no_change():
 
 
 def test_the_command_gives_the_same_case():
-    from epicyclic.cli.options import load_with
+    from epicyclic.cli.common import load_with
 
     desk = opened("talbot-2012")
     desk.change("operation.torque", "310 N*m")
@@ -211,7 +208,7 @@ def test_a_name_that_cannot_be_is_refused_at_once(name, told):
 
 
 def test_a_case_with_names_of_the_user_comes_back_from_its_command_and_its_file(tmp_path):
-    from epicyclic.cli.options import load_with
+    from epicyclic.cli.common import load_with
 
     desk = opened("train-eaxle")
     assert desk.rename("sets.pair", "last stage") == ""
@@ -294,7 +291,7 @@ def test_each_tab_has_a_case_of_its_own_that_outlives_its_page(tmp_path):
 
 
 def test_cases_of_closed_tabs_are_forgotten_with_their_files(tmp_path, monkeypatch):
-    monkeypatch.setattr("epicyclic.app.shelves.MOST_KEPT", 3)
+    monkeypatch.setattr("epicyclic.plugins.app.case_form.MOST_KEPT", 3)
     shelves = Shelves(opened("talbot-2012"), tmp_path, most=2)
     folders = []
     for number in range(5):
@@ -425,7 +422,7 @@ def test_every_answer_forbids_what_lies_elsewhere():
 def test_a_port_that_is_taken_and_a_case_that_is_none_are_told():
     import socket
 
-    from epicyclic.cli.app import app
+    from epicyclic.plugins.app.command import app
 
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
@@ -463,8 +460,8 @@ class _Held(_Here):
 def simulate(tmp_path):
     from nicegui.testing import user_simulation
 
-    from epicyclic.app.page import Page, add_assets
-    from epicyclic.app.shelves import Shelf
+    from epicyclic.plugins.app.case_form import Shelf
+    from epicyclic.plugins.app.page import Page, add_assets
 
     def run(desk: Desk, script, *, chapter="", slow=_Here) -> None:
         async def root():
@@ -751,7 +748,7 @@ def test_a_machine_that_does_not_know_its_own_name_has_loopback_addresses(monkey
 
 @pytest.mark.parametrize("host", ["", "a\0b", "\udcff", "a" * 300, "no-such-host.invalid"])
 def test_what_is_no_address_is_told(host):
-    from epicyclic.cli.app import app
+    from epicyclic.plugins.app.command import app
 
     found = CliRunner().invoke(app, ["talbot-2012", "--host", host, "--no-browser"])
     assert isinstance(found.exception, InputError)
@@ -760,8 +757,8 @@ def test_what_is_no_address_is_told(host):
 
 
 def test_another_host_is_told_what_it_means(monkeypatch):
-    from epicyclic.app import serve
-    from epicyclic.cli.app import app
+    from epicyclic.plugins.app import serve
+    from epicyclic.plugins.app.command import app
 
     asked = []
     monkeypatch.setattr(serve, "serve", lambda desk, *where: asked.append(where[:2]))

@@ -6,11 +6,7 @@ import math
 
 import pytest
 
-from epicyclic.geometry.assembly import (
-    admissible_angles,
-    nearest_admissible_angle,
-    smallest_planet_gap,
-)
+from epicyclic.gears.mesh import admissible_angles, nearest_admissible_angle, smallest_planet_gap
 
 
 @pytest.mark.parametrize("count", [3, 6])

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from epicyclic.ehl.averaging import Estimate, Plan, aided_mean, next_plan
+from epicyclic.plugins.contact_solver.rough import Estimate, Plan, aided_mean, next_plan
 
 MEAN = 0.03
 

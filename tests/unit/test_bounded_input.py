@@ -12,11 +12,11 @@ import pytest
 import xarray as xr
 
 import epicyclic as ep
-from epicyclic.campaigns import folder as campaign_folder
-from epicyclic.campaigns.campaign import make_campaign
 from epicyclic.cli.main import main
 from epicyclic.errors import InputError, Problem
-from epicyclic.sweeps.dataset import write_dataset
+from epicyclic.plugins.contact_solver import campaign as campaign_folder
+from epicyclic.plugins.contact_solver.campaign import make_campaign
+from epicyclic.study.sweeps.run import write_dataset
 from limits import is_soon
 
 LONGEST = 100_000

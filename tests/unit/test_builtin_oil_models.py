@@ -14,20 +14,20 @@ from rich.console import Console
 
 import epicyclic as ep
 from epicyclic import library
-from epicyclic.analysis.compare import compare_friction, recommended
 from epicyclic.builders.models import resolve_models, standing_of
 from epicyclic.case.plain import plain
-from epicyclic.contact import contacts_at
-from epicyclic.losses.fitted_or_formula import REACH, weight_of_fit
+from epicyclic.contact.fitted_models import FORMAT, FORMS, OilModel, read_oil_model
+from epicyclic.contact.line_contact import contacts_at
+from epicyclic.losses.fitted import REACH, weight_of_fit
 from epicyclic.losses.friction import FRICTION_MODELS
-from epicyclic.losses.pairing import SIMULATED
+from epicyclic.losses.mixed_ehl import SIMULATED
+from epicyclic.losses.ranges import STANDING, standing
 from epicyclic.losses.rolling import ROLLING_MODELS
-from epicyclic.losses.standing import STANDING, standing
-from epicyclic.oilmodel.fitting import fit_quantity
-from epicyclic.oilmodel.model import FORMAT, FORMS, OilModel, read_oil_model
+from epicyclic.plugins.contact_solver.fit import fit_quantity
 from epicyclic.records.contents import contents_of
 from epicyclic.report.result_tables import standing_items
 from epicyclic.report.tables import result_tables
+from epicyclic.study.friction import compare_friction, recommended
 
 OIL = "iso-vg-220-mineral"
 STEEL = 227.47e9

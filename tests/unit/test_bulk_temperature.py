@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from epicyclic.thermal.bulk import (
+from epicyclic.contact.temperatures import (
     LUBRICATION_FACTORS,
     bulk_rise_of_flash,
     bulk_rise_of_integral_flash,
     bulk_rise_of_loss,
+    iso_mean_friction,
     mates_factor,
-    mean_friction,
     relief_factor,
     roughness_factor,
 )
@@ -27,7 +27,7 @@ def test_mean_friction_in_printed_units():
     """0.045 (F_bt/b/(v rho))^0.2 eta^-0.05 X_R X_L in N/mm, m/s, mm, mPa s, um."""
     rough = roughness_factor(0.4e-6, 10e-3)
     assert rough == pytest.approx(2.2 * 0.04**0.25, rel=1e-12)
-    found = mean_friction(500e3, 5.0, 10e-3, 20e-3, rough, 0.8)
+    found = iso_mean_friction(500e3, 5.0, 10e-3, 20e-3, rough, 0.8)
     assert found == pytest.approx(0.045 * 10**0.2 * 20**-0.05 * rough * 0.8, rel=1e-12)
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from epicyclic import cache_folder
 from epicyclic.cache_folder import private_folder
-from epicyclic.kernels import _jit
+from epicyclic.kernels import compiling as _jit
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX permissions")
 

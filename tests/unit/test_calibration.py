@@ -14,15 +14,15 @@ import pandas as pd
 import pytest
 
 import epicyclic as ep
-from epicyclic.bands.sampling import make_samples
 from epicyclic.case.case import build_case
 from epicyclic.case.parameters import Parameter, make_parameters
 from epicyclic.case.uncertain_values import uncertain_values
-from epicyclic.measurement.calibrated import calibrated_case, uncertainty_tables
-from epicyclic.measurement.fit import fit_parameters
-from epicyclic.measurement.identifiability import combinations, reaches
-from epicyclic.measurement.model import MeasuredPoints
-from epicyclic.measurement.table import Measurements
+from epicyclic.study.bands.samples import make_samples
+from epicyclic.study.measured.comparison import calibrated_case, uncertainty_tables
+from epicyclic.study.measured.fit import fit_parameters
+from epicyclic.study.measured.intervals import combinations, reaches
+from epicyclic.study.measured.residuals import MeasuredPoints
+from epicyclic.study.measured.table import Measurements
 from limits import is_soon
 
 TRUTH = {"losses.mesh_sliding.factor": 1.2, "losses.drag.factor": 0.8}
@@ -333,8 +333,8 @@ def test_bands_of_a_calibrated_case_follow_from_the_covariance(calibration):
 
 
 def test_the_quick_band_knows_correlations(calibration):
-    from epicyclic.bands.nearby import look_nearby
-    from epicyclic.bands.quick import quick_band
+    from epicyclic.study.bands.nearby import look_nearby
+    from epicyclic.study.bands.quick import quick_band
 
     calibrated = calibration.calibrated_case
     own = calibrated.given()["uncertainty"]

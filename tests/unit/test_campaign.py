@@ -7,11 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from epicyclic.campaigns.campaign import make_campaign
-from epicyclic.campaigns.design import BEARING_TABLE, GEAR_TABLE, parse_ranges
-from epicyclic.campaigns.folder import CampaignFolder, open_folder
 from epicyclic.errors import InputError
-from epicyclic.sweeps.runner import fingerprint
+from epicyclic.plugins.contact_solver.campaign import (
+    BEARING_TABLE,
+    GEAR_TABLE,
+    CampaignFolder,
+    make_campaign,
+    open_folder,
+    parse_ranges,
+)
+from epicyclic.study.sweeps.runner import fingerprint
 
 ATF = "atf-talbot-2012"
 

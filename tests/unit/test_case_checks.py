@@ -7,7 +7,7 @@ import math
 import pytest
 
 from epicyclic.case.case import read_case
-from epicyclic.geometry.assembly import admissible_angles
+from epicyclic.gears.mesh import admissible_angles
 from problems import problems_of
 
 TALBOT, PAIR = "talbot-2012", "talbot-2012-pair"

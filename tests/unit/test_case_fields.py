@@ -25,7 +25,7 @@ from epicyclic.case.nearest import did_you_mean, misspelt
 from epicyclic.case.values import parse_value
 from epicyclic.case.wording import dotted, path_of, written
 from epicyclic.library import builtin_case
-from epicyclic.lubricant.oil import DensitySlope, GoldLaw, RoelandsLaw
+from epicyclic.oil.oil import DensitySlope, GoldLaw, RoelandsLaw
 from epicyclic.units import Number, Quantity
 
 CASES = (PlanetaryCase, GearPairCase)

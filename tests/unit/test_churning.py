@@ -7,16 +7,16 @@ from dataclasses import replace
 
 import pytest
 
-from epicyclic.losses.churning import (
+from epicyclic.losses.drag import (
     Dipped,
     SumpOil,
     acceleration_parameter,
     changenet_velex,
     churning_flags,
     iso_14179_1,
+    jet_loss,
     wetted_area,
 )
-from epicyclic.losses.jets import jet_loss
 
 GEAR = Dipped(
     radius=46.5e-3,

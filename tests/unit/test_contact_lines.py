@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from contacts import MESHES, with_overlap_ratio
-from epicyclic.geometry.contact_lines import contact_lines
+from epicyclic.gears.flanks import contact_lines
 
 ROUNDING = 1e-12  # relative; sums of a few hundred doubles
 

@@ -7,10 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from epicyclic.analysis.contact import solve_contact
-from epicyclic.case.contact import contact_model, load_contact_case
-from epicyclic.ehl.rheology import Roelands, TwoSlope
-from epicyclic.ehl.rough import AsperityContact
+from epicyclic.plugins.contact_solver.conditions import Roelands, TwoSlope
+from epicyclic.plugins.contact_solver.contact import contact_model, load_contact_case, solve_contact
+from epicyclic.plugins.contact_solver.rough import AsperityContact
 
 CONTACT = {"radius": "10 mm", "hertz_pressure": "1 GPa", "rolling_speed": "10 m/s",
            "slide_to_roll_ratio": 0.2}  # fmt: skip
@@ -151,7 +150,7 @@ def test_a_profile_shorter_than_the_contact_is_told(tmp_path):
 
 
 def test_the_figure_has_a_panel_for_whatever_there_is(rough):
-    from epicyclic.plots.contact import contact_figure
+    from epicyclic.plugins.contact_solver.show import contact_figure
 
     labels = [" ".join(ax.get_ylabel().split()) for ax in contact_figure(rough).axes]
     assert labels == ["pressure, GPa", "film, µm", "shear stress, MPa", "temperature rise, K"]
@@ -161,7 +160,7 @@ def test_the_figure_has_a_panel_for_whatever_there_is(rough):
 
 @pytest.mark.parametrize(("slip", "panels"), [(0.0, 2), (0.3, 3)])
 def test_the_figure_names_the_contact_and_is_no_higher_than_a_slide(slip, panels):
-    from epicyclic.plots.contact import contact_figure
+    from epicyclic.plugins.contact_solver.show import contact_figure
 
     case = {"line_load": None, "hertz_pressure": "0.9 GPa", "slide_to_roll_ratio": slip}
     figure = contact_figure(solved(contact=case))

@@ -9,24 +9,22 @@ import math
 import numpy as np
 import pytest
 
-from epicyclic.lubricant.properties import MixtureState
-from epicyclic.thermal.convection import (
+from epicyclic.machine.convection import (
     TRANSITION_REYNOLDS,
-    cylinder_in_air,
-    dipped_disc,
-    disc_coefficient,
-    roller_conductance,
-    room_convection,
-)
-from epicyclic.thermal.fluid import (
     Fluid,
     air,
     air_conductivity,
+    cylinder_in_air,
+    dipped_disc,
+    disc_coefficient,
+    free_convection,
     mixture,
     oil_conductivity,
     oil_heat_capacity,
+    roller_conductance,
+    room_convection,
 )
-from epicyclic.thermal.housing import free_convection
+from epicyclic.oil.properties import MixtureState
 
 AIR = air(333.15, 101325.0)
 OIL = Fluid(850.0, 20e-3, 0.13, 2000.0)

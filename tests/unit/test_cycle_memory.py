@@ -12,8 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import epicyclic as ep
-from epicyclic.maps.cycle import open_cycle
-from epicyclic.maps.parquet_pages import largest_page
+from epicyclic.study.maps.cycle import largest_page, open_cycle
 
 MOST_MEMORY = 200e6
 """Beyond what the program and its libraries take, as docs/how-to/duty-cycle.md says. [bytes]"""

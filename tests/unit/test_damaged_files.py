@@ -17,21 +17,20 @@ import pytest
 import x3pio
 
 import epicyclic as ep
-from epicyclic.case.contact import contact_model, load_contact_case
 from epicyclic.case.template import case_text
-from epicyclic.ehl.profile_file import read_profile
-from epicyclic.exchange.rexs.exporting import rexs_bytes
-from epicyclic.exchange.rexs.importing import read_rexs
+from epicyclic.contact.fitted_models import read_oil_model
 from epicyclic.library import oil_model_file
 from epicyclic.losses.loss_table import read_loss_table
-from epicyclic.maps.cycle import open_cycle
-from epicyclic.measurement.files import read_grid
-from epicyclic.measurement.table import parse_measurements
-from epicyclic.oilmodel.model import read_oil_model
-from epicyclic.pocketing.stored import read_stored
+from epicyclic.losses.pocket_tables import read_stored
+from epicyclic.plugins.contact_solver.contact import contact_model, load_contact_case
+from epicyclic.plugins.contact_solver.surfaces import read_profile
+from epicyclic.plugins.rexs.exporting import rexs_bytes
+from epicyclic.plugins.rexs.importing import read_rexs
 from epicyclic.records.files import open_map
-from epicyclic.sweeps.dataset import write_dataset
-from epicyclic.sweeps.journal import Journal, Row
+from epicyclic.study.maps.cycle import open_cycle
+from epicyclic.study.measured.table import parse_measurements, read_grid
+from epicyclic.study.sweeps.run import write_dataset
+from epicyclic.study.sweeps.runner import Journal, Row
 from limits import MOST_MEMORY, is_soon, peak_memory
 
 QUICK, ALL = 40, 1000

@@ -8,8 +8,8 @@ from test_gear_sizes import X, changed
 from test_tooth_measures import RING, TABLES
 
 from epicyclic import load_case
-from epicyclic.analysis.data_sheet import data_sheets
 from epicyclic.report.data_sheet import data_sheet
+from epicyclic.study.data_sheet import data_sheets
 
 
 def shown(case, width=80):

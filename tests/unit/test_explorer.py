@@ -14,13 +14,13 @@ import pytest
 import xarray as xr
 
 import epicyclic as ep
-from epicyclic.plots.catalogue import panels_of
-from epicyclic.plots.loss_map import map_line, shown_panels
-from epicyclic.plots.sweep import LEFT_OUT, MOST_POINTS, thinned
 from epicyclic.report import explorer
 from epicyclic.report.explorer import explorer_items
 from epicyclic.report.page import Explorer, Listing
 from epicyclic.report.pdf import report_pdf
+from epicyclic.show.plots.catalogue import panels_of
+from epicyclic.show.plots.loss_map import map_line, shown_panels
+from epicyclic.show.plots.sweep import LEFT_OUT, MOST_POINTS, thinned
 from epicyclic.units import format_number
 
 VARY = {

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
+from epicyclic.contact.temperatures import effusivity, flash_temperature, heat_share
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_half_width, hertz_pressure
-from epicyclic.thermal.flash import effusivity, flash_temperature, heat_share
 
 STEEL = effusivity(45.0, 440.0, 7800.0)
 

@@ -11,16 +11,18 @@ import pytest
 
 import epicyclic as ep
 from contacts import STEEL, contact_points, loaded_contact, oil
-from epicyclic.contact import Flanks
-from epicyclic.geometry.roughness import RA_OVER_RQ
-from epicyclic.losses.friction import FRICTION_MODELS, FrictionSettings, friction_model
-from epicyclic.losses.friction.base import (
+from epicyclic.contact.line_contact import Flanks
+from epicyclic.gears.flanks import RA_OVER_RQ
+from epicyclic.losses.friction import (
+    FRICTION_MODELS,
+    FrictionMap,
+    FrictionSettings,
+    friction_model,
     mean_roughness_ra,
     pitch_point_radius,
     pitch_point_sum_speed,
     specific_load,
 )
-from epicyclic.losses.friction.user import FrictionMap
 
 SETTINGS = FrictionSettings(
     constant=0.04,

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from scipy.optimize import brentq
 
-from epicyclic.geometry.gear import (
+from epicyclic.gears.gear import (
     BasicRack,
     half_angle_from_profile_shift,
     half_angle_from_thickness,

@@ -7,12 +7,8 @@ import pytest
 from epicyclic import load_case, solve
 from epicyclic.builders.notes import thin_teeth_notes
 from epicyclic.case import build
-from epicyclic.geometry.gear import BasicRack
-from epicyclic.geometry.profile_shifts import (
-    closed_center_distance,
-    profile_shift_sum,
-    recommended_backlash,
-)
+from epicyclic.gears.gear import BasicRack
+from epicyclic.gears.mesh import closed_center_distance, profile_shift_sum, recommended_backlash
 from epicyclic.units import MILLIMETRE
 from problems import only, problems_of
 

@@ -11,16 +11,16 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import epicyclic as ep
-from epicyclic.analysis import heat as analysis
-from epicyclic.analysis.heat import beyond_range
-from epicyclic.analysis.solve import mesh_contacts, solve
 from epicyclic.builders.build import build
 from epicyclic.errors import InputError
-from epicyclic.losses.friction.regressions import MixedEhl
-from epicyclic.plots.catalogue import available, figure_of
-from epicyclic.plots.heat_network import heat_figure
+from epicyclic.losses.friction import MixedEhl
 from epicyclic.records.contents import Heat
 from epicyclic.report.heat_tables import heat_items, remarks
+from epicyclic.show.plots.catalogue import available, figure_of
+from epicyclic.show.plots.heat_network import heat_figure
+from epicyclic.study import heat as analysis
+from epicyclic.study.heat import beyond_range
+from epicyclic.study.solve import mesh_contacts, solve
 from epicyclic.units import CELSIUS
 from listed_trains import ravigneaux
 

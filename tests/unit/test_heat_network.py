@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from epicyclic.thermal.network import Link, Network
+from epicyclic.machine.heat_flow import Link, Network
 
 GEARBOX = Network(
     nodes=("sun", "planet", "oil", "housing"),

@@ -11,19 +11,17 @@ import pandas as pd
 import pytest
 
 import epicyclic as ep
-from epicyclic.campaigns.folder import open_folder
-from epicyclic.case.contact import contact_model, load_contact_case
-from epicyclic.ehl.profile_file import read_profile
-from epicyclic.exchange.rexs.importing import read_rexs
+from epicyclic.contact.fitted_models import read_oil_model
 from epicyclic.losses.loss_table import read_loss_table
-from epicyclic.maps.cycle import open_cycle
-from epicyclic.measurement.files import read_grid
-from epicyclic.measurement.table import parse_measurements
-from epicyclic.oilmodel.model import read_oil_model
-from epicyclic.pocketing.stored import read_stored
+from epicyclic.losses.pocket_tables import read_stored
+from epicyclic.plugins.contact_solver.campaign import open_folder
+from epicyclic.plugins.contact_solver.contact import contact_model, load_contact_case
+from epicyclic.plugins.contact_solver.surfaces import read_profile
+from epicyclic.plugins.rexs.importing import read_rexs
 from epicyclic.records.files import open_map
-from epicyclic.sweeps.journal import Journal, read_heading
-from epicyclic.sweeps.runner import Runner
+from epicyclic.study.maps.cycle import open_cycle
+from epicyclic.study.measured.table import parse_measurements, read_grid
+from epicyclic.study.sweeps.runner import Journal, Runner, read_heading
 from limits import MOST_MEMORY, is_soon, peak_memory
 
 
@@ -185,7 +183,7 @@ UPLOADS = [name for name in READERS if name.endswith((".toml", ".rexs", ".rexsj"
 @pytest.mark.parametrize("name", UPLOADS)
 @pytest.mark.parametrize("content", HOSTILE)
 def test_the_app_refuses_such_an_upload(tmp_path, name, content):
-    desk = pytest.importorskip("epicyclic.app.desk")
+    desk = pytest.importorskip("epicyclic.plugins.app.case_form")
     path = tmp_path / "app"
     path.mkdir()
     refusal(lambda folder: desk.received([(name, HOSTILE[content])], folder), path)

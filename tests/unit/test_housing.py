@@ -6,11 +6,11 @@ import math
 
 import pytest
 
-from epicyclic.thermal.convection import cylinder_in_air
-from epicyclic.thermal.fluid import air
-from epicyclic.thermal.housing import (
+from epicyclic.machine.convection import (
     FAN_COEFFICIENTS,
     OVERALL_COEFFICIENTS,
+    air,
+    cylinder_in_air,
     fan_coefficient,
     fin_conductance,
     fin_factor,

@@ -7,9 +7,8 @@ import math
 
 import pytest
 
-from epicyclic.elements.base import HOUSING, LOAD_INDEPENDENT, ElementResult, Loss
-from epicyclic.machine.balance import balance
-from epicyclic.machine.kinematics import speeds_of
+from epicyclic.machine.balance import balance, speeds_of
+from epicyclic.machine.element import HOUSING, LOAD_INDEPENDENT, ElementResult, Loss
 from epicyclic.machine.machine import Machine, MeshRow, Operation
 from epicyclic.machine.solve import solve_machine
 from epicyclic.results.result import MemberState, PowerFlow

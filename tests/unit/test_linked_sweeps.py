@@ -11,14 +11,13 @@ import pandas as pd
 import pytest
 
 import epicyclic as ep
+from epicyclic.cli.common import parse_changes
 from epicyclic.cli.main import main
-from epicyclic.cli.options import parse_changes
-from epicyclic.sweeps.dataset import to_dataset, to_table
-from epicyclic.sweeps.expression import parse_expression
-from epicyclic.sweeps.journal import Row, Rows
-from epicyclic.sweeps.plan import SweepPlan, make_plan, parse_links, parse_together
-from epicyclic.sweeps.points import columns_of
-from epicyclic.sweeps.runner import fingerprint
+from epicyclic.study.sweeps.axes import columns_of
+from epicyclic.study.sweeps.links import parse_expression
+from epicyclic.study.sweeps.plan import SweepPlan, make_plan, parse_links, parse_together
+from epicyclic.study.sweeps.run import to_dataset, to_table
+from epicyclic.study.sweeps.runner import Row, Rows, fingerprint
 from epicyclic.units import with_unit
 
 CONSTANT = {

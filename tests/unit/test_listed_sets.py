@@ -20,7 +20,7 @@ from epicyclic.case.listed_set import (
     terms_of,
 )
 from epicyclic.case.train_tables import ListedGear
-from epicyclic.geometry.assembly import closing_number, nearest_places, pin_angle
+from epicyclic.gears.mesh import closing_number, nearest_places, pin_angle
 from listed_trains import BEARING, CARRIER
 from problems import only, problems_of
 

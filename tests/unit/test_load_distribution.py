@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from contacts import MESHES
-from epicyclic.geometry.contact_lines import contact_lines
-from epicyclic.losses.load_distribution import STIFFNESS_SHAPES, load_shape
+from epicyclic.gears.flanks import contact_lines
+from epicyclic.losses.contact import STIFFNESS_SHAPES, load_shape
 
 
 @pytest.fixture(params=MESHES)

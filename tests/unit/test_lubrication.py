@@ -12,15 +12,14 @@ from click.testing import CliRunner
 import asymmetric
 import epicyclic as ep
 import listed_trains
-from epicyclic.bands.nearby import look_nearby
-from epicyclic.bands.quick import quick_band
 from epicyclic.case import build
 from epicyclic.case.uncertain_values import uncertain_values
 from epicyclic.cli.main import cli
 from epicyclic.library import lubrication_methods
-from epicyclic.losses.churning import Dipped, SumpOil, changenet_velex, iso_14179_1
-from epicyclic.losses.viscous import disc_drag
-from epicyclic.lubricant.properties import mixture_state, oil_state
+from epicyclic.losses.drag import Dipped, SumpOil, changenet_velex, disc_drag, iso_14179_1
+from epicyclic.oil.properties import mixture_state, oil_state
+from epicyclic.study.bands.nearby import look_nearby
+from epicyclic.study.bands.quick import quick_band
 from problems import only, problems_of
 from trains import small_axle
 

@@ -13,13 +13,11 @@ from scipy.optimize import curve_fit
 
 import epicyclic as ep
 from epicyclic.case.parameters import Parameter
-from epicyclic.measurement.files import read_frame
-from epicyclic.measurement.fit import fit_parameters
-from epicyclic.measurement.model import MeasuredPoints
-from epicyclic.measurement.table import Measurements, parse_measurements
-from epicyclic.sweeps.journal import Row, Rows
-from epicyclic.sweeps.runner import failed_row
-from epicyclic.sweeps.unloaded import with_unloaded
+from epicyclic.study.measured.fit import fit_parameters
+from epicyclic.study.measured.residuals import MeasuredPoints
+from epicyclic.study.measured.table import Measurements, parse_measurements, read_frame
+from epicyclic.study.sweeps.run import with_unloaded
+from epicyclic.study.sweeps.runner import Row, Rows, failed_row
 
 TRUTH = {"mesh_sliding": 1.2, "drag": 0.8}
 KEYS = [f"losses.{name}.factor" for name in TRUTH]
@@ -294,7 +292,7 @@ def test_more_inputs_than_points_are_refused(case, tests):
 
 
 def test_a_fit_that_does_not_converge_says_so(case, tests, monkeypatch):
-    from epicyclic.measurement import fit
+    from epicyclic.study.measured import fit
 
     monkeypatch.setattr(fit, "MOST_ROUNDS", 1)
     with pytest.raises(ep.ConvergenceError, match="did not converge"):
@@ -302,7 +300,7 @@ def test_a_fit_that_does_not_converge_says_so(case, tests, monkeypatch):
 
 
 def test_points_that_fail_are_named_and_left_out(case, tests, monkeypatch):
-    from epicyclic.sweeps import plan
+    from epicyclic.study.sweeps import plan
 
     solve = plan.solve
 

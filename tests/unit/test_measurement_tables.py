@@ -9,8 +9,7 @@ import pandas as pd
 import pytest
 
 import epicyclic as ep
-from epicyclic.measurement.files import read_frame, read_grid
-from epicyclic.measurement.table import parse_measurements
+from epicyclic.study.measured.table import parse_measurements, read_frame, read_grid
 
 GOOD = """\
 # test rig 3, gear set 12

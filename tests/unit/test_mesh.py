@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from epicyclic.geometry.gear import Gear
-from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import tooth_outline
+from epicyclic.gears.cutting import tooth_outline
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.mesh import Mesh
 
 ROUNDING = 1e-12  # relative; a few roundings of doubles
 

@@ -10,9 +10,9 @@ import xarray as xr
 from rich.console import Console
 
 import epicyclic as ep
-from epicyclic.machine.answers import NEAR, STEEPEST
-from epicyclic.plots.mesh import mesh_figure
+from epicyclic.machine.solve import NEAR, STEEPEST
 from epicyclic.report.mesh_table import mesh_tables
+from epicyclic.show.plots.mesh import mesh_figure
 
 
 @pytest.fixture(scope="module")

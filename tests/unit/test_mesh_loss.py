@@ -10,8 +10,13 @@ import pytest
 
 import epicyclic as ep
 from contacts import loaded_contact, with_overlap_ratio
-from epicyclic.losses.friction import FRICTION_MODELS, FrictionSettings, friction_model
-from epicyclic.losses.friction.user import Constant, FrictionMap
+from epicyclic.losses.friction import (
+    FRICTION_MODELS,
+    Constant,
+    FrictionMap,
+    FrictionSettings,
+    friction_model,
+)
 from epicyclic.losses.mesh import local_loss, loss_factor_loss, mean_friction, ohlendorf_loss_factor
 from epicyclic.losses.rolling import ROLLING_MODELS
 from epicyclic.reference.gear_loss import equal_sharing_loss_factor, uniform_load_loss_factor

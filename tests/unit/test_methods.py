@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import epicyclic as ep
-from epicyclic.analysis.methods import methods_of
+from epicyclic.study.friction import methods_of
 
 
 @pytest.mark.parametrize(

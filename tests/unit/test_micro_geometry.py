@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from epicyclic.geometry.contact_lines import contact_lines
-from epicyclic.geometry.micro_geometry import (
+from epicyclic.gears.flanks import (
     FlankDeviations,
     MicroGeometry,
     Relief,
     Topography,
     active_profile,
+    contact_lines,
 )
 
 UM = 1e-6

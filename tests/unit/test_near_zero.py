@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 import epicyclic as ep
 from epicyclic.cli.main import cli
-from epicyclic.maps.near_zero import resolving_zero
+from epicyclic.study.maps.compute import resolving_zero
 
 COARSE = {"numerics.pocket_slices": 6, "numerics.pocket_steps": 10}
 

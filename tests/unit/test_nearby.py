@@ -7,11 +7,10 @@ import pytest
 from pydantic import ValidationError
 from scipy.interpolate import RBFInterpolator
 
-from epicyclic.contact import CONDITIONS, contacts_at
-from epicyclic.oilmodel import nearby
-from epicyclic.oilmodel.fitting import fit_quantity
-from epicyclic.oilmodel.model import FORMS
-from epicyclic.oilmodel.nearby import MOST_SIMULATIONS, NearbySimulations
+from epicyclic.contact import fitted_models as nearby
+from epicyclic.contact.fitted_models import FORMS, MOST_SIMULATIONS, NearbySimulations
+from epicyclic.contact.line_contact import CONDITIONS, contacts_at
+from epicyclic.plugins.contact_solver.fit import fit_quantity
 
 STEEL = 227.47e9
 RANGES = {

@@ -12,8 +12,8 @@ import xarray as xr
 
 import epicyclic as ep
 from epicyclic.cli.main import main
+from epicyclic.losses.pocket_tables import read_stored
 from epicyclic.netcdf_file import read_groups
-from epicyclic.pocketing.stored import read_stored
 from epicyclic.records.files import open_map
 
 

@@ -11,16 +11,17 @@ import numpy as np
 import pytest
 
 from epicyclic.case.plain import plain
-from epicyclic.contact import CONDITIONS, contacts_at
+from epicyclic.contact import fitted_models as regressions
+from epicyclic.contact import fitted_models as structured
+from epicyclic.contact.fitted_models import FORMAT, FORMS, OilModel, read_oil_model
+from epicyclic.contact.line_contact import CONDITIONS, contacts_at
 from epicyclic.errors import InputError
+from epicyclic.files import sealed
 from epicyclic.kernels import mixed_ehl
 from epicyclic.library import oil_model_file
 from epicyclic.losses.fitted import domain_ranges
-from epicyclic.losses.validity import ModelUse, check_ranges
-from epicyclic.oilmodel import regressions, structured
-from epicyclic.oilmodel.fitting import fit_quantity
-from epicyclic.oilmodel.model import FORMAT, FORMS, OilModel, read_oil_model
-from epicyclic.text_file import sealed
+from epicyclic.losses.ranges import ModelUse, check_ranges
+from epicyclic.plugins.contact_solver.fit import fit_quantity
 
 STEEL = 227.47e9
 # Tables 5.2(a), 5.2(b) and 3.2 of Talbot (2012), in the order of the columns

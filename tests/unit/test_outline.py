@@ -9,16 +9,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from epicyclic.geometry.gear import (
+from epicyclic.gears.cutting import form_radius, tooth_outline
+from epicyclic.gears.gear import (
     BasicRack,
     Gear,
     half_angle_from_profile_shift,
     half_angle_from_thickness,
     involute,
 )
-from epicyclic.geometry.generation import default_tool
-from epicyclic.geometry.outline import form_radius, tooth_outline
-from epicyclic.geometry.tools import RackTool, ShaperTool, Tool
+from epicyclic.gears.generation import RackTool, ShaperTool, Tool, default_tool
 from simulated_tools import MODULE, distance_to, gaps, shaper_polygon, turned
 
 ROUNDING_ERROR = 1e-12  # a few hundred roundings of doubles, relative

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.contact import contacts_at
-from epicyclic.losses.friction.regressions import MixedEhl, PairedFriction
-from epicyclic.losses.pairing import equally_rough, pairing_ratio
+from epicyclic.contact.line_contact import contacts_at
+from epicyclic.losses.friction import MixedEhl, PairedFriction
+from epicyclic.losses.mixed_ehl import equally_rough, pairing_ratio
 from epicyclic.losses.rolling import MixedEhlRolling, PairedRolling
 
 STEEL = 227.47e9

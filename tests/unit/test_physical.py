@@ -8,10 +8,10 @@ from dataclasses import replace
 import pytest
 
 import epicyclic as ep
-from epicyclic.elements import pocket_flow
-from epicyclic.pocketing.similarity import FlowFigures
+from epicyclic.errors import Status
+from epicyclic.losses.pocket_tables import FlowFigures
+from epicyclic.machine import pocket_flow
 from epicyclic.results.physical import judged
-from epicyclic.status import Status
 
 
 @pytest.fixture(scope="module")

@@ -12,32 +12,32 @@ from matplotlib.text import Text
 
 import epicyclic as ep
 import listed_trains
-from epicyclic.analysis.shapes import gear_shapes
 from epicyclic.case.operating import operating_line
-from epicyclic.cli.output import parse_size
-from epicyclic.plots.bearing import plot_roller_loads
-from epicyclic.plots.catalogue import figure_of
-from epicyclic.plots.drawing import plot_gear_set
-from epicyclic.plots.loss_map import limits_of, limits_of_band, limits_of_half_width
-from epicyclic.plots.losses import plot_loss_sum, plot_losses
-from epicyclic.plots.mesh import (
-    mesh_figure,
-    plot_along_path,
-    plot_plane_of_action,
-    plot_transmission_error,
-)
-from epicyclic.plots.pockets import plot_power, pocket_figure
-from epicyclic.plots.power_flow import SLIDE
-from epicyclic.plots.style import styled_figure
+from epicyclic.cli.common import parse_size
 from epicyclic.records.record import sets_of
 from epicyclic.report.drawings import draw
 from epicyclic.report.page import Cell, Table
 from epicyclic.report.result_tables import key_figures, members_table
 from epicyclic.report.uncertainty_tables import _shown
-from epicyclic.report.validation_page import MOST_ROWS, _items
 from epicyclic.results.result import of_gear
+from epicyclic.show.plots.catalogue import figure_of
+from epicyclic.show.plots.drawing import plot_gear_set
+from epicyclic.show.plots.loss_map import limits_of, limits_of_band, limits_of_half_width
+from epicyclic.show.plots.losses import plot_loss_sum, plot_losses
+from epicyclic.show.plots.mesh import (
+    mesh_figure,
+    plot_along_path,
+    plot_plane_of_action,
+    plot_roller_loads,
+    plot_transmission_error,
+)
+from epicyclic.show.plots.pockets import plot_power, pocket_figure
+from epicyclic.show.plots.power_flow import SLIDE
+from epicyclic.show.plots.style import styled_figure
+from epicyclic.study.shapes import gear_shapes
 from epicyclic.units import decimals_of, format_number, known_text, power_unit
 from epicyclic.validation.compare import compare_published
+from epicyclic.validation.pages import MOST_ROWS, _items
 
 
 def axes():
@@ -159,7 +159,7 @@ def test_a_single_set_of_a_train_shows_its_components(talbot_record):
 
 
 def test_several_sets_are_bars_of_their_own_however_many(talbot_record, monkeypatch):
-    monkeypatch.setattr("epicyclic.plots.losses.MOST_BARS", 1)
+    monkeypatch.setattr("epicyclic.show.plots.losses.MOST_BARS", 1)
     contents = talbot_record.result
     both = {
         field: {f"{own}.{name}": value for own in ("P1", "P2") for name, value in given.items()}
@@ -175,7 +175,7 @@ def test_several_sets_are_bars_of_their_own_however_many(talbot_record, monkeypa
 
 def test_too_many_losses_are_summed_by_what_loses_them(talbot_record, monkeypatch):
     contents = talbot_record.result
-    monkeypatch.setattr("epicyclic.plots.losses.MOST_BARS", 5)
+    monkeypatch.setattr("epicyclic.show.plots.losses.MOST_BARS", 5)
     ax = plot_losses(contents, axes())
     names = [text.get_text() for text in ax.get_yticklabels()]
     assert {"sun mesh", "ring mesh", "planet bearing"} <= set(names)

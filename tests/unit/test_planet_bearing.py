@@ -12,11 +12,11 @@ import pytest
 import epicyclic as ep
 from epicyclic.builders.build import build
 from epicyclic.builders.planetary import palmgren_coefficient, roller_bearing
-from epicyclic.elements.gear_mesh import MeshDuty
-from epicyclic.elements.planet_load import PlanetContact, planet_load
-from epicyclic.geometry.mesh import Mesh
+from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss
 from epicyclic.losses.planet_bearing import mixed_ehl_rolling_loss, palmgren_loss, roller_loads
+from epicyclic.machine.gear_mesh import MeshDuty
+from epicyclic.machine.planets import PlanetContact, planet_load
 
 BEARING_SPEED = 4000 * 125 / 198 * 73 / 26 * math.pi / 30  # at 4000 rpm of the sun, rad/s
 

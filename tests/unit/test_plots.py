@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 import epicyclic as ep
 from epicyclic.errors import InputError
-from epicyclic.plots.catalogue import PLOTS, available, figure_of, panels_of
-from epicyclic.plots.loss_map import map_at
+from epicyclic.show.plots.catalogue import PLOTS, available, figure_of, panels_of
+from epicyclic.show.plots.loss_map import map_at
 
 OF_MAPS = [name for name in PLOTS if "map" in name or name.startswith("loss-over")] + ["loss-parts"]
 OF_BANDS = ["loss-band", "loss-band-lines"]

@@ -12,11 +12,9 @@ from PIL import Image
 from rich.console import Console
 
 import epicyclic as ep
-from epicyclic.analysis.pocket_details import mesh_duties
-from epicyclic.plots.pocket_animation import MeshScene, pocket_animation
-from epicyclic.plots.pocket_section import section_figure
-from epicyclic.plots.pockets import pocket_figure
 from epicyclic.report.pocket_table import pocket_tables
+from epicyclic.show.plots.pockets import MeshScene, pocket_animation, pocket_figure, section_figure
+from epicyclic.study.pockets import mesh_duties
 
 SPUR = {"gears.helix_angle": "0 deg"}
 

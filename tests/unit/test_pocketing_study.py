@@ -9,16 +9,17 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.analysis.pocket_details import mesh_duties
-from epicyclic.analysis.pocket_variants import (
+from epicyclic.study.pockets import mesh_duties
+from epicyclic.validation.plots import study_figure
+from epicyclic.validation.pocketing import (
+    STUDIES,
     base_variant,
+    make_study,
+    published_study,
     solve_variant,
     teeth_for_module,
     varied_duty,
 )
-from epicyclic.plots.pocketing_study import study_figure
-from epicyclic.sweeps.pocketing_plan import STUDIES, make_study
-from epicyclic.validation.pocketing import published_study
 
 QUICK = {"numerics.pocket_slices": 4, "numerics.pocket_steps": 8}
 
@@ -137,7 +138,7 @@ def test_finished_points_are_kept(pair, tmp_path, monkeypatch):
         "jobs": 1,
     }
     first = ep.pocketing_study(pair, ["oil-fraction"], **wanted)["oil-fraction"]
-    monkeypatch.delattr("epicyclic.sweeps.pocketing_plan.solve_variant")
+    monkeypatch.delattr("epicyclic.validation.pocketing.solve_variant")
     again = ep.pocketing_study(pair, ["oil-fraction"], **wanted)["oil-fraction"]
     assert again.equals(first)
     assert float(first["pocketing_loss"].min()) > 0

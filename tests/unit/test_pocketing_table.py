@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.analysis.pocket_details import mesh_duties
-from epicyclic.elements.pocket_flow import flow_family
-from epicyclic.pocketing.similarity import FlowFamily
-from epicyclic.pocketing.stored import read_stored, stored_table
-from epicyclic.sweeps.dataset import write_dataset
-from epicyclic.sweeps.plan import make_plan
-from epicyclic.sweeps.runner import fingerprint
-from epicyclic.text_file import sealed
+from epicyclic.files import sealed
+from epicyclic.losses.pocket_tables import FlowFamily, read_stored, stored_table
+from epicyclic.machine.pocket_flow import flow_family
+from epicyclic.study.pockets import mesh_duties
+from epicyclic.study.sweeps.plan import make_plan
+from epicyclic.study.sweeps.run import write_dataset
+from epicyclic.study.sweeps.runner import fingerprint
 
 COARSE = {
     "numerics.pocket_slices": 4,

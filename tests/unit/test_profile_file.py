@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import x3pio
 
-from epicyclic.ehl.profile_file import read_profile
 from epicyclic.errors import InputError
+from epicyclic.plugins.contact_solver.surfaces import read_profile
 
 X = np.arange(2000) * 1e-3  # mm
 SHORT, LONG = np.cos(2 * np.pi * X / 0.01), np.cos(2 * np.pi * X / 1.0)

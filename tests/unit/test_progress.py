@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from epicyclic.cli import progress
+from epicyclic.cli import common as progress
 from epicyclic.kernels.compiling import listeners
 
 
@@ -76,10 +76,10 @@ def test_a_first_run_says_that_it_compiles(clock, capsys):
 
 
 def test_compiling_a_kernel_is_told(monkeypatch):
-    from epicyclic.kernels._jit import kernel
+    from epicyclic.kernels.compiling import kernel
 
     told = []
-    monkeypatch.setattr("epicyclic.kernels._jit._CACHE_DIR", None)
+    monkeypatch.setattr("epicyclic.kernels.compiling._CACHE_DIR", None)
     listeners.append(lambda: told.append(1))
     try:
 

@@ -7,13 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from epicyclic.elements.reactions import (
-    ShaftLoad,
-    Support,
-    bearing_reactions,
-    mesh_force,
-    mesh_load,
-)
+from epicyclic.machine.machine import ShaftLoad, Support, bearing_reactions, mesh_force, mesh_load
 
 ROUNDING = 1e-12
 """Relative; sums and products of a few dozen numbers of like size."""

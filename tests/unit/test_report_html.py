@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.plots.loss_map import map_at
 from epicyclic.report.drawings import draw
+from epicyclic.show.plots.loss_map import map_at
 
 VOID = {"meta", "br", "link", "img", "col"}
 """Tags without an end."""

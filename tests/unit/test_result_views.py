@@ -7,7 +7,7 @@ import json
 import pytest
 
 import epicyclic as ep
-from epicyclic.plots.catalogue import MM_PER_INCH
+from epicyclic.show.plots.catalogue import MM_PER_INCH
 
 
 @pytest.fixture(scope="module")

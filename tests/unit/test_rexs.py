@@ -12,8 +12,8 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.case.build import planetary_meshes
-from epicyclic.exchange.rexs.vocabulary import id_in, term, versions
-from epicyclic.geometry.roughness import RA_OVER_RQ
+from epicyclic.gears.flanks import RA_OVER_RQ
+from epicyclic.plugins.rexs.model import id_in, term, versions
 from rexs_files import (
     CASING,
     OIL,

@@ -13,9 +13,9 @@ import zipfile
 import pytest
 
 import epicyclic as ep
-from epicyclic.exchange.rexs import file as rexs_file
-from epicyclic.exchange.rexs.content import build_model
-from epicyclic.exchange.rexs.file import read_document
+from epicyclic.plugins.rexs import files as rexs_file
+from epicyclic.plugins.rexs.files import read_document
+from epicyclic.plugins.rexs.model import build_model
 from limits import is_soon
 from rexs_files import STAGE, SUN, pair, planetary
 from rexs_files import none as no_unit

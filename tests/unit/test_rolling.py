@@ -12,10 +12,10 @@ from scipy.optimize import brentq
 
 import epicyclic as ep
 from contacts import STEEL, contact_points, oil
+from epicyclic.contact.fitted_models import rolling_scale
 from epicyclic.kernels.line_contact import hertz_half_width, martin_force, pan_hamrock_minimum_film
 from epicyclic.kernels.mixed_ehl import rolling_loss_number
 from epicyclic.losses.rolling import ROLLING_MODELS
-from epicyclic.oilmodel.regressions import rolling_scale
 
 MODELS = sorted(ROLLING_MODELS)
 points = partial(contact_points, radius=10e-3, sliding=0.5, rough=(0.3e-6, 0.3e-6))

@@ -10,10 +10,8 @@ import pytest
 from epicyclic import library
 from epicyclic.case.element_kinds import ELEMENT_KINDS, seal_problems
 from epicyclic.case.element_tables import SealTable
-from epicyclic.elements.base import HOUSING, LOAD_INDEPENDENT, State
-from epicyclic.elements.figures import figures
-from epicyclic.elements.fluids import fluids_at
-from epicyclic.elements.seal import (
+from epicyclic.machine.element import HOUSING, LOAD_INDEPENDENT, State, figures, fluids_at
+from epicyclic.machine.shaft_parts import (
     Seal,
     SealFormula,
     linke_bracket,
@@ -21,8 +19,8 @@ from epicyclic.elements.seal import (
     seal_loss,
     seal_losses,
 )
-from epicyclic.lubricant.oil import Oil
-from epicyclic.lubricant.properties import oil_state
+from epicyclic.oil.oil import Oil
+from epicyclic.oil.properties import oil_state
 from problems import only, problems_of
 
 RPM = math.pi / 30

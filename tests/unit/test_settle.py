@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import pytest
 
 import epicyclic as ep
-from epicyclic.machine import settle as settling
-from epicyclic.machine.settle import AGREEMENT, SCATTER, SCATTERING_FROM, Answer, settle
+from epicyclic.machine import heat as settling
+from epicyclic.machine.heat import AGREEMENT, SCATTER, SCATTERING_FROM, Answer, settle
 
 SCATTERED = (0.31, -0.83, 0.57, -0.24, 0.92, -0.66, 0.13)
 """Of one evaluation after another, over the largest. [1]"""

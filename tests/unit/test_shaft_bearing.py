@@ -13,38 +13,41 @@ import pytest
 from epicyclic import library
 from epicyclic.case.element_kinds import ELEMENT_KINDS, bearing_problems
 from epicyclic.case.element_tables import ShaftBearingTable
-from epicyclic.elements.base import HOUSING, LOAD_DEPENDENT, LOAD_INDEPENDENT, State
-from epicyclic.elements.figures import figures
-from epicyclic.elements.fluids import fluids_at
-from epicyclic.elements.shaft_bearing import ShaftBearing
+from epicyclic.losses.drag import bearing_viscous_loss
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.shaft_bearing import (
+    STARVATION,
     BearingLoad,
     CatalogueBearing,
+    ContactSeal,
     PalmgrenModel,
+    SkfModel,
     TableModel,
     bearing_types,
+    drag_variable,
     friction_load,
+    full_film_friction,
     harris_coefficient,
     load_moment,
     minimum_load,
-    static_load,
-)
-from epicyclic.losses.skf_bearing import (
-    STARVATION,
-    ContactSeal,
-    SkfModel,
-    drag_variable,
-    full_film_friction,
     skf_constants,
     skf_drag_moment,
     skf_load_variables,
     skf_moments,
     skf_reduction_factors,
     skf_series,
+    static_load,
 )
-from epicyclic.losses.viscous import bearing_viscous_loss
-from epicyclic.lubricant.oil import Oil
+from epicyclic.machine.element import (
+    HOUSING,
+    LOAD_DEPENDENT,
+    LOAD_INDEPENDENT,
+    State,
+    figures,
+    fluids_at,
+)
+from epicyclic.machine.shaft_parts import ShaftBearing
+from epicyclic.oil.oil import Oil
 from problems import only, problems_of
 
 RPM = math.pi / 30

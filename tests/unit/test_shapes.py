@@ -9,8 +9,8 @@ import pytest
 from matplotlib.path import Path
 
 import epicyclic as ep
-from epicyclic.analysis.shapes import gear_shapes, mesh_views
 from epicyclic.builders.build import build
+from epicyclic.study.shapes import gear_shapes, mesh_views
 from listed_trains import double_planet, layshaft, plus, ravigneaux, stepped, wolfrom
 
 CHORD_ERROR = 0.02

@@ -6,8 +6,8 @@ from test_gear_sizes import SET
 
 from epicyclic import load_case, solve
 from epicyclic.case.case import case_schema
-from epicyclic.lubricant.properties import oil_state
-from epicyclic.oilmodel.builtin import builtin_model
+from epicyclic.contact.fitted_models import builtin_model
+from epicyclic.oil.properties import oil_state
 from problems import only, problems_of
 
 

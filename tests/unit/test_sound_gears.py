@@ -9,10 +9,9 @@ import pytest
 
 from epicyclic.case import build
 from epicyclic.case.case import read_case
-from epicyclic.geometry.cutting import longest_involute
-from epicyclic.geometry.gear import involute
-from epicyclic.geometry.outline import form_radius
-from epicyclic.geometry.tools import RackTool, ShaperTool
+from epicyclic.gears.cutting import form_radius, longest_involute
+from epicyclic.gears.gear import involute
+from epicyclic.gears.generation import RackTool, ShaperTool
 from problems import problems_of
 
 TALBOT, PAIR = "talbot-2012", "talbot-2012-pair"

@@ -7,8 +7,8 @@ import pint
 import pytest
 
 import epicyclic as ep
-from epicyclic.sweeps.plan import make_plan, parse_vary
-from epicyclic.sweeps.runner import fingerprint
+from epicyclic.study.sweeps.plan import make_plan, parse_vary
+from epicyclic.study.sweeps.runner import fingerprint
 
 
 @pytest.fixture(scope="module")

@@ -9,9 +9,9 @@ from matplotlib.collections import LineCollection, QuadMesh
 from matplotlib.figure import Figure
 
 import epicyclic as ep
-from epicyclic.plots.catalogue import available, figure_of
-from epicyclic.plots.sweep import plot_sweep_field, plot_sweep_lines, plot_sweep_parallel
-from epicyclic.sweeps.dataset import write_dataset
+from epicyclic.show.plots.catalogue import available, figure_of
+from epicyclic.show.plots.sweep import plot_sweep_field, plot_sweep_lines, plot_sweep_parallel
+from epicyclic.study.sweeps.run import write_dataset
 
 VARY = {
     "models.friction": ["schlenk", "constant"],

@@ -7,8 +7,8 @@ import pytest
 
 from epicyclic import load_case
 from epicyclic.case import build
-from epicyclic.geometry import tooth_measures as measures
-from epicyclic.geometry.gear import BasicRack, Gear, half_angle_from_profile_shift
+from epicyclic.gears import measures
+from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_profile_shift
 from problems import only, problems_of
 
 X = "profile_shift_coefficient"

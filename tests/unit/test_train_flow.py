@@ -7,10 +7,9 @@ import math
 import pytest
 
 import epicyclic as ep
-from epicyclic.analysis.train_losses import loss_sums
-from epicyclic.analysis.train_states import train_states
 from epicyclic.records.contents import contents_of
 from epicyclic.records.power_flow import power_flow
+from epicyclic.study.trains import loss_sums, train_states
 from trains import published, simple, small_axle
 
 GEARS = "12345678R"

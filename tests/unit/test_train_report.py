@@ -17,14 +17,14 @@ import epicyclic as ep
 import listed_trains
 from epicyclic.case.template import case_template
 from epicyclic.errors import InputError
-from epicyclic.plots.catalogue import available, figure_of
-from epicyclic.plots.power_flow import SLIDE
 from epicyclic.records.record import growing_record
 from epicyclic.report.inputs import input_tables
 from epicyclic.report.page import Row, Table
 from epicyclic.report.result_page import result_section
 from epicyclic.report.state_tables import state_tables
 from epicyclic.report.tables import friction_table, result_tables
+from epicyclic.show.plots.catalogue import available, figure_of
+from epicyclic.show.plots.power_flow import SLIDE
 from trains import one_set, plus, published, simple, small_axle, turned_round
 
 GEARS = "235R"
@@ -126,7 +126,7 @@ def test_the_states_of_a_gearbox_are_a_table_of_ratios_and_steps():
 
 
 def test_friction_of_all_sets_is_compared():
-    from epicyclic.analysis.compare import compare_friction
+    from epicyclic.study.friction import compare_friction
 
     rows = compare_friction(small_axle())
     assert [row.name for row in rows if row.chosen] == ["fitted-or-schlenk"]
@@ -288,7 +288,7 @@ def test_the_power_flow_shows_shafts_members_and_brakes(gearbox):
 
 
 def test_arrows_are_as_wide_as_the_power(gearbox):
-    from epicyclic.plots.power_flow import CIRCULATING, THROUGH
+    from epicyclic.show.plots.power_flow import CIRCULATING, THROUGH
 
     patches = drawn(gearbox).axes[0].patches
     arrows = {}

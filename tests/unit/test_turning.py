@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.analysis.shapes import gear_shapes, mesh_views
-from epicyclic.plots.turning import POSITION, turning_mesh, turning_set
+from epicyclic.show.plots.drawing import POSITION, turning_mesh, turning_set
+from epicyclic.study.shapes import gear_shapes, mesh_views
 
 FEW_POINTS = {"numerics.mesh_positions": 7, "numerics.contact_segments": 6}
 """Of the loads on the teeth: every position is drawn."""

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.contact import Flanks, InletOil, LineContacts
-from epicyclic.losses.mixed_ehl_groups import TALBOT_GEAR_RANGES, beyond_data
+from epicyclic.contact.line_contact import Flanks, InletOil, LineContacts
+from epicyclic.losses.mixed_ehl import TALBOT_GEAR_RANGES, beyond_data
 from epicyclic.losses.planet_bearing import NEEDLE_RANGES
-from epicyclic.losses.validity import (
+from epicyclic.losses.ranges import (
     ModelUse,
     Range,
     ValidityFlag,

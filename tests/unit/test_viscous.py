@@ -7,14 +7,14 @@ import math
 import pytest
 
 import epicyclic as ep
-from epicyclic.losses.viscous import (
+from epicyclic.losses.drag import (
     bearing_viscous_loss,
     disc_drag,
     disc_drag_flags,
     reynolds_number,
     viscous_flags,
 )
-from epicyclic.lubricant.properties import MixtureState, mixture_state
+from epicyclic.oil.properties import MixtureState, mixture_state
 from epicyclic.reference.rotating_body import (
     cylinder_power,
     laminar_disc_power,

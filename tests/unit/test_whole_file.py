@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 
 import epicyclic as ep
-from epicyclic.whole_file import PREFIX, check_place, make_folder, whole_file, write_file
+from epicyclic.files import PREFIX, check_place, make_folder, whole_file, write_file
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX files")
 
@@ -92,7 +92,7 @@ def full_disk():
 
 @pytest.mark.parametrize("name", ["r.nc", "r.csv", "r.parquet"])
 def test_a_full_disk_is_told_plainly(tmp_path, full_disk, name):
-    from epicyclic.sweeps.dataset import write_dataset
+    from epicyclic.study.sweeps.run import write_dataset
 
     data = xr.Dataset({"loss": ("point", np.random.default_rng(1).random(100_000))})
     with pytest.raises(ep.InputError, match="cannot be written"):

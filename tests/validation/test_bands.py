@@ -8,12 +8,11 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from epicyclic.bands.published import measured_figures
 from epicyclic.cli.main import cli
-from epicyclic.report.validation_table import band_markdown
-from epicyclic.sweeps.runner import Runner
-from epicyclic.validation.compare import published_figures
+from epicyclic.study.sweeps.runner import Runner
+from epicyclic.validation.compare import measured_figures, published_figures
 from epicyclic.validation.compute import FIGURES
+from epicyclic.validation.pages import band_markdown
 
 DOCS = Path(__file__).parents[2] / "docs" / "validation.md"
 

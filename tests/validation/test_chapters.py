@@ -10,13 +10,11 @@ from click.testing import CliRunner
 import epicyclic as ep
 from epicyclic.cli.main import cli
 from epicyclic.errors import ConvergenceError, InputError
-from epicyclic.plots.chapters import branch_figure, family_figure
-from epicyclic.plots.reproduced import reproduce
-from epicyclic.sweeps.journal import Rows
-from epicyclic.sweeps.runner import HERE, Runner, failed_row
+from epicyclic.study.sweeps.runner import HERE, Rows, Runner, failed_row
 from epicyclic.validation import chapters, compare
 from epicyclic.validation.compare import by_topic, compare_published, published_figures
 from epicyclic.validation.compute import planet_bearing_loss, source_case
+from epicyclic.validation.plots import branch_figure, family_figure, reproduce
 
 
 @pytest.fixture(scope="module")

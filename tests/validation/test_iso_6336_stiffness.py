@@ -11,8 +11,8 @@ import math
 
 import pytest
 
-from epicyclic.elasticity.loaded_mesh import load_mesh_elastically
-from epicyclic.elasticity.mesh_compliance import GearBody
+from epicyclic.contact.elastic_teeth import GearBody
+from epicyclic.contact.loaded_mesh import load_mesh_elastically
 from epicyclic.reference.mesh_stiffness import (
     STIFFNESS_CORRECTION,
     mesh_stiffness,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from epicyclic.validation.closures import CLOSURES, closure_figures
+from epicyclic.validation.compare import CLOSURES, closure_figures
 
 
 @pytest.fixture(scope="module")

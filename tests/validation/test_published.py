@@ -11,8 +11,14 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.reference.mesh_stiffness import mesh_stiffness, theoretical_single_stiffness
-from epicyclic.validation.closures import CLOSURES, ClosureFigure
-from epicyclic.validation.compare import by_topic, compare_published, published_figures, summary
+from epicyclic.validation.compare import (
+    CLOSURES,
+    ClosureFigure,
+    by_topic,
+    compare_published,
+    published_figures,
+    summary,
+)
 from epicyclic.validation.compute import FIGURES
 
 KNOWN_DIFFERENCES = {
@@ -177,8 +183,8 @@ def test_command_writes_a_page(monkeypatch, rows, tmp_path):
     from click.testing import CliRunner
 
     from epicyclic.cli.main import cli
-    from epicyclic.report.validation_page import MOST_ROWS
     from epicyclic.validation import compare
+    from epicyclic.validation.pages import MOST_ROWS
 
     monkeypatch.setattr(compare, "compare_published", lambda progress: rows)
     file = tmp_path / "validation.html"

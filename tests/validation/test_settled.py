@@ -9,9 +9,8 @@ from click.testing import CliRunner
 
 import epicyclic as ep
 from epicyclic.cli.main import cli
-from epicyclic.sweeps.journal import Rows
-from epicyclic.sweeps.runner import Runner, failed_row
-from epicyclic.validation import settled
+from epicyclic.study.sweeps.runner import Rows, Runner, failed_row
+from epicyclic.validation import compare as settled
 from epicyclic.validation.compare import published_figures
 from epicyclic.validation.compute import FIGURES
 

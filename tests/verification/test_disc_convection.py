@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid, simpson, solve_ivp
 
-from epicyclic.thermal.convection import disc_coefficient
-from epicyclic.thermal.fluid import Fluid
+from epicyclic.machine.convection import Fluid, disc_coefficient
 
 FAR = 12.0
 """In boundary-layer units; the axial flow has its last value there to 1e-5."""

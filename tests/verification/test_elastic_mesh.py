@@ -10,13 +10,18 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.elasticity.loaded_mesh import load_mesh_elastically
-from epicyclic.elasticity.mesh_compliance import GearBody, mesh_compliance
-from epicyclic.elasticity.rim import ElasticRing, Rim
-from epicyclic.elasticity.tooth_plate import _stiffness, tooth_plate
-from epicyclic.geometry.generation import default_tool
-from epicyclic.geometry.micro_geometry import FlankDeviations, MicroGeometry, Relief, Topography
-from epicyclic.machine.answers import NEAR, STEEPEST
+from epicyclic.contact.elastic_teeth import (
+    ElasticRing,
+    GearBody,
+    Rim,
+    _stiffness,
+    mesh_compliance,
+    tooth_plate,
+)
+from epicyclic.contact.loaded_mesh import load_mesh_elastically
+from epicyclic.gears.flanks import FlankDeviations, MicroGeometry, Relief, Topography
+from epicyclic.gears.generation import default_tool
+from epicyclic.machine.solve import NEAR, STEEPEST
 
 STEEL = GearBody(206e9, 0.3)
 

@@ -8,7 +8,7 @@ import pytest
 import asymmetric
 import epicyclic as ep
 from epicyclic.losses import fitted
-from epicyclic.losses.fit_tables import RaceContacts
+from epicyclic.losses.fitted import RaceContacts
 
 CASES = {
     "asymmetric": (asymmetric.planetary, "iso-vg-100-pao"),

@@ -11,12 +11,17 @@ import pytest
 import asymmetric
 import epicyclic as ep
 from epicyclic.builders.build import build
-from epicyclic.elements.pocket_flow import flow_family, flow_request
-from epicyclic.lubricant.properties import MixtureState
-from epicyclic.pocketing import network
-from epicyclic.pocketing.memory import FlowMemory
-from epicyclic.pocketing.similarity import LEAST_NUMBER, FlowFigures, flow_figures, scaled_figures
-from epicyclic.pocketing.table import make_tables
+from epicyclic.losses import pocket_flow as network
+from epicyclic.losses.pocket_tables import (
+    LEAST_NUMBER,
+    FlowFigures,
+    FlowMemory,
+    flow_figures,
+    make_tables,
+    scaled_figures,
+)
+from epicyclic.machine.pocket_flow import flow_family, flow_request
+from epicyclic.oil.properties import MixtureState
 
 COARSE = {
     "numerics.pocket_slices": 4,

@@ -7,18 +7,27 @@ import math
 import numpy as np
 import pytest
 
-from epicyclic.ehl import rough
-from epicyclic.ehl.conditions import ContactOil, LineContact
-from epicyclic.ehl.heating import Heating, inlet_factor, temperature_rise
-from epicyclic.ehl.rheology import Barus, Carreau, LimitingStress, Newtonian, ReeEyring, Roelands
-from epicyclic.ehl.rough import AsperityContact, solve_rough
-from epicyclic.ehl.roughness import SMOOTH, generate_profile, sinusoidal_profile
-from epicyclic.ehl.steady import solve_smooth
-from epicyclic.errors import InputError
+from epicyclic.errors import InputError, Status
 from epicyclic.kernels.ehl_fluid import mean_shear, thinning_factor
 from epicyclic.kernels.ehl_rough import face_terms
 from epicyclic.kernels.ehl_steady import deflection_matrix, solve_steady
-from epicyclic.status import Status
+from epicyclic.plugins.contact_solver import rough
+from epicyclic.plugins.contact_solver.conditions import (
+    Barus,
+    Carreau,
+    ContactOil,
+    Heating,
+    LimitingStress,
+    LineContact,
+    Newtonian,
+    ReeEyring,
+    Roelands,
+    inlet_factor,
+    temperature_rise,
+)
+from epicyclic.plugins.contact_solver.rough import AsperityContact, solve_rough
+from epicyclic.plugins.contact_solver.steady import solve_smooth
+from epicyclic.plugins.contact_solver.surfaces import SMOOTH, generate_profile, sinusoidal_profile
 
 RADIUS, MODULUS = 0.01, 2.2e11
 LAWS = (

@@ -11,9 +11,9 @@ import pytest
 import epicyclic as ep
 import listed_trains
 from epicyclic.builders.build import build
-from epicyclic.elements.gear_mesh import MeshDuty
-from epicyclic.elements.planet_load import PlanetContact, planet_load
-from epicyclic.elements.reactions import mesh_force
+from epicyclic.machine.gear_mesh import MeshDuty
+from epicyclic.machine.machine import mesh_force
+from epicyclic.machine.planets import PlanetContact, planet_load
 
 KINDS = ("wolfrom", "stepped", "double_planet", "ravigneaux", "plus", "layshaft")
 TORQUES = (60.0, -45.0)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import epicyclic as ep
-from epicyclic.elasticity.planet_sharing import (
+from epicyclic.contact.planet_sharing import (
     Branches,
     branch_directions,
     closed_form_branch_forces,

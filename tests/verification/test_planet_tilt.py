@@ -13,14 +13,9 @@ import pytest
 import epicyclic as ep
 from epicyclic.builders.build import build
 from epicyclic.builders.planetary import roller_bearing
-from epicyclic.elements.gear_mesh import elastic_loads
-from epicyclic.elements.planet_load import (
-    PlanetContact,
-    _tilt_by_newton,
-    _tilt_one_by_one,
-    planet_load,
-)
 from epicyclic.losses.planet_bearing import roller_loads
+from epicyclic.machine.gear_mesh import elastic_loads
+from epicyclic.machine.planets import PlanetContact, _tilt_by_newton, _tilt_one_by_one, planet_load
 
 
 @pytest.fixture(scope="module")

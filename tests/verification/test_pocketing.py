@@ -14,16 +14,14 @@ from hypothesis import strategies as st
 
 import epicyclic as ep
 from epicyclic.case import build
-from epicyclic.geometry.cutting import fitted_tool
-from epicyclic.geometry.gear import BasicRack, Gear, half_angle_from_profile_shift
-from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.outline import form_radius, tooth_outline
-from epicyclic.kernels import pocket_fluid
-from epicyclic.lubricant.properties import MixtureState
-from epicyclic.pocketing import fluid
-from epicyclic.pocketing.fluid import pocket_flow
-from epicyclic.pocketing.geometry import pocket_geometry
-from epicyclic.pocketing.network import bounded_flow, void_number
+from epicyclic.gears.cutting import fitted_tool, form_radius, tooth_outline
+from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_profile_shift
+from epicyclic.gears.mesh import Mesh
+from epicyclic.kernels import pocket_stage as pocket_fluid
+from epicyclic.losses import pocket_flow as fluid
+from epicyclic.losses.pocket_flow import bounded_flow, pocket_flow, void_number
+from epicyclic.losses.pocket_geometry import pocket_geometry
+from epicyclic.oil.properties import MixtureState
 
 AMBIENT = 101325.0
 RPM = math.pi / 30

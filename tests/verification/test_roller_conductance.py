@@ -11,7 +11,7 @@ from epicyclic.builders.build import build
 from epicyclic.builders.planetary import roller_bearing
 from epicyclic.kernels.line_contact import hertz_half_width
 from epicyclic.losses.planet_bearing import roller_loads
-from epicyclic.thermal.convection import roller_conductance
+from epicyclic.machine.convection import roller_conductance
 
 STEEL = 45.0
 """Thermal conductivity. [W/(m K)]"""

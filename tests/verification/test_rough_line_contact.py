@@ -7,16 +7,25 @@ import math
 import numpy as np
 import pytest
 
-from epicyclic.ehl import rough
-from epicyclic.ehl.box import FEWEST_KEPT, SOLVER_BOX
-from epicyclic.ehl.conditions import ContactOil, LineContact
-from epicyclic.ehl.rheology import Roelands
-from epicyclic.ehl.rough import AsperityContact, solve_rough
-from epicyclic.ehl.roughness import SMOOTH, Profile, generate_profile, sinusoidal_profile
-from epicyclic.ehl.steady import solve_smooth
+from epicyclic.errors import Status
 from epicyclic.kernels import ehl_linear, ehl_rough
 from epicyclic.kernels.ehl_rough import Column
-from epicyclic.status import Status
+from epicyclic.plugins.contact_solver import rough
+from epicyclic.plugins.contact_solver.conditions import (
+    FEWEST_KEPT,
+    SOLVER_BOX,
+    ContactOil,
+    LineContact,
+    Roelands,
+)
+from epicyclic.plugins.contact_solver.rough import AsperityContact, solve_rough
+from epicyclic.plugins.contact_solver.steady import solve_smooth
+from epicyclic.plugins.contact_solver.surfaces import (
+    SMOOTH,
+    Profile,
+    generate_profile,
+    sinusoidal_profile,
+)
 
 RADIUS, MODULUS = 0.01, 2.2e11
 NODES = 256  # where nothing is compared with another solution

@@ -9,16 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epicyclic.ehl.box import SOLVER_BOX
-from epicyclic.ehl.conditions import Barus, ContactOil, LineContact
-from epicyclic.ehl.film import moes_central_film
-from epicyclic.ehl.grid import graded_nodes, grid_for
-from epicyclic.ehl.rheology import Roelands, TwoSlope
-from epicyclic.ehl.steady import solve_smooth
-from epicyclic.errors import InputError
+from epicyclic.errors import InputError, Status
 from epicyclic.kernels.ehl_steady import deflection_matrix
 from epicyclic.kernels.line_contact import goksem_hargreaves_force, pan_hamrock_minimum_film
-from epicyclic.status import Status
+from epicyclic.plugins.contact_solver.conditions import (
+    SOLVER_BOX,
+    Barus,
+    ContactOil,
+    LineContact,
+    Roelands,
+    TwoSlope,
+    moes_central_film,
+)
+from epicyclic.plugins.contact_solver.steady import graded_nodes, grid_for, solve_smooth
 
 WITNESS = tomllib.loads(
     Path(__file__).with_name("line_contact_solutions.toml").read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ import pytest
 
 import epicyclic as ep
 from asymmetric import planetary
-from epicyclic.machine.settle import AGREEMENT
+from epicyclic.machine.heat import AGREEMENT
 
 FLOW = {"models.temperatures": "network", "thermal.oil_flow": "3.7 l/min"}
 HOUSED = {

@@ -11,9 +11,9 @@ from scipy.integrate import quad
 
 import epicyclic as ep
 from epicyclic.case import build
-from epicyclic.lubricant.properties import MixtureState
-from epicyclic.pocketing.fluid import pocket_flow
-from epicyclic.pocketing.geometry import pocket_geometry
+from epicyclic.losses.pocket_flow import pocket_flow
+from epicyclic.losses.pocket_geometry import pocket_geometry
+from epicyclic.oil.properties import MixtureState
 
 SHARP = (None, None)
 """The default tools."""

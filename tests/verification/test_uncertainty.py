@@ -11,16 +11,21 @@ from scipy import stats
 
 import epicyclic as ep
 from asymmetric import gear_pair
-from epicyclic.bands.distributions import cut_off, quantiles, standard_uncertainty
-from epicyclic.bands.nearby import look_nearby
-from epicyclic.bands.quick import quick_dataset
-from epicyclic.bands.sampling import make_samples
-from epicyclic.bands.statistics import sobol_indices, summary
 from epicyclic.case.uncertain_values import UncertainValue, uncertain_values
 from epicyclic.errors import InputError
-from epicyclic.plots.catalogue import available
-from epicyclic.pocketing.similarity import FlowFamily
-from epicyclic.sweeps.dataset import write_dataset
+from epicyclic.losses.pocket_tables import FlowFamily
+from epicyclic.show.plots.catalogue import available
+from epicyclic.study.bands.nearby import look_nearby
+from epicyclic.study.bands.quick import quick_dataset
+from epicyclic.study.bands.samples import (
+    cut_off,
+    make_samples,
+    quantiles,
+    sample_summary,
+    sobol_indices,
+    standard_uncertainty,
+)
+from epicyclic.study.sweeps.run import write_dataset
 
 ISOLATED = {
     "losses.mesh_pocketing.include": False,
@@ -82,7 +87,7 @@ def test_indices_of_the_function_of_ishigami():
 def test_sums_of_jcgm_101(values, end):
     """JCGM 101:2008, 9.2: four inputs of unit variance."""
     samples = make_samples(values, 2**13, 3)
-    found = summary(np.concatenate([samples.a.sum(axis=0), samples.b.sum(axis=0)]))
+    found = sample_summary(np.concatenate([samples.a.sum(axis=0), samples.b.sum(axis=0)]))
     assert found.standard_uncertainty == pytest.approx(2.0, rel=2e-3)
     assert (found.low, found.high) == pytest.approx((-end, end), abs=0.02)
     assert found.shortest_high - found.shortest_low == pytest.approx(2 * end, abs=0.06)
@@ -99,7 +104,7 @@ def test_bands_hold_the_truth_as_often_as_they_say():
             UncertainValue("c", "", c, "lognormal", (1.3,)),
         ]  # fmt: skip
         samples = make_samples(values, 128, number)
-        found = summary(np.concatenate([samples.a.prod(axis=0), samples.b.prod(axis=0)]))
+        found = sample_summary(np.concatenate([samples.a.prod(axis=0), samples.b.prod(axis=0)]))
         truth = (
             (a + 0.3 * rng.standard_normal())
             * (b + 0.2 * rng.standard_normal())

@@ -10,16 +10,14 @@ from click.testing import CliRunner
 
 import epicyclic as ep
 from asymmetric import gear_pair
-from epicyclic.bands.curves import fit_curves
-from epicyclic.bands.sampling import make_samples
-from epicyclic.bands.statistics import index_values
 from epicyclic.case.uncertain_values import UncertainValue
 from epicyclic.cli.uncertainty import uncertainty as command
 from epicyclic.errors import InputError
 from epicyclic.report.advice import LIMITS
 from epicyclic.report.html import report_html
 from epicyclic.report.uncertainty_tables import uncertainty_items
-from epicyclic.sweeps.dataset import write_dataset
+from epicyclic.study.bands.samples import fit_curves, index_values, make_samples
+from epicyclic.study.sweeps.run import write_dataset
 
 ISOLATED = {
     "losses.mesh_pocketing.include": False,

@@ -8,8 +8,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.builders.build import build
-from epicyclic.thermal.network import Link
-from epicyclic.thermal.transient import Curves, Source, Transient
+from epicyclic.machine.heat_flow import Curves, Link, Source, Transient
 
 CAPACITY, CONDUCTANCE, AIR = 5000.0, 12.5, 293.15
 """[J/K], [W/K], [K]"""
@@ -79,7 +78,7 @@ def test_slopes_are_those_of_the_rates():
 
 
 def tables_of(case):
-    from epicyclic.maps.heat_tables import HeatTables, heat_samples
+    from epicyclic.study.maps.warm_up import HeatTables, heat_samples
 
     warm = case.updated({"models.temperatures": "network"})
     knots = [293.15 + 20 * number for number in range(8)]

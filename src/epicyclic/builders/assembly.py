@@ -14,17 +14,14 @@ from epicyclic.builders.supplies import solved_supplies
 from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case
 from epicyclic.case.train import TrainCase
-from epicyclic.elements.base import HOUSING, OIL, Loss, joined_key
-from epicyclic.elements.figures import BearingFigures, MeshFigures
-from epicyclic.elements.gear_set import GearSetResult
-from epicyclic.elements.load_sharing import SHARING_METHODS
-from epicyclic.elements.shaft_bearing import ShaftBearing
-from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
-from epicyclic.losses.standing import standing
-from epicyclic.losses.validity import SomeFlags, ValidityFlag
-from epicyclic.machine.flow import stage_torques
-from epicyclic.machine.settle import AGREEMENT, Answer, Settled, heat_of
-from epicyclic.machine.solve import Solution
+from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
+from epicyclic.losses.ranges import SomeFlags, ValidityFlag, standing
+from epicyclic.machine.element import HOUSING, OIL, BearingFigures, Loss, MeshFigures, joined_key
+from epicyclic.machine.gear_set import GearSetResult
+from epicyclic.machine.heat import AGREEMENT, Answer, Settled, heat_of
+from epicyclic.machine.planets import SHARING_METHODS
+from epicyclic.machine.shaft_parts import ShaftBearing
+from epicyclic.machine.solve import Solution, stage_torques
 from epicyclic.results.heat import HeatBalance, HeatWay
 from epicyclic.results.lubrication import OilSupply
 from epicyclic.results.result import LossTerm, MemberState, PowerFlow, Result, Train, in_words

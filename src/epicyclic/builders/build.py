@@ -11,7 +11,7 @@ from epicyclic.builders.temperatures import thermal_model
 from epicyclic.builders.train import build_train, train_layout
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.train import TrainCase
-from epicyclic.pocketing.table import FlowTables
+from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.results.result import Layout
 
 

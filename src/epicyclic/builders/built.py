@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from epicyclic.elements.base import State, joined_key
-from epicyclic.elements.fluids import Fluids
-from epicyclic.elements.gear_mesh import MeshDuty
-from epicyclic.elements.gear_set import GearSet
-from epicyclic.elements.planet_load import PlanetLoad
+from epicyclic.machine.element import Fluids, State, joined_key
+from epicyclic.machine.gear_mesh import MeshDuty
+from epicyclic.machine.gear_set import GearSet
+from epicyclic.machine.heat import Settled, ThermalModel, isothermal, settle
 from epicyclic.machine.machine import Machine, Operation
-from epicyclic.machine.settle import Settled, ThermalModel, isothermal, settle
+from epicyclic.machine.planets import PlanetLoad
 from epicyclic.machine.solve import lossless_state, solve_machine
 from epicyclic.results.result import Layout
 

@@ -15,8 +15,8 @@ from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.listed_set import ListedCase, arrangement_of, gear_of, meshes_of
 from epicyclic.case.model_tables import LoadSharing, LossOption
 from epicyclic.case.part_tables import PlanetBearing
-from epicyclic.geometry.gear import Gear
-from epicyclic.geometry.mesh import Mesh
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.mesh import Mesh
 
 SetCase = PlanetaryCase | GearPairCase | ListedCase
 """A set or pair with its oil and surroundings."""

@@ -8,11 +8,11 @@ from collections.abc import Iterable
 from epicyclic.case import flanks
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.part_tables import PlanetBearing
-from epicyclic.contact import Flanks
-from epicyclic.elements.gear_mesh import GearMesh, MeshModels
-from epicyclic.geometry.gear import Gear
-from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.tools import Tool
+from epicyclic.contact.line_contact import Flanks
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.generation import Tool
+from epicyclic.gears.mesh import Mesh
+from epicyclic.machine.gear_mesh import GearMesh, MeshModels
 
 
 def gear_mesh(

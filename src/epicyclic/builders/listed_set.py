@@ -20,15 +20,15 @@ from epicyclic.case.listed_set import (
     positions_of,
 )
 from epicyclic.case.train_shape import CARRIER
-from epicyclic.elements.base import HOUSING, joined_key
-from epicyclic.elements.disc import Disc
-from epicyclic.elements.gear_mesh import GearMesh
-from epicyclic.elements.gear_set import GearSet, Planet, PlanetMesh
-from epicyclic.elements.load_sharing import LoadSharing
-from epicyclic.geometry.cutting import fitted_tool
-from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.tools import Tool
-from epicyclic.pocketing.table import FlowTables
+from epicyclic.gears.cutting import fitted_tool
+from epicyclic.gears.generation import Tool
+from epicyclic.gears.mesh import Mesh
+from epicyclic.losses.pocket_tables import FlowTables
+from epicyclic.machine.disc import Disc
+from epicyclic.machine.element import HOUSING, joined_key
+from epicyclic.machine.gear_mesh import GearMesh
+from epicyclic.machine.gear_set import GearSet, Planet, PlanetMesh
+from epicyclic.machine.planets import LoadSharing
 
 
 def listed_element(

@@ -12,27 +12,28 @@ from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.lubrication import oil_share
 from epicyclic.case.oil_laws import oil_laws
 from epicyclic.case.part_tables import PlanetBearing
-from epicyclic.ehl.assumptions import PRESETS
-from epicyclic.ehl.rough import AsperityContact
-from epicyclic.elements.fluids import Fluids, fluids_at
-from epicyclic.elements.gear_mesh import MeshModels
-from epicyclic.elements.gear_set import LossChoice
-from epicyclic.elements.pocket_flow import PocketSettings
-from epicyclic.losses.direct import DirectSettings, EhlDirect
-from epicyclic.losses.fitted import FittedFriction, FittedRolling
-from epicyclic.losses.fitted_or_formula import FittedOrGoksem, FittedOrSchlenk
-from epicyclic.losses.friction import DRY_FRICTION, FrictionSettings, friction_model
-from epicyclic.losses.friction.base import FrictionModel
-from epicyclic.losses.friction.user import FrictionMap
-from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
+from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
+from epicyclic.losses.fitted import FittedFriction, FittedOrGoksem, FittedOrSchlenk, FittedRolling
+from epicyclic.losses.friction import (
+    DRY_FRICTION,
+    FrictionMap,
+    FrictionModel,
+    FrictionSettings,
+    friction_model,
+)
+from epicyclic.losses.mixed_ehl import TALBOT_FLUID
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN
+from epicyclic.losses.pocket_flow import PocketModel, automatic_pocketing
+from epicyclic.losses.pocket_tables import FlowMemory, FlowTables
+from epicyclic.losses.ranges import STANDING, standing
 from epicyclic.losses.rolling import ROLLING_MODELS, MixedEhlRolling, PairedRolling, RollingModel
-from epicyclic.losses.standing import STANDING, standing
-from epicyclic.oilmodel.builtin import builtin_model
-from epicyclic.oilmodel.model import OilModel, read_oil_model
-from epicyclic.pocketing.fluid import PocketModel, automatic_pocketing
-from epicyclic.pocketing.memory import FlowMemory
-from epicyclic.pocketing.table import FlowTables
+from epicyclic.machine.element import Fluids, fluids_at
+from epicyclic.machine.gear_mesh import MeshModels
+from epicyclic.machine.gear_set import LossChoice
+from epicyclic.machine.pocket_flow import PocketSettings
+from epicyclic.plugins.contact_solver.conditions import PRESETS
+from epicyclic.plugins.contact_solver.direct import DirectSettings, EhlDirect
+from epicyclic.plugins.contact_solver.rough import AsperityContact
 
 
 def resolve_models(case: SetCase) -> dict[str, str]:

@@ -15,13 +15,13 @@ from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.listed_set import ListedCase, arrangement_of
 from epicyclic.case.lubrication import SHARE_KEY
 from epicyclic.case.model_tables import LoadSharing
-from epicyclic.elements.figures import BearingFigures, MeshFigures
-from epicyclic.elements.gear_set import GearSetResult
-from epicyclic.geometry.assembly import are_evenly_spaced
-from epicyclic.losses.load_distribution import LOAD_DISTRIBUTIONS
-from epicyclic.losses.mixed_ehl_groups import TALBOT_FLUID
-from epicyclic.losses.standing import STANDING
-from epicyclic.oilmodel.builtin import changed_properties
+from epicyclic.contact.fitted_models import changed_properties
+from epicyclic.gears.mesh import are_evenly_spaced
+from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
+from epicyclic.losses.mixed_ehl import TALBOT_FLUID
+from epicyclic.losses.ranges import STANDING
+from epicyclic.machine.element import BearingFigures, MeshFigures
+from epicyclic.machine.gear_set import GearSetResult
 from epicyclic.results.result import LossTerm
 from epicyclic.units import GIGAPASCAL, NEWTON, format_number, percent
 

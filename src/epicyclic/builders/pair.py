@@ -10,11 +10,11 @@ from epicyclic.builders.models import fluids_of, loss_choices, mesh_models
 from epicyclic.builders.wetting import gear_disc
 from epicyclic.case import build
 from epicyclic.case.case import GearPairCase
-from epicyclic.elements.base import HOUSING, joined_key
-from epicyclic.elements.gear_set import GearSet, Reference
-from epicyclic.geometry.cutting import mated_tools
+from epicyclic.gears.cutting import mated_tools
+from epicyclic.losses.pocket_tables import FlowTables
+from epicyclic.machine.element import HOUSING, joined_key
+from epicyclic.machine.gear_set import GearSet, Reference
 from epicyclic.machine.machine import Machine, MeshRow, Operation
-from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Layout
 
 PAIR_MEMBERS = ("pinion", "gear")

@@ -19,19 +19,18 @@ from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.model_tables import Numerics
 from epicyclic.case.part_tables import PlanetBearing as BearingTable
-from epicyclic.elements.base import HOUSING, joined_key
-from epicyclic.elements.disc import Disc, ThrustBearing
-from epicyclic.elements.gear_mesh import GearMesh
-from epicyclic.elements.gear_set import GearSet, Planet, PlanetMesh, Reference
-from epicyclic.elements.load_sharing import LoadSharing
-from epicyclic.elements.planet_bearing import PlanetBearing
-from epicyclic.geometry.cutting import fitted_tool
-from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.tools import Tool
+from epicyclic.gears.cutting import fitted_tool
+from epicyclic.gears.generation import Tool
+from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN, RollerBearing
+from epicyclic.losses.pocket_tables import FlowTables
+from epicyclic.machine.disc import Disc, ThrustBearing
+from epicyclic.machine.element import HOUSING, joined_key
+from epicyclic.machine.gear_mesh import GearMesh
+from epicyclic.machine.gear_set import GearSet, Planet, PlanetMesh, Reference
 from epicyclic.machine.machine import Machine, MeshRow, Operation
-from epicyclic.pocketing.table import FlowTables
+from epicyclic.machine.planets import LoadSharing, PlanetBearing
 from epicyclic.results.result import Layout
 
 MEMBERS = ("sun", "ring", "carrier")

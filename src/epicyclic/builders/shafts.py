@@ -8,10 +8,9 @@ from collections.abc import Iterator, Mapping
 from epicyclic.case.element_tables import ShaftBearingTable
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_bearings import needs_force
-from epicyclic.elements.base import HOUSING
-from epicyclic.elements.gear_set import GearSet
-from epicyclic.elements.reactions import Support
-from epicyclic.machine.forces import GearSeat, ShaftLayout
+from epicyclic.machine.element import HOUSING
+from epicyclic.machine.gear_set import GearSet
+from epicyclic.machine.machine import GearSeat, ShaftLayout, Support
 
 
 def shaft_layouts(case: TrainCase, sets: Mapping[str, GearSet]) -> Iterator[ShaftLayout]:

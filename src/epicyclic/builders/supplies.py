@@ -10,9 +10,9 @@ from epicyclic.case.case import Case
 from epicyclic.case.lubrication import oil_share
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_lubrication import computed_sets
-from epicyclic.elements.disc import churned
-from epicyclic.elements.gear_set import GearSet
-from epicyclic.elements.pocket_flow import oil_in_mesh
+from epicyclic.machine.disc import churned
+from epicyclic.machine.gear_set import GearSet
+from epicyclic.machine.pocket_flow import oil_in_mesh
 from epicyclic.machine.solve import Solution
 from epicyclic.results.lubrication import OilSupply
 

@@ -13,21 +13,26 @@ from epicyclic.case.case import Case
 from epicyclic.case.lubrication import oil_share, with_lubrication
 from epicyclic.case.lubrication_tables import LubricationTable
 from epicyclic.case.thermal_tables import HousingTable, ThermalTable
-from epicyclic.elements.base import OIL, joined_key
-from epicyclic.elements.fluids import Fluids, fluids_at, oil_at, oil_flags
-from epicyclic.elements.gear_mesh import GearMesh
-from epicyclic.elements.gear_set import GearSet
-from epicyclic.elements.shaft_bearing import ShaftBearing
-from epicyclic.losses.validity import Flags, ValidityFlag
-from epicyclic.lubricant.oil import Oil
-from epicyclic.lubricant.properties import mixture_state, oil_state
-from epicyclic.machine.flank import FlankModel
-from epicyclic.machine.heat_network import Change, HeatSettings, Housing, NetworkModel, Wet
+from epicyclic.contact.temperatures import LUBRICATION_FACTORS
+from epicyclic.losses.ranges import Flags, ValidityFlag
+from epicyclic.machine.convection import Fluid, air, mixture, oil_conductivity, oil_heat_capacity
+from epicyclic.machine.element import OIL, Fluids, fluids_at, joined_key, oil_at, oil_flags
+from epicyclic.machine.gear_mesh import GearMesh
+from epicyclic.machine.gear_set import GearSet
+from epicyclic.machine.heat import (
+    Change,
+    FlankModel,
+    HeatSettings,
+    Housing,
+    NetworkModel,
+    ThermalModel,
+    Wet,
+)
 from epicyclic.machine.machine import Machine
-from epicyclic.machine.settle import ThermalModel
+from epicyclic.machine.shaft_parts import ShaftBearing
+from epicyclic.oil.oil import Oil
+from epicyclic.oil.properties import mixture_state, oil_state
 from epicyclic.results.result import in_words
-from epicyclic.thermal.bulk import LUBRICATION_FACTORS
-from epicyclic.thermal.fluid import Fluid, air, mixture, oil_conductivity, oil_heat_capacity
 
 GRAVITY_TEMPERATURE = 288.75
 """15.6 degC, at which the specific gravity of petroleum is stated. [K]"""

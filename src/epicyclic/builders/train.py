@@ -19,10 +19,10 @@ from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet
-from epicyclic.elements.base import HOUSING, Element
-from epicyclic.elements.gear_set import GearSet
+from epicyclic.losses.pocket_tables import FlowTables
+from epicyclic.machine.element import HOUSING, Element
+from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.machine import Operation
-from epicyclic.pocketing.table import FlowTables
 from epicyclic.results.result import Layout
 
 

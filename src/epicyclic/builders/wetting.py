@@ -7,9 +7,9 @@ from epicyclic.case import build
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.lubrication import oil_share
 from epicyclic.case.lubrication_tables import LubricationTable
-from epicyclic.elements.disc import Disc, Jets, Sump
-from epicyclic.geometry.gear import Gear
-from epicyclic.losses.churning import Dipped
+from epicyclic.gears.gear import Gear
+from epicyclic.losses.drag import Dipped
+from epicyclic.machine.disc import Disc, Jets, Sump
 
 
 def gear_disc(case: SetCase, body: str, gear: Gear, table: GearTable) -> Disc:

@@ -9,9 +9,9 @@ from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.thickness import DIGITS, fitting, thickness_key
 from epicyclic.case.wording import micrometres, millimetres
 from epicyclic.errors import Problem
-from epicyclic.geometry.gear import Gear
-from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.profile_shifts import (
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.mesh import (
+    Mesh,
     closed_center_distance,
     profile_shift_sum,
     recommended_backlash,

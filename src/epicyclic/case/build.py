@@ -7,9 +7,8 @@ from functools import lru_cache
 
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring
 from epicyclic.case.thickness import allowance_shift, half_angle
-from epicyclic.geometry.assembly import admissible_angles
-from epicyclic.geometry.gear import BasicRack, Gear
-from epicyclic.geometry.mesh import Mesh
+from epicyclic.gears.gear import BasicRack, Gear
+from epicyclic.gears.mesh import Mesh, admissible_angles
 
 DEFAULT_RIM_THICKNESS = 3.0
 """Rim of a ring gear from root to outside if the case states none (estimate). [normal modules]"""

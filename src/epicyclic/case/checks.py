@@ -41,12 +41,11 @@ from epicyclic.case.schema import Table
 from epicyclic.case.thermal_checks import check_outlet, check_thermal, check_ways_out
 from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.wording import millimetres
+from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
 from epicyclic.errors import InputError, Problem, rising_problems
-from epicyclic.geometry.assembly import are_evenly_spaced
-from epicyclic.losses.standing import FITTED
-from epicyclic.oilmodel.builtin import builtin_model
-from epicyclic.oilmodel.model import OilModel, read_oil_model
-from epicyclic.pocketing.stored import read_stored
+from epicyclic.gears.mesh import are_evenly_spaced
+from epicyclic.losses.pocket_tables import read_stored
+from epicyclic.losses.ranges import FITTED
 from epicyclic.units import BAR
 
 MOST_COEFFICIENTS = 5_000_000

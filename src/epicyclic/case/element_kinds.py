@@ -16,33 +16,29 @@ from epicyclic.case.element_tables import DragTable, LossTableTable, SealTable, 
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.schema import Table
 from epicyclic.case.wording import millimetres, written
-from epicyclic.elements.base import HOUSING, Element
-from epicyclic.elements.loss_table import TableLoss
-from epicyclic.elements.seal import Seal, SealFormula
-from epicyclic.elements.shaft_bearing import ShaftBearing
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.losses.loss_table import LossQuantity, LossTable, read_loss_table, table_problems
 from epicyclic.losses.shaft_bearing import (
     DEFAULT_COEFFICIENTS,
     DEFAULT_FLANGE_COEFFICIENTS,
     DEFAULT_VISCOUS_FACTORS,
+    STARVATION,
     BearingLoad,
+    BearingModel,
     CatalogueBearing,
+    ContactSeal,
     PalmgrenModel,
+    SkfModel,
     TableModel,
     bearing_types,
-)
-from epicyclic.losses.skf_bearing import (
-    STARVATION,
-    BearingModel,
-    ContactSeal,
-    SkfModel,
     full_film_friction,
     skf_constants,
     skf_series,
 )
-from epicyclic.lubricant.oil import Oil
-from epicyclic.lubricant.properties import oil_state
+from epicyclic.machine.element import HOUSING, Element
+from epicyclic.machine.shaft_parts import Seal, SealFormula, ShaftBearing, TableLoss
+from epicyclic.oil.oil import Oil
+from epicyclic.oil.properties import oil_state
 
 _FORTY_CELSIUS = 313.15
 """40 degC in kelvin."""

@@ -11,9 +11,9 @@ from epicyclic.case.flanks import roll_length_at, working_flank
 from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, TopographyTable
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem, rising_problems
-from epicyclic.geometry.gear import Gear
-from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.micro_geometry import active_profile
+from epicyclic.gears.flanks import active_profile
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.mesh import Mesh
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,18 +7,17 @@ from functools import lru_cache
 
 from epicyclic.case import build
 from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, Planet, TopographyTable
-from epicyclic.elasticity.mesh_compliance import GearBody
-from epicyclic.elasticity.rim import Rim
-from epicyclic.geometry.cutting import cutting_tool
-from epicyclic.geometry.gear import Gear
-from epicyclic.geometry.mesh import Mesh
-from epicyclic.geometry.micro_geometry import (
+from epicyclic.contact.elastic_teeth import GearBody, Rim
+from epicyclic.gears.cutting import cutting_tool
+from epicyclic.gears.flanks import (
     FlankDeviations,
     MicroGeometry,
     Relief,
     Topography,
     active_profile,
 )
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.mesh import Mesh
 
 Tables = tuple[GearTable, GearTable]
 

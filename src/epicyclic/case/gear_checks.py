@@ -15,10 +15,9 @@ from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring
 from epicyclic.case.thickness import check_fit, check_measure, thickness_key
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
-from epicyclic.geometry.assembly import nearest_admissible_angle, smallest_planet_gap
-from epicyclic.geometry.cutting import longest_involute
-from epicyclic.geometry.gear import Gear
-from epicyclic.geometry.mesh import Mesh
+from epicyclic.gears.cutting import longest_involute
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.mesh import Mesh, nearest_admissible_angle, smallest_planet_gap
 
 ANGLE_TOLERANCE = math.radians(0.01)
 """Given planet positions may differ by this from an admissible one: drawing precision. [rad]"""

@@ -37,11 +37,10 @@ from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.train_shape import CARRIER, SetShape, ShapeMesh
 from epicyclic.case.train_tables import ListedSet
 from epicyclic.case.wording import millimetres
-from epicyclic.elements.base import HOUSING
 from epicyclic.errors import Problem
-from epicyclic.geometry.assembly import nearest_places
-from epicyclic.geometry.gear import Gear, involute
-from epicyclic.geometry.mesh import Mesh
+from epicyclic.gears.gear import Gear, involute
+from epicyclic.gears.mesh import Mesh, nearest_places
+from epicyclic.machine.element import HOUSING
 
 SAME_PITCH = 1e-6
 """Base pitches and helix angles that differ by less, relatively and in radians, are equal. [1]"""

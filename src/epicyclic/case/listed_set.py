@@ -26,9 +26,8 @@ from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.train_shape import SetShape, ShapeMesh
 from epicyclic.case.train_tables import ListedMesh, ListedSet
-from epicyclic.geometry.assembly import closing_number, nearest_places, pin_angle
-from epicyclic.geometry.gear import Gear
-from epicyclic.geometry.mesh import Mesh
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.mesh import Mesh, closing_number, nearest_places, pin_angle
 
 RACK_KEYS = (
     ("normal_module", "transverse_module"),
@@ -323,7 +322,7 @@ def outward_of(
 ) -> tuple[float, float]:
     """Unit vector along t and r from the pitch point with an external mate to a planet's axis.
 
-    Theory (A5). For t and r see `epicyclic.elements.planet_load`.
+    Theory (A5). For t and r see `epicyclic.machine.planets`.
     """
     if mate is None:
         return 0.0, 1.0

@@ -25,7 +25,7 @@ from epicyclic.case.size_solver import Found, SizedMesh, Solver
 from epicyclic.case.train_shape import SetShape, ShapeMesh
 from epicyclic.case.train_tables import ListedSet
 from epicyclic.errors import InputError, Problem
-from epicyclic.geometry.gear import BasicRack
+from epicyclic.gears.gear import BasicRack
 
 _GEARS = "gears."
 _ALIKE = 1e-9

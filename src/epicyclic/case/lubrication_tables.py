@@ -7,8 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from epicyclic.case.schema import Table
-from epicyclic.losses.churning import ChurningModel
-from epicyclic.losses.jets import NozzleSide
+from epicyclic.losses.drag import ChurningModel, NozzleSide
 from epicyclic.units import Length, Number, Quantity, Speed, VolumeFlow, as_stated
 
 Method = Literal["jet", "spray", "flow", "drained", "dip", "submerged"]

@@ -8,16 +8,20 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from epicyclic.case.schema import Stress, Table
-from epicyclic.ehl.assumptions import DEFAULT, PRESETS, SLOPE_RATIO, TRANSITION, Assumptions
-from epicyclic.ehl.rheology import (
+from epicyclic.errors import Problem
+from epicyclic.plugins.contact_solver.conditions import (
+    DEFAULT,
+    PRESETS,
     PRESSURE_LAWS,
     SHEAR_LAWS,
+    SLOPE_RATIO,
+    TRANSITION,
+    Assumptions,
     OilLaws,
     PressureLaw,
     ReeEyring,
     ShearLaw,
 )
-from epicyclic.errors import Problem
 from epicyclic.units import Number, PressureViscosity, Quantity, as_stated
 
 LoadPressure = Annotated[

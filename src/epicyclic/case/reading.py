@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from epicyclic.case.plain import changed_at, plain
 from epicyclic.case.wording import dotted, one_line
 from epicyclic.errors import InputError, Problem
-from epicyclic.text_file import read_text, refuse
+from epicyclic.files import read_text, refuse
 from epicyclic.units import format_number
 
 _LARGEST_FILE = 1_000_000

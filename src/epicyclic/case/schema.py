@@ -26,11 +26,11 @@ from epicyclic import library
 from epicyclic.case.fields import Named, to_inputs
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.short_oil import ShortOil, whole_oil
-from epicyclic.geometry.accuracy import named_fit
-from epicyclic.geometry.roughness import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
+from epicyclic.contact.temperatures import Solid
+from epicyclic.gears.flanks import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
+from epicyclic.gears.measures import named_fit
 from epicyclic.kernels.line_contact import equivalent_modulus
-from epicyclic.lubricant.oil import Conductivity, HeatCapacity, Oil
-from epicyclic.thermal.solids import Solid
+from epicyclic.oil.oil import Conductivity, HeatCapacity, Oil
 from epicyclic.units import MILLIMETRE, Density, Modulus, Number, Quantity, as_stated
 
 

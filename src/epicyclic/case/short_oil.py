@@ -13,7 +13,7 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic import library
 from epicyclic.case.plain import plain
-from epicyclic.lubricant.oil import OilDensity
+from epicyclic.oil.oil import OilDensity
 from epicyclic.units import KinematicViscosity
 
 GOLD: dict[str, tuple[float, float, str]] = {

@@ -17,8 +17,8 @@ from epicyclic.case.plain import value_at
 from epicyclic.case.thickness import allowance_shift, thickness_key
 from epicyclic.case.wording import micrometres, millimetres
 from epicyclic.errors import InputError, Problem
-from epicyclic.geometry.gear import BasicRack, Gear
-from epicyclic.geometry.profile_shifts import (
+from epicyclic.gears.gear import BasicRack, Gear
+from epicyclic.gears.mesh import (
     closed_center_distance,
     profile_shift_sum,
     recommended_backlash,

@@ -8,19 +8,14 @@ from dataclasses import replace
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
-from epicyclic.geometry import tooth_measures as measures
-from epicyclic.geometry.accuracy import (
-    LARGEST_FIT,
-    FlankTolerances,
-    fit_allowances,
-    flank_tolerances,
-)
-from epicyclic.geometry.gear import (
+from epicyclic.gears import measures
+from epicyclic.gears.gear import (
     BasicRack,
     Gear,
     half_angle_from_profile_shift,
     half_angle_from_thickness,
 )
+from epicyclic.gears.measures import LARGEST_FIT, FlankTolerances, fit_allowances, flank_tolerances
 
 DIGITS = 4
 """Decimals of the profile shifts that messages propose: 0.1 um at a module of 1.5 mm."""

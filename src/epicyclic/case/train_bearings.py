@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from epicyclic.case.element_tables import ShaftBearingTable
 from epicyclic.case.train_tables import GivenListedSet, GivenPair, GivenPlanetarySet
 from epicyclic.case.wording import millimetres
-from epicyclic.elements.base import HOUSING
 from epicyclic.errors import Problem
+from epicyclic.machine.element import HOUSING
 
 if TYPE_CHECKING:
     from epicyclic.case.train import TrainCase

@@ -17,9 +17,9 @@ from epicyclic.case.train_lubrication import lubrication_problems
 from epicyclic.case.train_shape import TrainShape
 from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet, StateTable
 from epicyclic.case.wording import written
-from epicyclic.elements.base import HOUSING
 from epicyclic.errors import Problem
-from epicyclic.machine.kinematics import freedom, implied, speeds_of
+from epicyclic.machine.balance import freedom, implied, speeds_of
+from epicyclic.machine.element import HOUSING
 from epicyclic.machine.machine import Machine
 
 if TYPE_CHECKING:

@@ -20,8 +20,8 @@ from epicyclic.case.train_tables import (
     StateTable,
 )
 from epicyclic.case.wording import written
-from epicyclic.elements.base import HOUSING
 from epicyclic.errors import Problem
+from epicyclic.machine.element import HOUSING
 from epicyclic.machine.machine import Coupling, Machine, MeshRow
 
 CARRIER = "carrier"

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.many import Write, compute
-from epicyclic.cli.options import (
+from epicyclic.cli.common import (
     case_argument,
+    check_ending,
+    draw,
     journal_option,
     json_option,
     load_with,
@@ -19,17 +20,17 @@ from epicyclic.cli.options import (
     runner_options,
     set_option,
     shard_option,
+    show,
 )
-from epicyclic.cli.output import check_ending, draw, show
+from epicyclic.cli.many import Write, compute
 from epicyclic.errors import InputError, Problem
-from epicyclic.whole_file import write_file
+from epicyclic.files import write_file
 
 if TYPE_CHECKING:
-    from epicyclic.measurement.comparison import MeasuredComparison
-    from epicyclic.measurement.question import ComparisonPlan
-    from epicyclic.sweeps.journal import Rows
-    from epicyclic.sweeps.runner import Runner
-    from epicyclic.sweeps.unloaded import LoadDependent
+    from epicyclic.study.measured.compare import ComparisonPlan
+    from epicyclic.study.measured.comparison import MeasuredComparison
+    from epicyclic.study.sweeps.run import LoadDependent
+    from epicyclic.study.sweeps.runner import Rows, Runner
 
 
 @click.command()
@@ -92,9 +93,9 @@ def compare(
 
     A shard keeps its points beside the file of --json, which 'epicyclic merge' writes.
     """
-    from epicyclic.cli.progress import progress_bar, tell
-    from epicyclic.measurement.compare import compare_measured
+    from epicyclic.cli.common import progress_bar, tell
     from epicyclic.report.measured_table import measured_tables
+    from epicyclic.study.measured.compare import compare_measured
 
     keys = [key.strip() for key in (fit or "").split(",") if key.strip()]
     _check_output(output, keys)
@@ -102,8 +103,8 @@ def compare(
         _check_shard(json_file, {"--fit": fit, "--hold-out": hold_out, "--journal": journal})
     loaded = load_with(case, changes)
     if runner.shard is not None:
-        from epicyclic.measurement.files import read_grid
-        from epicyclic.measurement.question import ComparisonPlan, ask
+        from epicyclic.study.measured.compare import ComparisonPlan, ask
+        from epicyclic.study.measured.table import read_grid
 
         question = ask(loaded, read_grid(measured), component, load_dependent, group)
         plan, file = ComparisonPlan.of(question), Path(str(json_file))
@@ -138,7 +139,7 @@ def comparison_writer(plan: ComparisonPlan, output: Path, plot: str | None = Non
 
     Raises `InputError` if it cannot.
     """
-    from epicyclic.whole_file import check_place
+    from epicyclic.files import check_place
 
     check_place(output)
 
@@ -157,7 +158,7 @@ def comparison_writer(plan: ComparisonPlan, output: Path, plot: str | None = Non
 
 
 def _draw(comparison: MeasuredComparison, plot: Path) -> None:
-    from epicyclic.plots.measured import measured_figure
+    from epicyclic.show.plots.measured import measured_figure
 
     draw(measured_figure(comparison), plot)
 
@@ -197,8 +198,8 @@ def _calibrated_text(comparison: MeasuredComparison) -> str:
     from epicyclic.case.template import case_text
     from epicyclic.case.train import TrainCase
     from epicyclic.case.train_text import train_text
-    from epicyclic.measurement.deviations import CALIBRATED
     from epicyclic.report.measured_table import fitted_comment
+    from epicyclic.study.measured.comparison import CALIBRATED
 
     calibrated, fit = comparison.calibrated_case, comparison.fit
     assert calibrated is not None

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.many import Write, compute
-from epicyclic.cli.options import (
+from epicyclic.cli.common import (
     journal_option,
     json_option,
     load_with,
@@ -17,18 +16,19 @@ from epicyclic.cli.options import (
     runner_options,
     set_option,
     shard_option,
+    show,
+    wrong_ending,
 )
-from epicyclic.cli.output import show, wrong_ending
+from epicyclic.cli.many import Write, compute
 from epicyclic.errors import InputError, Problem
-from epicyclic.whole_file import write_file
+from epicyclic.files import write_file
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from epicyclic.maps.cycle import Cycle
-    from epicyclic.maps.duty_plan import DutyPlan
-    from epicyclic.sweeps.journal import Rows
-    from epicyclic.sweeps.runner import Runner
+    from epicyclic.study.maps.cycle import Cycle
+    from epicyclic.study.maps.duty import DutyPlan
+    from epicyclic.study.sweeps.runner import Rows, Runner
 
 _MAP_SUFFIX = ".nc"
 _OUTPUTS = (".nc", ".csv")
@@ -80,9 +80,9 @@ def duty(
     A shard has its share of the points of that map. It keeps them beside the file of -o or --json,
     which 'epicyclic merge' writes.
     """
-    from epicyclic.cli.progress import progress_bar
-    from epicyclic.maps.cycle import open_cycle
-    from epicyclic.maps.duty import parse_temperatures
+    from epicyclic.cli.common import progress_bar
+    from epicyclic.study.maps.cycle import open_cycle
+    from epicyclic.study.maps.duty import parse_temperatures
 
     _check_options(map_or_case, changes, map_file, output, runner)
     if runner.shard is not None:
@@ -92,7 +92,7 @@ def duty(
         checked = open_cycle(cycle, progress)
     celsius = parse_temperatures(checked, temperatures or None)
     if runner.shard is not None:
-        from epicyclic.maps.duty_plan import DutyPlan, digest_of
+        from epicyclic.study.maps.duty import DutyPlan, digest_of
 
         case = load_with(map_or_case, changes)
         digest = digest_of(Path(cycle))
@@ -115,8 +115,8 @@ def duty_writer(
 
     The cycle is that of this name here, else that in `folder`.
     """
-    from epicyclic.maps.duty_plan import check_same
-    from epicyclic.whole_file import check_place
+    from epicyclic.files import check_place
+    from epicyclic.study.maps.duty import check_same
 
     problems = wrong_ending("-o", output, (*_OUTPUTS, _JSON))
     if problems:
@@ -126,10 +126,10 @@ def duty_writer(
     check_same(plan, path)
 
     def write(rows: Rows) -> str:
-        from epicyclic.maps.compute import to_map
-        from epicyclic.maps.cycle import open_cycle
         from epicyclic.report.duty_table import duty_json
-        from epicyclic.sweeps.runner import HERE
+        from epicyclic.study.maps.compute import to_map
+        from epicyclic.study.maps.cycle import open_cycle
+        from epicyclic.study.sweeps.runner import HERE
 
         read = open_cycle(path)
         named = replace(read, source=replace(read.source, name=cycle))
@@ -154,8 +154,8 @@ def _result(
     clamp: bool,
     runner: Runner,
 ) -> xr.Dataset:
-    from epicyclic.cli.progress import progress_bar
-    from epicyclic.maps.duty import add_up, make_duty
+    from epicyclic.cli.common import progress_bar
+    from epicyclic.study.maps.duty import add_up, make_duty
 
     with progress_bar("rows") as progress:
         sums = add_up(data, cycle, celsius, clamp=clamp, progress=progress)
@@ -170,7 +170,7 @@ def _check_options(
     output: Path | None,
     runner: Runner,
 ) -> None:
-    from epicyclic.whole_file import check_place
+    from epicyclic.files import check_place
 
     problems = []
     if Path(map_or_case).suffix == _MAP_SUFFIX:
@@ -216,9 +216,9 @@ def _map(
     runner: Runner,
 ) -> xr.Dataset:
     """The map that is named, or one of the case that is."""
-    from epicyclic.cli.progress import progress_bar
-    from epicyclic.maps.duty import cycle_map
+    from epicyclic.cli.common import progress_bar
     from epicyclic.records.files import open_map
+    from epicyclic.study.maps.duty import cycle_map
 
     if Path(map_or_case).suffix == _MAP_SUFFIX:
         return open_map(map_or_case)
@@ -231,7 +231,7 @@ def _map(
 
 
 def _write_map(data: xr.Dataset, map_file: Path) -> None:
-    from epicyclic.maps.formats import write_map
+    from epicyclic.study.maps.formats import write_map
 
     write_map(data, map_file)
     click.echo(f"Wrote the map to {map_file}.", err=True)
@@ -239,7 +239,7 @@ def _write_map(data: xr.Dataset, map_file: Path) -> None:
 
 def _write_table(result: xr.Dataset, output: Path | None) -> None:
     from epicyclic.report.duty_table import duty_rows
-    from epicyclic.sweeps.dataset import csv_safe, write_dataset
+    from epicyclic.study.sweeps.run import csv_safe, write_dataset
 
     if output is not None and output.suffix == _MAP_SUFFIX:
         write_dataset(result, output)

@@ -1,48 +1,47 @@
-"""The command ``epicyclic``: parses, calls the library, prints.
-
-Its exit codes are listed in docs/reference/errors.md; ``EPICYCLIC_TRACEBACK=1`` shows where in the
-program an error arose.
-"""
+"""The command ``epicyclic``: parses, calls the library, prints, and ends soon on Ctrl-C."""
 
 from __future__ import annotations
 
+import atexit
 import io
 import os
+import signal
 import sys
-from collections.abc import Callable
-from contextlib import suppress
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, NoReturn
 
 import click
 
-from epicyclic.cli.app import app
-from epicyclic.cli.compare import compare
-from epicyclic.cli.contact import contact
-from epicyclic.cli.duty import duty
-from epicyclic.cli.exit_codes import (
+from epicyclic.cli.case import check, friction, heat, mesh, run, warm_up
+from epicyclic.cli.common import (
     EXIT_BROKEN_PIPE,
     EXIT_DONE,
     EXIT_ERROR,
     EXIT_INPUT,
     EXIT_INTERRUPTED,
     EXIT_NO_SOLUTION,
+    tell_compilation,
 )
-from epicyclic.cli.heat import heat
-from epicyclic.cli.interrupt import ending_soon, tell_once, was_interrupted
-from epicyclic.cli.listing import cases, init, oils, schema
+from epicyclic.cli.compare import compare
+from epicyclic.cli.duty import duty
 from epicyclic.cli.many import loss_map, sweep
 from epicyclic.cli.merge import merge
-from epicyclic.cli.oil import oil
-from epicyclic.cli.pockets import pockets, study
-from epicyclic.cli.pockets_table import pockets_table
-from epicyclic.cli.progress import tell_compilation
-from epicyclic.cli.reproduce import reproduce
-from epicyclic.cli.rexs import rexs
-from epicyclic.cli.show import plot, report
-from epicyclic.cli.single import check, friction, mesh, run
+from epicyclic.cli.pockets import pockets, pockets_table, study
+from epicyclic.cli.show import cases, init, oils, plot, report, schema
 from epicyclic.cli.uncertainty import compare_cases, uncertainty
-from epicyclic.cli.validate import validate
-from epicyclic.cli.warm_up import warm_up
 from epicyclic.errors import ConvergenceError, InputError, is_interrupt, printable
+from epicyclic.plugins.app.command import app
+from epicyclic.plugins.contact_solver.commands import contact, oil
+from epicyclic.plugins.rexs.commands import rexs
+from epicyclic.validation.commands import reproduce, validate
+
+# The command ``epicyclic``: parses, calls the library, prints.
+#
+# Its exit codes are listed in docs/reference/errors.md; ``EPICYCLIC_TRACEBACK=1`` shows where in
+# the program an error arose.
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -124,8 +123,8 @@ def _code_of(call: Callable[[], object]) -> int:
 
 def _finish() -> None:
     """What can still go wrong at the end."""
-    if "epicyclic.kernels._jit" in sys.modules:
-        from epicyclic.kernels._jit import cache_notes
+    if "epicyclic.kernels.compiling" in sys.modules:
+        from epicyclic.kernels.compiling import cache_notes
 
         for note in cache_notes():
             click.echo(note, err=True)
@@ -174,3 +173,85 @@ def _discard_output() -> None:
 def _ended_interrupted() -> int:
     tell_once()
     return EXIT_INTERRUPTED
+
+
+# Ctrl-C ends a command soon, also while it is in compiled code, which never looks at signals.
+#
+# Python raises `KeyboardInterrupt` only between its own instructions, and a kernel may take
+# minutes. But it writes every signal to a pipe at once, and kernels let other threads run: one that
+# waits at the pipe ends the process if it has not ended by itself after a moment.
+
+
+GRACE_SECONDS = 1.0
+"""For the command to end by itself, with its own last words."""
+CLEANING_SECONDS = 0.5
+"""For workers to be ended and temporary files to be removed after that."""
+
+_interrupted, _interrupt_seen = threading.Event(), threading.Event()
+
+
+def was_interrupted() -> bool:
+    """True after Ctrl-C, also if a library has swallowed the exception."""
+    return _interrupted.is_set()
+
+
+def tell_once() -> None:
+    """Say that the command was interrupted, unless it has been said."""
+    if not _interrupt_seen.is_set():
+        _interrupt_seen.set()
+        click.echo("Interrupted.", err=True)
+
+
+@contextmanager
+def ending_soon() -> Iterator[None]:
+    """End the process soon after an interruption, whatever it does. For the main thread only."""
+    _interrupted.clear()
+    _interrupt_seen.clear()
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    handler, hook = signal.signal(signal.SIGINT, _interrupt), sys.unraisablehook
+    sys.unraisablehook = lambda lost: None if was_interrupted() else hook(lost)
+    before = signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+    threading.Thread(target=_watch, args=(reader,), daemon=True).start()
+    try:
+        yield
+    finally:
+        signal.set_wakeup_fd(before)
+        os.close(writer)  # ends the thread, unless there was an interruption
+        signal.signal(signal.SIGINT, handler)
+        sys.unraisablehook = hook
+
+
+def _interrupt(number: int, frame: object) -> NoReturn:
+    _interrupted.set()
+    raise KeyboardInterrupt
+
+
+def _watch(reader: int) -> None:
+    while signals := os.read(reader, 1):
+        if signals[0] == signal.SIGINT:
+            time.sleep(GRACE_SECONDS)
+            _end()
+    os.close(reader)
+
+
+def _end() -> NoReturn:
+    """End this process and its workers now; files that are being written are removed."""
+    last = threading.Timer(CLEANING_SECONDS, os._exit, [EXIT_INTERRUPTED])
+    last.daemon = True
+    last.start()
+    with suppress(Exception):
+        for worker in _workers():
+            worker.kill()
+        tell_once()
+        atexit._run_exitfuncs()
+    os._exit(EXIT_INTERRUPTED)
+
+
+def _workers() -> list[Any]:
+    """Processes that this one has started to share its work."""
+    if "multiprocessing" not in sys.modules:
+        return []
+    import multiprocessing
+
+    return multiprocessing.active_children()

@@ -1,4 +1,4 @@
-"""Commands on many cases, resumed where they were interrupted: sweep, map."""
+"""A stored map written in another format."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from epicyclic.cli.exit_codes import EXIT_FAILED_POINTS
-from epicyclic.cli.options import (
+from epicyclic.cli.common import (
+    EXIT_FAILED_POINTS,
     case_argument,
     load_with,
     output_option,
@@ -27,10 +27,48 @@ from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from epicyclic.case.case import Case
-    from epicyclic.maps.compute import MapPlan
-    from epicyclic.sweeps.journal import Journal, Rows
-    from epicyclic.sweeps.plan import SweepPlan
-    from epicyclic.sweeps.runner import Plan, Runner
+    from epicyclic.study.maps.compute import MapPlan
+    from epicyclic.study.sweeps.plan import SweepPlan
+    from epicyclic.study.sweeps.runner import Journal, Plan, Rows, Runner
+
+
+def refuse_options(options: Mapping[str, object]) -> None:
+    """Raise `InputError` for options that say what is computed: a stored map holds it."""
+    problems = [
+        Problem(
+            f"--{name}",
+            "",
+            "says what is computed, and a stored map is computed already.",
+            "Leave it out, or give the case in place of the file.",
+        )
+        for name, value in options.items()
+        if value
+    ]
+    if problems:
+        raise InputError(problems, "the command")
+
+
+def convert(file: Path, output: Path, name: str | None, *, heated: bool) -> None:
+    """Write the map of `file` to `output`, with the temperature as a state if it is `heated`."""
+    from epicyclic.records.files import open_map
+    from epicyclic.study.maps.formats import write_map
+    from epicyclic.study.maps.lumped import with_temperature_state
+    from epicyclic.study.maps.tables import map_case
+
+    data = open_map(file)
+    if heated:
+        case = map_case(data)
+        if case is None:
+            allowed = "cannot be given: the case of the map is none of this version."
+            problem = Problem("--temperature-state", "", allowed, "Compute the map again.")
+            raise InputError([problem], str(file))
+        data = with_temperature_state(data, case)
+    write_map(data, output, name)
+    click.echo(f"Wrote the map of {file} to {output}.")
+
+
+# Commands on many cases, resumed where they were interrupted: sweep, map.
+
 
 Write = Callable[["Rows"], str]
 """Writes the rows of a plan, and tells what it wrote."""
@@ -87,9 +125,9 @@ def sweep(
     Finished points are kept in a file beside OUTPUT that ends in .partial, so that an interrupted
     sweep goes on where it stopped when the same command is given again.
     """
-    from epicyclic.sweeps.dataset import check_output
-    from epicyclic.sweeps.plan import make_plan, parse_links, parse_together, parse_vary
-    from epicyclic.sweeps.points import columns_of
+    from epicyclic.study.sweeps.axes import columns_of
+    from epicyclic.study.sweeps.plan import make_plan, parse_links, parse_together, parse_vary
+    from epicyclic.study.sweeps.run import check_output
 
     loaded = load_with(case, changes)
     check_output(output)
@@ -105,7 +143,7 @@ def sweep(
 
 def sweep_writer(plan: SweepPlan, output: Path) -> Write:
     """Writes a sweep; raises `InputError` if it cannot."""
-    from epicyclic.sweeps import dataset
+    from epicyclic.study.sweeps import run as dataset
 
     dataset.check_output(output)
 
@@ -171,8 +209,6 @@ def loss_map(
     from epicyclic.records.files import is_stored
 
     if is_stored(case):
-        from epicyclic.cli.map_file import convert, refuse_options
-
         refuse_options(
             {"set": changes, "states": states, "vary": vary, "even-torques": even_torques}
             | values
@@ -180,10 +216,9 @@ def loss_map(
         )
         convert(Path(case), output, name, heated=heated)
         return
-    from epicyclic.maps.compute import coordinates, map_plan, states_left_out
-    from epicyclic.maps.lumped import check_axis, lumped
-    from epicyclic.maps.near_zero import resolving_texts
-    from epicyclic.sweeps.plan import parse_vary
+    from epicyclic.study.maps.compute import coordinates, map_plan, resolving_texts, states_left_out
+    from epicyclic.study.maps.lumped import check_axis, lumped
+    from epicyclic.study.sweeps.plan import parse_vary
 
     loaded = load_with(case, changes)
     _check_given(values)
@@ -212,8 +247,8 @@ def map_writer(
     lumped: Mapping[str, float] | None = None,
 ) -> Write:
     """Writes a map, with the attributes `lumped`; raises `InputError` if it cannot."""
-    from epicyclic.maps.compute import checked_map, coordinates, held_shaft
-    from epicyclic.maps.formats import check_map_output, files_of_map, write_map
+    from epicyclic.study.maps.compute import checked_map, coordinates, held_shaft
+    from epicyclic.study.maps.formats import check_map_output, files_of_map, write_map
 
     axes = coordinates(plan)
     chosen = check_map_output(output, format, axes, held_shaft(plan.case))
@@ -260,7 +295,7 @@ def check_values(values: Mapping[str, str | None]) -> None:
 def parse_axes(case: Case, values: Mapping[str, str | None]) -> dict[str, list[Any]]:
     """The values of speed, torque and temperature, as far as they are given."""
     from epicyclic.case.operating import AXES
-    from epicyclic.sweeps.plan import parse_vary
+    from epicyclic.study.sweeps.plan import parse_vary
 
     texts = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]
     found = parse_vary(case, texts)
@@ -274,9 +309,8 @@ def compute(
 
     Those of a shard are kept only, with `how` they are to be written.
     """
-    from epicyclic.cli.progress import progress_bar
-    from epicyclic.sweeps.journal import Journal
-    from epicyclic.sweeps.runner import fingerprint, share_of
+    from epicyclic.cli.common import progress_bar
+    from epicyclic.study.sweeps.runner import Journal, fingerprint, share_of
 
     mark = fingerprint(plan)
     name = f"{mark}.partial" if runner.shard is None else "shard-{}-of-{}".format(*runner.shard)

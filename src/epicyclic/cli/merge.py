@@ -8,13 +8,12 @@ from typing import Any
 
 import click
 
+from epicyclic.cli.common import output_option
 from epicyclic.cli.compare import comparison_writer
 from epicyclic.cli.duty import duty_writer
 from epicyclic.cli.many import Write, finish, map_writer, sweep_writer
-from epicyclic.cli.oil import campaign_writer
-from epicyclic.cli.options import output_option
-from epicyclic.cli.pockets import study_writer
-from epicyclic.cli.pockets_table import table_writer
+from epicyclic.cli.pockets import study_writer, table_writer
+from epicyclic.plugins.contact_solver.commands import campaign_writer
 
 
 @click.command()
@@ -32,14 +31,14 @@ def merge(files: tuple[Path, ...], output: Path) -> None:
     epicyclic sweep case.toml --vary "planet.count=3,4" -o s.nc --shard 2/2
     epicyclic merge s.nc.shard-* -o s.nc
     """
-    from epicyclic.campaigns.campaign import Campaign
-    from epicyclic.maps.compute import MapPlan
-    from epicyclic.maps.duty_plan import DutyPlan
-    from epicyclic.measurement.question import ComparisonPlan
-    from epicyclic.sweeps.plan import SweepPlan
-    from epicyclic.sweeps.pocketing_plan import StudyPlan
-    from epicyclic.sweeps.pocketing_table import TablePlan
-    from epicyclic.sweeps.shards import gather
+    from epicyclic.plugins.contact_solver.campaign import Campaign
+    from epicyclic.study.maps.compute import MapPlan
+    from epicyclic.study.maps.duty import DutyPlan
+    from epicyclic.study.measured.compare import ComparisonPlan
+    from epicyclic.study.pocketing_table import TablePlan
+    from epicyclic.study.sweeps.plan import SweepPlan
+    from epicyclic.study.sweeps.runner import gather
+    from epicyclic.validation.pocketing import StudyPlan
 
     writers: dict[Any, Callable[..., Write]] = {
         SweepPlan: sweep_writer,

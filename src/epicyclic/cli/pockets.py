@@ -1,4 +1,4 @@
-"""Commands on the pockets of meshes: pockets, study."""
+"""Commands on the pockets of meshes: pockets, pockets-table, study."""
 
 from __future__ import annotations
 
@@ -7,25 +7,34 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.many import Write, compute
-from epicyclic.cli.options import (
+from epicyclic.cli.common import (
+    beside,
     case_argument,
+    check_ending,
+    draw,
     load_with,
     output_option,
+    picture_bytes,
     picture_option,
     plot_option,
     point_of,
     runner_options,
     set_option,
     shard_option,
+    temperature_option,
 )
-from epicyclic.cli.output import beside, check_ending, draw, picture_bytes
-from epicyclic.whole_file import make_folder, write_file
+from epicyclic.cli.many import Write, check_values, compute, parse_axes
+from epicyclic.files import make_folder, write_file
+from epicyclic.units import percent
 
 if TYPE_CHECKING:
-    from epicyclic.sweeps.journal import Rows
-    from epicyclic.sweeps.pocketing_plan import StudyPlan
-    from epicyclic.sweeps.runner import Runner
+    from epicyclic.study.pocketing_table import TablePlan
+    from epicyclic.study.sweeps.runner import Rows, Runner
+    from epicyclic.validation.pocketing import StudyPlan
+
+
+# Commands on the pockets of meshes: pockets, study.
+
 
 ANIMATION = ".gif"
 STUDY = "study"
@@ -44,10 +53,10 @@ STUDY = "study"
 )
 def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Path | None) -> None:
     """Show the pockets between the teeth: shape, pressure, speed of the flow, power."""
-    from epicyclic.analysis.pocket_details import pocket_details
-    from epicyclic.cli.progress import working
+    from epicyclic.cli.common import working
     from epicyclic.report.pocket_table import pocket_tables
     from epicyclic.report.tables import terminal
+    from epicyclic.study.pockets import pocket_details
 
     if animate is not None:
         check_ending("--animate", animate, (ANIMATION,))
@@ -57,14 +66,13 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
     terminal().print(pocket_tables(meshes))
     for key, mesh in meshes.items():
         if plot is not None:
-            from epicyclic.plots.pocket_section import section_figure
-            from epicyclic.plots.pockets import pocket_figure
+            from epicyclic.show.plots.pockets import pocket_figure, section_figure
 
             draw(pocket_figure(mesh), beside(plot, key), point_of(loaded))
             draw(section_figure(mesh), beside(plot, f"{key}-section"), point_of(loaded))
         if animate is not None:
-            from epicyclic.cli.progress import progress_bar
-            from epicyclic.plots.pocket_animation import pocket_animation
+            from epicyclic.cli.common import progress_bar
+            from epicyclic.show.plots.pockets import pocket_animation
 
             with progress_bar("frames") as progress:
                 moving = pocket_animation(mesh, progress)
@@ -117,8 +125,8 @@ def study(
     Each study NAME goes to NAME.nc, NAME.csv and a picture in the folder OUTPUT. An interrupted
     study goes on where it stopped, as a sweep does.
     """
-    from epicyclic.sweeps.plan import parse_vary
-    from epicyclic.sweeps.pocketing_plan import STUDIES, make_study
+    from epicyclic.study.sweeps.plan import parse_vary
+    from epicyclic.validation.pocketing import STUDIES, make_study
 
     loaded = load_with(case, changes)
     plan = make_study(
@@ -134,10 +142,9 @@ def study(
 
 def study_writer(plan: StudyPlan, folder: Path, picture: str) -> Write:
     """Writes tables and figures to a folder; raises `InputError` if there can be none."""
-    from epicyclic.plots.pocketing_study import study_figure
-    from epicyclic.sweeps.dataset import write_dataset
-    from epicyclic.sweeps.pocketing_study import study_datasets
-    from epicyclic.validation.pocketing import published_study
+    from epicyclic.study.sweeps.run import write_dataset
+    from epicyclic.validation.plots import study_figure
+    from epicyclic.validation.pocketing import published_study, study_datasets
 
     make_folder(folder)
 
@@ -152,5 +159,57 @@ def study_writer(plan: StudyPlan, folder: Path, picture: str) -> Write:
             figure = study_figure(dataset, published)
             write_file(written[-1], picture_bytes(figure, written[-1]))
         return "\n".join(f"Wrote {path}." for path in written)
+
+    return write
+
+
+# The command ``epicyclic pockets-table``.
+
+
+FORMATS = (".nc", ".csv")
+
+
+@click.command("pockets-table")
+@case_argument
+@set_option
+@click.option(
+    "--speed", metavar="VALUES", required=True, help='Of the input member, as in "500:5000:10 rpm".'
+)
+@temperature_option
+@output_option(".nc, to be used, or .csv", required=True)
+@shard_option
+@runner_options
+def pockets_table(
+    case: str, changes: tuple[str, ...], output: Path, runner: Runner, **values: str | None
+) -> None:
+    """Tabulate the pocketing loss of each mesh over speed and oil temperature.
+
+    VALUES are a,b,c or start:stop:count with a unit. A case whose models.pocketing_table names the
+    .nc file reads its pocketing losses from there.
+    """
+    from epicyclic.study.pocketing_table import make_table_plan
+
+    loaded = load_with(case, changes)
+    check_ending("-o", output, FORMATS)
+    check_values(values)
+    given = parse_axes(loaded, values)
+    plan = make_table_plan(loaded, given["speed"], given.get("temperature"))
+    compute(plan, output, runner, table_writer(plan, output), "tables")
+
+
+def table_writer(plan: TablePlan, output: Path) -> Write:
+    """Writes tables; raises `InputError` if it cannot."""
+    from epicyclic.files import check_place
+    from epicyclic.study.pocketing_table import table_dataset
+    from epicyclic.study.sweeps.run import write_dataset
+
+    check_ending("-o", output, FORMATS)
+    check_place(output)
+
+    def write(rows: Rows) -> str:
+        table = table_dataset(plan, rows)
+        write_dataset(table, output)
+        worst = float(table["interpolation_error"].max())
+        return f"Wrote {output}, interpolated within {percent(worst, 2)} of the loss."
 
     return write

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from epicyclic.cli.many import check_values, compute, parse_axes
-from epicyclic.cli.options import (
+from epicyclic.cli.common import (
+    beside,
+    check_ending,
+    draw,
     load_with,
     output_option,
     plot_option,
@@ -18,16 +20,15 @@ from epicyclic.cli.options import (
     set_option,
     temperature_option,
 )
-from epicyclic.cli.output import beside, check_ending, draw
+from epicyclic.cli.many import check_values, compute, parse_axes
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from epicyclic.bands.run import Study
     from epicyclic.case.case import Case
-    from epicyclic.sweeps.journal import Rows
-    from epicyclic.sweeps.runner import Runner
+    from epicyclic.study.bands.run import Study
+    from epicyclic.study.sweeps.runner import Rows, Runner
 
 MAP_SUFFIX = ".nc"
 seed_option = click.option(
@@ -77,9 +78,9 @@ def uncertainty(
     [uncertainty] of the case, or assumed ones; over a map or cycle an input is off by the same
     everywhere. With -o, an interrupted computation goes on where it stopped.
     """
+    from epicyclic.files import check_place
     from epicyclic.report.tables import terminal
     from epicyclic.report.uncertainty_tables import uncertainty_tables
-    from epicyclic.whole_file import check_place
 
     if output is not None:
         check_ending("-o", output, (MAP_SUFFIX,))
@@ -142,12 +143,12 @@ def _study(
     runner: Runner,
 ) -> Study:
     """The study of a case, or of a map, which is computed first if it is not given."""
-    from epicyclic.bands.over_map import map_study
-    from epicyclic.bands.plan import check_samples
-    from epicyclic.bands.study import uncertainty_study
     from epicyclic.case.case import Case
-    from epicyclic.cli.progress import progress_bar
-    from epicyclic.maps.compute import checked_map, map_plan
+    from epicyclic.cli.common import progress_bar
+    from epicyclic.study.bands.plan import check_samples
+    from epicyclic.study.bands.points import map_study
+    from epicyclic.study.bands.study import uncertainty_study
+    from epicyclic.study.maps.compute import checked_map, map_plan
 
     if samples is not None:
         check_samples(samples)
@@ -171,11 +172,11 @@ def _cycle_study(
     seed: int,
     runner: Runner,
 ) -> Study:
-    from epicyclic.bands.cycle import cycle_study
     from epicyclic.case.case import Case
-    from epicyclic.cli.progress import progress_bar
-    from epicyclic.maps.cycle import open_cycle
-    from epicyclic.maps.duty import cycle_map, parse_temperatures
+    from epicyclic.cli.common import progress_bar
+    from epicyclic.study.bands.points import cycle_study
+    from epicyclic.study.maps.cycle import open_cycle
+    from epicyclic.study.maps.duty import cycle_map, parse_temperatures
 
     with progress_bar("rows read") as progress:
         checked = open_cycle(cycle, progress)
@@ -190,8 +191,8 @@ def _cycle_study(
 
 
 def _draw(data: xr.Dataset, plot: Path) -> None:
-    from epicyclic.plots.catalogue import about, figure_of
-    from epicyclic.plots.uncertainty import band_figure, drivers_figure, shares_figure
+    from epicyclic.show.plots.catalogue import about, figure_of
+    from epicyclic.show.plots.losses import band_figure, drivers_figure, shares_figure
 
     _, point = about(data)
     if "explained" in data:
@@ -204,7 +205,7 @@ def _draw(data: xr.Dataset, plot: Path) -> None:
 
 
 def _computed(study: Study, output: Path | None, runner: Runner) -> xr.Dataset:
-    from epicyclic.cli.progress import progress_bar
+    from epicyclic.cli.common import progress_bar
 
     if output is None:
         with progress_bar("samples") as progress:
@@ -212,7 +213,7 @@ def _computed(study: Study, output: Path | None, runner: Runner) -> xr.Dataset:
     found: list[xr.Dataset] = []
 
     def write(rows: Rows) -> str:
-        from epicyclic.sweeps.dataset import write_dataset
+        from epicyclic.study.sweeps.run import write_dataset
 
         found.append(study.dataset(rows))
         write_dataset(found[0], output)
@@ -240,10 +241,10 @@ def compare_cases(first: str, second: str, samples: int, seed: int, runner: Runn
 
     Inputs that both cases share are drawn once for both.
     """
-    from epicyclic.bands.pairs import compare_cases as compare
-    from epicyclic.cli.progress import progress_bar
+    from epicyclic.cli.common import progress_bar
     from epicyclic.report.tables import terminal
     from epicyclic.report.uncertainty_tables import pair_tables
+    from epicyclic.study.bands.compare_cases import compare_cases as compare
 
     cases = [load_with(name, ()) for name in (first, second)]
     with progress_bar("samples") as progress:

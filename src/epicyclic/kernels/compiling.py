@@ -1,8 +1,260 @@
-"""Who is told that a kernel is compiled: at the first run of a version, which takes minutes."""
+"""The one decorator for compiled kernels: compiled apart, kept on disk, and reported."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import hashlib
+import os
+import pickle
+import signal
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any, NoReturn, ParamSpec, TypeVar, cast
+
+import numba
+from numba.core import caching, event
+
+from epicyclic.cache_folder import is_private, private_folder
+
+# Who is told that a kernel is compiled: at the first run of a version, which takes minutes.
+
 
 listeners: list[Callable[[], None]] = []
 """Called before each kernel is compiled; not for one whose machine code is kept on disk."""
+
+
+# Kernels compiled in a process of their own, which takes the memory of the compiler with it.
+#
+# The compiler keeps what it made on the way to the machine code of a kernel and of all kernels that
+# it calls: half a gigabyte for those of one planetary set. A copy of this process keeps that
+# instead, puts the machine code on the disk, and ends; this process reads it from there. Of
+# processes that start together one compiles a kernel, and the others wait for what it puts on the
+# disk.
+
+
+if sys.platform == "linux":
+    import fcntl
+
+_can_be_copied = sys.platform == "linux"  # elsewhere a copy is not safe, or there is none
+
+
+def done_apart(compile_kernel: Callable[[], bool], folder: Path) -> bool:
+    """Compile in a copy of this process, where `compile_kernel` says whether the disk has it then.
+
+    Other processes that use the same folder for machine code wait meanwhile.
+
+    Listeners are told of each kernel here. After a failure nothing is compiled apart any more,
+    because it would fail again: this process meets the error itself then, and can tell of it.
+    """
+    if not _can_be_copied:
+        return False
+    with _alone(folder):  # a kernel that was waited for is read from the disk by the copy
+        return _done_in_copy(compile_kernel)
+
+
+@contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Hold the lock of a folder, which ends with this process if not before."""
+    handle = None
+    try:
+        with suppress(OSError):  # where nothing can be locked, each process compiles for itself
+            handle = os.open(folder, os.O_RDONLY)
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        if handle is not None:
+            os.close(handle)
+
+
+def _done_in_copy(compile_kernel: Callable[[], bool]) -> bool:
+    global _can_be_copied
+    reader, writer = os.pipe()
+    with warnings.catch_warnings():
+        # the copy has no other threads, and needs nothing that they may have held
+        warnings.simplefilter("ignore", DeprecationWarning)
+        child = os.fork()
+    if child == 0:
+        _compile_and_end(compile_kernel, reader, writer)
+    os.close(writer)
+    try:
+        while os.read(reader, 1):
+            for tell in listeners:
+                tell()
+    except BaseException:
+        os.kill(child, signal.SIGKILL)
+        raise
+    finally:
+        os.close(reader)
+        _, status = os.waitpid(child, 0)
+    _can_be_copied = status == 0
+    return _can_be_copied
+
+
+def _compile_and_end(compile_kernel: Callable[[], bool], reader: int, writer: int) -> NoReturn:
+    """What the copy does. It never returns into what the original was doing."""
+    global _can_be_copied
+    code = 1
+    try:
+        signal.set_wakeup_fd(-1)
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        os.close(reader)
+        _can_be_copied = False
+        listeners[:] = [lambda: _tell(writer)]
+        code = 0 if compile_kernel() else 1
+    finally:
+        os._exit(code)
+
+
+def _tell(writer: int) -> None:
+    os.write(writer, b".")
+
+
+# The one decorator for compiled kernels, and where their machine code is kept.
+#
+# numba's own cache looks at the file that defines a kernel, not at the kernels it calls, so an
+# edited callee in another file would leave stale physics in its callers. The cache folder is
+# therefore named after the content of every kernel file. Machine code that was damaged on the disk
+# is compiled again, and what cannot be kept is compiled at every start; `cache_notes` tells.
+
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+_notes: dict[str, None] = {}
+
+
+def cache_notes() -> list[str]:
+    """What to know about the machine code that is kept, each once."""
+    return list(_notes)
+
+
+def cache_directory(kernel_folder: Path) -> Path | None:
+    """Folder for the machine code of the kernels now in `kernel_folder`; None if there is none."""
+    digest = hashlib.sha256()
+    for source in sorted(kernel_folder.glob("*.py")):
+        digest.update(source.read_bytes())
+    return private_folder(f"kernels-{digest.hexdigest()[:16]}")
+
+
+def _chosen_directory() -> Path | None:
+    """The folder of NUMBA_CACHE_DIR, or one of our own."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    if given is None:
+        return cache_directory(Path(__file__).parent)
+    folder = Path(given)
+    if folder.exists() and not is_private(folder):
+        _notes[f"NUMBA_CACHE_DIR is not used: others may write to {folder}."] = None
+        return None
+    return folder
+
+
+_CACHE_DIR = _chosen_directory()
+
+
+class _CheckedFile(caching.IndexDataCacheFile):  # type: ignore[misc]
+    """Machine code of one kernel with a checksum: what is damaged counts as absent."""
+
+    def _load_index(self) -> Any:
+        try:
+            return super()._load_index()
+        except Exception as error:  # whatever unpickling raises
+            self._note_damage(error)
+            return {}
+
+    def _load_data(self, name: str) -> Any:
+        try:
+            digest, data = super()._load_data(name)
+            if digest == hashlib.sha256(data).digest():
+                return pickle.loads(data)
+            reason: Exception = ValueError("wrong checksum")
+        except Exception as error:
+            reason = error
+        self._note_damage(reason)
+        raise OSError("damaged")  # as for a file that is not there
+
+    def _save_data(self, name: str, data: Any) -> None:
+        dumped = self._dump(data)
+        super()._save_data(name, (hashlib.sha256(dumped).digest(), dumped))
+
+    def _note_damage(self, error: Exception) -> None:
+        if not isinstance(error, FileNotFoundError):
+            text = f"Compiled code in {self._cache_path} was damaged; it is compiled again."
+            _notes[text] = None
+
+
+class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
+    """The cache of one kernel, without which the kernel runs as well."""
+
+    def __init__(self, compiled: Any) -> None:
+        super().__init__(compiled.py_func)
+        self._compiled = compiled
+        self._cache_file = _CheckedFile(
+            cache_path=self._cache_path,
+            filename_base=self._impl.filename_base,
+            source_stamp=self._impl.locator.get_source_stamp(),
+        )
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        load = super().load_overload
+
+        def is_kept() -> bool:
+            self._compiled.compile(sig)
+            return load(sig, target_context) is not None
+
+        found = load(sig, target_context)
+        is_new = found is None and done_apart(is_kept, Path(self._cache_path))
+        return load(sig, target_context) if is_new else found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            _note_lost(error)
+
+
+def _note_lost(error: Exception) -> None:
+    reason = getattr(error, "strerror", None) or error
+    text = f"Compiled code cannot be kept in {_CACHE_DIR}: {reason}. Every start compiles it anew."
+    _notes[text] = None
+
+
+class _Listener(event.Listener):
+    """Tells of kernels of this package that are compiled, not of what numba compiles for them."""
+
+    def on_start(self, event: Any) -> None:
+        if event.data["dispatcher"].py_func.__module__.startswith("epicyclic."):
+            for tell in listeners:
+                tell()
+
+    def on_end(self, event: Any) -> None:
+        """Ignored."""
+
+
+event.register("numba:compile", _Listener())  # type: ignore[no-untyped-call]
+
+
+def kernel(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile `function` at first call and keep the machine code on disk.
+
+    ``fastmath`` stays off, because it makes NaN checks vanish; division by zero gives inf, and
+    callers check that results are finite.
+    """
+    compiled: Any = numba.njit(fastmath=False, error_model="numpy", nogil=True)(function)
+    if _CACHE_DIR is not None:
+        _keep(compiled, _CACHE_DIR)
+    return cast("Callable[P, R]", compiled)
+
+
+def _keep(compiled: Any, folder: Path) -> None:
+    """Keep the machine code of a kernel in `folder`."""
+    config: Any = numba.config
+    previous = config.CACHE_DIR
+    config.CACHE_DIR = str(folder)
+    try:
+        compiled._cache = _KernelCache(compiled)
+    except Exception as error:  # numba finds no place that it can write to
+        _note_lost(error)
+    finally:
+        config.CACHE_DIR = previous

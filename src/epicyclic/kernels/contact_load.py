@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.kernels._jit import kernel
+from epicyclic.kernels.compiling import kernel
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

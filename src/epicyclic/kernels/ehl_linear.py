@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.kernels._jit import kernel
+from epicyclic.kernels.compiling import kernel
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

@@ -13,7 +13,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.kernels._jit import kernel
+from epicyclic.kernels.compiling import kernel
 from epicyclic.kernels.ehl_fluid import (
     ScaledFluid,
     density_ratio,

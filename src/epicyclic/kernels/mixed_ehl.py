@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.kernels._jit import kernel
+from epicyclic.kernels.compiling import kernel
 
 FloatArray = NDArray[np.float64]
 

@@ -9,8 +9,7 @@ import math
 
 import numpy as np
 
-from epicyclic.kernels._jit import kernel
-from epicyclic.kernels.pocket_fluid import mixture
+from epicyclic.kernels.compiling import kernel
 from epicyclic.kernels.pocket_stage import (
     Fields,
     Flags,
@@ -20,6 +19,7 @@ from epicyclic.kernels.pocket_stage import (
     Numbers,
     Shape,
     kinetic_shares,
+    mixture,
     number,
     solve_stage,
 )

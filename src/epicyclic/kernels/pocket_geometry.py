@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.kernels._jit import kernel
+from epicyclic.kernels.compiling import kernel
 
 Floats = NDArray[np.float64]
 Points = NDArray[np.complex128]

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from epicyclic.kernels._jit import kernel
+from epicyclic.kernels.compiling import kernel
 from epicyclic.kernels.pocket_flow import NEW_INERTIA, mark_fresh
 from epicyclic.kernels.pocket_stage import Flags, Floats, Fresh, Indices, downstream_share
 

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic.errors import InputError, Problem, first_of, raise_any, rising_problems
-from epicyclic.losses.validity import ModelUse, Range, ValidityFlag, check_ranges
-from epicyclic.text_file import csv_rows, read_text, refuse
+from epicyclic.files import csv_rows, read_text, refuse
+from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.units import CELSIUS, NEWTON, NEWTON_METRE, RPM, WATT, Quantity
 
 FloatArray = NDArray[np.float64]

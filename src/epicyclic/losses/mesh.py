@@ -1,11 +1,4 @@
-r"""Load-dependent loss of one mesh.
-
-Local method, Talbot (2012), Eq. 5.9 and 5.11: averages over the mesh period of
-
-.. math:: P_\mu = \int \mu W' |u_s|\,\mathrm{d}l, \qquad P_r = \int \Re\,\mathrm{d}l .
-
-Quick method: mean friction times the loss factor of Ohlendorf, no rolling loss.
-"""
+"""Load-dependent loss of one mesh, and the flash temperature along its contact lines."""
 
 from __future__ import annotations
 
@@ -17,14 +10,76 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.geometry.mesh import Mesh
+from epicyclic.contact.temperatures import Solid, flash_temperature, heat_share
+from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.fitted_or_formula import FittedOrGoksem, FittedOrSchlenk
-from epicyclic.losses.friction.base import FrictionModel
+from epicyclic.losses.fitted import FittedOrGoksem, FittedOrSchlenk
+from epicyclic.losses.friction import FrictionModel
+from epicyclic.losses.ranges import Flags, ModelUse, SomeFlags, ValidityFlag, check_contacts
 from epicyclic.losses.rolling import RollingModel
-from epicyclic.losses.validity import Flags, ModelUse, SomeFlags, ValidityFlag, check_contacts
+
+# Flash temperature along the contact lines of a mesh, and which gear the heat goes to.
+
 
 FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class MeshWarmth:
+    """Flash temperature of a mesh."""
+
+    flash_mean: float  # Weighted with the load over the mesh period. [K]
+    flash_max: float  # Largest one. [K]
+
+
+def mesh_warmth(
+    contact: MeshContact,
+    friction: FloatArray,  # Coefficient of friction at every point. [1]
+    materials: tuple[Solid, Solid],  # Materials of both gears.
+) -> MeshWarmth:
+    """Flash temperature of a mesh in contact. Theory (W1)."""
+    flash = flash_temperatures(contact, friction, materials)
+    load = contact.line_load * contact.weight
+    return MeshWarmth(
+        flash_mean=float((flash * load).sum() / load.sum()),
+        flash_max=float(flash.max()),
+    )
+
+
+def heat_share1(
+    contact: MeshContact,
+    heat: FloatArray,  # Of sliding friction at every point. [W]
+    materials: tuple[Solid, Solid],  # Materials of both gears.
+) -> float:
+    """Share of the heat of sliding that gear 1 takes up. Theory (W2). [1]"""
+    total = float(heat.sum())
+    if not total > 0:
+        return 0.5
+    share1 = heat_share(*contact.surface_speeds, *(solid.effusivity for solid in materials))
+    return float((heat * share1).sum()) / total
+
+
+def flash_temperatures(
+    contact: MeshContact, friction: FloatArray, materials: tuple[Solid, Solid]
+) -> FloatArray:
+    """Flash temperature at every point of the contact lines, shape (n,). Theory (W1). [K]"""
+    return flash_temperature(
+        friction,
+        contact.line_load,
+        contact.sliding_speed,
+        *contact.surface_speeds,
+        contact.hertz_half_width,
+        *(solid.effusivity for solid in materials),
+    )
+
+
+# Load-dependent loss of one mesh.
+#
+# Local method, Talbot (2012), Eq. 5.9 and 5.11: averages over the mesh period of
+#
+# .. math:: P_\mu = \int \mu W' |u_s|\,\mathrm{d}l, \qquad P_r = \int \Re\,\mathrm{d}l .
+#
+# Quick method: mean friction times the loss factor of Ohlendorf, no rolling loss.
 
 
 CLOSED_LIMIT = 1.0

@@ -13,21 +13,20 @@ from functools import lru_cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.contact import Flanks
+from epicyclic.contact.line_contact import Flanks
 from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.line_contact import hertz_pressure
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss_at
 from epicyclic.kernels.roller_bearing import solve_roller_loads
-from epicyclic.losses.fit_tables import RaceContacts
-from epicyclic.losses.fitted import FittedRolling
-from epicyclic.losses.fitted_or_formula import weight_of_fit
-from epicyclic.losses.mixed_ehl_groups import (
+from epicyclic.losses.drag import SPEED_PARAMETER, speed_parameter
+from epicyclic.losses.fitted import FittedRolling, RaceContacts, weight_of_fit
+from epicyclic.losses.mixed_ehl import (
     PRESSURE_VISCOSITY_RANGE,
     VISCOSITY_RANGE,
     beyond_data,
     without_oil,
 )
-from epicyclic.losses.validity import (
+from epicyclic.losses.ranges import (
     Flags,
     ModelUse,
     Range,
@@ -37,8 +36,7 @@ from epicyclic.losses.validity import (
     check_ranges,
     held_in_range,
 )
-from epicyclic.losses.viscous import SPEED_PARAMETER, speed_parameter
-from epicyclic.lubricant.properties import OilState
+from epicyclic.oil.properties import OilState
 from epicyclic.units import (
     CELSIUS,
     GIGAPASCAL,

@@ -8,14 +8,19 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.contact import LineContacts
+from epicyclic.contact.fitted_models import regression_groups, rolling_scale
+from epicyclic.contact.line_contact import LineContacts
 from epicyclic.kernels.line_contact import goksem_hargreaves_force, martin_force
 from epicyclic.kernels.mixed_ehl import rolling_loss_number_at
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.mixed_ehl_groups import TalbotRegression, beyond_data, held_in_table
-from epicyclic.losses.pairing import equally_rough, pairing_ratio
-from epicyclic.losses.validity import Range, RegressionFluid
-from epicyclic.oilmodel.regressions import regression_groups, rolling_scale
+from epicyclic.losses.mixed_ehl import (
+    TalbotRegression,
+    beyond_data,
+    equally_rough,
+    held_in_table,
+    pairing_ratio,
+)
+from epicyclic.losses.ranges import Range, RegressionFluid
 from epicyclic.units import NUMBER
 
 FloatArray = NDArray[np.float64]

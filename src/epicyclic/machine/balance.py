@@ -1,27 +1,162 @@
-"""Torques of all bodies and loads of all meshes in balance.
-
-A torque is the one that acts on a body from outside, so that torque times speed is the power that
-enters there.
-"""
+"""Speeds, torques and directions of power of a machine, from the constraints of its meshes."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations, islice
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.elements.base import HOUSING
-from epicyclic.machine.linear import solution_of
+from epicyclic.machine.element import HOUSING
 from epicyclic.machine.machine import Machine, MeshRow, Operation, Terms
+
+# Systems of as many linear equations as unknowns.
+
 
 FloatArray = NDArray[np.float64]
 
+
+def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
+    """The solution, refined once; None if the square `matrix` is singular."""
+    from scipy.linalg.lapack import dgesv, dgetrs  # a case that is only read needs no algebra
+
+    if not len(right):
+        return right
+    factors, pivots, found, singular = dgesv(matrix, right)
+    if singular:
+        return None
+    refined: FloatArray = found + dgetrs(factors, pivots, right - matrix @ found)[0]
+    return refined
+
+
+# Speeds of all bodies from the constraints of meshes and clutches.
+#
+# Speeds are positive in one common sense of rotation.
+
+
+SINGULAR = 1e-10
+"""Singular values below this share of the largest count as zero: rows are scaled to length 1."""
+TOGETHER = 1e-12
+"""Speeds that differ by less, relative to the fastest body, are one speed. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Freedom:
+    """What the constraints leave open."""
+
+    blocked: bool  # True if the input cannot turn.
+    loose: tuple[str, ...]  # Bodies whose speeds the given ones do not determine.
+    freedoms: int  # Number of further speeds that would determine them. [1]
+
+
+def freedom(
+    machine: Machine,
+    driven: str,  # The input.
+    given: Sequence[str],  # Further bodies of given speed, held ones among them.
+) -> Freedom:
+    """What stays open with the speed of `driven`, and of the bodies `given`, known."""
+    bodies = machine.bodies
+    others = _matrix(machine, [body for body in given if body != driven])
+    whole = np.vstack([others, _unit(bodies, driven)])
+    free = _null_space(whole)
+    moves = _null_space(others)
+    blocked = bool(np.abs(moves[bodies.index(driven)]).max(initial=0.0) < SINGULAR)
+    loose = tuple(
+        body for body, row in zip(bodies, free, strict=True) if np.abs(row).max(initial=0.0) > 1e-8
+    )
+    return Freedom(blocked, loose, free.shape[1])
+
+
+def implied(machine: Machine, known: Sequence[str], further: Sequence[str]) -> tuple[str, ...]:
+    """Those of `further` whose speeds follow from the ones before and from the `known` bodies."""
+    given, found = list(known), []
+    left = _null_space(_matrix(machine, given)).shape[1]
+    for body in further:
+        now = _null_space(_matrix(machine, [*given, body])).shape[1]
+        if now == left:
+            found.append(body)
+        else:
+            given, left = [*given, body], now
+    return tuple(found)
+
+
+def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
+    """Speeds of all bodies, `HOUSING` among them, from `given` ones that determine them. [rad/s]
+
+    Theory (T2).
+    """
+    bodies = machine.bodies
+    matrix = _matrix(machine, list(given))
+    known = np.zeros(len(matrix))
+    if given:
+        known[-len(given) :] = list(given.values())
+    if matrix.shape[0] == matrix.shape[1]:
+        found = solution_of(matrix, known)
+        assert found is not None, "they determine all: the checks of the case say so"
+    else:
+        least = np.linalg.lstsq(matrix, known, rcond=SINGULAR)[0]
+        found = least + np.linalg.lstsq(matrix, known - matrix @ least, rcond=SINGULAR)[0]
+    speeds = dict(zip(bodies, map(float, found), strict=True))
+    return dict.fromkeys(machine.resting, 0.0) | _joined(speeds | dict(given))
+
+
+def _joined(speeds: Mapping[str, float]) -> dict[str, float]:
+    """`speeds` in which bodies that turn together do so exactly, and still ones stand still."""
+    limit = TOGETHER * max(map(abs, speeds.values()), default=0.0)
+    joined = {HOUSING: 0.0}
+    last = 0.0
+    for body, speed in sorted(speeds.items(), key=lambda item: abs(item[1])):
+        near = [known for known in (last, -last, 0.0) if abs(speed - known) <= limit]
+        joined[body] = near[0] if near else speed
+        last = joined[body]
+    return joined
+
+
+def _matrix(machine: Machine, given: Sequence[str]) -> FloatArray:
+    """Constraints, scaled to length 1, and below them one row for each given speed."""
+    place = {body: index for index, body in enumerate(machine.bodies)}
+    rows = []
+    constraints = [mesh.terms() for mesh in machine.rows]
+    constraints += [coupling.terms() for coupling in machine.couplings]
+    for terms in constraints:
+        row = np.zeros(len(place))
+        for body, coefficient in terms:
+            if body != HOUSING:
+                row[place[body]] += coefficient
+        length = math.hypot(*row)
+        rows.append(row / length if length else row)
+    rows += [_unit(machine.bodies, body) for body in given]
+    return np.array(rows).reshape(len(rows), len(place))
+
+
+def _unit(bodies: Sequence[str], body: str) -> FloatArray:
+    row = np.zeros(len(bodies))
+    row[bodies.index(body)] = 1.0
+    return row
+
+
+def _null_space(matrix: FloatArray) -> FloatArray:
+    """Columns that span what the rows of `matrix` leave open."""
+    from scipy.linalg import null_space
+
+    if not len(matrix):
+        return np.eye(matrix.shape[1])
+    space: FloatArray = null_space(matrix, rcond=SINGULAR)
+    return space
+
+
+# Torques of all bodies and loads of all meshes in balance.
+#
+# A torque is the one that acts on a body from outside, so that torque times speed is the power that
+# enters there.
+
+
 UNBALANCED = 1e-9
 """Torque left over, relative to the largest one, beyond which there is no balance. [1]"""
-SINGULAR = 1e-13
+SINGULAR_BALANCE = 1e-13
 """Singular values below this share of the largest count as zero."""
 LARGEST_FACTOR = 1e6
 """Torques over the given ones beyond which the rank of the system is looked at. [1]"""
@@ -127,9 +262,9 @@ def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
         size = float(np.abs(known).max(initial=0.0))
         if only is not None and float(np.abs(only).max(initial=0.0)) <= LARGEST_FACTOR * size:
             return only, True
-    least, _, rank, _ = np.linalg.lstsq(matrix, known, rcond=SINGULAR)
+    least, _, rank, _ = np.linalg.lstsq(matrix, known, rcond=SINGULAR_BALANCE)
     found = np.asarray(least, float)
-    found += np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR)[0]
+    found += np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR_BALANCE)[0]
     return found, int(rank) == matrix.shape[1]
 
 
@@ -163,3 +298,83 @@ def _known_torques(
             torques[one] -= friction.watts / difference
             torques[two] += friction.watts / difference
     return np.array([torques[body] for body in machine.bodies])
+
+
+# Which gear drives each mesh: the directions of the rolling powers that agree with themselves.
+#
+# Which gear of a mesh drives decides on which side its efficiency stands, and the torques with
+# these efficiencies decide which gear drives. Near self-locking, losses turn some directions round
+# against those of the lossless flow, and more than one set of directions may agree with itself.
+
+
+MOST_TRIED = 2000
+"""Sets of directions that are tried; all of them for up to ten meshes that pass power."""
+MOST_FOLLOWED = 8
+"""Steps from the directions of the lossless flow to those that its torques with losses have."""
+
+Drives = Mapping[str, bool]
+
+
+@dataclass(frozen=True, slots=True)
+class Directions:
+    """Directions of the rolling powers."""
+
+    drives: Drives  # For each mesh, True if its first gear drives it.
+    # True if no directions agree with themselves and leave the output torque its lossless sign: the
+    # machine is self-locking.
+    locking: bool
+    # True if no directions agree with themselves at all: no torque on the output lets the machine
+    # turn with this torque on the input.
+    jammed: bool = False
+
+
+def find_directions(
+    machine: Machine,
+    operation: Operation,
+    speeds: Mapping[str, float],  # Speeds of all bodies. [rad/s]
+    lossless: Balance,  # Torques without losses.
+    efficiencies: Mapping[str, float],  # Efficiency of each mesh with its carrier at rest. [1]
+) -> Directions:
+    """The directions that count, with these efficiencies of the meshes. Theory (T4).
+
+    They start as without losses and follow the torques. Of the directions that agree with
+    themselves those count whose output torque has the sign of the lossless one; without any the
+    machine is self-locking, and the first that agree count: the output must be driven too. If none
+    agree, it is jammed.
+    """
+    start = drives_first(lossless.powers, dict.fromkeys(lossless.powers, True))
+    wanted = lossless.torques[operation.output]
+    passes = any(lossless.powers.values())
+    if not passes or all(efficiency == 1 for efficiency in efficiencies.values()):
+        return Directions(start, locking=False)
+    agreeing: Drives | None = None
+    drives: Drives = start
+    seen = []
+    for _ in range(MOST_FOLLOWED):
+        found = balance(machine, operation, speeds, drives, efficiencies)
+        follow = drives_first(found.powers, drives)
+        if follow == drives:
+            if found.torques[operation.output] * wanted >= 0:
+                return Directions(drives, locking=False)
+            agreeing = drives
+        seen.append(drives)
+        if follow in seen:
+            break
+        drives = follow
+    for drives in islice(_turned(start, lossless, efficiencies), MOST_TRIED):
+        found = balance(machine, operation, speeds, drives, efficiencies)
+        if drives_first(found.powers, drives) == drives:
+            if found.torques[operation.output] * wanted >= 0:
+                return Directions(drives, locking=False)
+            agreeing = agreeing or drives
+    return Directions(agreeing or start, locking=True, jammed=agreeing is None)
+
+
+def _turned(
+    start: Drives, lossless: Balance, efficiencies: Mapping[str, float]
+) -> Iterator[Drives]:
+    """`start` with ever more directions turned round, of the meshes that lose power."""
+    able = [key for key, power in lossless.powers.items() if power and efficiencies[key] < 1]
+    for count in range(1, len(able) + 1):
+        for turned in combinations(able, count):
+            yield {key: drives != (key in turned) for key, drives in start.items()}

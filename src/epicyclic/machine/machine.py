@@ -1,12 +1,266 @@
-"""What a machine consists of, and how it is driven."""
+"""What a machine consists of, how it is driven, and the forces on the bearings of its shafts."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
-from epicyclic.elements.base import Element
-from epicyclic.machine.forces import ShaftLayout
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.losses.shaft_bearing import BearingLoad
+from epicyclic.machine.element import Element
+from epicyclic.units import NEWTON, format_number
+
+# Statics of a shaft: forces of its gear meshes, and what its bearings answer.
+#
+# Axes: z along the shaft, x and y across it, right-handed. Forces and moments are those that act
+# *on* the shaft.
+
+
+FloatArray = NDArray[np.float64]
+AxialSense = Literal["none", "both", "positive", "negative"]
+
+NEGLIGIBLE = 1e-9
+"""Moment on a single support over the sum of all moments about it at which it vanishes. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Support:
+    """A bearing that supports a shaft radially."""
+
+    position: float  # z. [m]
+    # The sense of an axial force of the shaft that the bearing takes: ``"positive"`` if it holds a
+    # shaft that is pushed towards +z, ``"negative"``, ``"both"``, ``"none"``.
+    axial: AxialSense = "none"
+
+
+@dataclass(frozen=True, slots=True)
+class ShaftLoad:
+    """A force on a shaft, and a moment about the point of the axis where it acts."""
+
+    position: float  # z. [m]
+    force: tuple[float, float, float]  # F_x, F_y, F_z. [N]
+    moment: tuple[float, float] = (0.0, 0.0)  # M_x, M_y. [N m]
+
+
+@dataclass(frozen=True, slots=True)
+class Reaction:
+    """BearingLoad of a bearing on the shaft."""
+
+    x: float  # [N]
+    y: float  # [N]
+    z: float  # [N]
+
+    @property
+    def force(self) -> BearingLoad:
+        """Magnitudes, radial and axial."""
+        return BearingLoad(radial=math.hypot(self.x, self.y), axial=abs(self.z))
+
+
+def bearing_reactions(
+    supports: Sequence[Support],  # Two; or one, if the loads leave no moment about it.
+    loads: Sequence[ShaftLoad],
+) -> tuple[Reaction, ...]:
+    """Forces of the bearings of a rigid shaft, in the order of `supports`.
+
+    Theory (J18).
+
+    With supports at z_1 and z_2, loads F at z and moments M, the moments about z_1 give ::
+
+        R_2x = -sum(F_x (z - z_1) + M_y)/(z_2 - z_1)
+        R_2y = -sum(F_y (z - z_1) - M_x)/(z_2 - z_1)
+
+    and the forces R_1 = -R_2 - sum F. The axial force -sum F_z falls on the first support that
+    takes it in this sense; on the first of all if none is marked.
+
+    Raises
+    ------
+    ValueError
+        If statics alone does not give the reactions; the message says why.
+    """
+    if not supports:
+        raise ValueError("the shaft has no bearing that could take its loads")
+    if len(supports) > 2:
+        raise ValueError(
+            f"the shaft has {len(supports)} bearings, and statics gives the forces of two only; "
+            "give radial_force yourself"
+        )
+    forces = np.array([load.force for load in loads], dtype=float).reshape(-1, 3)
+    moments = np.array([load.moment for load in loads], dtype=float).reshape(-1, 2)
+    arms = np.array([load.position for load in loads], dtype=float) - supports[0].position
+    about_first = forces[:, :2] * arms[:, None] + moments[:, ::-1] * np.array([1.0, -1.0])
+    total = forces.sum(axis=0)
+    second = np.zeros(2)
+    if len(supports) == 2:
+        span = supports[1].position - supports[0].position
+        if span == 0:
+            raise ValueError("both bearings of the shaft are at the same position")
+        second = -about_first.sum(axis=0) / span
+    else:
+        _check_single(forces, moments, arms, about_first)
+    axial = _axial_bearing(supports, float(total[2]))
+    radial = (-second - total[:2], second)
+    return tuple(
+        Reaction(float(r[0]), float(r[1]), -float(total[2]) if number == axial else 0.0)
+        for number, r in enumerate(radial[: len(supports)])
+    )
+
+
+def _check_single(
+    forces: FloatArray, moments: FloatArray, arms: FloatArray, about: FloatArray
+) -> None:
+    """Raise `ValueError` if loads tilt a shaft on its only bearing."""
+    largest = float(np.abs(forces[:, :2] * arms[:, None]).sum() + np.abs(moments).sum())
+    left = float(np.abs(about.sum(axis=0)).max())
+    if left > NEGLIGIBLE * largest:
+        raise ValueError(
+            f"a moment of {format_number(left, 4)} N m is left on the only bearing of the shaft; "
+            "add a second bearing, or give radial_force yourself"
+        )
+
+
+def _axial_bearing(supports: Sequence[Support], thrust: float) -> int:
+    """Number of the support that takes the axial force of the shaft."""
+    marked = [support.axial for support in supports]
+    if all(axial == "none" for axial in marked):
+        return 0
+    sense = "positive" if thrust > 0 else "negative"
+    able = [number for number, axial in enumerate(marked) if axial in ("both", sense)]
+    if not able and thrust != 0:
+        raise ValueError(
+            f"no bearing of the shaft takes its axial force of {NEWTON.text(abs(thrust), 4)} in "
+            f"the {sense} sense"
+        )
+    return able[0] if able else 0
+
+
+def mesh_force(
+    torque: float,  # Torque of the mesh on the gear, about +z. [N m]
+    radius: float,  # r_w, of the operating pitch circle. [m]
+    pressure_angle: float,  # alpha_wt, operating, transverse. [rad]
+    helix_tangent: float,  # tan beta_w on the operating pitch cylinder, not negative. [1]
+    # 1 for a right-handed helix, -1 for a left-handed one: the hand of the teeth themselves, also
+    # of a ring gear, which has the hand of its mate. Of two external gears the hands differ.
+    hand: int,
+    direction: float,  # Angle of e from x about +z. [rad]
+    *,
+    internal: bool = False,  # True for a ring gear.
+) -> FloatArray:
+    """BearingLoad of a mesh on a gear, shape (3,). [N]
+
+    Theory (J19).
+
+    Let e be the unit vector from the axis of the gear to the pitch point and t = z x e, the sense
+    in which the gear turns there about +z. A torque tau about +z is the moment of the component
+    along t, since (r_w e x F) z = r_w F t. In the transverse plane the force lies along the line of
+    action, at alpha_wt to t, and presses on the flank: towards the axis of a gear with external
+    teeth, away from that of a ring gear. Along the pitch cylinder the flank follows
+    s = h tan(beta_w) t + z, h = 1 for a right-handed helix; it takes no force along itself without
+    friction, and e is normal to s, so that F s = 0 gives the axial component. ::
+
+        F_t = tau/r_w
+        F = F_t t -+ |F_t| tan(alpha_wt) e - h F_t tan(beta_w) z
+
+    with the upper sign for external teeth.
+    """
+    outward = np.array([math.cos(direction), math.sin(direction), 0.0])
+    along = np.array([-math.sin(direction), math.cos(direction), 0.0])
+    tangential = torque / radius
+    radial = (1 if internal else -1) * abs(tangential) * math.tan(pressure_angle)
+    axial = -hand * tangential * helix_tangent
+    force: FloatArray = tangential * along + radial * outward + axial * np.array([0.0, 0.0, 1.0])
+    return force
+
+
+def mesh_load(
+    position: float,
+    torque: float,
+    radius: float,
+    pressure_angle: float,
+    helix_tangent: float,
+    hand: int,
+    direction: float,
+    *,
+    internal: bool = False,
+) -> ShaftLoad:
+    """The load of a mesh on the shaft of a gear whose middle is at `position`.
+
+    Theory (J20).
+
+    The axial force acts at the pitch point: its moment about the axis is r_w F_z e x z. Parameters
+    as for `mesh_force`.
+    """
+    force = mesh_force(
+        torque, radius, pressure_angle, helix_tangent, hand, direction, internal=internal
+    )
+    moment = np.cross(radius * np.array([math.cos(direction), math.sin(direction), 0.0]), force)
+    x, y, z = map(float, force)
+    return ShaftLoad(position, (x, y, z), (float(moment[0]), float(moment[1])))
+
+
+# Forces on the bearings of shafts, from the loads of the meshes.
+
+
+@dataclass(frozen=True, slots=True)
+class GearSeat:
+    """A gear on a shaft, in one of its meshes."""
+
+    mesh: str  # Key of the mesh.
+    # Torque of the mesh on the gear over the torque that the mesh takes up at its first gear. [1]
+    lever: float
+    position: float  # Along the shaft. [m]
+    radius: float  # Operating radius. [m]
+    pressure_angle: float  # Operating, transverse. [rad]
+    helix_tangent: float  # tan(beta_w). [1]
+    hand: int  # +1 for a right-handed helix of the teeth, -1 for a left-handed one.
+    direction: float  # Direction of the vector from the axis of the gear to the pitch point. [rad]
+    internal: bool  # True for a ring gear.
+    around: bool  # True if several planets stand around the gear: their radial forces cancel.
+
+    def load(self, torque: float) -> ShaftLoad:
+        """BearingLoad of the mesh on the shaft."""
+        load = mesh_load(
+            self.position,
+            self.lever * torque,
+            self.radius,
+            self.pressure_angle,
+            self.helix_tangent,
+            self.hand,
+            self.direction,
+            internal=self.internal,
+        )
+        if not self.around:
+            return load
+        return ShaftLoad(self.position, (0.0, 0.0, load.force[2]))
+
+
+@dataclass(frozen=True, slots=True)
+class ShaftLayout:
+    """What stands along a shaft whose bearing forces are computed."""
+
+    supports: Mapping[str, Support]  # Its bearings, by the keys of their elements.
+    seats: tuple[GearSeat, ...]
+
+
+def forces_of(
+    layouts: Iterable[ShaftLayout],
+    torques: Mapping[str, float],  # That each mesh takes up at its first gear. [N m]
+) -> dict[str, BearingLoad]:
+    """Forces on the bearings of all shafts, by the keys of their elements."""
+    forces: dict[str, BearingLoad] = {}
+    for layout in layouts:
+        loads = [seat.load(torques[seat.mesh]) for seat in layout.seats]
+        reactions = bearing_reactions(tuple(layout.supports.values()), loads)
+        for key, reaction in zip(layout.supports, reactions, strict=True):
+            forces[key] = reaction.force
+    return forces
+
+
+# What a machine consists of, and how it is driven.
+
 
 Terms = tuple[tuple[str, float], ...]
 """Bodies with the coefficients of their speeds in a constraint."""

@@ -11,12 +11,12 @@ from pydantic import BaseModel, ValidationError
 from epicyclic.case.case import Case
 from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem, raise_any
-from epicyclic.maps.tables import check_map
+from epicyclic.files import check_place, whole_file
 from epicyclic.netcdf_file import read_groups
 from epicyclic.records.checks import RUN_AGAIN, field_problems, map_problems, sweep_problems
 from epicyclic.records.contents import MapContents, RecordContents, SweepContents
 from epicyclic.records.record import ResultRecord, record
-from epicyclic.whole_file import check_place, whole_file
+from epicyclic.study.maps.tables import check_map
 
 if TYPE_CHECKING:
     import xarray as xr

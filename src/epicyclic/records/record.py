@@ -8,17 +8,16 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
-from epicyclic.analysis.bearing_details import bearing_details
-from epicyclic.analysis.mesh_details import mesh_details
-from epicyclic.analysis.pocket_details import pocket_details
-from epicyclic.analysis.shapes import gear_shapes, mesh_views
-from epicyclic.analysis.solve import solve
-from epicyclic.bands.quick import quick_dataset
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
 from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.records.contents import ResultContents, contents_of, set_of
 from epicyclic.results.result import Result
+from epicyclic.study.bands.quick import quick_dataset
+from epicyclic.study.meshes import bearing_details, mesh_details
+from epicyclic.study.pockets import pocket_details
+from epicyclic.study.shapes import gear_shapes, mesh_views
+from epicyclic.study.solve import solve
 from epicyclic.units import known_text
 
 if TYPE_CHECKING:

@@ -7,11 +7,10 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from epicyclic.bands.advice import limits_of, measurements_of
-from epicyclic.bands.known import Known
 from epicyclic.case.uncertain_values import MODEL_FORM
 from epicyclic.report.page import Listing
 from epicyclic.results.result import Result, in_words
+from epicyclic.study.bands.advice import Known, limits_of, measurements_of
 from epicyclic.units import known_text, percent
 
 MOST = 3

@@ -9,12 +9,12 @@ from typing import Any
 from rich.console import RenderableType
 from rich.text import Text
 
-from epicyclic.analysis.data_sheet import DataSheet, GearSheet, MeshSheet, data_sheets, oil_at_inlet
 from epicyclic.case.case import Case
-from epicyclic.lubricant.oil import GoldLaw
+from epicyclic.oil.oil import GoldLaw
 from epicyclic.report import page
 from epicyclic.report.shown import MISSING
 from epicyclic.report.tables import as_on_page, titled
+from epicyclic.study.data_sheet import DataSheet, GearSheet, MeshSheet, data_sheets, oil_at_inlet
 from epicyclic.units import unit_text
 
 MM, UM = 1e3, 1e6

@@ -8,10 +8,10 @@ import re
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from epicyclic.plots.catalogue import PLOTS, Stored, about, in_inches, panels_of
-from epicyclic.plots.style import STYLE, styled_figure
 from epicyclic.report.explore import explorable
 from epicyclic.report.page import Drawing
+from epicyclic.show.plots.catalogue import PLOTS, Stored, about, in_inches, panels_of
+from epicyclic.show.plots.style import STYLE, styled_figure
 
 PANEL = (4.3, 3.1)
 """Width and height of a figure in a page. [inch]"""

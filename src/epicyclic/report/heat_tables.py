@@ -5,7 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 
-from epicyclic.analysis.heat import (
+from epicyclic.case.case import Case
+from epicyclic.case.wording import sentence
+from epicyclic.errors import ConvergenceError
+from epicyclic.report.page import Cell, Listing, Table, number, tenths
+from epicyclic.results.heat import HeatBalance, HeatWay
+from epicyclic.results.result import Result, in_words
+from epicyclic.study.heat import (
     BeyondRange,
     Found,
     beyond_range,
@@ -14,12 +20,6 @@ from epicyclic.analysis.heat import (
     with_warm_flanks,
     without_holding,
 )
-from epicyclic.case.case import Case
-from epicyclic.case.wording import sentence
-from epicyclic.errors import ConvergenceError
-from epicyclic.report.page import Cell, Listing, Table, number, tenths
-from epicyclic.results.heat import HeatBalance, HeatWay
-from epicyclic.results.result import Result, in_words
 from epicyclic.units import CELSIUS, format_number, percent, unit_text
 
 NOT_LOOKED_AT = (

@@ -15,10 +15,6 @@ import xarray as xr
 from markupsafe import Markup
 
 from epicyclic.case.operating import operating_line
-from epicyclic.maps.tables import map_inputs
-from epicyclic.plots.catalogue import Stored, available
-from epicyclic.plots.loss_map import map_line
-from epicyclic.plots.sweep import sweep_line, thinned
 from epicyclic.records.files import is_sweep
 from epicyclic.records.record import ResultRecord
 from epicyclic.report.drawings import draw
@@ -29,6 +25,10 @@ from epicyclic.report.result_page import result_sections
 from epicyclic.report.result_tables import key_figures
 from epicyclic.report.sweep_page import sweep_key_figures, sweep_sections
 from epicyclic.report.uncertainty_tables import band_figures, uncertainty_items
+from epicyclic.show.plots.catalogue import Stored, available
+from epicyclic.show.plots.loss_map import map_line
+from epicyclic.show.plots.sweep import sweep_line, thinned
+from epicyclic.study.maps.tables import map_inputs
 
 KINDS = {
     "planetary": "Power losses of a planetary gear set",

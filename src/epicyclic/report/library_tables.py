@@ -6,8 +6,8 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from epicyclic import library
-from epicyclic.lubricant.oil import Oil
-from epicyclic.lubricant.properties import OilState, oil_state
+from epicyclic.oil.oil import Oil
+from epicyclic.oil.properties import OilState, oil_state
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import plain_table
 from epicyclic.units import (

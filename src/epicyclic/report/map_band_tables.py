@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import xarray as xr
 
-from epicyclic.plots.loss_map import at_temperatures
-from epicyclic.plots.uncertainty import mean_shares
 from epicyclic.report.advice import LIMITS, MOST, driver_name
 from epicyclic.report.grids import grid_table
 from epicyclic.report.page import Cell, Listing, Table, aligned
 from epicyclic.report.shown import MISSING
+from epicyclic.show.plots.loss_map import at_temperatures
+from epicyclic.show.plots.losses import mean_shares
 from epicyclic.units import format_number, percent, unit_text
 
 LEAST = 0.02

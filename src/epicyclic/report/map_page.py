@@ -9,10 +9,8 @@ from collections import Counter
 import numpy as np
 import xarray as xr
 
-from epicyclic.analysis.methods import methods_of
 from epicyclic.case.operating import AXES
-from epicyclic.maps.tables import map_case, map_inputs, statements
-from epicyclic.plots.loss_map import at_temperatures, left_out_line, map_at
+from epicyclic.errors import Status
 from epicyclic.report.explorer import EXPLORER_LEAD, explorer_items
 from epicyclic.report.grids import grid_table
 from epicyclic.report.inputs import input_tables
@@ -30,7 +28,9 @@ from epicyclic.report.page import (
 from epicyclic.report.result_page import versions_line
 from epicyclic.report.shown import MISSING
 from epicyclic.report.uncertainty_tables import uncertainty_items
-from epicyclic.status import Status
+from epicyclic.show.plots.loss_map import at_temperatures, left_out_line, map_at
+from epicyclic.study.friction import methods_of
+from epicyclic.study.maps.tables import map_case, map_inputs, statements
 from epicyclic.units import unit_text
 
 _WHITE = "White: no power is passed on, or the point failed."

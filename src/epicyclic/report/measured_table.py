@@ -9,12 +9,11 @@ from rich.table import Table
 from rich.text import Text
 
 from epicyclic.case.operating import OPERATING
-from epicyclic.measurement.comparison import MeasuredComparison
-from epicyclic.measurement.deviations import CALIBRATED, ErrorFigures
-from epicyclic.measurement.fit_result import Fit, FittedParameter
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import number_table, plain_table
-from epicyclic.sweeps.unloaded import AS_TESTED
+from epicyclic.study.measured.comparison import CALIBRATED, ErrorFigures, MeasuredComparison
+from epicyclic.study.measured.intervals import Fit, FittedParameter
+from epicyclic.study.sweeps.run import AS_TESTED
 from epicyclic.units import unit_text
 
 MOST_POINTS = 40

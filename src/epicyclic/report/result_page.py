@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 import xarray as xr
 
-from epicyclic.losses.validity import ModelUse
+from epicyclic.losses.ranges import ModelUse
 from epicyclic.records.contents import ResultContents
 from epicyclic.records.record import ResultRecord, sets_of
 from epicyclic.report.heat_tables import heat_items, ways_items

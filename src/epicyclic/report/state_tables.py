@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from rich.console import Group, RenderableType
 
-from epicyclic.analysis.train_states import StateKinematics, train_states
 from epicyclic.case.train import TrainCase
-from epicyclic.elements.base import HOUSING
+from epicyclic.machine.element import HOUSING
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import plain_table
+from epicyclic.study.trains import StateKinematics, train_states
 from epicyclic.units import format_number
 
 

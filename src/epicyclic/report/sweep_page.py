@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from epicyclic.maps.tables import map_inputs
-from epicyclic.plots.sweep import LEFT_OUT, shown_results
+from epicyclic.errors import Status
 from epicyclic.report.explorer import EXPLORER_LEAD, explorer_items
 from epicyclic.report.inputs import input_tables
 from epicyclic.report.map_page import validity_items, versions_of
 from epicyclic.report.page import Cell, Drawings, KeyFigure, Section, Table, gallery, number
-from epicyclic.status import Status
+from epicyclic.show.plots.sweep import LEFT_OUT, shown_results
+from epicyclic.study.maps.tables import map_inputs
 from epicyclic.units import format_number, unit_text
 
 MOST_ROWS = 12

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from epicyclic.analysis.train_losses import LOSS_KINDS, loss_sums
 from epicyclic.records.contents import Measure, ResultContents
 from epicyclic.records.power_flow import power_flow
 from epicyclic.report.page import Cell, Table, aligned, number, tenths
 from epicyclic.report.result_tables import Labels, flow_units, label_of, scaled, share_row
 from epicyclic.report.shown import shown
 from epicyclic.results.result import in_words
+from epicyclic.study.trains import LOSS_KINDS, loss_sums
 from epicyclic.units import percent, unit_text
 
 SHORT_HEADS = {

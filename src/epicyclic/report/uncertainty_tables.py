@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from rich.console import RenderableType
 
-from epicyclic.bands.known import known_of
 from epicyclic.case.wording import one_line
 from epicyclic.report.advice import LIMITS, advice_texts, driver_name
 from epicyclic.report.map_band_tables import map_band_tables
@@ -16,6 +15,7 @@ from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, numb
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import as_on_page, titled
 from epicyclic.results.result import in_words
+from epicyclic.study.bands.advice import known_of
 from epicyclic.units import known_text, percent, unit_text
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 from epicyclic.case.case import Case
 from epicyclic.case.operating import operating_line
 from epicyclic.errors import InputError, Problem
-from epicyclic.plots.catalogue import figure_of
+from epicyclic.files import check_place, whole_file
 from epicyclic.records.contents import contents_of
 from epicyclic.records.files import save_result
 from epicyclic.records.record import ResultRecord, record
@@ -20,7 +20,7 @@ from epicyclic.report.pdf import check_pdf, report_pdf
 from epicyclic.report.result_tables import key_figures, losses_table
 from epicyclic.report.train_tables import sums_table
 from epicyclic.results.result import Result
-from epicyclic.whole_file import check_place, whole_file
+from epicyclic.show.plots.catalogue import figure_of
 
 if TYPE_CHECKING:
     import pandas as pd

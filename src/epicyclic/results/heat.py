@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from epicyclic.elements.base import OIL
+from epicyclic.machine.element import OIL
 from epicyclic.units import CELSIUS
 
 

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from epicyclic.elements.figures import BearingFigures, MeshFigures
+from epicyclic.errors import Status
+from epicyclic.machine.element import BearingFigures, MeshFigures
 from epicyclic.results.result import Result, in_words
-from epicyclic.status import Status
 from epicyclic.units import GIGAPASCAL, WATT
 
 NEGLIGIBLE = 1e-3

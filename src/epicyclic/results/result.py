@@ -12,8 +12,11 @@ from functools import lru_cache, partial
 from importlib import metadata
 from typing import TYPE_CHECKING, Any, Protocol
 
-from epicyclic.elements.base import LOAD_DEPENDENT, LOAD_INDEPENDENT
-from epicyclic.elements.figures import (
+from epicyclic.errors import Status
+from epicyclic.losses.ranges import ModelUse, ValidityFlag, describe_flags, flags_with_loss
+from epicyclic.machine.element import (
+    LOAD_DEPENDENT,
+    LOAD_INDEPENDENT,
     BearingFigures,
     Figure,
     FluidFigures,
@@ -21,11 +24,9 @@ from epicyclic.elements.figures import (
     displayed,
     figures,
 )
-from epicyclic.losses.validity import ModelUse, ValidityFlag, describe_flags, flags_with_loss
 from epicyclic.results.heat import HeatBalance
 from epicyclic.results.lubrication import OilSupply
 from epicyclic.results.views import Views
-from epicyclic.status import Status
 from epicyclic.units import CELSIUS, DEGREE, NEWTON_METRE, RPM, WATT, known_text, percent
 
 if TYPE_CHECKING:

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.analysis.bearing_details import bearing_details
-from epicyclic.analysis.solve import solve
 from epicyclic.builders.planetary import roller_bearing
 from epicyclic.errors import ConvergenceError
-from epicyclic.sweeps.plan import PointList
-from epicyclic.sweeps.runner import HERE, Runner
+from epicyclic.study.meshes import bearing_details
+from epicyclic.study.solve import solve
+from epicyclic.study.sweeps.plan import PointList
+from epicyclic.study.sweeps.runner import HERE, Runner
 from epicyclic.units import CELSIUS, NUMBER, WATT, unit_text
 from epicyclic.validation.compare import published_figures
 from epicyclic.validation.compute import source_case
@@ -207,7 +207,7 @@ def roller_loads_over(figure: str) -> list[tuple[str, xr.Dataset]]:
     Returns
     -------
     list of (str, xarray.Dataset)
-        What varies, and `epicyclic.analysis.bearing_details.bearing_details` of it.
+        What varies, and `epicyclic.study.meshes.bearing_details` of it.
     """
     name = ROLLER_FIGURES[figure]
     lever = _BRANCH if name == "branch" else _CURVES[name]

@@ -1,15 +1,115 @@
-"""Compare the published figures with what is computed."""
+"""Published figures compared with what is computed."""
 
 from __future__ import annotations
 
+import itertools
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
 from importlib import resources
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
-from epicyclic.validation.closures import CLOSURES, ClosureFigure
-from epicyclic.validation.compute import FIGURES
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.case.case import read_case
+from epicyclic.errors import ConvergenceError
+from epicyclic.study.bands.plan import nearby_at
+from epicyclic.study.bands.quick import quick_band
+from epicyclic.study.bands.samples import sample_summary
+from epicyclic.study.solve import solve
+from epicyclic.study.sweeps.plan import PointList
+from epicyclic.study.sweeps.run import as_tested, with_unloaded
+from epicyclic.study.sweeps.runner import HERE, Runner
+from epicyclic.validation.compute import FIGURES, LoadedTests, loaded_conditions, source_case
+
+# The open figures of the published study of pocketing losses, for each model of the flow.
+
+
+STUDY = "Talbot (2012), section 4.4"
+CLOSURES = ("incompressible", "isentropic", "mean-density", "talbot-2012")
+"""Models that are compared; "central-differences" has no solution for some of the figures."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClosureFigure:
+    """One open figure of the study."""
+
+    what: str
+    unit: str
+    source: str
+    low: float  # What is published; equal for a value.
+    high: float  # What is published; equal for a value.
+    tolerance: float  # By how much a value may miss that and yet hold. [1]
+    cause: str  # Why that tolerance.
+    computed: dict[str, float]  # By model, as `CLOSURES`.
+
+    def holds(self, model: str) -> bool:
+        """Whether the value of a model is in the band, or within the tolerance of it."""
+        low, high = self.low * (1 - self.tolerance), self.high * (1 + self.tolerance)
+        return low <= self.computed[model] <= high
+
+
+def closure_figures(
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> tuple[ClosureFigure, ...]:
+    """All open figures, computed with every model."""
+    content = _content()
+    figures = []
+    for number, figure in enumerate(content["figure"]):
+        allowed = figure if "tolerance" in figure else content["default"]
+        figures.append(
+            ClosureFigure(
+                what=figure["what"],
+                unit=figure["unit"],
+                source=figure["source"],
+                low=figure["low"],
+                high=figure["high"],
+                tolerance=allowed["tolerance"],
+                cause=allowed["cause"],
+                computed={model: _computed(figure, model) for model in CLOSURES},
+            )
+        )
+        progress(number + 1, len(content["figure"]))
+    return tuple(figures)
+
+
+def open_figures() -> list[dict[str, Any]]:
+    """The entries of `pocketing.toml`."""
+    found: list[dict[str, Any]] = _content()["figure"]
+    return found
+
+
+@cache
+def _content() -> dict[str, Any]:
+    file = resources.files("epicyclic.validation").joinpath("pocketing.toml")
+    return tomllib.loads(file.read_text("utf-8"))
+
+
+def _computed(figure: dict[str, Any], model: str) -> float:
+    loss = _loss(figure["helix_angle"], figure["face_width"], model)
+    if "over" in figure:
+        return loss / _loss(figure["over"], figure["face_width"], model)
+    return loss
+
+
+@cache
+def _loss(helix_angle: str, face_width: str, model: str) -> float:
+    """Pocketing loss of the example pair at 10000 rpm. [W]"""
+    case = read_case("talbot-2012-pair").updated(
+        {
+            "gears.helix_angle": helix_angle,
+            "pinion.face_width": face_width,
+            "gear.face_width": face_width,
+            "models.pocketing": model,
+        }
+    )
+    return solve(case).losses["mesh_pocketing"]
+
+
+# Compare the published figures with what is computed.
+
 
 Verdict = Literal["agrees", "differs", "calibrated", "no verdict"]
 _TOPICS = {
@@ -152,3 +252,255 @@ def _compare(figure: dict[str, Any]) -> Comparison:
         inferred=figure.get("inferred", ""),
         reason=figure.get("reason", ""),
     )
+
+
+# Published measurements beside the band that the shipped distributions give. Nothing is fitted.
+
+
+FloatArray = NDArray[np.float64]
+
+DRAWS = 1024
+"""Draws from the distributions, the same in all tests."""
+FINISH = "shaved"
+"""Finish of the planets where a figure does not say it."""
+MEASURED = "measured"
+"""What the names of measured figures end with."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredFigure:
+    """A measured figure and the band of the computed one."""
+
+    what: str
+    unit: str
+    source: str
+    measured: float
+    computed: float
+    low: float  # Ends of the 95 % band.
+    high: float  # Ends of the 95 % band.
+
+    @property
+    def is_inside(self) -> bool:
+        """Whether the measurement lies within the band."""
+        return self.low <= self.measured <= self.high
+
+
+class _Test(NamedTuple):
+    input_power: float
+    load_dependent: float
+
+
+class _Band(NamedTuple):
+    """Input power, and load-dependent and load-independent losses in all draws, of one test."""
+
+    input_power: float
+    load_dependent: FloatArray
+    load_independent: FloatArray
+
+
+_Bands = Mapping[tuple[Any, ...], _Band]
+
+
+def measured_figures(runner: Runner = HERE) -> tuple[MeasuredFigure, ...]:
+    """Every measured figure of the tests of the dissertation, with the band of the computed one.
+
+    All inputs and errors of models are off by the same in all tests of a draw.
+    """
+    figures = list(_figures())
+    bands = _bands(figures, runner)
+    found = []
+    for figure in figures:
+        nominal, *drawn = (_compute(figure, bands, number) for number in range(DRAWS + 1))
+        band = sample_summary(np.array(drawn))
+        found.append(
+            MeasuredFigure(
+                figure["what"], figure["unit"], figure["source"], figure["value"], nominal,
+                band.low, band.high,
+            )
+        )  # fmt: skip
+    return tuple(found)
+
+
+def _figures() -> Iterable[dict[str, Any]]:
+    """Those that are measured; 'the same' is the one before."""
+    before = ""
+    for figure in published_figures():
+        what = figure["what"].replace("the same", before)
+        before = what.rpartition(", ")[0]
+        if what.endswith(MEASURED):
+            yield {**figure, "what": what.removesuffix(f", {MEASURED}")}
+
+
+def _conditions(figure: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The tests that a figure follows from."""
+    given = figure["with"]
+    planets = given["planets"]
+    counts = planets if isinstance(planets, list) else [planets]
+    return loaded_conditions(given["temperature"], given.get("finish", FINISH), counts)
+
+
+def _bands(figures: Iterable[Mapping[str, Any]], runner: Runner) -> dict[tuple[Any, ...], _Band]:
+    """All tests of the figures, each at its values first, then in all draws."""
+    tests = {tuple(test.values()): test for figure in figures for test in _conditions(figure)}
+    case = source_case()
+    found = {}
+    nearby = nearby_at(case, solve(case), list(tests.values()), runner)
+    for key, own in zip(tests, nearby, strict=True):
+        drawn = quick_band(own).results[:, :DRAWS]
+        nominal = own.outputs.of(own.losses[:, None], np.array([own.input_power]), {})
+        whole = np.concatenate([nominal, drawn], axis=1)
+        found[key] = _Band(own.input_power, whole[-4], whole[-3])
+    return found
+
+
+def _compute(figure: Mapping[str, Any], bands: _Bands, draw: int) -> float:
+    """A figure in one draw."""
+    if figure["compute"] == "load_independent_loss":  # at the highest torque, as all of them
+        last = bands[tuple(_conditions(figure)[-1].values())]
+        return float(last.load_independent[draw]) / 1e3
+
+    def tests(temperature: str, finish: str, planets: Iterable[int]) -> list[_Test]:
+        chosen = (
+            bands[tuple(it.values())] for it in loaded_conditions(temperature, finish, planets)
+        )
+        return [_Test(it.input_power, float(it.load_dependent[draw])) for it in chosen]
+
+    own: LoadedTests = tests
+    return FIGURES[figure["compute"]](**figure["with"], tests=own)
+
+
+# The loaded tests of the dissertation with temperatures that follow from the losses.
+#
+# Nothing is fitted to them: what is not published of their heat is varied over its plausible range.
+
+
+_MODEL = "models.temperatures"
+_OF_TESTS = ("branch_slope", "load_dependent_loss", "loss_share")
+"""Figures that follow from the loaded tests."""
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """An input of the heat network that is not published."""
+
+    key: str
+    what: str
+    low: float | str  # As a case file has them.
+    value: float | str  # As a case file has them.
+    high: float | str  # As a case file has them.
+    origin: str
+
+
+@dataclass(frozen=True, slots=True)
+class SettledFigure:
+    """A figure of the loaded tests, with load-dependent losses as a test rig forms them."""
+
+    what: str
+    unit: str
+    # The published value, or the ends of its range; empty where none is known here.
+    published: tuple[float, ...]
+    inlet: float  # By how temperatures follow.
+    flank: float  # By how temperatures follow.
+    network: float  # By how temperatures follow.
+    low: float  # The least and the most of the network with all combinations of `estimates`.
+    high: float  # The least and the most of the network with all combinations of `estimates`.
+
+
+@cache
+def _settled_content() -> dict[str, Any]:
+    file = resources.files("epicyclic.validation").joinpath("settled.toml")
+    return tomllib.loads(file.read_text(encoding="utf-8"))
+
+
+def estimates() -> tuple[Estimate, ...]:
+    """Inputs of the network that are not published, and their plausible ranges."""
+    return tuple(Estimate(**item) for item in _settled_content()["estimate"])
+
+
+def settled_figures(runner: Runner = HERE) -> tuple[SettledFigure, ...]:
+    """Every published figure of the loaded tests, and the slopes at all temperatures and finishes.
+
+    Raises
+    ------
+    ConvergenceError
+        If a test cannot be computed.
+    """
+    networks = list(_networks())
+    settings = [{_MODEL: "inlet"}, {_MODEL: "flank"}, *networks]
+    inlet, flank, *others = _tests_of(settings, runner)
+    middle = others[networks.index(_network(item.value for item in estimates()))]
+    return tuple(
+        SettledFigure(
+            what=figure["what"],
+            unit=figure["unit"],
+            published=tuple(figure[key] for key in ("value", "low", "high") if key in figure),
+            inlet=_settled_compute(figure, inlet),
+            flank=_settled_compute(figure, flank),
+            network=_settled_compute(figure, middle),
+            low=min(_settled_compute(figure, one) for one in others),
+            high=max(_settled_compute(figure, one) for one in others),
+        )
+        for figure in _settled_figures()
+    )
+
+
+def _networks() -> Iterator[dict[str, Any]]:
+    """All combinations of the estimates and the ends of their ranges."""
+    ways = [(item.low, item.value, item.high) for item in estimates()]
+    return map(_network, itertools.product(*ways))
+
+
+def _network(values: Iterable[float | str]) -> dict[str, Any]:
+    """What a case changes that takes these values of the estimates."""
+    keys = (item.key for item in estimates())
+    return {_MODEL: "network", **dict(zip(keys, values, strict=True))}
+
+
+def _settled_figures() -> Iterator[dict[str, Any]]:
+    """Those that are published, then slopes of which no measurement is kept here."""
+    known = [figure for figure in published_figures() if figure["compute"] in _OF_TESTS]
+    yield from known
+    content = _settled_content()
+    for finish, temperature in itertools.product(content["finishes"], content["temperatures"]):
+        given = {"temperature": temperature, "finish": finish, "planets": content["planets"]}
+        if not any(figure["with"] == given for figure in known):
+            yield {
+                "what": f"slope of the branch loss over the branch power, {finish}, {temperature}",
+                "unit": "%",
+                "compute": "branch_slope",
+                "with": given,
+            }
+
+
+def _settled_compute(figure: Mapping[str, Any], tests: LoadedTests) -> float:
+    return FIGURES[figure["compute"]](**figure["with"], tests=tests)
+
+
+def _tests_of(settings: Sequence[Mapping[str, Any]], runner: Runner) -> list[LoadedTests]:
+    """The loaded tests with each of the settings, all computed in one go."""
+    content = _settled_content()
+    conditions = [
+        test
+        for temperature, finish in itertools.product(content["temperatures"], content["finishes"])
+        for test in loaded_conditions(temperature, finish, content["planets"])
+    ]
+    points, unloaded = with_unloaded([{**test, **own} for own in settings for test in conditions])
+    rows = runner.run(PointList(source_case(), points))
+    if rows.failures:
+        raise ConvergenceError(
+            f"{len(rows.failures)} of {len(rows)} tests cannot be computed: {rows.failures[0]}"
+        )
+    loss = as_tested(rows, unloaded)
+    tests = list(map(_Test, rows.numbers("input_power")[: loss.size].tolist(), loss.tolist()))
+    names, count = [tuple(test.values()) for test in conditions], len(conditions)
+    return [
+        partial(_chosen, dict(zip(names, tests[first : first + count], strict=True)))
+        for first in range(0, len(tests), count)
+    ]
+
+
+def _chosen(
+    tests: Mapping[tuple[Any, ...], _Test], temperature: str, finish: str, planets: Iterable[int]
+) -> list[_Test]:
+    chosen = loaded_conditions(temperature, finish, planets)
+    return [tests[tuple(test.values())] for test in chosen]

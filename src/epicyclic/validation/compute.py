@@ -1,7 +1,4 @@
-"""The published figures computed: one function for each kind of figure.
-
-Each takes plain values as `published.toml` has them and returns a number in the unit stated there.
-"""
+"""The published figures computed: one function for each kind of figure."""
 
 from __future__ import annotations
 
@@ -11,31 +8,199 @@ import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from importlib import resources
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.analysis.solve import loaded_meshes, mesh_contacts, solve
 from epicyclic.builders.build import build
 from epicyclic.builders.models import fluids_of
 from epicyclic.builders.planetary import roller_bearing
-from epicyclic.case.case import GearPairCase, PlanetaryCase, read_case
-from epicyclic.elasticity.loaded_mesh import LoadedMesh
-from epicyclic.kernels.line_contact import hertz_half_width
-from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.friction.base import pitch_point_radius, pitch_point_sum_speed, specific_load
-from epicyclic.losses.mesh import ohlendorf_loss_factor
-from epicyclic.losses.planet_bearing import roller_loads
-from epicyclic.results.result import Result
-from epicyclic.thermal.bulk import (
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, read_case
+from epicyclic.contact.loaded_mesh import LoadedMesh
+from epicyclic.contact.temperatures import (
     LUBRICATION_FACTORS,
     bulk_rise_of_loss,
-    mean_friction,
+    effusivity,
+    flash_temperature,
+    iso_mean_friction,
     roughness_factor,
 )
-from epicyclic.thermal.flash import effusivity, flash_temperature
-from epicyclic.validation.programs import PROGRAM_FIGURES, mesh_stiffness_of, single_stiffness_of
+from epicyclic.gears.mesh import Mesh
+from epicyclic.kernels.line_contact import hertz_half_width
+from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.friction import (
+    pitch_point_pressure,
+    pitch_point_radius,
+    pitch_point_sum_speed,
+    specific_load,
+)
+from epicyclic.losses.mesh import ohlendorf_closed_form, ohlendorf_loss_factor
+from epicyclic.losses.planet_bearing import roller_loads
+from epicyclic.results.result import Result
+from epicyclic.study.solve import loaded_meshes, mesh_contacts, solve
+
+# What other programs print, computed: one function for each kind of figure.
+#
+# Each takes plain values as `programs.toml` has them, among them the name of a case in the folder
+# ``cases``, and returns a number in the unit stated there.
+
+
+_GEOMETRY: dict[str, Callable[[Mesh], float]] = {
+    "pressure_angle": lambda mesh: math.degrees(mesh.operating_pressure_angle),
+    "path_of_contact": lambda mesh: 1e3 * (mesh.path_end - mesh.path_start),
+    "contact_ratio": lambda mesh: mesh.transverse_contact_ratio,
+}
+
+
+@cache
+def _case(name: str) -> Case:
+    file = resources.files("epicyclic.validation").joinpath("cases", f"{name}.toml")
+    return read_case(Path(str(file)))
+
+
+@cache
+def _contacts(case: str) -> Mapping[str, MeshContact]:
+    return mesh_contacts(_case(case))
+
+
+@cache
+def _loaded(case: str) -> Mapping[str, LoadedMesh]:
+    return loaded_meshes(_case(case))
+
+
+@cache
+def _solved(case: str, friction: str | float, load_distribution: str = "compliance") -> Result:
+    """The case with a friction model, or with a coefficient of friction."""
+    changes: dict[str, Any] = {"models.load_distribution": load_distribution}
+    if isinstance(friction, str):
+        changes["models.friction"] = friction
+    else:
+        changes |= {"models.friction": "constant", "models.constant_friction": friction}
+    return solve(_case(case).updated(changes))
+
+
+def _planets(case: str) -> int:
+    given = _case(case)
+    return given.planet.count if isinstance(given, PlanetaryCase) else 1
+
+
+def mesh_geometry(case: str, mesh: str, figure: str) -> float:
+    """Operating pressure angle [deg], path of contact [mm], or transverse contact ratio [1]."""
+    return _GEOMETRY[figure](_contacts(case)[mesh].mesh)
+
+
+def mesh_power(case: str, mesh: str) -> float:
+    """Through the meshes of all planets, relative to the carrier. [kW]"""
+    return _planets(case) * _contacts(case)[mesh].input_power / 1e3
+
+
+def loss_factor(case: str, mesh: str) -> float:
+    """Ohlendorf's, by the integral. [1]"""
+    return ohlendorf_loss_factor(_contacts(case)[mesh].mesh)
+
+
+def closed_loss_factor(case: str, mesh: str) -> float:
+    """Ohlendorf's, by the closed form, beyond its range as well. [1]"""
+    return ohlendorf_closed_form(_contacts(case)[mesh].mesh)
+
+
+def local_loss_factor(case: str, mesh: str, load_distribution: str) -> float:
+    """Sliding loss along the contact lines over power and constant friction. [1]"""
+    friction = 0.05  # any: it cancels out
+    loss = _solved(case, friction, load_distribution).losses[f"{mesh}_sliding"]
+    return loss / (friction * _planets(case) * _contacts(case)[mesh].input_power)
+
+
+def mean_friction(case: str, mesh: str, friction: str) -> float:
+    """Mean coefficient of friction of a model. [1]"""
+    return _solved(case, friction).meshes[mesh].friction_mean
+
+
+def closed_loss(case: str, mesh: str, friction: float) -> float:
+    """Loss of one mesh: power, friction, and loss factor by the closed form. [kW]"""
+    return friction * _contacts(case)[mesh].input_power * closed_loss_factor(case, mesh) / 1e3
+
+
+def local_loss(case: str, mesh: str, friction: float) -> float:
+    """Loss of one mesh, along the contact lines. [kW]"""
+    return _solved(case, friction).losses[f"{mesh}_sliding"] / _planets(case) / 1e3
+
+
+def stage_loss(case: str, **friction: float) -> float:
+    """Loss of all meshes, along the contact lines, with the friction of each. [kW]"""
+    return sum(_planets(case) * local_loss(case, mesh, it) for mesh, it in friction.items())
+
+
+def sliding_loss(case: str, mesh: str, load_distribution: str, friction: str | float) -> float:
+    """Along the contact lines. [W]"""
+    return _solved(case, friction, load_distribution).losses[f"{mesh}_sliding"]
+
+
+def pitch_pressure(case: str, mesh: str) -> float:
+    """Hertz pressure at the pitch point. [MPa]"""
+    return pitch_point_pressure(_contacts(case)[mesh]) / 1e6
+
+
+def smallest_film(case: str, mesh: str) -> float:
+    """Smallest minimum film along the contact lines. [um]"""
+    return float(_contacts(case)[mesh].minimum_film.min()) * 1e6
+
+
+def largest_film(case: str, mesh: str) -> float:
+    """Largest minimum film along the contact lines. [um]"""
+    return float(_contacts(case)[mesh].minimum_film.max()) * 1e6
+
+
+def program_single_stiffness(case: str, mesh: str) -> float:
+    """c' of a mesh under its load. [N/(mm um)]"""
+    return single_stiffness_of(_loaded(case)[mesh])
+
+
+def program_mesh_stiffness(case: str, mesh: str) -> float:
+    """c_gamma_alpha of a mesh under its load. [N/(mm um)]"""
+    return mesh_stiffness_of(_loaded(case)[mesh])
+
+
+def single_stiffness_of(mesh: LoadedMesh) -> float:
+    """c': largest stiffness of a lone pair of teeth per face width. [N/(mm um)]"""
+    alone = (mesh.pair_force > 0).sum(axis=1) == 1
+    return float(mesh.secant_stiffness[alone].max()) / mesh.mesh.face_width / 1e9
+
+
+def mesh_stiffness_of(mesh: LoadedMesh) -> float:
+    """c_gamma: mean stiffness over the mesh period per face width. [N/(mm um)]"""
+    return mesh.mean(mesh.secant_stiffness) / mesh.mesh.face_width / 1e9
+
+
+PROGRAM_FIGURES: dict[str, Callable[..., float]] = {
+    function.__name__: function
+    for function in (
+        mesh_geometry,
+        mesh_power,
+        loss_factor,
+        closed_loss_factor,
+        local_loss_factor,
+        mean_friction,
+        closed_loss,
+        local_loss,
+        stage_loss,
+        sliding_loss,
+        pitch_pressure,
+        smallest_film,
+        largest_film,
+        program_single_stiffness,
+        program_mesh_stiffness,
+    )
+}
+
+
+# The published figures computed: one function for each kind of figure.
+#
+# Each takes plain values as `published.toml` has them and returns a number in the unit stated
+# there.
+
 
 TEST_TORQUES = (250, 500, 750, 1000)
 """Loaded tests: torque on the sun. [N m]"""
@@ -54,7 +219,7 @@ def source_case() -> PlanetaryCase:
     return case.updated(AS_IN_THE_SOURCE)
 
 
-def _case(**changes: object) -> PlanetaryCase:
+def _published_case(**changes: object) -> PlanetaryCase:
     return source_case().updated({key.replace("__", "."): value for key, value in changes.items()})
 
 
@@ -89,7 +254,7 @@ def loaded_conditions(
 
 
 def _computed_tests(temperature: str, finish: str, planets: Iterable[int]) -> list[Result]:
-    case = _case()
+    case = _published_case()
     return [
         solve(case.updated(changes)) for changes in loaded_conditions(temperature, finish, planets)
     ]
@@ -98,7 +263,7 @@ def _computed_tests(temperature: str, finish: str, planets: Iterable[int]) -> li
 def planet_bearing_loss(temperature: str, composite_roughness: float) -> float:
     """Rolling loss of one planet bearing at 333 N m on the branch and 4000 rpm. [W]"""
     rough = f"{composite_roughness / math.sqrt(2)} um"
-    case = _case(
+    case = _published_case(
         operation__torque="999 N*m",
         operation__oil_inlet_temperature=temperature,
         planet_bearing__roller_roughness=rough,
@@ -124,7 +289,7 @@ def azimuth_of_gained_rollers(low: int, high: int, couple: bool) -> float:
 
 def _loaded_rollers(branch_torque: int, couple: bool) -> NDArray[np.bool_]:
     """Which rollers carry load in either row."""
-    case = _case(operation__torque=f"{3 * branch_torque} N*m")
+    case = _published_case(operation__torque=f"{3 * branch_torque} N*m")
     assert case.planet_bearing is not None
     bearing = roller_bearing(case.planet_bearing, case.numerics)
     load = build(case).planet_loads()["planet_bearing"]
@@ -136,12 +301,12 @@ def _loaded_rollers(branch_torque: int, couple: bool) -> NDArray[np.bool_]:
 
 def mixture_density(temperature: str) -> float:
     """Density of the mixture at the case's oil share. [kg/m^3]"""
-    return fluids_of(_case(operation__oil_inlet_temperature=temperature)).mixture.density
+    return fluids_of(_published_case(operation__oil_inlet_temperature=temperature)).mixture.density
 
 
 def mixture_viscosity(temperature: str) -> float:
     """Dynamic viscosity of the mixture. [mPa s]"""
-    fluids = fluids_of(_case(operation__oil_inlet_temperature=temperature))
+    fluids = fluids_of(_published_case(operation__oil_inlet_temperature=temperature))
     return fluids.mixture.dynamic_viscosity * 1e3
 
 
@@ -165,7 +330,7 @@ def load_dependent_loss(
 
 def load_independent_loss(temperature: str, planets: int) -> float:
     """P_LI at 4000 rpm. [kW]"""
-    case = _case(operation__oil_inlet_temperature=temperature, planet__count=planets)
+    case = _published_case(operation__oil_inlet_temperature=temperature, planet__count=planets)
     return solve(case).load_independent / 1e3
 
 
@@ -339,7 +504,7 @@ def _loaded_pair(pair: str) -> tuple[dict[str, Any], MeshContact]:
 def _mean_friction(pair: str) -> float:
     given, contact = _loaded_pair(pair)
     radius = pitch_point_radius(contact)
-    return mean_friction(
+    return iso_mean_friction(
         specific_load(contact),
         pitch_point_sum_speed(contact),
         radius,

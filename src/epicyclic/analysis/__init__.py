@@ -1,1 +1,0 @@
-"""From a case to its result: the only place that combines the loss models."""

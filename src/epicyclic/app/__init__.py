@@ -1,1 +1,0 @@
-"""App: forms, tables and figures of a case in the browser, served to this machine only."""

@@ -1,1 +1,0 @@
-"""How well a result is known, given how well its inputs and models are."""

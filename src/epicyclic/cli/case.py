@@ -1,0 +1,331 @@
+"""Commands on one case: run, check, friction, mesh, heat, warm-up."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from epicyclic.cli.common import (
+    EXIT_NO_SOLUTION,
+    beside,
+    case_argument,
+    check_ending,
+    draw,
+    json_option,
+    load_with,
+    output_option,
+    plot_option,
+    point_of,
+    set_option,
+    show,
+)
+from epicyclic.errors import InputError, Problem, Status
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from rich.console import RenderableType
+
+    from epicyclic.case.case import Case
+    from epicyclic.results.result import Result
+    from epicyclic.study.heat import Found
+
+
+# Commands on one case: run, check, friction, mesh.
+
+
+@click.command()
+@case_argument
+@set_option
+@json_option
+@click.option(
+    "--save",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Keep the result with all its fields in FILE.nc, for reports and plots.",
+)
+def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path | None) -> None:
+    """Compute the losses of a case and print them by component."""
+    from epicyclic.report.advice import band_texts, result_json
+    from epicyclic.report.heat_tables import remarks
+    from epicyclic.report.tables import result_tables
+    from epicyclic.study.bands.quick import quick_known
+    from epicyclic.study.solve import solve
+
+    loaded = load_with(case, changes)
+    if save is not None:
+        from epicyclic.records.files import check_result_output
+
+        check_result_output(save)
+    with telling_contacts(loaded):
+        result = solve(loaded)
+    known = quick_known(loaded, result, brief=True)
+    if save is not None:
+        from epicyclic.records.files import save_result
+        from epicyclic.records.record import record
+
+        save_result(record(loaded, result=result), save)
+    show(
+        lambda: result_tables(result, tuple(remarks(loaded, result)), band_texts(known)),
+        lambda: result_json(result, known),
+        json_file,
+    )
+    if result.status is not Status.CONVERGED:
+        click.echo(result.notes[0], err=True)
+        sys.exit(EXIT_NO_SOLUTION)
+
+
+@contextmanager
+def telling_contacts(case: Case) -> Iterator[None]:
+    """A progress bar: of the contacts of each mesh if they are solved, which takes minutes."""
+    from epicyclic.cli.common import progress_bar, working
+
+    if case.models.friction == "ehl-direct":
+        from epicyclic.plugins.contact_solver.direct import contacts_told
+
+        with progress_bar("contacts of the mesh") as progress, contacts_told(progress):
+            yield
+    elif sys.stderr.isatty():
+        with working("solving"):  # pockets may take minutes too
+            yield
+    else:
+        yield
+
+
+@click.command()
+@case_argument
+@set_option
+def check(case: str, changes: tuple[str, ...]) -> None:
+    """Check a case and show what follows from it, as a data sheet, without computing losses.
+
+    Of a train also the ratio of every state.
+    """
+    from epicyclic.report.data_sheet import data_sheet
+    from epicyclic.report.state_tables import state_tables
+    from epicyclic.report.tables import terminal
+
+    loaded = load_with(case, changes)
+    click.echo(f"{case}: a sound {loaded.kind} case.")
+    if loaded.lubrication is not None:
+        from epicyclic.builders.supplies import stated_supplies
+
+        for name, supply in stated_supplies(loaded):
+            click.echo(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
+    terminal().print(data_sheet(loaded))
+    if loaded.kind == "train":
+        terminal().print(state_tables(loaded))
+
+
+@click.command()
+@case_argument
+@set_option
+@plot_option("Draw the sliding loss with every model to FILE (.png, .svg, .pdf).")
+def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
+    """Compare all friction models on a case: spread, ranges left, and which one suits."""
+    from epicyclic.report.tables import friction_table, terminal
+    from epicyclic.study.friction import compare_friction
+
+    loaded = load_with(case, changes)
+    with telling_contacts(loaded):
+        rows = compare_friction(loaded)
+    terminal().print(friction_table(rows))
+    if plot is not None:
+        from epicyclic.show.plots.mesh import friction_figure
+
+        draw(friction_figure(rows, loaded.title), plot, point_of(loaded))
+
+
+@click.command()
+@case_argument
+@set_option
+@plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf.")
+def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
+    """Show how the teeth carry: load, transmission error, stiffness, pressure, friction power."""
+    from epicyclic.report.mesh_table import mesh_tables
+    from epicyclic.report.tables import terminal
+    from epicyclic.study.meshes import mesh_details
+
+    loaded = load_with(case, changes)
+    meshes = mesh_details(loaded)
+    terminal().print(mesh_tables(meshes))
+    if plot is not None:
+        from epicyclic.show.plots.mesh import mesh_figure
+
+        for key, details in meshes.items():
+            draw(mesh_figure(details), beside(plot, key), point_of(loaded))
+
+
+# The command heat: temperatures of all parts, and what leads to one of the oil.
+
+
+AS_GIVEN = "oil_temperature"
+QUANTITIES = (AS_GIVEN, "cooler_power", "oil_flow", "input_power")
+
+
+@click.command()
+@case_argument
+@set_option
+@click.option(
+    "--solve",
+    "quantity",
+    type=click.Choice(QUANTITIES),
+    default=AS_GIVEN,
+    show_default=True,
+    help="What to find: the temperature of the oil, or what leads to that of --target.",
+)
+@click.option("--target", metavar="TEMPERATURE", help='Of the oil in the gearbox, as in "90 degC".')
+@json_option
+@plot_option("Draw parts, temperatures and flows of heat (.png, .svg, .pdf).")
+def heat(
+    case: str,
+    changes: tuple[str, ...],
+    quantity: str,
+    target: str | None,
+    json_file: str | None,
+    plot: Path | None,
+) -> None:
+    """Show how hot all parts get, and where their heat goes.
+
+    Uses the network of all parts whatever models.temperatures is. The heat needs a way out:
+    thermal.oil_flow, [thermal.housing] or thermal.cooler_conductance.
+
+    \b
+    epicyclic heat talbot-2012 --set "thermal.oil_flow=4 l/min"
+    epicyclic heat talbot-2012 --solve oil_flow --target "100 degC"
+    """
+    from epicyclic.cli.common import progress_bar
+    from epicyclic.study.heat import solve_for, with_network
+    from epicyclic.study.solve import solve
+
+    _check_target(quantity, target)
+    stated = load_with(case, changes)
+    found = None
+    if target is not None:
+        with progress_bar("settled states") as progress:
+            found = solve_for(stated, quantity, target, progress=progress)
+    solved = with_network(stated) if found is None else found.case
+    result = solve(solved) if found is None else found.result
+    if stated.models.temperatures != "network":
+        click.echo(
+            f"With models.temperatures = network in place of {stated.models.temperatures}.",
+            err=True,
+        )
+    show(lambda: _tables(solved, result, found), lambda: _json(result, found), json_file)
+    if plot is not None:
+        from epicyclic.show.plots.heat_network import heat_figure
+
+        assert result.heat is not None
+        draw(heat_figure(result.heat, result.title), plot, point_of(solved))
+
+
+def _check_target(quantity: str, target: str | None) -> None:
+    if (quantity == AS_GIVEN) == (target is None):
+        return
+    if target is None:
+        problem = Problem("--target", "", f"is needed with --solve {quantity}.", 'As in "90 degC".')
+    else:
+        remedy = f"Name what leads to it: --solve {', '.join(QUANTITIES[1:])}."
+        problem = Problem("--target", f'"{target}"', "is what would be solved for.", remedy)
+    raise InputError([problem], "the command")
+
+
+def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:
+    from epicyclic.report.heat_tables import found_text, heat_items, remarks, ways_items
+    from epicyclic.report.tables import as_on_page, titled
+
+    assert result.heat is not None
+    return titled(
+        result.title or result.kind,
+        *([] if found is None else [found_text(found)]),
+        *(as_on_page(item) for item in heat_items(result.heat)),
+        *(as_on_page(item) for item in ways_items(result.heat)),
+        *remarks(case, result),
+    )
+
+
+def _json(result: Result, found: Found | None) -> str:
+    contents = result.to_dict()
+    if found is not None:
+        contents["found"] = found.to_dict()
+    return json.dumps(contents, indent=2, allow_nan=False, ensure_ascii=False)
+
+
+# The command warm-up: temperatures and losses over time.
+
+
+OUTPUTS = (".nc", ".csv", ".parquet")
+
+
+@click.command("warm-up")
+@case_argument
+@set_option
+@click.option("--for", "duration", metavar="TIME", required=True, help='How long, as in "2 h".')
+@click.option(
+    "--from",
+    "start",
+    metavar="TEMPERATURE",
+    help='Of all parts at the start, as in "20 degC"; default: thermal.ambient_temperature.',
+)
+@click.option(
+    "--cycle",
+    metavar="CYCLE",
+    help="A .csv or .parquet file as for 'epicyclic duty', repeated; default: the operating point.",
+)
+@output_option("Write .nc, .csv or .parquet.", "FILE")
+@plot_option("Draw temperatures and loss over time to a .png, .svg or .pdf file.")
+def warm_up(
+    case: str,
+    changes: tuple[str, ...],
+    duration: str,
+    start: str | None,
+    cycle: str | None,
+    output: Path | None,
+    plot: Path | None,
+) -> None:
+    """Let a gearbox warm up: temperatures and losses over time.
+
+    Temperatures follow from the network of heat, which needs thermal.oil_volume and, of a housing,
+    thermal.housing.mass.
+    """
+    from epicyclic.cli.common import progress_bar
+    from epicyclic.files import check_place
+    from epicyclic.report.tables import terminal
+    from epicyclic.report.warm_up_table import warm_up_tables
+    from epicyclic.study.maps.warm_up import warm_up as compute
+
+    if output is not None:
+        check_ending("-o", output, OUTPUTS)
+    for path in (output, plot):
+        if path is not None:
+            check_place(path)
+    loaded = load_with(case, changes)
+    with progress_bar("warming up") as progress:
+        data = compute(loaded, duration, start, cycle=cycle, progress=progress)
+    if output is not None:
+        _write(data, output)
+    terminal().print(warm_up_tables(data))
+    if plot is not None:
+        from epicyclic.show.plots.heat_network import warm_up_figure
+
+        draw(warm_up_figure(data), plot, f"cycle {cycle}" if cycle else point_of(loaded))
+
+
+def _write(data: xr.Dataset, output: Path) -> None:
+    from epicyclic.files import whole_file
+    from epicyclic.report.warm_up_table import warm_up_rows
+    from epicyclic.study.sweeps.run import csv_safe, write_dataset
+
+    if output.suffix == OUTPUTS[0]:
+        write_dataset(data, output)
+        return
+    rows = warm_up_rows(data)
+    with whole_file(output) as file:
+        if output.suffix == OUTPUTS[1]:
+            csv_safe(rows).to_csv(file, index=False)
+        else:
+            rows.to_parquet(file, index=False)

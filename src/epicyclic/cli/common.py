@@ -1,0 +1,424 @@
+"""What commands share: options, output, progress, exit codes."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, suppress
+from datetime import timedelta
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+
+from epicyclic.errors import InputError, Problem
+from epicyclic.files import write_file
+from epicyclic.kernels.compiling import listeners
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from rich.console import RenderableType
+
+
+# Exit codes of the command.
+
+
+EXIT_DONE = 0
+EXIT_ERROR, EXIT_INPUT, EXIT_NO_SOLUTION, EXIT_FAILED_POINTS = 1, 2, 3, 4
+EXIT_INCOMPLETE = 5
+EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
+
+
+# Progress on standard error: a bar on a terminal, a line now and then in a file or pipe.
+#
+# ``EPICYCLIC_PROGRESS=0`` turns both off.
+
+
+EVERY = 15.0
+"""Between two lines, and before the first one. [s]"""
+COMPILING_EVERY = 5.0
+"""The same while kernels are compiled. [s]"""
+COMPILED = 75
+"""Kernels that a result needs, about."""
+Update = Callable[..., None]
+LONG_SECONDS = 2.0
+"""After which a command that tells nothing of itself says that it works."""
+
+
+def tell(text: str) -> None:
+    """Say on standard error how a long command gets on; ``EPICYCLIC_PROGRESS=0`` turns it off."""
+    if not _is_off():
+        sys.stderr.write(f"{text}\n")
+
+
+def _is_off() -> bool:
+    return os.environ.get("EPICYCLIC_PROGRESS") == "0"
+
+
+def progress_bar(noun: str) -> AbstractContextManager[Update]:
+    """A callback ``(done, total, failed=0)`` that shows how far it is, with the time left."""
+    console = Console(stderr=True)
+    return _bar(noun, console) if console.is_terminal and not _is_off() else _lines(noun)
+
+
+@contextmanager
+def _bar(noun: str, console: Console) -> Iterator[Update]:
+    bar = Progress(
+        TextColumn(noun),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        TextColumn("{task.fields[failures]}"),
+        console=console,
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task(noun, total=None, failures="")
+
+        def update(done: int, total: int, failed: int = 0) -> None:
+            bar.update(task, completed=done, total=total, failures=_failures(failed))
+
+        yield update
+
+
+@contextmanager
+def _lines(noun: str) -> Iterator[Update]:
+    start = told = time.monotonic()
+    first: tuple[float, int] | None = None  # of what is done; before it kernels are compiled
+
+    def update(done: int, total: int, failed: int = 0) -> None:
+        nonlocal told, first
+        now = time.monotonic()
+        if done and first is None:
+            first = now, done
+        if now - told < EVERY or _is_off():
+            return
+        told = now
+        parts = [f"{noun}: {done} of {total} after {_seconds(now - start)}"]
+        if first is not None and done > first[1]:
+            left = (now - first[0]) * (total - done) / (done - first[1])
+            parts.append(f"about {_seconds(left)} left")
+        if failed:
+            parts.append(_failures(failed))
+        click.echo(", ".join(parts), err=True)
+
+    yield update
+
+
+def _failures(failed: int) -> str:
+    return f"{failed} not converged" if failed else ""
+
+
+def _seconds(duration: float) -> str:
+    """``"0:01:05"``."""
+    return str(timedelta(seconds=round(duration)))
+
+
+def tell_compilation() -> None:
+    """Say that kernels are compiled, and how far that is, should it take long."""
+    first = told = 0.0
+    count = 0
+
+    def tell_of_kernel() -> None:
+        nonlocal first, told, count
+        now = time.monotonic()
+        first, told, count = first or now, told or now, count + 1
+        if now - told < COMPILING_EVERY or _is_off():
+            return
+        told = now
+        click.echo(
+            f"First run of this version: compiling the numerics, {count} of some {COMPILED} "
+            f"functions after {_seconds(now - first)}.",
+            err=True,
+        )
+
+    listeners.append(tell_of_kernel)
+
+
+@contextmanager
+def working(noun: str) -> Iterator[None]:
+    """A bar without an end, and the time, for what takes long and tells nothing of itself."""
+    console = Console(stderr=True)
+    if not console.is_terminal or _is_off():
+        yield
+        return
+    columns = (TextColumn(noun), BarColumn(), TimeElapsedColumn())
+    bar = Progress(*columns, console=console, transient=True)
+    bar.add_task(noun, total=None)
+    begin = threading.Timer(LONG_SECONDS, bar.start)
+    begin.daemon = True
+    begin.start()
+    try:
+        yield
+    finally:
+        begin.cancel()
+        begin.join()
+        bar.stop()
+
+
+# What commands show, and the pictures and pages that they write.
+
+
+PICTURES = (".png", ".svg", ".pdf")
+PAGE, PRINT = ".html", ".pdf"
+SIZES = (30, 2000)
+"""Smallest and largest size of a picture. [mm]"""
+MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4}
+
+
+def check_ending(option: str, path: Path, endings: Sequence[str] = PICTURES) -> None:
+    """Raise `InputError` for a file that ends otherwise."""
+    problems = wrong_ending(option, path, endings)
+    if problems:
+        raise InputError(problems, "the command")
+
+
+def wrong_ending(option: str, path: Path, endings: Sequence[str]) -> list[Problem]:
+    """The problem of a file that ends otherwise."""
+    if path.suffix in endings:
+        return []
+    allowed = f"must end in {' or '.join(endings)}."
+    return [Problem(option, str(path), allowed, "Name such a file.")]
+
+
+def beside(path: Path, part: str) -> Path:
+    """The file beside `path` for one part of what it is to hold."""
+    return path.with_name(f"{path.stem}-{part}{path.suffix}")
+
+
+def show(
+    tables: Callable[[], RenderableType], as_json: Callable[[], str], json_file: str | None
+) -> None:
+    """Print tables, or JSON in their place if `json_file` is -; else write that file first."""
+    if json_file == "-":
+        click.echo(as_json())
+        return
+    from epicyclic.report.tables import terminal
+
+    if json_file is not None:
+        write_file(Path(json_file), as_json() + "\n")
+        click.echo(f"Wrote {json_file}.")
+    terminal().print(tables())
+
+
+def parse_size(text: str) -> tuple[float, float]:
+    """Width and height of a picture, ``"160x90 mm"``. [mm]"""
+    low, high = SIZES
+    match = re.fullmatch(r"\s*([\d.]+)\s*[x×*]\s*([\d.]+)\s*(mm|cm|in)\s*", text)
+    if match:
+        with suppress(ValueError):  # "1.2.3"
+            scale = MILLIMETRES[match[3]]
+            width, height = float(match[1]) * scale, float(match[2]) * scale
+            if low <= min(width, height) and max(width, height) <= high:
+                return width, height
+    allowed = f"must be a width and a height of {low} to {high} mm, in mm, cm or in."
+    problem = Problem("--size", f'"{text}"', allowed, 'For example "160x90 mm".')
+    raise InputError([problem], "the command")
+
+
+def draw(figure: Figure, path: Path, caption: str = "") -> None:
+    """Write a picture, with its operating point below if it has none yet."""
+    if caption:
+        from epicyclic.show.plots.style import caption_below
+
+        caption_below(figure, caption)
+    write_file(path, picture_bytes(figure, path))
+    click.echo(f"Wrote {path}.")
+
+
+def picture_bytes(figure: Figure, path: Path) -> bytes:
+    """What a file of the type of `path` holds of a figure."""
+    from epicyclic.show.plots.style import figure_bytes
+
+    return figure_bytes(figure, path.suffix[1:])
+
+
+def check_page(path: Path) -> None:
+    """Raise `InputError` if a page cannot be written to a file of this name."""
+    check_ending("-o", path, (PAGE, PRINT))
+    if path.suffix == PRINT:
+        from epicyclic.report.pdf import check_pdf
+
+        check_pdf()
+
+
+def write_page(path: Path, page: str) -> None:
+    """Write a page as it is, or printed to a PDF."""
+    if path.suffix == PRINT:
+        from epicyclic.report.pdf import report_pdf
+
+        write_file(path, report_pdf(page))
+    else:
+        write_file(path, page)
+    click.echo(f"Wrote {path}.")
+
+
+# Options that commands share, above all a case and changes of its keys.
+
+
+case_argument = click.argument("case", metavar="CASE")
+json_option = click.option(
+    "--json",
+    "json_file",
+    metavar="[FILE]",
+    is_flag=False,
+    flag_value="-",
+    help="Write the result as JSON, to standard output if no FILE or - is given.",
+)
+temperature_option = click.option(
+    "--temperature",
+    metavar="VALUES",
+    help='Of the oil at the inlet, as in "40,60,90 degC"; default: that of the case.',
+)
+
+
+def runner_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Where points are computed: --jobs and --dask, of which the command gets a `runner`."""
+
+    @click.option(
+        "--jobs", type=click.IntRange(1, 10_000), help="Worker processes; default: as it pays."
+    )
+    @click.option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster, tcp://host:8786.")
+    @wraps(command)
+    def call(
+        *args: Any, jobs: int | None, dask: str | None, shard: str | None = None, **options: Any
+    ) -> None:
+        from epicyclic.study.sweeps.runner import Runner, parse_shard
+
+        runner = Runner(jobs, dask, parse_shard(shard))
+        runner.check()
+        command(*args, runner=runner, **options)
+
+    return call
+
+
+journal_option = click.option(
+    "--journal",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Keep finished points there, so that the same command goes on after an interruption.",
+)
+shard_option = click.option(
+    "--shard", metavar="I/N", help="Compute share I of N; 'epicyclic merge' puts all together."
+)
+"""To stand above `runner_options`."""
+
+
+def set_option_for(what: str, example: str) -> Callable[[Any], Any]:
+    """The option --set for the keys of `what`."""
+    return click.option(
+        "--set",
+        "changes",
+        metavar="KEY=VALUE",
+        multiple=True,
+        help=f'Change a key of {what}, as in --set "{example}". An empty value removes the key; '
+        "{sun,ring}.teeth are two keys.",
+    )
+
+
+set_option = set_option_for("the case", "operation.torque=500 N*m")
+contact_set_option = set_option_for("the contact", "lubricant.eyring_stress=8 MPa")
+
+
+def plot_option(text: str, endings: Sequence[str] = PICTURES) -> Callable[[Any], Any]:
+    """The option --plot, with its help, of a file that must end so."""
+
+    def checked(context: click.Context, option: click.Parameter, path: Path | None) -> Path | None:
+        if path is not None:
+            check_ending("--plot", path, endings)
+        return path
+
+    kind = click.Path(path_type=Path)
+    return click.option("--plot", metavar="FILE", type=kind, callback=checked, help=text)
+
+
+def output_option(
+    text: str, metavar: str | None = None, required: bool = False
+) -> Callable[[Any], Any]:
+    """The option -o, with its help."""
+    kind = click.Path(path_type=Path)
+    return click.option("-o", "--output", required=required, metavar=metavar, type=kind, help=text)
+
+
+picture_option = click.option(
+    "--picture", type=click.Choice([ending[1:] for ending in PICTURES]), default="png"
+)
+
+
+def point_of(case: Any) -> str:
+    """The operating point of a case, for the captions of its pictures."""
+    from epicyclic.case.operating import operating_line
+
+    return operating_line(case.inputs()["operation"])
+
+
+def load_with(case: str, changes: Sequence[str]) -> Any:
+    from epicyclic.plugins.rexs.files import is_rexs
+    from epicyclic.study.load import load_case
+
+    parsed = parse_changes(changes)
+    return from_rexs(case, parsed) if is_rexs(case) else load_case(case, parsed)
+
+
+def from_rexs(file: str, changes: dict[str, Any], component: int | None = None) -> Any:
+    """The case of a REXS file; what it lacks, and what differs, is told on standard error."""
+    from epicyclic.plugins.rexs.importing import read_rexs
+
+    found = read_rexs(file, component)
+    loaded = found.case(changes)
+    for lack in found.lacking(changes):
+        click.echo(f"{lack.key}: {lack}", err=True)
+    for note in (*found.notes, *found.geometry_notes(loaded)):
+        click.echo(f"Note: {note}", err=True)
+    return loaded
+
+
+def parse_changes(options: Sequence[str]) -> dict[str, Any]:
+    from epicyclic.case.values import parse_value
+
+    changes: dict[str, Any] = {}
+    problems = []
+    for option in options:
+        key, equals, text = option.partition("=")
+        if not equals or not key.strip():
+            problems.append(
+                Problem(
+                    "--set",
+                    f'"{option}"',
+                    "must be KEY=VALUE.",
+                    'For example --set "operation.torque=500 N*m".',
+                )
+            )
+        else:
+            value = parse_value(text.strip()) if text.strip() else None
+            changes |= dict.fromkeys(_alternatives(key.strip()), value)
+    if problems:
+        raise InputError(problems, "the command")
+    return changes
+
+
+def _alternatives(key: str) -> list[str]:
+    """The keys that braces stand for: ``{sun,ring}.teeth``."""
+    match = re.fullmatch(r"(.*?)\{([^{}]*)\}(.*)", key)
+    if match is None:
+        return [key]
+    start, names, end = match.groups()
+    return [
+        f"{start}{name.strip()}{rest}" for name in names.split(",") for rest in _alternatives(end)
+    ]

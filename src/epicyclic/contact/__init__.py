@@ -1,0 +1,1 @@
+"""Contacts: line contacts of flanks and rollers, elastic teeth, temperatures."""

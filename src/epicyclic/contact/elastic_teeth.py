@@ -1,0 +1,530 @@
+"""Elastic teeth: plates on an elastic foundation, ring rims, influence coefficients of a mesh."""
+
+from __future__ import annotations
+
+import math
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from importlib import import_module
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+from threadpoolctl import ThreadpoolController
+
+from epicyclic.errors import ConvergenceError
+from epicyclic.gears.cutting import tooth_outline
+from epicyclic.gears.flanks import ContactLines, contact_lines
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.generation import Tool, default_tool
+from epicyclic.gears.mesh import Mesh
+from epicyclic.kernels.line_contact import equivalent_modulus, hertz_half_width
+
+# Linear algebra on one thread.
+#
+# The matrices here are small: threads cost more than they save. More than one would also round
+# differently, so that a sweep in many processes would not give the bits of one process.
+
+
+def one_thread() -> AbstractContextManager[object]:
+    """A context in which matrix products and decompositions use one thread."""
+    blas = _blas()
+    if all(library.num_threads == 1 for library in blas.lib_controllers):
+        return nullcontext()  # as in workers: to set limits takes a tenth of a solution
+    context: AbstractContextManager[object] = blas.limit(limits=1)
+    return context
+
+
+@cache
+def _blas() -> ThreadpoolController:
+    import_module("scipy.linalg")  # compiled kernels call its library, which must be there first
+    return ThreadpoolController().select(user_api="blas")
+
+
+# A gear tooth as a tapered plate on an elastic foundation (Rayleigh-Ritz).
+#
+# The middle surface of the tooth is a rectangle, height s above the root section times length y
+# along the tooth. The plate is of Mindlin's kind, with shear deformation: deflection w and
+# rotations theta_s and theta_y are products of Legendre polynomials. Its strain energy is (R. D.
+# Mindlin, J. Appl. Mech. 18 (1951) 31)
+#
+# .. math::
+#
+#    U = \tfrac12\int D\left[\theta_{s,s}^2 + \theta_{y,y}^2 + 2\nu\,\theta_{s,s}\theta_{y,y}
+#        + \tfrac{1-\nu}{2}(\theta_{s,y} + \theta_{y,s})^2\right]
+#        + k G t\left[(w_{,s} - \theta_s)^2 + (w_{,y} - \theta_y)^2\right]\mathrm ds\,\mathrm dy ,
+#
+# with D = E t^3/[12 (1 - nu^2)], k = 5/6, and t(s) the thickness of the tooth in its normal
+# section. The root section rests on springs against rotation and deflection per length, from the
+# deformation of an elastic half-plane under the moment and the shear force of the tooth (C. Weber,
+# 1949; R. W. Cornell, J. Mech. Des. 103 (1981) 447). Because the thickness does not change along
+# the tooth, the stiffness matrix is a sum of Kronecker products of one-dimensional integrals.
+
+
+FloatArray = NDArray[np.float64]
+
+SHEAR_FACTOR = 5 / 6
+"""k of Mindlin's plate for a rectangular section. [1]"""
+ROOT_TANGENT = math.radians(30.0)
+"""The root section is where the fillet is inclined so to the tooth's middle line. ISO 6336-3."""
+HEIGHT_TERMS = 6
+"""Polynomials over the height of the tooth."""
+QUADRATURE_MARGIN = 18
+"""Gauss points over the height beyond the number of polynomials: the thickness is no polynomial."""
+ROTATION_CONSTANT = 16.67 / math.pi
+"""Rotation of a half-plane under a moment on a strip: theta = 16.67 (1-nu^2) m/(pi E h^2). Cornell
+(1981), plane strain. [1]"""
+DEFLECTION_CONSTANT = 1.534
+"""Its deflection under a shear force: 1.534 (1 - nu^2) v/E. Cornell (1981), plane strain. [1]"""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ToothPlate:
+    """Compliance of one tooth, ready to be evaluated anywhere on its flank."""
+
+    gear: Gear
+    height: float  # From root section to tip. [m]
+    # Thickness of the tooth over the height above the root section. [m]
+    section_height: FloatArray
+    section_thickness: FloatArray
+    root_offset: float  # Height of the root section above the root circle. [m]
+    # Inverse of the Cholesky factor of the stiffness matrix: compliances are products of it.
+    half_inverse: FloatArray
+    face_terms: int  # Polynomials along the tooth.
+
+    def depth(self, curvature: FloatArray) -> FloatArray:
+        """Distance from points of the flank to the tooth's middle line, along the normal. [m]"""
+        height, inclination = self._place(curvature)
+        thickness = np.interp(height, self.section_height, self.section_thickness)
+        depth: FloatArray = thickness / (2 * np.cos(inclination))
+        return depth
+
+    def amplitudes(
+        self,
+        curvature: FloatArray,  # Transverse radius of curvature of the involute at each point. [m]
+        face_position: FloatArray,  # Position across the face width of the gear, 0 to 1.
+    ) -> FloatArray:
+        """Amplitudes a_i of unit normal forces at points of the flank: their compliance is a_i a_j.
+
+        The force acts along the common normal; in the section of the tooth it bends the plate by
+        its part across the middle line and, acting beside that line, by the moment of the rest.
+
+        Theory (E3).
+
+        Returns
+        -------
+        ndarray, shape (n, 3 terms)
+            [m^0.5 N^-0.5]
+        """
+        height, inclination = self._place(curvature)
+        thickness = np.interp(height, self.section_height, self.section_thickness)
+        s = np.clip(2 * height / self.height - 1, -1.0, 1.0)
+        over_height = _polynomials(s, HEIGHT_TERMS)
+        along = _polynomials(2 * face_position - 1, self.face_terms)
+        shape = (over_height[:, :, None] * along[:, None, :]).reshape(len(height), -1)
+        load = np.zeros((len(height), self.half_inverse.shape[0]))
+        terms = shape.shape[1]
+        load[:, :terms] = shape * np.cos(inclination)[:, None]
+        load[:, terms : 2 * terms] = -shape * (np.sin(inclination) * thickness / 2)[:, None]
+        amplitudes: FloatArray = load @ self.half_inverse.T
+        return amplitudes
+
+    def _place(self, curvature: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Height above the root section, and inclination of the normal force to the plate."""
+        gear = self.gear
+        radius = np.hypot(gear.base_radius, curvature)
+        pressure_angle = np.arctan2(curvature, gear.base_radius)
+        half_angle = gear.half_angles_at(curvature)
+        outward = -1.0 if gear.internal else 1.0
+        height = outward * (radius * np.cos(half_angle) - gear.root_radius) - self.root_offset
+        transverse = pressure_angle - outward * half_angle
+        inclination = np.arctan(np.tan(transverse) * math.cos(gear.rack.helix_angle))
+        return height, inclination
+
+
+@lru_cache(maxsize=64)
+def tooth_plate(
+    gear: Gear,
+    elastic_modulus: float,  # [Pa], [1]
+    poisson_ratio: float,  # [Pa], [1]
+    face_terms: int,  # Polynomials along the tooth: more for teeth long against their height.
+    tool: Tool,  # The tool that leaves the root fillet.
+) -> ToothPlate:
+    """The plate of one tooth of `gear`."""
+    height, thickness, offset = _section(gear, tool)
+    length = gear.face_width / math.cos(gear.rack.helix_angle)
+    stiffness = _stiffness(height, thickness, length, elastic_modulus, poisson_ratio, face_terms)
+    # scaled to a unit diagonal: deflections and rotations differ by orders of magnitude
+    scale = 1 / np.sqrt(np.diag(stiffness))
+    factor = np.linalg.cholesky(scale[:, None] * stiffness * scale)
+    half_inverse = np.linalg.inv(factor) * scale
+    for array in (height, thickness, half_inverse):
+        array.flags.writeable = False
+    return ToothPlate(gear, float(height[-1]), height, thickness, offset, half_inverse, face_terms)
+
+
+def _section(gear: Gear, tool: Tool) -> tuple[FloatArray, FloatArray, float]:
+    """Thickness in the normal section over the height above the root section, and its offset."""
+    outline = tooth_outline(gear, tool)
+    outward = -1.0 if gear.internal else 1.0
+    flank = slice(outline.joints[0], outline.joints[2] + 1)
+    along = outward * (outline.radius * np.cos(outline.half_angle) - gear.root_radius)
+    across = outline.radius * np.sin(outline.half_angle) * math.cos(gear.rack.helix_angle)
+    height, half = along[flank], across[flank]
+    inclination = np.arctan2(-np.gradient(half), np.gradient(height))
+    steep = inclination > ROOT_TANGENT
+    start = int(np.argmin(steep)) if steep[0] else 0
+    return height[start:] - height[start], 2 * half[start:], float(height[start])
+
+
+def _stiffness(
+    height: FloatArray,
+    thickness: FloatArray,
+    length: float,
+    elastic_modulus: float,
+    poisson_ratio: float,
+    face_terms: int,
+) -> FloatArray:
+    """Stiffness matrix in (w, theta_s, theta_y), each of height by face terms. Theory (E1)."""
+    nu = poisson_ratio
+    top = float(height[-1])
+    points, weights = _gauss(HEIGHT_TERMS + QUADRATURE_MARGIN)
+    t = np.interp((points + 1) / 2 * top, height, thickness)
+    v = _polynomials(points, HEIGHT_TERMS)
+    dv = _derivatives(points, HEIGHT_TERMS) * 2 / top
+    bending = weights * top / 2 * elastic_modulus * t**3 / (12 * (1 - nu**2))
+    shear = weights * top / 2 * SHEAR_FACTOR * elastic_modulus / (2 * (1 + nu)) * t
+
+    points, weights = _gauss(face_terms)
+    y = _polynomials(points, face_terms)
+    dy = _derivatives(points, face_terms) * 2 / length
+    across = weights * length / 2
+    yy, dydy = _integral(y, y, across), _integral(dy, dy, across)
+    ydy = _integral(y, dy, across)
+    twist = bending * (1 - nu) / 2
+    n = HEIGHT_TERMS * face_terms
+    stiffness = np.zeros((3 * n, 3 * n))
+    w, s, r = slice(0, n), slice(n, 2 * n), slice(2 * n, 3 * n)
+    stiffness[w, w] = _kron(_integral(dv, dv, shear), yy)
+    stiffness[w, w] += _kron(_integral(v, v, shear), dydy)
+    stiffness[s, s] = _kron(_integral(dv, dv, bending) + _integral(v, v, shear), yy)
+    stiffness[s, s] += _kron(_integral(v, v, twist), dydy)
+    stiffness[r, r] = _kron(_integral(v, v, bending), dydy)
+    stiffness[r, r] += _kron(_integral(dv, dv, twist) + _integral(v, v, shear), yy)
+    stiffness[s, w] = -_kron(_integral(v, dv, shear), yy)
+    stiffness[r, w] = -_kron(_integral(v, v, shear), ydy)
+    stiffness[r, s] = _kron(_integral(v, dv, bending * nu), ydy.T)
+    stiffness[r, s] += _kron(_integral(dv, v, twist), ydy)
+    _add_foundation(stiffness, yy, float(thickness[0]), elastic_modulus, nu)
+    for row, column in ((s, w), (r, w), (r, s)):
+        stiffness[column, row] = stiffness[row, column].T
+    return stiffness
+
+
+def _add_foundation(
+    stiffness: FloatArray, yy: FloatArray, root: float, elastic_modulus: float, nu: float
+) -> None:
+    """Add the springs under the root section of thickness `root`. Theory (E2)."""
+    n = HEIGHT_TERMS * len(yy)
+    rotation = ROTATION_CONSTANT * (1 - nu**2) / (elastic_modulus * root**2)
+    coupling = (1 - nu - 2 * nu**2) / (elastic_modulus * root)
+    deflection = DEFLECTION_CONSTANT * (1 - nu**2) / elastic_modulus
+    springs = np.linalg.inv(np.array([[deflection, coupling], [coupling, rotation]]))
+    at_root = _polynomials(np.array([-1.0]), HEIGHT_TERMS)[0]
+    line = _kron(np.outer(at_root, at_root), yy)
+    stiffness[:n, :n] += springs[0, 0] * line
+    stiffness[n : 2 * n, n : 2 * n] += springs[1, 1] * line
+    stiffness[n : 2 * n, :n] += springs[1, 0] * line
+    # the foundation does not twist the root section along the tooth: theta_y follows w there
+    stiffness[2 * n :, 2 * n :] += line / rotation
+
+
+def _integral(a: FloatArray, b: FloatArray, weights: FloatArray) -> FloatArray:
+    """Integrals of products of the columns of `a` and `b`, values at Gauss points."""
+    integral: FloatArray = a.T @ (weights[:, None] * b)
+    return integral
+
+
+def _kron(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(np.kron(a, b), dtype=np.float64)
+
+
+def _gauss(count: int) -> tuple[FloatArray, FloatArray]:
+    """Points and weights of Gauss's quadrature over -1 to 1."""
+    points, weights = legendre.leggauss(count)
+    return np.asarray(points, dtype=np.float64), np.asarray(weights, dtype=np.float64)
+
+
+def _polynomials(points: FloatArray, terms: int) -> FloatArray:
+    """Legendre polynomials, shape (points, terms)."""
+    return np.asarray(legendre.legvander(points, terms - 1), dtype=np.float64)
+
+
+def _derivatives(points: FloatArray, terms: int) -> FloatArray:
+    """Derivatives of the Legendre polynomials, shape (points, terms)."""
+    derivatives = np.zeros((len(points), terms))
+    for term in range(1, terms):
+        coefficients = np.zeros(term + 1)
+        coefficients[term] = 1.0
+        derivatives[:, term] = legendre.legval(points, legendre.legder(coefficients))
+    return derivatives
+
+
+# The rim of a ring gear as an elastic ring under the forces of all planets.
+#
+# The ring is a curved Timoshenko beam, free but for a torque that is held evenly along its outside.
+# With radial and tangential displacement u and v of its middle line and rotation psi of its
+# sections, all anticlockwise or outwards,
+#
+# .. math::
+#
+#    U = \frac R2\int EA\Big(\frac{u + v'}R\Big)^2 + kGA\Big(\frac{u' - v}R + \psi\Big)^2
+#        + EI\Big(\frac{\psi'}R\Big)^2\,\mathrm d\theta .
+#
+# The waves cos(n theta), sin(n theta) are uncoupled, so that its influence function is a sum of
+# inverses of three by three matrices. Evenly spaced equal planets excite only waves whose number is
+# a multiple of theirs.
+
+
+@dataclass(frozen=True, slots=True)
+class Rim:
+    """The rim that carries the teeth of a ring gear."""
+
+    thickness: float  # From root to outside. [m]
+    loads: int = 1  # Planets that load it, taken as evenly spaced and equal.
+
+
+@dataclass(frozen=True, slots=True)
+class ElasticRing:
+    """A circular ring of rectangular section."""
+
+    radius: float  # Radius of its middle line. [m]
+    thickness: float  # [m]
+    width: float  # [m]
+    modulus: float  # [Pa], [1]
+    poisson_ratio: float  # [Pa], [1]
+
+    @property
+    def shear_stiffness(self) -> float:
+        """k G A. [N]"""
+        shear_modulus = self.modulus / (2 * (1 + self.poisson_ratio))
+        return SHEAR_FACTOR * shear_modulus * self.thickness * self.width
+
+    def influence(
+        self,
+        angle: FloatArray,  # From the force, anticlockwise. [rad]
+        # Number of evenly spaced forces (outwards, anticlockwise) and moments (anticlockwise).
+        loads: int,
+    ) -> FloatArray:
+        """Displacement (u, v, psi) at `angle` from one of `loads` equal forces (W, T, M).
+
+        Waves shorter than the thickness of the ring are left out: they belong to the foundation
+        of the tooth. One wave around the ring moves it as a whole, which its support prevents.
+
+        Theory (E6).
+
+        Returns
+        -------
+        ndarray, shape (..., 3, 3)
+            [m/N], [1/N], [1/(N m)]
+        """
+        influence = np.broadcast_to(loads * self._even(), (*angle.shape, 3, 3)).copy()
+        shortest = math.floor(2 * math.pi * self.radius / self.thickness)
+        waves = np.arange(loads, shortest + 1, loads)
+        for n in waves[waves > 1]:
+            flexibility = loads * np.linalg.inv(self._stiffness(int(n)))
+            cosine, sine = np.cos(n * angle), np.sin(n * angle)
+            influence += cosine[..., None, None] * np.where(_EVEN, flexibility, 0.0)
+            influence += sine[..., None, None] * np.where(_EVEN, 0.0, flexibility * _ODD_SIGN)
+        return influence
+
+    def _stiffness(self, n: int) -> FloatArray:
+        """Stiffness of the waves u = U cos, v = V sin, psi = Psi sin of n theta. [N/m, N, N m]"""
+        r = self.radius
+        stretch = np.array([1.0, n, 0.0]) / r
+        shear = np.array([-n / r, -1 / r, 1.0])
+        bending = np.array([0.0, 0.0, n / r])
+        area = self.thickness * self.width
+        stiffness: FloatArray = (
+            math.pi
+            * r
+            * (
+                self.modulus * area * np.outer(stretch, stretch)
+                + self.shear_stiffness * np.outer(shear, shear)
+                + self.modulus * area * self.thickness**2 / 12 * np.outer(bending, bending)
+            )
+        )
+        return stiffness
+
+    def _even(self) -> FloatArray:
+        """Flexibility of the even part: stretching by W, shear by T and M against the outside."""
+        around = 2 * math.pi * self.radius
+        flexibility = np.zeros((3, 3))
+        area = self.thickness * self.width
+        flexibility[0, 0] = self.radius**2 / (around * self.modulus * area)
+        turn = np.array([-self.thickness / 2, 1.0])  # v and psi with the outside held
+        sheared = 1 + self.thickness / (2 * self.radius)
+        flexibility[1:, 1:] = np.outer(turn, turn) / (around * self.shear_stiffness * sheared**2)
+        return flexibility
+
+
+# (W, u) and (T, M; v, psi) go together with the cosine, the others with the sine
+_EVEN = np.array([[True, False, False], [False, True, True], [False, True, True]])
+_ODD_SIGN = np.array([[0.0, -1.0, -1.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+
+
+def rim_coupling(
+    mesh: Mesh,  # Its member 2 is the ring gear.
+    lines: ContactLines,
+    rim: Rim,
+    modulus: float,  # [Pa], [1]
+    poisson_ratio: float,  # [Pa], [1]
+) -> FloatArray:
+    """Deflection along the normal at each contact line under a unit force on each.
+
+    The force of a line acts at its middle, in the plane of action; the tooth is rigid here.
+
+    Theory (E7).
+
+    Returns
+    -------
+    ndarray, shape (positions, lines, lines)
+        [m/N]
+    """
+    gear = mesh.gear2
+    ring = ElasticRing(
+        gear.root_radius + rim.thickness / 2, rim.thickness, gear.face_width, modulus, poisson_ratio
+    )
+    rho1 = np.clip(lines.curvature1.mean(axis=2), mesh.path_start, mesh.path_end)
+    rho2 = mesh.curvature2(rho1)
+    # x from the axis of the ring to that of the pinion, y in the direction of the force
+    alpha = mesh.operating_pressure_angle
+    foot = gear.base_radius * np.array([math.cos(alpha), -math.sin(alpha)])
+    direction = np.array([math.sin(alpha), math.cos(alpha)])
+    x = foot[0] + rho2 * direction[0]
+    y = foot[1] + rho2 * direction[1]
+    tooth = np.arctan2(y, x) + gear.half_angles_at(rho2)
+    radial = direction[0] * np.cos(tooth) + direction[1] * np.sin(tooth)
+    tangential = direction[1] * np.cos(tooth) - direction[0] * np.sin(tooth)
+    # torque about the axis is the base radius; what the tangential force leaves of it is a moment
+    moment = gear.base_radius - tangential * ring.radius
+    load = np.stack([radial, tangential, moment], axis=-1)
+    angle = tooth[:, :, None] - tooth[:, None, :]
+    influence = ring.influence(angle, rim.loads)
+    transverse = np.einsum("mia,mijab,mjb->mij", load, influence, load)
+    coupling: FloatArray = math.cos(gear.rack.base_helix_angle) ** 2 * transverse
+    return coupling
+
+
+# Influence coefficients of a mesh.
+#
+# The coefficients depend on geometry and materials only; every load is solved with the same ones.
+
+
+FACE_TERMS_PER_HEIGHT = 2.5
+"""Polynomials along a tooth for each tooth height in its length: shorter ones decay fast. [1]"""
+FACE_TERMS_LIMITS = (8, 40)
+KEPT_MESHES = 8
+"""Meshes whose coefficients are kept: those of a few gear sets, as sweeps put cases of one set next
+to each other. One takes 0.25 MB with the default resolution, and 120 MB with the largest."""
+
+
+@dataclass(frozen=True, slots=True)
+class GearBody:
+    """What makes a gear yield beside its geometry."""
+
+    modulus: float  # [Pa], [1]
+    poisson_ratio: float  # [Pa], [1]
+    tool: Tool | None = None  # The tool that leaves the root fillet; None for `default_tool`.
+    rim: Rim | None = None  # Rim of a ring gear; None for a body that only yields under each tooth.
+
+    @property
+    def surface_compliance(self) -> float:
+        """2 (1 - nu^2)/(pi E), of the local deflection. [m^2/N]"""
+        return 2 * (1 - self.poisson_ratio**2) / (math.pi * self.modulus)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeshCompliance:
+    """Influence coefficients of all contact lines of a mesh at all mesh positions."""
+
+    lines: ContactLines
+    # Approach at one segment under unit force on another of its line, both teeth. [m/N]
+    influence: FloatArray
+    coupling: FloatArray  # Approach at one line under unit force on another, from the rim. [m/N]
+    local_a: FloatArray  # A of the local deflection q (A - B ln(q)/2), q in N/m. [m^2/N]
+    local_b: float  # B of it. [m^2/N]
+
+
+@lru_cache(maxsize=KEPT_MESHES)
+def mesh_compliance(
+    mesh: Mesh,
+    body1: GearBody,
+    body2: GearBody,
+    positions: int,  # As for `contact_lines`.
+    segments: int,  # As for `contact_lines`.
+) -> MeshCompliance:
+    """Influence coefficients of `mesh`, shared by all loads.
+
+    Theory (E4).
+
+    Raises
+    ------
+    ConvergenceError
+        If the stiffness of a tooth cannot be inverted.
+    ValueError
+        If no tool generates a tooth.
+    """
+    with one_thread():
+        return _coefficients(mesh, body1, body2, contact_lines(mesh, positions, segments))
+
+
+def _coefficients(
+    mesh: Mesh, body1: GearBody, body2: GearBody, lines: ContactLines
+) -> MeshCompliance:
+    shape = lines.length.shape
+    influence = np.zeros((*shape, shape[-1]))
+    # lines that are not in contact lie beyond the path of contact: any place on it serves for them
+    rho1 = np.clip(lines.curvature1, mesh.path_start, mesh.path_end)
+    modulus = equivalent_modulus(
+        body1.modulus, body1.poisson_ratio, body2.modulus, body2.poisson_ratio
+    )
+    log_width = np.log(hertz_half_width(np.ones(shape), mesh.equivalent_radius(rho1), modulus))
+    local_a = np.zeros(shape)
+    members = ((mesh.gear1, body1, rho1), (mesh.gear2, body2, mesh.curvature2(rho1)))
+    for gear, body, curvature in members:
+        plate = _plate(gear, body)
+        overhang = (gear.face_width - mesh.face_width) / 2
+        face = (lines.face_position + overhang) / gear.face_width
+        amplitudes = plate.amplitudes(curvature.ravel(), face.ravel()).reshape(*shape, -1)
+        influence += amplitudes @ amplitudes.swapaxes(-1, -2)
+        nu = body.poisson_ratio
+        depth = plate.depth(curvature.ravel()).reshape(shape)
+        local_a += body.surface_compliance * (np.log(2 * depth) - log_width - nu / (2 * (1 - nu)))
+    local_b = body1.surface_compliance + body2.surface_compliance
+    coupling = np.zeros((*shape[:2], shape[1]))
+    if body2.rim is not None:
+        coupling += rim_coupling(mesh, lines, body2.rim, body2.modulus, body2.poisson_ratio)
+    for array in (influence, coupling, local_a):
+        array.flags.writeable = False
+    return MeshCompliance(lines, influence, coupling, local_a, local_b)
+
+
+def _plate(gear: Gear, body: GearBody) -> ToothPlate:
+    depth = abs(gear.tip_radius - gear.root_radius)
+    terms = round(FACE_TERMS_PER_HEIGHT * gear.face_width / depth)
+    low, high = FACE_TERMS_LIMITS
+    try:
+        return tooth_plate(
+            gear,
+            body.modulus,
+            body.poisson_ratio,
+            min(max(terms, low), high),
+            default_tool(gear) if body.tool is None else body.tool,
+        )
+    except np.linalg.LinAlgError as error:
+        raise ConvergenceError(
+            f"the stiffness of a tooth of the {gear.name} cannot be inverted; use "
+            'models.load_distribution = "uniform".'
+        ) from error

@@ -1,0 +1,237 @@
+"""Line contacts of gear flanks and rollers, with the oil in them, for losses, fits and solver."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.kernels.line_contact import (
+    hertz_half_width,
+    hertz_pressure,
+    line_load_at_pressure,
+    pan_hamrock_minimum_film,
+)
+from epicyclic.oil.properties import OilState
+
+FloatArray = NDArray[np.float64]
+Real = TypeVar("Real", float, FloatArray)
+
+CONDITIONS = (
+    "slide_to_roll_ratio",
+    "rolling_speed",
+    "radius",
+    "hertz_pressure",
+    "roughness1",
+    "roughness2",
+    "dynamic_viscosity",
+    "pressure_viscosity",
+)
+"""What a contact between given materials is determined by: the domain of a fit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Flanks(Generic[Real]):
+    """The two surfaces in contact: flanks of teeth, or race and roller."""
+
+    equivalent_modulus: float  # E_eq. [Pa]
+    roughness1: Real  # rms. [m]
+    roughness2: Real  # rms. [m]
+
+    @property
+    def composite_roughness(self) -> Real:
+        """sqrt(Rq1^2 + Rq2^2). Theory (C12). [m]"""
+        roughness: Real = np.hypot(self.roughness1, self.roughness2)
+        return roughness
+
+    @property
+    def reduced_roughness(self) -> Real:
+        """Rq1 Rq2/(Rq1 + Rq2). Talbot (2012), p. 137. Theory (C13). [m]"""
+        return self.roughness1 * self.roughness2 / (self.roughness1 + self.roughness2)
+
+
+@dataclass(frozen=True, slots=True)
+class InletOil:
+    """As much of an `OilState` as contacts need, also with one value for each contact."""
+
+    dynamic_viscosity: FloatArray  # [Pa s]
+    pressure_viscosity: FloatArray  # alpha. [1/Pa]
+    temperature: float = math.nan  # Not a number where it is not known. [K]
+
+
+@dataclass(frozen=True, eq=False)
+class LineContacts:
+    """Line contacts, one for each entry of the arrays, all of shape (n,).
+
+    Theory (O1).
+    """
+
+    line_load: FloatArray  # W'. [N/m]
+    radius: FloatArray  # Equivalent radius of curvature in the normal section. [m]
+    rolling_speed: FloatArray  # u_r = (u1 + u2)/2. [m/s]
+    sliding_speed: FloatArray  # u_s = u1 - u2. [m/s]
+    flanks: Flanks[Any]  # The surfaces, alike for all contacts or with one roughness for each.
+    oil: OilState | InletOil  # At the temperature of these contacts.
+
+    @cached_property
+    def slide_to_roll_ratio(self) -> FloatArray:
+        """abs(u_s)/u_r. Theory (C4). [1]"""
+        ratio: FloatArray = np.abs(self.sliding_speed) / self.rolling_speed
+        return ratio
+
+    @cached_property
+    def hertz_pressure(self) -> FloatArray:
+        """p_h. [Pa]"""
+        return hertz_pressure(self.line_load, self.radius, self.flanks.equivalent_modulus)
+
+    @cached_property
+    def hertz_half_width(self) -> FloatArray:
+        """b_h. [m]"""
+        return hertz_half_width(self.line_load, self.radius, self.flanks.equivalent_modulus)
+
+    @property
+    def flattening(self) -> FloatArray:
+        """b_h/R_eq, that of Hertz's theory far below 1. [1]"""
+        flattening: FloatArray = self.hertz_half_width / self.radius
+        return flattening
+
+    @property
+    def surface_speeds(self) -> tuple[FloatArray, FloatArray]:
+        """u_1 and u_2 across the contact. [m/s]"""
+        half = self.sliding_speed / 2
+        return self.rolling_speed + half, self.rolling_speed - half
+
+    @property
+    def temperature(self) -> float:
+        """Temperature of the oil at the contacts. [K]"""
+        return self.oil.temperature
+
+    @property
+    def dynamic_viscosity(self) -> Any:
+        """Dynamic viscosity of the oil at the inlet of the contacts. [Pa s]"""
+        return self.oil.dynamic_viscosity
+
+    @property
+    def pressure_viscosity(self) -> Any:
+        """Pressure-viscosity coefficient of the oil. [1/Pa]"""
+        return self.oil.pressure_viscosity
+
+    @property
+    def roughness1(self) -> Any:
+        """rms roughness of the first surface. [m]"""
+        return self.flanks.roughness1
+
+    @property
+    def roughness2(self) -> Any:
+        """rms roughness of the second surface. [m]"""
+        return self.flanks.roughness2
+
+    @property
+    def roughness(self) -> tuple[Any, Any]:
+        """rms roughness of both surfaces. [m]"""
+        return self.flanks.roughness1, self.flanks.roughness2
+
+    @property
+    def composite_roughness(self) -> Any:
+        """sqrt(Rq1^2 + Rq2^2). [m]"""
+        return self.flanks.composite_roughness
+
+    @cached_property
+    def speed_number(self) -> FloatArray:
+        """U = u_r mu/(E_eq R_eq). Theory (C7). [1]"""
+        number: FloatArray = (
+            self.rolling_speed
+            * self.dynamic_viscosity
+            / (self.flanks.equivalent_modulus * self.radius)
+        )
+        return number
+
+    @property
+    def material_number(self) -> Any:
+        """G = alpha E_eq. Theory (C8). [1]"""
+        return self.pressure_viscosity * self.flanks.equivalent_modulus
+
+    @cached_property
+    def load_number(self) -> FloatArray:
+        """W = W'/(E_eq R_eq). Theory (C9). [1]"""
+        number: FloatArray = self.line_load / (self.flanks.equivalent_modulus * self.radius)
+        return number
+
+    @property
+    def moes_load(self) -> FloatArray:
+        """M = W/sqrt(2 U), the load parameter of Moes. Theory (R8). [1]"""
+        parameter: FloatArray = self.load_number / np.sqrt(2 * self.speed_number)
+        return parameter
+
+    @cached_property
+    def minimum_film(self) -> FloatArray:
+        """h_min of the smooth contact (Pan and Hamrock). Theory (C10). [m]"""
+        film: FloatArray = self.radius * pan_hamrock_minimum_film(
+            self.speed_number, self.material_number, self.load_number
+        )
+        return film
+
+    @cached_property
+    def film_ratio(self) -> FloatArray:
+        """Lambda = h_min/sqrt(Rq1^2 + Rq2^2). Theory (C14). [1]"""
+        ratio: FloatArray = self.minimum_film / self.composite_roughness
+        return ratio
+
+    def conditions(self) -> dict[str, Any]:
+        """The `CONDITIONS`, with the sign of the slip: which surface is faster."""
+        values = {name: getattr(self, name) for name in CONDITIONS}
+        return values | {"slide_to_roll_ratio": self.sliding_speed / self.rolling_speed}
+
+    def changed(self, **conditions: FloatArray) -> LineContacts:
+        """The contacts with other values of some of the `CONDITIONS`, the others as they are."""
+        values = self.conditions() | conditions
+        return contacts_at(**values, equivalent_modulus=self.flanks.equivalent_modulus)
+
+    def taken(self, index: Any) -> LineContacts:
+        """Some of the contacts, each of which has a value of every condition."""
+        return self.changed(**{name: value[index] for name, value in self.conditions().items()})
+
+    def held(self, limits: Mapping[str, tuple[float | None, float | None]]) -> LineContacts:
+        """With the conditions that have `limits` held within them. Theory (F5), (O2)."""
+        held = {name: _between(getattr(self, name), *pair) for name, pair in limits.items()}
+        if "slide_to_roll_ratio" in held:
+            held["slide_to_roll_ratio"] = np.copysign(
+                held["slide_to_roll_ratio"], self.sliding_speed
+            )
+        return self.changed(**held)
+
+
+def _between(value: Any, low: float | None, high: float | None) -> Any:
+    """`value`, an array or a number, held between limits."""
+    if isinstance(value, np.ndarray):
+        return np.clip(value, low, high)  # of a number it takes ten times as long as what follows
+    value = value if low is None else max(value, low)
+    return value if high is None else min(value, high)
+
+
+def contacts_at(
+    *,
+    slide_to_roll_ratio: FloatArray,
+    rolling_speed: FloatArray,
+    radius: FloatArray,
+    hertz_pressure: FloatArray,
+    roughness1: FloatArray,
+    roughness2: FloatArray,
+    dynamic_viscosity: FloatArray,
+    pressure_viscosity: FloatArray,
+    equivalent_modulus: float,
+) -> LineContacts:
+    """Contacts under given `CONDITIONS`, SI. Theory (O1)."""
+    return LineContacts(
+        line_load=line_load_at_pressure(hertz_pressure, radius, equivalent_modulus),
+        radius=radius,
+        rolling_speed=rolling_speed,
+        sliding_speed=slide_to_roll_ratio * rolling_speed,
+        flanks=Flanks(equivalent_modulus, roughness1, roughness2),
+        oil=InletOil(dynamic_viscosity, pressure_viscosity),
+    )

@@ -1,0 +1,264 @@
+"""Temperatures of tooth contacts: flash after Blok, bulk after ISO/TS 6336, and solids."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+# Solids that store and conduct heat.
+
+
+@dataclass(frozen=True, slots=True)
+class Solid:
+    """What a body is made of."""
+
+    conductivity: float  # [W/(m K)]
+    heat_capacity: float  # [J/(kg K)]
+    density: float  # [kg/m^3]
+
+    @property
+    def effusivity(self) -> float:
+        """sqrt(k rho c), as a surface takes up the heat of a contact. [W s^0.5/(m^2 K)]"""
+        return effusivity(self.conductivity, self.heat_capacity, self.density)
+
+
+# Flash temperature of sliding line contacts, and how its heat is shared, after Blok.
+
+
+FloatArray = NDArray[np.float64]
+Numbers = FloatArray | float
+
+
+def effusivity(
+    conductivity: float,  # [W/(m K)]
+    heat_capacity: float,  # [J/(kg K)]
+    density: float,  # [kg/m^3]
+) -> float:
+    """Thermal effusivity e = sqrt(k c rho) of a solid. [W s^0.5/(m^2 K)]
+
+    Theory (W1).
+
+    The square root of the thermal contact coefficient B_M of ISO/TS 6336-20 to -22.
+
+    Examples
+    --------
+    Case-hardened steel:
+
+    >>> round(effusivity(45.0, 440.0, 7800.0))
+    12427
+    """
+    return math.sqrt(conductivity * heat_capacity * density)
+
+
+def flash_temperature(
+    friction: Numbers,  # Coefficient of friction mu. [1]
+    line_load: Numbers,  # W'. [N/m]
+    sliding_speed: Numbers,  # u_s, of either sign. [m/s]
+    speed1: Numbers,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
+    speed2: Numbers,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
+    half_width: Numbers,  # b of Hertz. [m]
+    effusivity1: float,  # [W s^0.5/(m^2 K)]
+    effusivity2: float,  # [W s^0.5/(m^2 K)]
+) -> FloatArray:
+    """Largest rise of the surface temperature in a line contact above that of the bodies. [K]
+
+    Theory (W2).
+
+    H. Blok (1937), as in ISO/TS 6336-22, second hand: the heat mu W' |u_s| spread evenly over the
+    width of Hertz, shared so that both surfaces are equally hot. The bodies are half-spaces that
+    move fast: u b/kappa above about 10 for each, kappa its thermal diffusivity. Arguments are
+    numbers or arrays, point by point; 0 without load or speed.
+
+    Examples
+    --------
+    >>> rise = flash_temperature(0.05, 200e3, 3.0, 8.0, 5.0, 0.2e-3, 12.4e3, 12.4e3)
+    >>> round(float(rise), 1)
+    27.0
+    """
+    carried = effusivity1 * np.sqrt(np.abs(speed1)) + effusivity2 * np.sqrt(np.abs(speed2))
+    heat = friction * line_load * np.abs(sliding_speed)
+    scale = carried * np.sqrt(half_width)
+    out = np.zeros(np.broadcast(heat, scale).shape)
+    rise: FloatArray = np.divide(heat, scale, out=out, where=scale > 0)
+    return math.sqrt(2 / math.pi) * rise
+
+
+def heat_share(
+    speed1: Numbers,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
+    speed2: Numbers,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
+    effusivity1: float,  # [W s^0.5/(m^2 K)]
+    effusivity2: float,  # [W s^0.5/(m^2 K)]
+) -> FloatArray:
+    """Share of the frictional heat that goes into body 1. [1]
+
+    Theory (W3).
+
+    H. Blok (1937). With both surfaces at rest it is the limit of equal speeds.
+
+    Examples
+    --------
+    >>> round(float(heat_share(8.0, 2.0, 12.4e3, 12.4e3)), 3)
+    0.667
+    """
+    into1 = effusivity1 * np.sqrt(np.abs(speed1))
+    total = into1 + effusivity2 * np.sqrt(np.abs(speed2))
+    at_rest = np.full(np.shape(total), effusivity1 / (effusivity1 + effusivity2))
+    share: FloatArray = np.divide(into1, total, out=at_rest, where=total > 0)
+    return share
+
+
+# Bulk temperature of gears above the oil after ISO/TS 6336-20, -21 and -22, second hand.
+#
+# The three rises are estimates of one quantity, made for pairs of gears. The loss factor of
+# ISO/TS 6336-22 is that of Ohlendorf, `epicyclic.losses.mesh.ohlendorf_loss_factor`.
+
+
+LUBRICATION_FACTORS: Mapping[str, float] = MappingProxyType(
+    {"spray": 1.2, "dip": 1.0, "spray-and-dip": 1.0, "submerged": 0.2}
+)
+"""X_S of ISO/TS 6336-20 to -22, second hand; submerged with sufficient cooling. [1]"""
+
+MM = 1e3
+"""Millimetres in a metre."""
+MICROMETRE = 1e6
+"""Micrometres in a metre."""
+
+
+def iso_mean_friction(
+    # Transverse tangential force on the base circle over the face width, with the load factors.
+    # [N/m]
+    line_load: float,
+    sum_speed: float,  # Sum of the surface speeds at the pitch point, 2 v_t sin(alpha_wt). [m/s]
+    radius: float,  # Equivalent radius of curvature at the pitch point, normal section. [m]
+    viscosity: float,  # Viscosity of the oil at its inlet temperature, dynamic. [Pa s]
+    roughness_factor: float,  # X_R, from `roughness_factor`. [1]
+    # X_L: mineral oil 1.0, PAO and ester 0.8, polyglycol 0.7, phosphate ester 0.75. [1]
+    lubricant_factor: float,
+) -> float:
+    """Mean coefficient of friction of ISO/TS 6336-22, second hand. [1]
+
+    Theory (W5).
+
+    Examples
+    --------
+    >>> rough = roughness_factor(0.5e-6, 8.38e-3)
+    >>> round(mean_friction(560e3, 6.58, 8.38e-3, 12e-3, rough, 1.0), 4)
+    0.0687
+    """
+    group = line_load / MM / (sum_speed * radius * MM)  # N/mm, m/s, mm
+    thin = math.pow(viscosity * 1e3, -0.05)  # mPa s
+    return 0.045 * math.pow(group, 0.2) * thin * roughness_factor * lubricant_factor
+
+
+def roughness_factor(
+    roughness: float,  # Ra, mean of both flanks. [m]
+    radius: float,  # Equivalent radius of curvature at the pitch point, normal section. [m]
+) -> float:
+    """X_R = 2.2 (Ra/rho)^0.25 of ISO/TS 6336-22, um and mm, second hand. [1]
+
+    Theory (W5).
+
+    Examples
+    --------
+    >>> round(roughness_factor(0.5e-6, 8.38e-3), 3)
+    1.087
+    """
+    return 2.2 * math.pow(roughness * MICROMETRE / (radius * MM), 0.25)
+
+
+def relief_factor(
+    # The greater of eps_1 and eps_2, parts of the transverse contact ratio. [1]
+    tip_contact_ratio: float,
+    # Tip relief over the one that takes up the deflection of the teeth, C_a/C_eff, at most 1. [1]
+    relief_share: float,
+) -> float:
+    """X_Ca of ISO/TS 6336-22, second hand: tip relief cools. [1]
+
+    Theory (W6).
+
+    For flanks without adequate tip relief the rise is taken with 1 instead.
+
+    Examples
+    --------
+    >>> round(relief_factor(0.8, 1.0), 3)
+    1.646
+    """
+    linear = 0.06 + 0.18 * relief_share
+    square = 0.02 + 0.69 * relief_share
+    return 1 + linear * tip_contact_ratio + square * tip_contact_ratio**2
+
+
+def bulk_rise_of_loss(
+    loss: float,  # Load-dependent loss of the mesh, P mu_m H_V. [W]
+    center_distance: float,  # [m]
+    face_width: float,  # [m]
+    lubrication_factor: float,  # X_S, one of `LUBRICATION_FACTORS`. [1]
+    relief_factor: float = 1.0,  # X_Ca. [1]
+) -> float:
+    """Bulk temperature above that of the oil, ISO/TS 6336-22, second hand. [K]
+
+    Theory (W4).
+
+    Examples
+    --------
+    The gears C-GF of the FZG test rig at load stage 10, sprayed:
+
+    >>> loss = 62.46e3 * 0.0687 * 0.19496
+    >>> round(bulk_rise_of_loss(loss, 91.5e-3, 14e-3, LUBRICATION_FACTORS["spray"]), 1)
+    37.7
+    """
+    density = loss / 1e3 / (center_distance * MM * face_width * MM)  # kW/mm^2
+    return 7400 * math.pow(density, 0.72) * lubrication_factor / (1.2 * relief_factor)
+
+
+def bulk_rise_of_flash(
+    mean_flash: float,  # Flash temperature, mean along the path of contact. [K]
+    lubrication_factor: float,  # X_S, one of `LUBRICATION_FACTORS`. [1]
+    mates: int = 1,  # How many gears are in mesh with this one.
+) -> float:
+    """Bulk temperature above that of the oil, ISO/TS 6336-20, second hand. [K]
+
+    Theory (W7).
+
+    Examples
+    --------
+    A sun among three planets, sprayed:
+
+    >>> round(bulk_rise_of_flash(20.0, LUBRICATION_FACTORS["spray"], mates=3), 2)
+    22.56
+    """
+    return 0.47 * lubrication_factor * mates_factor(mates) * mean_flash
+
+
+def mates_factor(mates: int) -> float:
+    """X_mp = (1 + n_p)/2 of ISO/TS 6336-20 for a gear with n_p mates, second hand. [1]
+
+    Theory (W7).
+
+    Examples
+    --------
+    >>> mates_factor(3)
+    2.0
+    """
+    return (1 + mates) / 2
+
+
+def bulk_rise_of_integral_flash(
+    integral_flash: float,  # Mean flash temperature of the integral temperature method. [K]
+    lubrication_factor: float,  # X_S, one of `LUBRICATION_FACTORS`. [1]
+) -> float:
+    """Bulk temperature above that of the oil, ISO/TS 6336-21, second hand. [K]
+
+    Theory (W8).
+
+    Examples
+    --------
+    >>> round(bulk_rise_of_integral_flash(20.0, LUBRICATION_FACTORS["dip"]), 2)
+    14.0
+    """
+    return 0.70 * lubrication_factor * integral_flash

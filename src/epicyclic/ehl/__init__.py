@@ -1,1 +1,0 @@
-"""Elastohydrodynamic line contacts solved numerically."""

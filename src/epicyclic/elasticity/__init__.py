@@ -1,1 +1,0 @@
-"""Compliance of gear teeth: bending of a tooth as a plate, its foundation, and the contact."""

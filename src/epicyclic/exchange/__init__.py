@@ -1,1 +1,0 @@
-"""Cases and results in the formats of other programs."""

@@ -1,1 +1,0 @@
-"""REXS, the Reusable Engineering EXchange Standard (rexs.info): read into cases, results back."""

@@ -1,0 +1,407 @@
+"""The mesh of two gears, the profile shifts that close it, and how planets fit around it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.gears.gear import BasicRack, Gear, inverse_involute, involute
+
+# The mesh of two gears: operating pressure angle, path of contact, contact ratios, clearances.
+#
+# Member 1 is always external: the sun of a sun-planet mesh, the planet of a planet-ring mesh, the
+# pinion of a pair. The position on the path of contact is the transverse radius of curvature of
+# member 1, measured on the line of action from its base circle. Symbols follow ISO 21771.
+
+
+Real = TypeVar("Real", float, NDArray[np.float64])
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Two gears in mesh."""
+
+    name: str  # ``"sun mesh"``, ``"ring mesh"`` or ``"mesh"``.
+    gear1: Gear  # Member 1 is external; member 2 external or internal.
+    gear2: Gear  # Member 1 is external; member 2 external or internal.
+    center_distance: float  # [m]
+
+    @property
+    def internal(self) -> bool:
+        """True if member 2 is a ring."""
+        return self.gear2.internal
+
+    @property
+    def ratio(self) -> float:
+        """u = z2 / z1, positive. [1]"""
+        return self.gear2.teeth / self.gear1.teeth
+
+    @property
+    def side(self) -> int:
+        """+1 for an external mesh, -1 for an internal one: the sign of member 2 in sums."""
+        return -1 if self.internal else 1
+
+    @cached_property
+    def operating_pressure_angle(self) -> float:
+        """alpha_wt from cos(alpha_wt) = (r_b2 +- r_b1)/a. ISO 21771. Theory (G13). [rad]"""
+        bases = self.gear2.base_radius + self.side * self.gear1.base_radius
+        return math.acos(bases / self.center_distance)
+
+    @cached_property
+    def operating_radius1(self) -> float:
+        """r_w1 = a z1/(z2 +- z1). Theory (G14). [m]"""
+        z1, z2 = self.gear1.teeth, self.gear2.teeth
+        return self.center_distance * z1 / (z2 + self.side * z1)
+
+    @property
+    def operating_radius2(self) -> float:
+        """r_w2 = r_w1 u. Theory (G14). [m]"""
+        return self.operating_radius1 * self.ratio
+
+    @property
+    def operating_helix_tangent(self) -> float:
+        """tan(beta_w) = tan(beta) r_w/r, the same for both members. Theory (G15). [1]"""
+        gear = self.gear1
+        return math.tan(gear.rack.helix_angle) * self.operating_radius1 / gear.reference_radius
+
+    @cached_property
+    def line_of_action(self) -> float:
+        """Distance of the two points where the line of action touches the base circles. [m]
+
+        Theory (G16).
+        """
+        return self.center_distance * math.sin(self.operating_pressure_angle)
+
+    def curvature2(self, curvature1: Real) -> Real:
+        """Transverse radius of curvature of member 2 where member 1 has `curvature1`. [m]
+
+        Theory (G16).
+        """
+        return self.line_of_action - self.side * curvature1
+
+    def equivalent_radius(self, curvature1: Real) -> Real:
+        """Equivalent radius of curvature in the normal section. [m]
+
+        Theory (C3).
+
+        Litvin and Fuentes, Gear Geometry and Applied Theory: the curvature of an involute helicoid
+        across its contact line is that of the transverse section times cos(beta_b).
+        """
+        curvature2 = self.curvature2(curvature1)
+        transverse = curvature1 * curvature2 / (curvature2 + self.side * curvature1)
+        radius: Real = transverse / math.cos(self.gear1.rack.base_helix_angle)
+        return radius
+
+    @cached_property
+    def path_start(self) -> float:
+        """Radius of curvature of member 1 where the tip form circle of member 2 is in contact. [m]
+
+        Theory (G17).
+        """
+        return self.side * (self.line_of_action - self.gear2.tip_form_involute_length)
+
+    @cached_property
+    def path_end(self) -> float:
+        """Radius of curvature of member 1 at its own tip form circle. Theory (G17). [m]"""
+        return self.gear1.tip_form_involute_length
+
+    @cached_property
+    def pitch_point(self) -> float:
+        """Radius of curvature of member 1 at the pitch point. Theory (G18). [m]"""
+        return self.operating_radius1 * math.sin(self.operating_pressure_angle)
+
+    @property
+    def face_width(self) -> float:
+        """Common face width: the smaller one, the other gear reaching beyond it. [m]"""
+        return min(self.gear1.face_width, self.gear2.face_width)
+
+    @cached_property
+    def tip_contact_ratio1(self) -> float:
+        """epsilon_1: the path from the pitch point to the tip of member 1, in base pitches. [1]
+
+        Theory (G19).
+        """
+        return (self.path_end - self.pitch_point) / self.gear1.rack.transverse_base_pitch
+
+    @cached_property
+    def tip_contact_ratio2(self) -> float:
+        """epsilon_2: the path from the tip of member 2 to the pitch point, in base pitches. [1]
+
+        Theory (G19).
+        """
+        return (self.pitch_point - self.path_start) / self.gear1.rack.transverse_base_pitch
+
+    @property
+    def transverse_contact_ratio(self) -> float:
+        """epsilon_alpha = epsilon_1 + epsilon_2. ISO 21771. Theory (G19). [1]"""
+        return self.tip_contact_ratio1 + self.tip_contact_ratio2
+
+    @cached_property
+    def mean_contact_length(self) -> float:
+        """Mean over the mesh period of the length of all contact lines. [m]
+
+        Theory (G40).
+        """
+        area = self.face_width * self.transverse_contact_ratio
+        return area / math.cos(self.gear1.rack.base_helix_angle)
+
+    @cached_property
+    def overlap_ratio(self) -> float:
+        """epsilon_beta = b tan(beta_b)/p_bt. ISO 21771. Theory (G20). [1]"""
+        rack = self.gear1.rack
+        return self.face_width * math.tan(rack.base_helix_angle) / rack.transverse_base_pitch
+
+    @cached_property
+    def backlash(self) -> float:
+        """Circumferential backlash at the operating circles, transverse. ISO 21771. [m]
+
+        Theory (G21).
+        """
+        pitch = 2 * math.pi * self.operating_radius1 / self.gear1.teeth
+        return (
+            pitch
+            - self.gear1.thickness_at(self.operating_radius1)
+            - self.gear2.thickness_at(self.operating_radius2)
+        )
+
+    @property
+    def normal_backlash(self) -> float:
+        """j_bn = j_wt cos(alpha_wt) cos(beta_b), between flanks. ISO 21771. Theory (G47). [m]"""
+        normal = math.cos(self.operating_pressure_angle)
+        return self.backlash * normal * math.cos(self.gear1.rack.base_helix_angle)
+
+    @property
+    def tip_clearance1(self) -> float:
+        """Gap between the tip of member 1 and the root of member 2. Theory (G22). [m]"""
+        if self.internal:
+            return self.gear2.root_radius - self.center_distance - self.gear1.tip_radius
+        return self.center_distance - self.gear1.tip_radius - self.gear2.root_radius
+
+    @property
+    def tip_clearance2(self) -> float:
+        """Gap between the tip of member 2 and the root of member 1. Theory (G22). [m]"""
+        if self.internal:
+            return self.gear2.tip_radius - self.center_distance - self.gear1.root_radius
+        return self.center_distance - self.gear2.tip_radius - self.gear1.root_radius
+
+    @property
+    def radius1_at_start(self) -> float:
+        """Radius on member 1 where contact with the tip of member 2 begins. Theory (G23). [m]"""
+        return math.hypot(self.gear1.base_radius, self.path_start)
+
+    @property
+    def radius2_at_end(self) -> float:
+        """Radius on member 2 where contact with the tip of member 1 ends. Theory (G23). [m]"""
+        return math.hypot(self.gear2.base_radius, self.curvature2(self.path_end))
+
+    @property
+    def tip_passage(self) -> float:
+        """Clearance of the tips of an internal mesh where the tip circles cross, as an angle of
+        member 2; infinite if they do not cross. Negative: tip interference. [rad]
+
+        Theory (G24). Of tips without chamfers, which pass each other closer than chamfered ones.
+
+        Polder (1991); Colbourne, The Geometry of Involute Gears (1987), section 8.
+        """
+        r1, r2, a = self.gear1.tip_radius, self.gear2.tip_radius, self.center_distance
+        if not self.internal or r1 + a <= r2:
+            return math.inf
+        delta1 = math.acos((r2**2 - r1**2 - a**2) / (2 * a * r1))
+        delta2 = math.acos((r2**2 - r1**2 + a**2) / (2 * a * r2))
+        inv1 = involute(self.gear1.pressure_angle_at(r1))
+        inv2 = involute(self.gear2.pressure_angle_at(r2))
+        inv_w = involute(self.operating_pressure_angle)
+        return (delta1 + inv1) / self.ratio - (delta2 + inv2) + (1 - 1 / self.ratio) * inv_w
+
+
+# Profile shifts, centre distance and backlash of a mesh: each from the other two.
+#
+# Tooth numbers are summed with the sign of ISO 21771, in which those of internal gears are
+# negative; profile shifts are positive where they thicken the teeth.
+
+
+def thinning(rack: BasicRack, normal_backlash: float) -> float:
+    """Profile shift taken from a mesh that gives it a normal backlash j_bn [m]. Theory (G45). [1]
+
+    ISO 21771:2007, Eq. 63.
+    """
+    return normal_backlash / (2 * rack.normal_module * math.sin(rack.normal_pressure_angle))
+
+
+def profile_shift_sum(
+    rack: BasicRack,
+    teeth: int,  # z1 + z2, those of an internal gear negative.
+    center_distance: float,  # [m]
+    normal_backlash: float = 0.0,  # [m]
+) -> float:
+    """x1 + x2 at a centre distance. ISO 21771:2007, Eq. 62 and 63. Theory (G44), (G45). [1]
+
+    Raises
+    ------
+    ValueError
+        If the base circles do not let the gears come so close.
+
+    Examples
+    --------
+    >>> import math
+    >>> from epicyclic.gears.gear import BasicRack
+    >>> rack = BasicRack(1.75e-3, math.radians(20.0), 0.0)
+    >>> round(profile_shift_sum(rack, 21 + 43, 56.8e-3), 4)
+    0.4806
+    """
+    cosine = abs(teeth) * rack.transverse_base_pitch / (2 * math.pi * center_distance)
+    if cosine > 1 or teeth == 0:
+        raise ValueError("the base circles do not let the gears come so close")
+    change = involute(math.acos(cosine)) - involute(rack.transverse_pressure_angle)
+    return _sum_for(rack, teeth, change) - thinning(rack, normal_backlash)
+
+
+def _sum_for(rack: BasicRack, teeth: int, change: float) -> float:
+    """x1 + x2 without backlash for a `change` of the involute function. Theory (G44)."""
+    return teeth * change / (2 * math.tan(rack.normal_pressure_angle))
+
+
+def closed_center_distance(
+    rack: BasicRack,
+    teeth: int,  # z1 + z2, those of an internal gear negative.
+    shift_sum: float,  # x1 + x2. [1]
+    normal_backlash: float = 0.0,  # j_bn. [m]
+) -> float:
+    """Centre distance a at which profile shifts leave this backlash. Theory (G44), (G45). [m]
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+
+    Examples
+    --------
+    >>> import math
+    >>> from epicyclic.gears.gear import BasicRack
+    >>> rack = BasicRack(1.75e-3, math.radians(20.0), 0.0)
+    >>> round(1e3 * closed_center_distance(rack, 21 + 43, 0.4380 + 0.0426), 3)
+    56.8
+    """
+    if teeth == 0:
+        raise ValueError("equal numbers of teeth of a ring and its mate")
+    value = involute(rack.transverse_pressure_angle)
+    value += (shift_sum + thinning(rack, normal_backlash)) / _sum_for(rack, teeth, 1.0)
+    if value < 0:
+        raise ValueError("the teeth are too thin for any centre distance")
+    return (
+        abs(teeth) * rack.transverse_base_pitch / (2 * math.pi * math.cos(inverse_involute(value)))
+    )
+
+
+def recommended_backlash(rack: BasicRack, center_distance: float) -> float:
+    """Least normal backlash recommended for industrial gears of steel. Theory (G46). [m]
+
+    ISO/TR 10064-2:1996 (second hand), for pitch-line speeds up to 15 m/s.
+    """
+    return 2 / 3 * (0.06e-3 + 0.0005 * center_distance + 0.03 * rack.normal_module)
+
+
+# Where planets can stand on their carrier, and how near they come to each other.
+#
+# A planet fits between sun and ring only at angles that are multiples of 2 pi/(z_s + z_r) from
+# another one (Lynwander, Gear Drive Systems, 1983, chapter 8; Mueller, Epicyclic Drive Trains,
+# 1982).
+
+
+def are_evenly_spaced(angles: Sequence[float]) -> bool:
+    """Planets at these angles [rad] divide the carrier into equal parts."""
+    ordered = sorted(angle % (2 * math.pi) for angle in angles)
+    step = 2 * math.pi / len(ordered)
+    return all(
+        math.isclose(angle - ordered[0], k * step, abs_tol=1e-9) for k, angle in enumerate(ordered)
+    )
+
+
+def nearest_admissible_angle(angle: float, teeth_sun: int, teeth_ring: int) -> float:
+    """The angle nearest to `angle` at which a planet can be assembled. Theory (K7). [rad]"""
+    step = 2 * math.pi / (teeth_sun + teeth_ring)
+    return round(angle / step) * step
+
+
+def admissible_angles(count: int, teeth_sun: int, teeth_ring: int) -> tuple[float, ...]:
+    """Positions of `count` planets, each the admissible one nearest to equal spacing. [rad]"""
+    return tuple(
+        nearest_admissible_angle(2 * math.pi * planet / count, teeth_sun, teeth_ring)
+        for planet in range(count)
+    )
+
+
+def smallest_planet_gap(
+    angles: Sequence[float], center_distance: float, tip_radius: float
+) -> float:
+    """Smallest distance between the tip circles of neighbouring planets; negative: they overlap.
+
+    Theory (K8).
+
+    Infinite for a single planet. [m]
+    """
+    if len(angles) < 2:
+        return math.inf
+    ordered = sorted(angle % (2 * math.pi) for angle in angles)
+    steps = [b - a for a, b in pairwise(ordered)]
+    steps.append(2 * math.pi - ordered[-1] + ordered[0])
+    chord = min(2 * center_distance * math.sin(step / 2) for step in steps)
+    return chord - 2 * tip_radius
+
+
+def closing_number(
+    # For each mesh the teeth of its gears on planets, by their bodies, and those of its central
+    # gear: negative for a ring gear, 0 between two planets.
+    meshes: Sequence[tuple[Mapping[str, int], int]],
+) -> int:
+    """N: alike planets can stand at multiples of 1/N of a turn from another one. Theory (A6).
+
+    0 if they can stand anywhere.
+    """
+    bodies = dict.fromkeys(body for teeth, _ in meshes for body in teeth)
+    rows = [[*(teeth.get(body, 0) for body in bodies), central] for teeth, central in meshes]
+    for column in range(len(bodies)):
+        held = [row for row in rows if row[column]]
+        rows = [row for row in rows if not row[column]]
+        while len(held) > 1:
+            # Euclid's algorithm with whole rows
+            held.sort(key=lambda row: abs(row[column]))
+            least = held[0]
+            for row in held[1:]:
+                times = row[column] // least[column]
+                row[:] = [a - times * b for a, b in zip(row, least, strict=True)]
+            rows += [row for row in held if not row[column]]
+            held = [row for row in held if row[column]]
+    return math.gcd(*(row[-1] for row in rows))
+
+
+def nearest_places(count: int, number: int) -> tuple[float, ...]:
+    """Angles of `count` planets, multiples of 1/`number` of a turn, nearest to equal spacing. [rad]
+
+    Equally spaced if `number` is 0.
+    """
+    if number % count == 0:
+        return tuple(2 * math.pi * planet / count for planet in range(count))
+    step = 2 * math.pi / number
+    return tuple(step * round(number * planet / count) for planet in range(count))
+
+
+def pin_angle(radius1: float, radius2: float, distance: float) -> float:
+    """Angle at the axis of the set between two pins at a distance from each other. Theory (A4).
+
+    Raises
+    ------
+    ValueError
+        If no triangle has these sides.
+    """
+    cosine = (radius1**2 + radius2**2 - distance**2) / (2 * radius1 * radius2)
+    if abs(cosine) > 1:
+        raise ValueError("no triangle has these sides")
+    return math.acos(cosine)

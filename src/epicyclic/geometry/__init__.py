@@ -1,1 +1,0 @@
-"""Gears, meshes and contact lines as plain numbers."""

@@ -1,0 +1,431 @@
+"""Losses without load: viscous drag of bearings and bodies, churning, oil jets."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Literal
+
+from epicyclic.losses.ranges import OF_THIS_PACKAGE, ModelUse, Range, ValidityFlag, check_ranges
+from epicyclic.oil.properties import MixtureState
+from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, NUMBER
+
+# Load-independent losses of bearings and of bodies turning in the mixture of oil and air.
+
+
+VISCOUS_METHOD = "viscous moment after Palmgren and Harris"
+VISCOUS_SOURCE = "T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991); Talbot (2012), Eq. 5.6"
+DRAG_METHOD = "drag of a disc in the air-oil mixture"
+DRAG_SOURCE = "Seetharaman and Kahraman, Tribol. Trans. 53 (2010) 473; Talbot (2012), Eq. 5.4, 5.5"
+
+LOW_SPEED_LIMIT = 2000.0
+"""nu n in mm^2/s times rpm below which the friction moment is constant (Palmgren)."""
+TRANSITION_REYNOLDS = 5e5
+"""omega r^2/nu at which the flow on the faces turns turbulent, Talbot (2012), Eq. 5.5. [1]"""
+RPM = math.pi / 30
+"""1 rpm in rad/s."""
+
+SPEED_PARAMETER = Range(
+    "speed_parameter", "speed times pitch diameter, rpm mm", None, 1e6, NUMBER, OF_THIS_PACKAGE
+)
+"""Range of the formulas of Palmgren and Harris, which come from tests at moderate speed."""
+_FACES = Range(
+    "reynolds_number",
+    "Reynolds number of the faces",
+    None,
+    1e7,
+    NUMBER,
+    "one-seventh power law of the flat plate, Schlichting, Boundary-Layer Theory",
+)
+_CREEPING = Range(
+    "reynolds_number",
+    "Reynolds number of the faces",
+    70.0,
+    None,
+    NUMBER,
+    "below, a disc in creeping flow, 32/3 mu omega r^3, drags more: Lamb, Hydrodynamics",
+)
+_RIM = Range(
+    "reynolds_number",
+    "Reynolds number of the rim",
+    None,
+    60.0,
+    NUMBER,
+    "laminar flow around a cylinder, Theodorsen and Regier, NACA Report 793 (1944)",
+)
+
+
+def bearing_viscous_loss(
+    factor: float,  # f0. [1]
+    kinematic_viscosity: float,  # Viscosity of the oil, not of the mixture. [m^2/s]
+    speed: float,  # Speed of one ring against the other. [rad/s]
+    pitch_diameter: float,  # d_m. [m]
+) -> float:
+    """Viscous loss of a rolling bearing after Palmgren and Harris. [W]
+
+    Theory (V1).
+
+    M0 = 1e-7 f0 (nu n)^(2/3) d_m^3 for nu n >= 2000, else 160e-7 f0 d_m^3; N mm, mm^2/s, rpm, mm.
+    Talbot (2012), Eq. 5.6 for the first branch; Harris, Rolling Bearing Analysis, 3rd ed. (1991)
+    for both. They differ by 0.8 % where they meet.
+    """
+    rpm = abs(speed) / RPM
+    product = kinematic_viscosity * 1e6 * rpm
+    group = math.pow(product, 2 / 3) if product >= LOW_SPEED_LIMIT else 160.0
+    moment = 1e-7 * factor * group * (pitch_diameter * 1e3) ** 3 * 1e-3
+    return moment * abs(speed)
+
+
+def viscous_flags(where: str, speed: float, pitch_diameter: float) -> tuple[ValidityFlag, ...]:
+    """Flags of `bearing_viscous_loss` in the bearing called `where`."""
+    values = {"speed_parameter": speed_parameter(speed, pitch_diameter)}
+    return check_ranges(ModelUse("bearing_viscous", "harris", where), (SPEED_PARAMETER,), values)
+
+
+def speed_parameter(speed: float, pitch_diameter: float) -> float:
+    """n d_m of a bearing, in rpm mm."""
+    return abs(speed) / RPM * pitch_diameter * 1e3
+
+
+@dataclass(frozen=True, slots=True)
+class DiscDrag:
+    """Drag of a disc."""
+
+    rim: float  # Losses at the rim and at both faces. [W]
+    faces: float  # Losses at the rim and at both faces. [W]
+
+    @property
+    def total(self) -> float:
+        """Loss of the whole disc. [W]"""
+        return self.rim + self.faces
+
+
+def disc_drag(
+    radius: float,  # [m]
+    width: float,  # [m]
+    speed: float,  # Against the housing. [rad/s]
+    mixture: MixtureState,
+) -> DiscDrag:
+    """Drag of a disc in the mixture: rim (Eq. 5.4) and both faces (Eq. 5.5).
+
+    Theory (V3), (V6).
+
+    Seetharaman and Kahraman (2010), Talbot (2012), p. 130. The branches of the face formula do not
+    meet; here the flow is laminar within the radius at which it turns turbulent, and the turbulent
+    branch counts outside that radius only, after Prandtl.
+    """
+    omega = abs(speed)
+    rim = 4 * math.pi * mixture.dynamic_viscosity * width * radius**2 * omega**2
+    if reynolds_number(radius, omega, mixture) <= TRANSITION_REYNOLDS:
+        return DiscDrag(rim, _laminar_faces(radius, omega, mixture))
+    laminar = math.sqrt(TRANSITION_REYNOLDS * mixture.kinematic_viscosity / omega)
+    faces = (
+        _laminar_faces(laminar, omega, mixture)
+        + _turbulent_faces(radius, omega, mixture)
+        - _turbulent_faces(laminar, omega, mixture)
+    )
+    return DiscDrag(rim, faces)
+
+
+def _laminar_faces(radius: float, omega: float, mixture: MixtureState) -> float:
+    """First branch of Talbot (2012), Eq. 5.5. Theory (V4). [W]"""
+    group = math.sqrt(mixture.kinematic_viscosity) * math.pow(omega, 2.5)
+    return 0.41 * math.pi * mixture.density * group * radius**4
+
+
+def _turbulent_faces(radius: float, omega: float, mixture: MixtureState) -> float:
+    """Second branch of Talbot (2012), Eq. 5.5. Theory (V4). [W]"""
+    group = math.pow(mixture.kinematic_viscosity, 0.14) * math.pow(omega, 2.86)
+    return 0.025 * math.pi * mixture.density * group * math.pow(radius, 4.72)
+
+
+def disc_drag_flags(
+    where: str, radius: float, drag: DiscDrag, speed: float, mixture: MixtureState
+) -> tuple[ValidityFlag, ...]:
+    """Flags of the `drag` of the body called `where`, each with the part of it that it concerns."""
+    if drag.total == 0:
+        return ()
+    use = ModelUse("drag", "seetharaman-kahraman", where)
+    values = {"reynolds_number": reynolds_number(radius, speed, mixture)}
+    return check_ranges(use, (_RIM,), values, part=drag.rim / drag.total) + check_ranges(
+        use, (_FACES, _CREEPING), values, part=drag.faces / drag.total
+    )
+
+
+def reynolds_number(radius: float, speed: float, mixture: MixtureState) -> float:
+    """omega r^2/nu. Theory (V5). [1]"""
+    return abs(speed) * radius**2 / mixture.kinematic_viscosity
+
+
+# Churning of parts that dip into an oil sump: Changenet and Velex, and ISO/TR 14179-1.
+
+
+ChurningModel = Literal["changenet-velex", "iso-14179-1"]
+
+GRAVITY = 9.80665
+"""[m/s^2]"""
+SLOW, FAST = 750.0, 1250.0
+"""Acceleration parameter up to which, and from which, flow is of one regime. [m/s^2]"""
+ARRANGEMENT = 0.2
+"""A_g of ISO/TR 14179-1. [1]"""
+LEAST_HELIX = math.radians(10.0)
+"""Smallest helix angle with which ISO/TR 14179-1 computes. [rad]"""
+LEAST_MODULE = 0.7
+"""Transverse module at which its roughness factor is held, before it reaches zero. [mm]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Dipped:
+    """A part that turns about a level axis and dips into oil."""
+
+    radius: float  # Radius of the pitch circle, or of the outside of a part without teeth. [m]
+    tip_radius: float  # [m]
+    width: float  # [m]
+    depth: float  # Depth of its lowest point below the oil at rest. [m]
+    module: float  # Normal module; of a part without teeth, that of the gears beside it. [m]
+    teeth: int = 0  # 0 for a part without teeth.
+    tooth_height: float = 0.0  # [m]
+    # Normal pressure angle and helix angle at the reference circle. [rad]
+    pressure_angle: float = 0.0
+    helix_angle: float = 0.0
+
+    @property
+    def immersed(self) -> float:
+        """Depth over the diameter, 0 to 1. [1]"""
+        return min(max(self.depth / (2 * self.tip_radius), 0.0), 1.0)
+
+    @property
+    def wetted_angle(self) -> float:
+        """Half the angle below the oil, cos(theta) = 1 - 2 h/d_a. Theory (N4). [rad]"""
+        return math.acos(1 - 2 * self.immersed)
+
+
+@dataclass(frozen=True, slots=True)
+class SumpOil:
+    """The oil in a sump."""
+
+    density: float  # [kg/m^3]
+    kinematic_viscosity: float  # [m^2/s]
+    volume: float  # [m^3]
+
+
+@dataclass(frozen=True, slots=True)
+class Churning:
+    """A model of churning."""
+
+    title: str
+    source: str
+    # From a part, its speed in rad/s and the oil to the torque in N m.
+    torque: Callable[[Dipped, float, SumpOil], float]
+
+
+def wetted_area(part: Dipped) -> float:
+    """Surface of a part below the oil at rest: faces, rim and flanks. Theory (N4). [m^2]
+
+    Changenet et al. (2011), second hand: S_m = R^2 (2 theta - sin 2 theta) + 2 R b theta
+    + 2 z theta H b/(pi cos(alpha) cos(beta)), cos(theta) = 1 - h/R.
+
+    Examples
+    --------
+    A spur gear of 30 teeth, module 4 mm, dipped to its axis:
+
+    >>> from math import radians
+    >>> gear = Dipped(0.06, 0.064, 0.03, 0.064, 0.004, 30, 0.009, radians(20))
+    >>> round(1e4 * wetted_area(gear), 1)  # cm^2
+    255.8
+    """
+    theta = part.wetted_angle
+    faces = part.radius**2 * (2 * theta - math.sin(2 * theta))
+    rim = 2 * part.radius * part.width * theta
+    angles = math.cos(part.pressure_angle) * math.cos(part.helix_angle)
+    flanks = 2 * part.teeth * theta * part.tooth_height * part.width / (math.pi * angles)
+    return faces + rim + flanks
+
+
+def acceleration_parameter(part: Dipped, speed: float) -> float:
+    """omega^2 (R b m)^(1/3), which tells the regimes of flow apart. Theory (N6). [m/s^2]
+
+    Changenet et al. (2011), second hand.
+
+    Examples
+    --------
+    >>> round(acceleration_parameter(Dipped(0.06, 0.064, 0.03, 0.02, 0.004), 200.0), 1)
+    772.4
+    """
+    return speed**2 * math.cbrt(part.radius * part.width * part.module)
+
+
+def changenet_velex(
+    part: Dipped,
+    speed: float,  # Against the housing. [rad/s]
+    oil: SumpOil,
+) -> float:
+    """Churning torque after Changenet and Velex (2007), second hand. Theory (N3), (N5). [N m]
+
+    C = rho omega^2 S_m R^3 C_m/2; C_m by the regime of flow, between the two regimes linear in the
+    acceleration parameter.
+
+    Examples
+    --------
+    >>> gear = Dipped(0.06, 0.064, 0.03, 0.032, 0.004, 30, 0.009, 0.349)
+    >>> round(changenet_velex(gear, 150.0, SumpOil(850.0, 40e-6, 2e-3)), 3)
+    0.175
+    """
+    omega = abs(speed)
+    if not (omega**2) or not part.immersed:
+        return 0.0
+    parameter = acceleration_parameter(part, omega)
+    slow = min(max((FAST - parameter) / (FAST - SLOW), 0.0), 1.0)
+    coefficient = slow * _slow_coefficient(part, omega, oil)
+    coefficient += (1 - slow) * _fast_coefficient(part, omega, oil)
+    return oil.density * omega**2 * wetted_area(part) * part.radius**3 * coefficient / 2
+
+
+def _slow_coefficient(part: Dipped, omega: float, oil: SumpOil) -> float:
+    """C_m of the slow regime. Theory (N5). [1]"""
+    reynolds = omega * part.radius * part.width / oil.kinematic_viscosity
+    volume = oil.volume / (2 * part.radius) ** 3
+    root_froude = omega * math.sqrt(part.radius / GRAVITY)  # whose square may be too small
+    return (
+        1.366
+        * math.pow(part.immersed, 0.45)
+        * math.pow(volume, 0.1)
+        * math.pow(root_froude, 2 * -0.6)
+        * math.pow(reynolds, -0.21)
+    )
+
+
+def _fast_coefficient(part: Dipped, omega: float, oil: SumpOil) -> float:
+    """C_m of the fast regime, in which viscosity takes no part. Theory (N5). [1]"""
+    volume = oil.volume / (2 * part.radius) ** 3
+    root_froude = omega * math.sqrt(part.radius / GRAVITY)
+    return (
+        3.644
+        * math.pow(part.immersed, 0.1)
+        * math.pow(volume, -0.35)
+        * math.pow(root_froude, 2 * -0.88)
+        * math.pow(part.width / (2 * part.radius), 0.85)
+    )
+
+
+def iso_14179_1(part: Dipped, speed: float, oil: SumpOil) -> float:
+    """Churning torque of ISO/TR 14179-1, second hand. Theory (N7). [N m]
+
+    Faces 1.474 f_g nu n^3 D^5.7/(A_g 10^26), rim 7.37 f_g nu n^3 D^4.7 L/(A_g 10^26), for gears
+    times R_f/sqrt(tan(beta)), R_f = 7.93 - 4.648/m_t; kW, mm^2/s, rpm, mm. Parameters as for
+    `changenet_velex`.
+
+    Examples
+    --------
+    >>> gear = Dipped(0.06, 0.064, 0.03, 0.032, 0.004, 30, 0.009, 0.349)
+    >>> round(iso_14179_1(gear, 150.0, SumpOil(850.0, 40e-6, 2e-3)), 3)
+    0.295
+    """
+    omega = abs(speed)
+    if not omega:
+        return 0.0
+    diameter, width = 2e3 * part.tip_radius, 1e3 * part.width
+    group = part.immersed * 1e6 * oil.kinematic_viscosity * (omega / RPM) ** 3
+    group /= ARRANGEMENT * 1e26
+    faces = 1.474 * group * math.pow(diameter, 5.7)
+    rim = 7.37 * group * math.pow(diameter, 4.7) * width
+    if part.teeth:
+        module = max(1e3 * part.module / math.cos(part.helix_angle), LEAST_MODULE)
+        rim *= (7.93 - 4.648 / module) / math.sqrt(math.tan(max(part.helix_angle, LEAST_HELIX)))
+    return 1e3 * (faces + rim) / omega
+
+
+CHURNING_MODELS: Mapping[ChurningModel, Churning] = {
+    "changenet-velex": Churning(
+        "churning after Changenet and Velex",
+        "C. Changenet, P. Velex, J. Mech. Des. 129 (2007) 128; regimes: C. Changenet, G. Leprince, "
+        "F. Ville, P. Velex, J. Mech. Des. 133 (2011) 121009; second hand",
+        changenet_velex,
+    ),
+    "iso-14179-1": Churning(
+        "churning of ISO/TR 14179-1", "ISO/TR 14179-1:2001, second hand", iso_14179_1
+    ),
+}
+
+_SINGLE_GEARS = (
+    "single gears typical of automotive transmissions, Changenet and Velex, J. Mech. Des. 130 "
+    "(2008) 062602, abstract; the limits are of this package"
+)
+_RANGES = {
+    "changenet-velex": (
+        Range("diameter", "pitch diameter of what dips", 50.0, 300.0, MILLIMETRE, _SINGLE_GEARS),
+        Range("immersed", "depth over the diameter", None, 0.5, NUMBER, _SINGLE_GEARS),
+    ),
+    "iso-14179-1": (
+        Range(
+            "module",
+            "transverse module",
+            LEAST_MODULE,
+            None,
+            MILLIMETRE,
+            "below, the factor of the teeth nears zero and is held: limit of this package",
+        ),
+    ),
+}
+_SPLASH = Range(
+    "tip_speed",
+    "circumferential speed of what dips",
+    None,
+    20.0,
+    METRE_PER_SECOND,
+    "dip lubrication is recommended below it: P. Walter, after Forsch. Ingenieurwes. 84 (2020), "
+    "doi 10.1007/s10010-020-00423-0",
+)
+
+
+def churning_flags(
+    model: ChurningModel, where: str, part: Dipped, speed: float
+) -> tuple[ValidityFlag, ...]:
+    """Flags of the churning of the part called `where`."""
+    if not speed or not part.immersed:
+        return ()
+    values = {
+        "diameter": 2 * part.radius,
+        "immersed": part.immersed,
+        "module": part.module / math.cos(part.helix_angle) if part.teeth else math.inf,
+        "tip_speed": abs(speed) * part.tip_radius,
+    }
+    return check_ranges(ModelUse("drag", model, where), (*_RANGES[model], _SPLASH), values)
+
+
+# Momentum that gears give to the oil of jets.
+
+
+NozzleSide = Literal["in-mesh", "out-of-mesh", "radial"]
+JET_METHOD = "momentum of the oil of jets"
+JET_SOURCE = "Y. Ariura, T. Ueno, T. Sunaga, S. Sunamoto, Bull. JSME 16 (1973) 881, second hand"
+_ALONG: Mapping[NozzleSide, float] = MappingProxyType(
+    {"in-mesh": -1.0, "out-of-mesh": 1.0, "radial": 0.0}
+)
+"""Share of the jet's speed that adds to what the oil has to be brought to."""
+
+
+def jet_loss(
+    density: float,  # [kg/m^3]
+    flow: float,  # [m^3/s]
+    pitch_speed: float,  # [m/s]
+    jet_speed: float,  # [m/s]
+    side: NozzleSide,
+) -> float:
+    """Power that brings the oil of jets to the speed of the teeth. Theory (N8). [W]
+
+    Ariura et al. (1973), second hand: P = rho Q v_t (v_t + v_jet) against the teeth, as they part;
+    v_t - v_jet with them, as they mesh. Oil faster than the teeth is taken to drive nothing.
+
+    Examples
+    --------
+    Two litres a minute at 30 m/s on teeth of 50 m/s:
+
+    >>> [round(jet_loss(830.0, 2e-3 / 60, 50.0, 30.0, side), 2)
+    ...  for side in ("in-mesh", "radial", "out-of-mesh")]
+    [27.67, 69.17, 110.67]
+    """
+    gained = max(pitch_speed + _ALONG[side] * jet_speed, 0.0)
+    return density * flow * pitch_speed * gained

@@ -1,0 +1,413 @@
+"""Where models hold: ranges, flags for what leaves them, and how reliable each model is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.contact.fitted_models import OilModel
+from epicyclic.units import WATT, Quantity, format_number, known_text, percent
+
+# Ranges in which models were made: values held in them, and flags for what leaves them.
+
+
+FloatArray = NDArray[np.float64]
+Real = TypeVar("Real", float, FloatArray)
+
+SMALLEST_SHOWN_SHARE = 0.01
+SMALLEST_TOLD = 0.01
+"""Part of the total loss below which a range left is told with others. [1]"""
+OUT_OF_RANGE = "Out of range"
+"""Begins what `describe_flags` says of a flag."""
+OF_THIS_PACKAGE = "limit of this package; none is in print"
+"""Source of a range that no publication states."""
+
+
+@dataclass(frozen=True, eq=False)
+class Range:
+    """Range of one quantity in which a model was made."""
+
+    name: str  # Name of the quantity among the values handed to `check_ranges`.
+    label: str  # The same in words.
+    low: float | None  # In the display unit of `unit`; None where there is no such limit.
+    high: float | None  # In the display unit of `unit`; None where there is no such limit.
+    unit: Quantity
+    source: str  # Where the range is printed.
+    # From the conditions to the quantity, where these have no attribute `name`.
+    of: Callable[[Any], FloatArray | float] | None = None
+
+    def found_in(self, conditions: object) -> FloatArray | float:
+        """The quantity in `conditions`, in SI."""
+        found = getattr(conditions, self.name) if self.of is None else self.of(conditions)
+        return found if isinstance(found, float) else np.asarray(found, dtype=float)
+
+    def limits(self) -> tuple[float | None, float | None]:
+        """`low` and `high` in SI."""
+        scale, offset = self.unit.scale_and_offset()
+        low = None if self.low is None else (self.low - offset) / scale
+        high = None if self.high is None else (self.high - offset) / scale
+        return low, high
+
+    @cached_property
+    def bounds(self) -> tuple[float, float]:
+        """`limits`, infinite where there is none, with room for rounding."""
+        slack = 1e-9 * max(abs(limit) for limit in (self.low, self.high) if limit is not None)
+        scale, offset = self.unit.scale_and_offset()
+        low = -math.inf if self.low is None else (self.low - slack - offset) / scale
+        high = math.inf if self.high is None else (self.high + slack - offset) / scale
+        return low, high
+
+
+class RegressionFluid(NamedTuple):
+    """The fluid of the simulations behind a regression."""
+
+    key: str  # What an oil states as its `friction_regression` if it is this fluid.
+    title: str
+
+
+@dataclass(frozen=True, slots=True)
+class ModelUse:
+    """A model and what it was used for.
+
+    Attributes
+    ----------
+    role : str
+        Key of the case under which the model is chosen: ``"friction"``.
+    model : str
+        Its name there: ``"mixed-ehl"``.
+    where : str
+        ``"sun mesh"``.
+    instead : str
+        The model that takes over outside the range; empty if the model goes on there itself.
+    """
+
+    role: str
+    model: str
+    where: str
+    instead: str = ""
+
+    def __str__(self) -> str:
+        instead = f"; {self.instead} takes over" if self.instead else ""
+        return f"{self.role.replace('_', ' ')} {self.model} ({self.where}{instead})"
+
+
+@dataclass(frozen=True, slots=True)
+class ValidityFlag:
+    """A model used outside the range in which it was made.
+
+    Attributes
+    ----------
+    use : ModelUse
+        The model and where it was used.
+    quantity : str
+    found_low, found_high : float
+        Values found, in `unit`.
+    low, high : float or None
+        The range left, in `unit`.
+    unit : str
+    share : float
+        Part of the loss, or of the contact, that lies outside. [1]
+    source : str
+    """
+
+    use: ModelUse
+    quantity: str
+    found_low: float
+    found_high: float
+    low: float | None
+    high: float | None
+    unit: str
+    share: float
+    source: str
+
+
+class Flags:
+    """Flags that are looked for when somebody reads them.
+
+    Most answers of an element are steps on the way to the last one, of which alone anybody does.
+    """
+
+    __slots__ = ("_looks",)
+
+    def __init__(self, *looks: Callable[[], Iterable[ValidityFlag]]) -> None:
+        self._looks = looks
+
+    def __iter__(self) -> Iterator[ValidityFlag]:
+        for look in self._looks:
+            yield from look()
+
+    def __add__(self, other: Flags | tuple[ValidityFlag, ...]) -> Flags:
+        return Flags(self.__iter__, other.__iter__)
+
+    def __radd__(self, other: tuple[ValidityFlag, ...]) -> Flags:
+        return Flags(other.__iter__, self.__iter__)
+
+
+SomeFlags = Flags | tuple[ValidityFlag, ...]
+
+
+def held_in_range(value: Real, item: Range) -> Real:
+    """`value`, in SI, or the limit of `item` that it leaves. Theory (F5)."""
+    low, high = item.limits()
+    held: Real = np.clip(value, low, high)
+    return held
+
+
+def describe_flags(
+    flags: Iterable[ValidityFlag],
+    # Loss that a model was used for; NaN if it is not known. [W]
+    loss_of: Callable[[ModelUse], float] = lambda use: math.nan,
+    # Total loss; what concerns less than `SMALLEST_TOLD` of it is told in one sentence. [W]
+    total: float = math.nan,
+) -> tuple[str, ...]:
+    """One sentence for each quantity and range left, those that concern most of the loss first."""
+    concerned = flags_with_loss(flags, loss_of)
+    small = [pair for pair in concerned if pair[0] < SMALLEST_TOLD * total]
+    large = [pair for pair in concerned if pair not in small]
+    large.sort(key=_unknown_first)
+    told = [_sentence(watts, group) for watts, group in large]
+    if len(small) == 1:
+        told.append(_sentence(*small[0]))
+    elif small:
+        ranges = "; ".join(range_text(group) for _, group in small)
+        watts = max(watts for watts, _ in small)
+        told.append(f"{OUT_OF_RANGE}, each for {WATT.text(watts, 2)} at most: {ranges}.")
+    return tuple(told)
+
+
+def flags_with_loss(
+    flags: Iterable[ValidityFlag], loss_of: Callable[[ModelUse], float]
+) -> list[tuple[float, list[ValidityFlag]]]:
+    """Flags of one quantity and range together, with the loss that they concern; NaN if unknown.
+
+    Parameters as for `describe_flags`.
+    """
+    groups: dict[tuple[object, ...], list[ValidityFlag]] = {}
+    for flag in flags:
+        key = (flag.quantity, flag.unit, flag.low, flag.high, flag.source)
+        groups.setdefault(key, []).append(flag)
+    return [
+        (sum(flag.share * loss_of(flag.use) for flag in group), group) for group in groups.values()
+    ]
+
+
+def _unknown_first(pair: tuple[float, object]) -> float:
+    """By the loss concerned, the largest first."""
+    return -math.inf if math.isnan(pair[0]) else -pair[0]
+
+
+def _sentence(watts: float, group: list[ValidityFlag]) -> str:
+    models = ", ".join(f"{flag.use} {share_text(flag.share)}" for flag in group)
+    size = "" if math.isnan(watts) else f"; {known_text(watts)} in all"
+    return f"{range_left(group)} Share of the loss: {models}{size}."
+
+
+def range_left(group: Sequence[ValidityFlag]) -> str:
+    """A sentence for one or more flags of one quantity and range."""
+    return f"{OUT_OF_RANGE}: {range_text(group)} ({group[0].source})."
+
+
+def range_text(group: Sequence[ValidityFlag]) -> str:
+    """What was found, and the range."""
+    first = group[0]
+    low, high = (
+        min(flag.found_low for flag in group),
+        max(flag.found_high for flag in group),
+    )
+    texts = format_number(low, 3), format_number(high, 3)
+    found = texts[0] if texts[0] == texts[1] else " to ".join(texts)
+    unit = f" {first.unit}" if first.unit else ""
+    return f"{first.quantity} {found}{unit}, range {_limits(first)}{unit}"
+
+
+def _limits(flag: ValidityFlag) -> str:
+    if flag.high is None:
+        return f"from {format_number(flag.low or 0.0)}"
+    if flag.low is None:
+        return f"up to {format_number(flag.high)}"
+    low, high = format_number(flag.low), format_number(flag.high)
+    return low if low == high else f"{low} to {high}"
+
+
+def share_text(share: float) -> str:
+    """A share of the loss in whole percent."""
+    return percent(share, 0) if share >= SMALLEST_SHOWN_SHARE else "under 1 %"
+
+
+def check_ranges(
+    use: ModelUse,
+    ranges: Iterable[Range],
+    # The quantities, in SI, by the names of their ranges.
+    values: Mapping[str, FloatArray | float],
+    weight: FloatArray | float = 1.0,  # The loss at each value.
+    part: float = 1.0,  # Part of the whole loss that the model is asked for here. [1]
+) -> tuple[ValidityFlag, ...]:
+    """Flags for every quantity that leaves its range.
+
+    Theory (P8).
+    """
+    left = [(item, values[item.name]) for item in ranges if not _holds(item, values[item.name])]
+    return tuple(_flag(use, item, value, weight, part) for item, value in left)
+
+
+def check_contacts(
+    use: ModelUse,
+    ranges: Iterable[Range],
+    contacts: object,
+    weight: FloatArray,
+    part: float = 1.0,
+) -> tuple[ValidityFlag, ...]:
+    """`check_ranges` of line contacts; local quantities count with the loss where they occur."""
+    return tuple(
+        _flag(use, item, values, weight if np.shape(values) == weight.shape else 1.0, part)
+        for item, values in _not_within(tuple(ranges), contacts)
+    )
+
+
+@lru_cache(maxsize=2)  # friction and rolling of a mesh ask about the same contacts
+def _not_within(
+    ranges: tuple[Range, ...], contacts: object
+) -> tuple[tuple[Range, FloatArray | float], ...]:
+    """The ranges that not all contacts keep, with the quantities."""
+    found = [(item, item.found_in(contacts)) for item in ranges]
+    return tuple((item, values) for item, values in found if not _holds(item, values))
+
+
+def _flag(
+    use: ModelUse,
+    item: Range,
+    values: FloatArray | float,
+    weight: FloatArray | float,
+    part: float,
+) -> ValidityFlag:
+    """The flag of a quantity that leaves its range."""
+    least, most = _ends(values)
+    low, high = item.bounds
+    outside = (values < low) | (values > high)
+    scale, offset = item.unit.scale_and_offset()
+    return ValidityFlag(
+        use,
+        item.label,
+        least * scale + offset,
+        most * scale + offset,
+        item.low,
+        item.high,
+        item.unit.display,
+        part * _share(outside, weight),
+        item.source,
+    )
+
+
+def _holds(item: Range, values: FloatArray | float) -> bool:
+    """True if all values that are numbers lie in the range."""
+    low, high = item.bounds
+    least, most = _ends(values)
+    return (low <= least and most <= high) or not np.any((values < low) | (values > high))
+
+
+def _ends(values: FloatArray | float) -> tuple[float, float]:
+    """The smallest and the largest one."""
+    if not isinstance(values, np.ndarray):
+        return float(values), float(values)
+    if not values.size:
+        return math.inf, -math.inf
+    return float(values.min()), float(values.max())
+
+
+def _share(outside: NDArray[np.bool_] | bool, weight: FloatArray | float) -> float:
+    """Share of the weight of all values that those `outside` have. [1]"""
+    if not isinstance(outside, np.ndarray):
+        return 1.0
+    weights = np.broadcast_to(np.asarray(weight, dtype=float), outside.shape)
+    total = float(weights.sum())
+    return min(float(weights[outside].sum()) / total, 1.0) if total > 0 else 1.0
+
+
+# How well each model of friction and rolling loss is known to be right, and against what.
+
+
+_GEAR_TESTS = "fitted to gear tests, whose scatter was not found in print"
+_OF_THE_CASE = "given by the case"
+_NOT_KNOWN = "no comparison with measurements was found"
+STANDING: dict[str, dict[str, str]] = {
+    "friction": {
+        "mixed-ehl": "regression of simulated contacts, its error against them not printed; with "
+        "it the measured loss of the sets it was made for is predicted 3.5 % low in its slope at "
+        "90 °C (Talbot 2012, Fig. 5.9), lower at 40 and 60 °C",
+        "mixed-ehl+pairing": "mixed-ehl where both flanks are equally rough; the effect of a "
+        "smoother one is that of the solver of this package, not compared with measurements",
+        "xu-2007": "regression of simulated contacts; 24 to 36 % off the measured loss of one "
+        "jet-lubricated spur pair (tests of Petry-Johnson et al., second hand)",
+        "benedict-kelley": f"fitted to disc tests; {_NOT_KNOWN}",
+        "matsumoto": f"film and dry friction are estimates of the case; {_NOT_KNOWN}",
+        "doleschel": f"film and dry friction are estimates of the case; {_NOT_KNOWN}",
+        "schlenk": _GEAR_TESTS,
+        "niemann-winter": _GEAR_TESTS,
+        "constant": _OF_THE_CASE,
+        "table": _OF_THE_CASE,
+        "ehl-direct": "contacts solved, the error of interpolation stated among the warnings; "
+        "not compared with measurements",
+    },
+    "rolling": {
+        "mixed-ehl": "its scale is a reconstruction, right within a factor of about 2 against "
+        "smooth contacts (R4)",
+        "mixed-ehl+pairing": "as mixed-ehl where both flanks are equally rough, the effect of a "
+        "smoother one from the solver of this package",
+        "goksem-hargreaves": "within some 15 % of solved smooth contacts without heating; rough "
+        "contacts lose more",
+    },
+    "bearing": {
+        "mixed-ehl": "calibrated on three printed losses of one bearing; a fourth, with smoother "
+        "rollers, is met within 10 %",
+        "palmgren": "its source gives a range of a factor of 2 for caged rollers",
+    },
+    "churning": {
+        "changenet-velex": "fitted to tests of single gears, whose scatter was not found in print; "
+        "readings of its slow regime in other works lie up to 40 % lower",
+        "iso-14179-1": "coefficients of a standard, which states no error",
+    },
+    "shaft_bearing": {
+        "skf-2018": "formulas of a catalogue, which states no error",
+        "palmgren": "mean coefficients of bearings of a type, whose scatter was not found in print",
+        "harris": "mean coefficients of bearings of a type, whose scatter was not found in print",
+        "table": _OF_THE_CASE,
+    },
+}
+"""By role and name of the model, each a phrase."""
+FITTED = {"friction": "friction", "rolling": "rolling_loss", "bearing": "bearing_rolling_loss"}
+"""Which quantity of a fit each role takes."""
+
+
+def standing(
+    role: str,  # ``"friction"``, ``"rolling"``, ``"bearing"`` of planets or ``"shaft_bearing"``.
+    name: str,  # Name of the model, as a case chooses it.
+    # The fitted models of the oil, for a name that begins with ``fitted``.
+    model: OilModel | None = None,
+    form: str = "",  # Which form of the fit; the first one if the file lacks it.
+) -> str:
+    """What is known of the error of a model, as a phrase.
+
+    Examples
+    --------
+    >>> standing("rolling", "goksem-hargreaves").split(";")[0]
+    'within some 15 % of solved smooth contacts without heating'
+    """
+    if not name.startswith("fitted"):
+        return STANDING[role][name]
+    assert model is not None
+    fit = model.fits[FITTED[role]]
+    fitted = next((item for item in fit.forms if item.form == form), fit.forms[0])
+    whole = fitted.errors[0]
+    known = (
+        f"median error {percent(whole.median, 0)}, 90 % of contacts within "
+        f"{percent(whole.largest_of_90_percent, 0)}, against {fit.contacts} contacts simulated for "
+        f"{model.oil.name}, not against measurements"
+    )
+    _, beyond, formula = name.partition("-or-")
+    return f"{known}; beyond them {formula}: {STANDING[role][formula]}" if beyond else known

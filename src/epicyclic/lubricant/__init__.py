@@ -1,1 +1,0 @@
-"""Oils as data, and their properties at temperature."""

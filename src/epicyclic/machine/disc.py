@@ -1,0 +1,168 @@
+"""Bodies that turn in the air-oil mixture, or in a sump, and bearings that only churn oil."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from epicyclic.losses.drag import (
+    CHURNING_MODELS,
+    DRAG_METHOD,
+    DRAG_SOURCE,
+    JET_METHOD,
+    JET_SOURCE,
+    VISCOUS_METHOD,
+    VISCOUS_SOURCE,
+    ChurningModel,
+    Dipped,
+    NozzleSide,
+    SumpOil,
+    bearing_viscous_loss,
+    churning_flags,
+    disc_drag,
+    disc_drag_flags,
+    jet_loss,
+    viscous_flags,
+)
+from epicyclic.losses.ranges import ValidityFlag
+from epicyclic.machine.element import HOUSING, LOAD_INDEPENDENT, Loss, State
+
+Outcome = tuple[Loss, tuple[ValidityFlag, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Sump:
+    """Oil that a body dips into."""
+
+    part: Dipped  # How far it does.
+    volume: float  # Volume of the oil. [m^3]
+    model: ChurningModel  # Model of its churning.
+
+    def power(self, model: ChurningModel, speed: float, state: State) -> float:
+        """Churning power. [W]"""
+        oil = state.fluids.oil
+        known = SumpOil(oil.density, oil.kinematic_viscosity, self.volume)
+        return CHURNING_MODELS[model].torque(self.part, speed, known) * abs(speed)
+
+
+@dataclass(frozen=True, slots=True)
+class Jets:
+    """Jets of oil on the teeth of a set."""
+
+    flow: float  # Flow of all of them, which the gears that turn share evenly. [m^3/s]
+    speed: float  # Speed of the oil along the teeth. [m/s]
+    side: NozzleSide
+    pitch_radius: float  # Pitch radius of the gear that they meet. [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Disc:
+    """A body that turns in the mixture, or dips into a sump."""
+
+    where: str  # For the flags: ``"sun"``.
+    body: str
+    radius: float  # [m]
+    width: float  # [m]
+    oil_fraction: float  # Oil in the mixture, by volume. [1]
+    sump: Sump | None = None  # Oil that it dips into, which then drags in place of the mixture.
+    jets: Jets | None = None
+
+    @property
+    def dips(self) -> bool:
+        """Whether it reaches into a sump."""
+        return self.sump is not None and self.sump.part.immersed > 0
+
+
+@dataclass(frozen=True, slots=True)
+class ThrustBearing:
+    """Thrust bearings that carry no load worth counting."""
+
+    between: tuple[str, str]  # The two bodies whose speeds differ.
+    mean_diameter: float  # [m]
+    viscous_factor: float  # f0. [1]
+    count: int
+
+
+def disc_loss(
+    discs: Iterable[Disc],
+    state: State,
+    struck: int = 1,  # Gears that turn and share the oil of the jets.
+) -> Outcome:
+    """The drag of `discs` together, each on its own shaft, and its flags.
+
+    Theory (N2).
+    """
+    flags: tuple[ValidityFlag, ...] = ()
+    drags: dict[str, float] = {}
+    methods: dict[str, str] = {}
+    for disc in discs:
+        speed = state.speeds[disc.body]
+        drag, found = _drag(disc, speed, state)
+        drags[disc.body] = drag + _jet_loss(disc, speed, state, struck)
+        flags += found
+        methods |= dict(_methods(disc))
+    watts = sum(drags.values())
+    brakes = tuple((body, HOUSING, drag / watts) for body, drag in drags.items() if drag)
+    method, source = "; ".join(methods), "; ".join(methods.values())
+    return Loss(LOAD_INDEPENDENT, watts, method, source, brakes=brakes), flags
+
+
+def _drag(disc: Disc, speed: float, state: State) -> tuple[float, tuple[ValidityFlag, ...]]:
+    """Churning of a body that dips into a sump, drag in the mixture of another. [W]"""
+    if disc.sump is not None and disc.dips:
+        flags = churning_flags(disc.sump.model, disc.where, disc.sump.part, speed)
+        return disc.sump.power(disc.sump.model, speed, state), flags
+    mixture = state.fluids.mixed(disc.oil_fraction)
+    drag = disc_drag(disc.radius, disc.width, speed, mixture)
+    return drag.total, disc_drag_flags(disc.where, disc.radius, drag, speed, mixture)
+
+
+def _jet_loss(disc: Disc, speed: float, state: State, struck: int) -> float:
+    """What the oil of jets takes from a gear. [W]"""
+    jets = disc.jets
+    if jets is None or not speed:
+        return 0.0
+    pitch_speed = abs(speed) * jets.pitch_radius
+    return jet_loss(
+        state.fluids.oil.density, jets.flow / struck, pitch_speed, jets.speed, jets.side
+    )
+
+
+def _methods(disc: Disc) -> Iterator[tuple[str, str]]:
+    """Methods of what drags a body, each with its source."""
+    if disc.sump is not None and disc.dips:
+        model = CHURNING_MODELS[disc.sump.model]
+        yield model.title, model.source
+    else:
+        yield DRAG_METHOD, DRAG_SOURCE
+    if disc.jets is not None:
+        yield JET_METHOD, JET_SOURCE
+
+
+def churned(discs: Iterable[Disc], state: State) -> dict[str, float]:
+    """Churning power of all bodies that dip, after each model. [W]"""
+    sumps = [(disc.sump, state.speeds[disc.body]) for disc in discs if disc.dips]
+    return {
+        model: sum(sump.power(model, speed, state) for sump, speed in sumps if sump is not None)
+        for model in CHURNING_MODELS
+        if sumps
+    }
+
+
+def thrust_loss(bearing: ThrustBearing, state: State) -> Outcome:
+    """Viscous loss of all thrust bearings. Theory (V2)."""
+    one, two = bearing.between
+    speed = state.speeds[one] - state.speeds[two]
+    loss = bearing_viscous_loss(
+        bearing.viscous_factor, state.fluids.oil.kinematic_viscosity, speed, bearing.mean_diameter
+    )
+    return (
+        Loss(
+            LOAD_INDEPENDENT,
+            bearing.count * loss,
+            VISCOUS_METHOD,
+            VISCOUS_SOURCE,
+            brakes=((*bearing.between, 1.0),),
+        ),
+        viscous_flags("thrust bearing", speed, bearing.mean_diameter),
+    )

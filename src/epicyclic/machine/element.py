@@ -1,0 +1,364 @@
+"""What an element of a gearbox sees and answers, its figures, and the fluids around it."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.planet_bearing import RollerLoads
+from epicyclic.losses.pocket_tables import FLOW_NUMBERS
+from epicyclic.losses.ranges import ModelUse, Range, SomeFlags, ValidityFlag, check_ranges
+from epicyclic.losses.shaft_bearing import BearingLoad
+from epicyclic.oil.oil import Oil
+from epicyclic.oil.properties import (
+    MixtureState,
+    OilState,
+    extrapolated_viscosity,
+    mixture_state,
+    oil_state,
+)
+from epicyclic.units import (
+    CELSIUS,
+    DEGREE,
+    GIGAPASCAL,
+    KELVIN,
+    KILOGRAM_PER_CUBIC_METRE,
+    METRE_PER_SECOND,
+    MICROMETRE,
+    MILLIMETRE,
+    MILLIPASCAL_SECOND,
+    NEWTON,
+    NEWTON_METRE,
+    NEWTON_PER_MM,
+    NEWTON_PER_UM,
+    NUMBER,
+    PER_GIGAPASCAL,
+    RPM,
+    SQUARE_MM_PER_SECOND,
+    WATT_PER_KELVIN,
+    Quantity,
+)
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+
+# The oil at a temperature, and its mixture with air.
+
+
+_VISCOSITY = Range(
+    "kinematic_viscosity",
+    "kinematic viscosity",
+    2.0,
+    2e7,
+    SQUARE_MM_PER_SECOND,
+    "ASTM D341, form for 2 mm^2/s and more",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Fluids:
+    """The oil, its mixture with air, and flags on both."""
+
+    oil: OilState
+    mixture: MixtureState
+    pressure: float  # Ambient. [Pa]
+    flags: SomeFlags
+    # Oil at the contacts whose temperature differs, by the keys of meshes and bearings.
+    contacts: Mapping[str, OilState] = field(default_factory=dict[str, OilState], hash=False)
+
+    def at(self, contact: str) -> OilState:
+        """The oil at a contact, at the temperature of its surfaces."""
+        return self.contacts.get(contact, self.oil)
+
+    def mixed(self, oil_fraction: float) -> MixtureState:
+        """The oil with another share of it in the mixture, by volume."""
+        if oil_fraction == self.mixture.oil_fraction:
+            return self.mixture
+        return mixture_state(self.oil, oil_fraction, self.pressure)
+
+    @property
+    def figures(self) -> FluidFigures:
+        """The properties for the user."""
+        return FluidFigures(
+            kinematic_viscosity=self.oil.kinematic_viscosity,
+            dynamic_viscosity=self.oil.dynamic_viscosity,
+            density=self.oil.density,
+            pressure_viscosity=self.oil.pressure_viscosity,
+            mixture_density=self.mixture.density,
+            mixture_viscosity=self.mixture.dynamic_viscosity,
+        )
+
+
+def oil_at(oil: Oil, temperature: float, pressure_viscosity_factor: float = 1.0) -> OilState:
+    """Properties of an oil at `temperature` in kelvin, its alpha multiplied by a factor."""
+    state = oil_state(oil, temperature)
+    return replace(state, pressure_viscosity=pressure_viscosity_factor * state.pressure_viscosity)
+
+
+def fluids_at(
+    oil: Oil,
+    temperature: float,  # [K]
+    *,
+    oil_air_ratio: float,  # Oil share by volume at ambient pressure. [1]
+    pressure: float,  # Ambient. [Pa]
+    # Multiplies the pressure-viscosity coefficient of the oil. [1]
+    pressure_viscosity_factor: float = 1.0,
+) -> Fluids:
+    """Oil and mixture at one temperature."""
+    state = oil_at(oil, temperature, pressure_viscosity_factor)
+    mixture = mixture_state(state, oil_air_ratio, pressure)
+    return Fluids(state, mixture, pressure, oil_flags(oil, temperature))
+
+
+def oil_flags(oil: Oil, temperature: float) -> tuple[ValidityFlag, ...]:
+    """Where properties of an oil at a temperature leave the data behind them."""
+    viscosity = extrapolated_viscosity(oil, temperature)
+    return check_ranges(
+        ModelUse("oil", oil.name, "properties"),
+        (_temperature_range(oil), _VISCOSITY),
+        {"temperature": temperature, "kinematic_viscosity": viscosity},
+    )
+
+
+def _temperature_range(oil: Oil) -> Range:
+    low, high = (CELSIUS.to_display(limit) for limit in oil.temperature_range)
+    return Range("temperature", "temperature", low, high, CELSIUS, "data of this oil")
+
+
+# The figures of a result: what an engineer checks by eye on meshes, bearings and oil.
+#
+# Figures are dataclass fields that carry their label and unit, so that tables, JSON and sweeps read
+# them from one place.
+
+
+def figure(label: str, unit: Quantity) -> Any:
+    """A field of a dataclass that carries its label and unit."""
+    return dataclasses.field(metadata={"label": label, "unit": unit})
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """One number for the user, in its display unit; the unit of a pure number is ``"1"``."""
+
+    key: str
+    label: str
+    value: float
+    unit: str
+
+
+class Figures(Mapping[str, "DataclassInstance"]):
+    """Figures by what they describe, found when somebody reads them.
+
+    Most answers of an element are steps on the way to the last one, of which alone anybody does.
+    """
+
+    __slots__ = ("_finds", "_found")
+
+    def __init__(self, finds: Mapping[str, Callable[[], DataclassInstance]]) -> None:
+        self._finds = finds
+        self._found: dict[str, DataclassInstance] = {}
+
+    def __getitem__(self, key: str) -> DataclassInstance:
+        if key not in self._found:
+            self._found[key] = self._finds[key]()
+        return self._found[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._finds)
+
+    def __len__(self) -> int:
+        return len(self._finds)
+
+
+def figures(source: DataclassInstance) -> Iterator[Figure]:
+    """The labelled numbers of a dataclass."""
+    for it in dataclasses.fields(source):
+        if "label" in it.metadata:
+            label, unit = it.metadata["label"], it.metadata["unit"]
+            yield Figure(it.name, label, displayed(source, it), unit.display or "1")
+
+
+def displayed(source: DataclassInstance, field: dataclasses.Field[Any]) -> float:
+    """A labelled number of a dataclass in its display unit."""
+    unit: Quantity = field.metadata["unit"]
+    value: float = getattr(source, field.name)
+    return unit.to_display(value) if unit.si else value
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeshFigures:
+    """What an engineer checks by eye on a mesh; NaN where there is no load or no motion.
+
+    The largest line load and pressure leave out the 1 % of the contact that carries most: in the
+    corners of a helical face without end relief the load has no bound, and its largest value would
+    be that of the resolution.
+
+    Transmission error and stiffness, in the transverse plane of action, are those of elastic teeth
+    and NaN with another load distribution.
+
+    `flattening` is the half-width of the contact that is pressed with `hertz_pressure_max` over its
+    radius, `resistance` the loss over what the load could resist with at the speeds of both flanks,
+    a mean coefficient of friction: numbers above 1 cannot be.
+    """
+
+    contact: MeshContact | None
+    flattening: float
+    resistance: float
+    pressure_angle: float = figure("operating pressure angle, transverse", DEGREE)
+    transverse_contact_ratio: float = figure("transverse contact ratio", NUMBER)
+    overlap_ratio: float = figure("overlap ratio", NUMBER)
+    backlash: float = figure("circumferential backlash", MILLIMETRE)
+    misalignment: float = figure("misalignment, with tilt of the planet if coupled", MICROMETRE)
+    pitch_line_speed: float = figure("pitch-line speed, relative to carrier", METRE_PER_SECOND)
+    sliding_speed_max: float = figure("largest sliding speed", METRE_PER_SECOND)
+    line_load_max: float = figure("largest line load but for 1 % of the contact", NEWTON_PER_MM)
+    hertz_pressure_max: float = figure(
+        "largest Hertz pressure but for 1 % of the contact", GIGAPASCAL
+    )
+    contact_share: float = figure("share of the contact lines that carries", NUMBER)
+    film_ratio_min: float = figure("film ratio, smallest", NUMBER)
+    film_ratio_max: float = figure("film ratio, largest", NUMBER)
+    friction_mean: float = figure("mean coefficient of friction", NUMBER)
+    loss_factor: float = figure("loss factor H_V (Ohlendorf)", NUMBER)
+    transmission_error_range: float = figure("loaded transmission error, peak to peak", MICROMETRE)
+    mesh_stiffness: float = figure("mean mesh stiffness at this load", NEWTON_PER_UM)
+    pocket_pressure_max: float = figure(*FLOW_NUMBERS["pressure_max"])
+    pocket_pressure_min: float = figure(*FLOW_NUMBERS["pressure_min"])
+    pocket_speed_max: float = figure(*FLOW_NUMBERS["speed_max"])
+    pocket_power_difference: float = figure(*FLOW_NUMBERS["difference"])
+    pocket_interpolation_error: float = figure(
+        "pocketing loss: largest error of its interpolation", NUMBER
+    )
+    contact_temperature: float = figure("oil where it enters the contacts", CELSIUS)
+    flash_temperature_mean: float = figure("flash temperature, mean over the load", KELVIN)
+    flash_temperature_max: float = figure("flash temperature, largest", KELVIN)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BearingFigures:
+    """What an engineer checks by eye on the planet bearing.
+
+    `flattening` and `resistance` as of `MeshFigures`, the latter at the speed of the pitch circle.
+    """
+
+    loads: RollerLoads | None
+    flattening: float
+    resistance: float
+    radial_force: float = figure("radial force", NEWTON)
+    moment: float = figure("tilting moment", NEWTON_METRE)
+    speed: float = figure("speed relative to carrier", RPM)
+    rollers_loaded: float = figure("loaded rollers, all rows", NUMBER)
+    roller_load_max: float = figure("most loaded roller", NEWTON)
+    roller_azimuth: float = figure("azimuth of that roller from the load", DEGREE)
+    hertz_pressure_max: float = figure("largest Hertz pressure, inner race", GIGAPASCAL)
+    contact_temperature: float = figure("oil where it enters the contacts", CELSIUS)
+    heat_conductance: float = figure("heat from race to race through the rollers", WATT_PER_KELVIN)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FluidFigures:
+    """Properties of the oil at its inlet temperature, and of its mixture with air."""
+
+    kinematic_viscosity: float = figure("kinematic viscosity of the oil", SQUARE_MM_PER_SECOND)
+    dynamic_viscosity: float = figure("dynamic viscosity of the oil", MILLIPASCAL_SECOND)
+    density: float = figure("density of the oil", KILOGRAM_PER_CUBIC_METRE)
+    pressure_viscosity: float = figure("pressure-viscosity coefficient", PER_GIGAPASCAL)
+    mixture_density: float = figure("density of the air-oil mixture", KILOGRAM_PER_CUBIC_METRE)
+    mixture_viscosity: float = figure(
+        "dynamic viscosity of the air-oil mixture", MILLIPASCAL_SECOND
+    )
+
+
+# What an element of a gearbox sees, and what it answers.
+
+
+LOAD_DEPENDENT = "load-dependent"
+LOAD_INDEPENDENT = "load-independent"
+HOUSING = "housing"
+"""The body that stands still."""
+OIL = "oil"
+"""The thermal node of the oil around the gears."""
+
+
+def joined_key(element: str, name: str) -> str:
+    """Key of a part of an element: the element's own before it, if it has one."""
+    return f"{element}.{name}" if element else name
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """What an element sees of the machine."""
+
+    # Speeds of every body, positive in one common sense; that of `HOUSING` is 0. [rad/s]
+    speeds: Mapping[str, float]
+    # That each mesh takes up at its first gear, by the key of the mesh; all its planets together.
+    # Torque times speed of that gear against the carrier is the rolling power. [N m]
+    torques: Mapping[str, float]
+    forces: Mapping[str, BearingLoad]  # On each bearing of a shaft, by the key of its element.
+    fluids: Fluids  # Oil and mixture with air. A machine without elements may do without.
+    lossless: bool = False  # True if no loss has been taken from the torques yet.
+    # For each mesh, True if its first gear drives it; where losses turn a small load round, not
+    # before they are found.
+    drives: Mapping[str, bool] = field(default_factory=dict[str, bool])
+    # What each element has found out about itself from the speeds alone, by its key.
+    idle: Mapping[str, Any] = field(default_factory=dict[str, Any])
+
+
+class Loss(NamedTuple):
+    """Power that an element loses, or why it loses none."""
+
+    group: str  # `LOAD_DEPENDENT` or `LOAD_INDEPENDENT`.
+    watts: float = 0.0  # Never negative. [W]
+    method: str = ""  # The model and where it is printed.
+    source: str = ""  # The model and where it is printed.
+    left_out: str = ""  # Why there is no such loss; empty if there is.
+    # Two bodies each whose relative motion the loss brakes, and its share there. [1]
+    brakes: tuple[tuple[str, str, float], ...] = ()
+    # Key of the mesh whose power the loss is a share of; empty for friction between bodies.
+    mesh: str = ""
+    factor: float = 1.0  # The user's factor, which `watts` contain. [1]
+    # The thermal nodes that it heats, each with its share. [1]
+    heat: tuple[tuple[str, float], ...] = ((OIL, 1.0),)
+    # Those of the loads of its element that it depends on; empty: all of them.
+    follows: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ElementResult:
+    """What an element answers to a state."""
+
+    # By the last part of their keys, ``"sun_mesh_sliding"``, ``"friction"``.
+    losses: Mapping[str, Loss]
+    # Labelled numbers for the user, by what they describe: ``"sun_mesh"``.
+    figures: Mapping[str, DataclassInstance] = field(default_factory=dict[str, Any])
+    flags: SomeFlags = ()  # Models used outside their ranges.
+    notes: tuple[str, ...] = ()  # What else the user must know.
+
+
+class Element(Protocol):
+    """Something that loses power."""
+
+    @property
+    def key(self) -> str:
+        """First part of the keys of its losses; empty for those of a single gear set."""
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """Names of its losses, in the order in which they are shown."""
+
+    @property
+    def figure_types(self) -> tuple[tuple[str, type[DataclassInstance]], ...]:
+        """Names and types of its figures."""
+
+    def idle(self, state: State) -> object:
+        """What follows from the speeds alone; `State.idle` has it from then on."""
+
+    def loads(self, state: State) -> Mapping[str, float]:
+        """What of a state it depends on beside the speeds: loads in one unit, by their names."""
+
+    def evaluate(self, state: State) -> ElementResult:
+        """Losses, figures and flags in a state."""

@@ -1,0 +1,340 @@
+"""Two gears in mesh: load along the contact lines, sliding, rolling and pocketing loss."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.contact.elastic_teeth import GearBody
+from epicyclic.contact.line_contact import Flanks
+from epicyclic.contact.loaded_mesh import LoadedMesh, load_mesh_elastically
+from epicyclic.contact.temperatures import Solid
+from epicyclic.gears.flanks import FlankDeviations
+from epicyclic.gears.generation import Tool
+from epicyclic.gears.mesh import Mesh
+from epicyclic.losses.contact import (
+    LOAD_DISTRIBUTIONS,
+    LineLoads,
+    MeshContact,
+    MeshLoad,
+    mesh_contact,
+)
+from epicyclic.losses.friction import FrictionModel
+from epicyclic.losses.mesh import (
+    MeshLoss,
+    heat_share1,
+    local_loss,
+    loss_factor_loss,
+    loss_factor_notes,
+    mean_friction,
+    mesh_warmth,
+    ohlendorf_loss_factor,
+)
+from epicyclic.losses.pocket_tables import FlowFigures
+from epicyclic.losses.ranges import SMALLEST_SHOWN_SHARE, SomeFlags
+from epicyclic.losses.rolling import RollingModel
+from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, Fluids, Loss, MeshFigures
+from epicyclic.machine.pocket_flow import (
+    POCKETING_SOURCE,
+    MeshFlow,
+    PocketSettings,
+    pocket_notes,
+    pocketing_method,
+    stored_note,
+)
+from epicyclic.oil.properties import OilState
+from epicyclic.plugins.contact_solver.direct import EhlDirect
+
+FloatArray = NDArray[np.float64]
+
+PEAK_SHARE = 0.01
+"""Part of the contact that the largest line load and pressure of a mesh leave out. [1]"""
+OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
+
+
+@dataclass(frozen=True, slots=True)
+class MeshModels:
+    """How the losses of a mesh are computed."""
+
+    friction: FrictionModel
+    rolling: RollingModel
+    # True for mean friction times Ohlendorf's loss factor, without rolling loss.
+    by_loss_factor: bool
+    load_distribution: str  # A key of `LOAD_DISTRIBUTIONS`.
+    positions: int  # Resolution: mesh positions, segments of a contact line.
+    segments: int  # Resolution: mesh positions, segments of a contact line.
+    pockets: PocketSettings
+
+
+@dataclass(frozen=True, slots=True)
+class GearMesh:
+    """Two gears in mesh, each on a body, seen from a carrier."""
+
+    key: str  # ``"sun_mesh"``: first word of its losses.
+    mesh: Mesh
+    bodies: tuple[str, str]  # The bodies of gear 1 and gear 2.
+    tools: tuple[Tool, Tool]  # The tools that cut both gears.
+    roundings: tuple[float | None, float | None]  # Tip rounding of both tools, where stated. [m]
+    flanks: Flanks[float]  # Roughness of both flanks, equivalent modulus.
+    solids: tuple[GearBody, GearBody]  # What makes both gears yield.
+    deviations: FlankDeviations  # Micro-geometry of both flanks, and misalignment.
+    models: MeshModels
+    materials: tuple[Solid, Solid]  # Materials of both gears.
+    nodes: tuple[str, str]  # The thermal nodes of both gears.
+
+
+@dataclass(frozen=True, slots=True)
+class MeshDuty:
+    """A mesh and what it has to do, relative to the carrier, for one planet."""
+
+    gears: GearMesh
+    torque1: float  # That gear 1 brings into the mesh. [N m]
+    speed1: float  # Speed of gear 1 against the carrier. [rad/s]
+    drives1: bool  # True if power flows from gear 1 to gear 2 or no power flows.
+
+    @property
+    def key(self) -> str:
+        """First word of the losses of the mesh."""
+        return self.gears.key
+
+    @property
+    def mesh(self) -> Mesh:
+        """Its geometry."""
+        return self.gears.mesh
+
+    @property
+    def tools(self) -> tuple[Tool, Tool]:
+        """The tools that cut both gears."""
+        return self.gears.tools
+
+    @property
+    def models(self) -> MeshModels:
+        """How its losses are computed."""
+        return self.gears.models
+
+    @property
+    def misalignment(self) -> float:
+        """F_beta_x. [m]"""
+        return self.gears.deviations.misalignment
+
+    @property
+    def force(self) -> float:
+        """Along the transverse line of action. Theory (D1). [N]"""
+        return abs(self.torque1) / self.mesh.gear1.base_radius
+
+    def misaligned(self, by: float) -> MeshDuty:
+        """The same with a further misalignment in metres."""
+        deviations = self.gears.deviations
+        tilted = replace(deviations, misalignment=deviations.misalignment + by)
+        return replace(self, gears=replace(self.gears, deviations=tilted))
+
+
+@dataclass(frozen=True, slots=True)
+class MeshOutcome:
+    """Losses and flags of one mesh, how its figures are found, and what the next pass goes on from.
+
+    The latter are the teeth under load, if they are elastic, and the friction model with what it
+    has solved.
+    """
+
+    losses: dict[str, Loss]
+    figures: Callable[[], MeshFigures]
+    flags: SomeFlags
+    notes: tuple[str, ...]
+    elastic: LoadedMesh | None
+    friction: FrictionModel
+
+
+def distribute_load(duty: MeshDuty, last: LoadedMesh | None = None) -> LineLoads:
+    """Contact lines of a mesh and the load on them under the torque of its duty.
+
+    `last`, the mesh under nearly that torque, saves work.
+    """
+    models = duty.models
+    distribution = LOAD_DISTRIBUTIONS[models.load_distribution]
+    load = MeshLoad(duty.mesh, duty.force, duty.gears.solids, duty.gears.deviations, last)
+    return distribution.distribute(load, models.positions, models.segments)
+
+
+def elastic_loads(duty: MeshDuty) -> LoadedMesh:
+    """The mesh under the torque of its duty with elastic teeth, whatever distributes the load."""
+    return load_mesh_elastically(
+        duty.mesh,
+        *duty.gears.solids,
+        duty.models.positions,
+        duty.models.segments,
+        duty.force,
+        duty.gears.deviations,
+    )
+
+
+def load_mesh(duty: MeshDuty, oil: OilState, around: OilState | None = None) -> MeshContact | None:
+    """Conditions along the contact lines; None without load or motion."""
+    if duty.torque1 == 0 or duty.speed1 == 0:
+        return None
+    return contact_under(duty, distribute_load(duty), oil, around)
+
+
+def contact_under(
+    duty: MeshDuty,
+    loads: LineLoads,
+    oil: OilState,  # At the temperature of the flanks.
+    around: OilState | None = None,  # Around the gears, if that differs.
+) -> MeshContact:
+    """Conditions along the contact lines under `loads`, at standstill too."""
+    return mesh_contact(
+        duty.mesh,
+        loads.lines,
+        loads.line_load,
+        force=duty.force,
+        speed1=abs(duty.speed1),
+        oil=oil,
+        flanks=duty.gears.flanks,
+        around=around,
+    )
+
+
+def solve_mesh(
+    duty: MeshDuty,
+    fluids: Fluids,
+    flow: MeshFlow,
+    count: int,
+    oil: OilState,
+    last: MeshOutcome | None = None,
+) -> MeshOutcome:
+    """Losses and figures of one mesh of `count` in parallel, with `oil` on its flanks.
+
+    `last`, the outcome under nearly this torque, saves work.
+    """
+    friction = duty.models.friction if last is None else last.friction
+    rolling = duty.models.rolling
+    loads = None
+    if duty.torque1 != 0 and duty.speed1 != 0:
+        loads = distribute_load(duty, None if last is None else last.elastic)
+    contact = None if loads is None else contact_under(duty, loads, oil, fluids.oil)
+    if contact is not None and isinstance(friction, EhlDirect):
+        friction = friction.solved_for(contact)
+    if contact is None:
+        loss = MeshLoss(0.0, 0.0)
+    elif duty.models.by_loss_factor:
+        loss = loss_factor_loss(contact, friction)
+    else:
+        loss = local_loss(contact, friction, rolling)
+    materials = duty.gears.materials
+    share1 = 0.5 if contact is None else heat_share1(contact, loss.heat, materials)
+    method, source = friction.title, friction.source
+    halves = _heat(duty.gears.nodes, 0.5)
+    rolling_loss = Loss(
+        LOAD_DEPENDENT, count * loss.rolling, rolling.title, rolling.source, heat=halves
+    )
+    if duty.models.by_loss_factor:
+        method, source = f"{method} times the loss factor", f"{source}; {OHLENDORF_SOURCE}"
+        rolling_loss = Loss(LOAD_DEPENDENT, left_out="the loss-factor method has no rolling loss")
+    losses = {
+        f"{duty.key}_sliding": Loss(
+            LOAD_DEPENDENT,
+            count * loss.sliding,
+            method,
+            source,
+            heat=_heat(duty.gears.nodes, share1),
+        ),
+        f"{duty.key}_rolling": rolling_loss,
+        f"{duty.key}_pocketing": _pocketing(duty.models.pockets, flow, count),
+    }
+    elastic = None if loads is None else loads.elastic
+    figures = partial(_mesh_figures, duty, contact, loss, elastic, flow.figures)
+    least = SMALLEST_SHOWN_SHARE * sum(term.watts for term in losses.values())
+    notes = pocket_notes(duty, flow.figures, fluids, count, least)
+    notes += stored_note(duty.models.pockets, duty.mesh, flow.figures)
+    if duty.models.by_loss_factor:
+        notes += loss_factor_notes(duty.mesh)
+    if isinstance(friction, EhlDirect):
+        notes += friction.remarks
+    return MeshOutcome(losses, figures, loss.flags, notes, elastic, friction)
+
+
+def _heat(nodes: tuple[str, str], share1: float) -> tuple[tuple[str, float], ...]:
+    """Both gears with their shares of a heat."""
+    return ((nodes[0], share1), (nodes[1], 1 - share1))
+
+
+def _pocketing(settings: PocketSettings, flow: MeshFlow, count: int) -> Loss:
+    """Pocketing loss of `count` meshes."""
+    if flow.left_out:
+        return Loss(LOAD_INDEPENDENT, left_out=flow.left_out)
+    watts = 0.0 if flow.figures is None else count * flow.figures.power
+    return Loss(
+        LOAD_INDEPENDENT, watts, pocketing_method(settings.model, flow.figures), POCKETING_SOURCE
+    )
+
+
+def _largest(values: FloatArray, weight: FloatArray) -> int:
+    """Where the value is that `PEAK_SHARE` of the contact exceeds. Theory (D5)."""
+    order = np.argsort(values)
+    below = np.cumsum(weight[order])
+    return int(order[np.searchsorted(below, (1 - PEAK_SHARE) * below[-1])])
+
+
+def _resistance(contact: MeshContact, loss: MeshLoss) -> float:
+    """Loss over the load times the rolling and sliding speeds. [1]"""
+    speed = contact.rolling_speed + np.abs(contact.sliding_speed)
+    resisted = float((contact.line_load * speed) @ contact.weight)
+    return (loss.sliding + loss.rolling) / resisted if resisted else 0.0
+
+
+def _mesh_figures(
+    duty: MeshDuty,
+    contact: MeshContact | None,
+    loss: MeshLoss,
+    elastic: LoadedMesh | None,
+    flow: FlowFigures | None,
+) -> MeshFigures:
+    mesh = duty.mesh
+    warmth = None if contact is None else mesh_warmth(contact, loss.friction, duty.gears.materials)
+    speed1 = abs(duty.speed1)
+    sliding = max(
+        abs(speed1 * rho1 - speed1 / mesh.ratio * mesh.curvature2(rho1))
+        for rho1 in (mesh.path_start, mesh.path_end)
+    )
+    line_load, pressure, flattening = math.nan, math.nan, 0.0
+    if contact is not None:
+        line_load = float(contact.line_load[_largest(contact.line_load, contact.weight)])
+        place = _largest(contact.hertz_pressure, contact.weight)  # flattest there, too
+        pressure = float(contact.hertz_pressure[place])
+        flattening = float(contact.flattening[place])
+    return MeshFigures(
+        pressure_angle=mesh.operating_pressure_angle,
+        transverse_contact_ratio=mesh.transverse_contact_ratio,
+        overlap_ratio=mesh.overlap_ratio,
+        backlash=mesh.backlash,
+        misalignment=duty.misalignment,
+        pitch_line_speed=speed1 * mesh.operating_radius1,
+        sliding_speed_max=sliding,
+        line_load_max=line_load,
+        hertz_pressure_max=pressure,
+        flattening=flattening,
+        resistance=0.0 if contact is None else _resistance(contact, loss),
+        contact_share=(
+            math.nan if contact is None else float(contact.weight.sum()) / mesh.mean_contact_length
+        ),
+        film_ratio_min=math.nan if contact is None else float(contact.film_ratio.min()),
+        film_ratio_max=math.nan if contact is None else float(contact.film_ratio.max()),
+        friction_mean=math.nan if contact is None else mean_friction(contact, loss.friction),
+        loss_factor=ohlendorf_loss_factor(mesh),
+        transmission_error_range=math.nan if elastic is None else elastic.transmission_error_range,
+        mesh_stiffness=math.nan if elastic is None else elastic.mean(elastic.tangent_stiffness),
+        pocket_pressure_max=math.nan if flow is None else flow.pressure_max,
+        pocket_pressure_min=math.nan if flow is None else flow.pressure_min,
+        pocket_speed_max=math.nan if flow is None else flow.speed_max,
+        pocket_power_difference=math.nan if flow is None else flow.difference,
+        pocket_interpolation_error=math.nan if flow is None else flow.error,
+        contact_temperature=math.nan if contact is None else contact.oil.temperature,
+        flash_temperature_mean=math.nan if warmth is None else warmth.flash_mean,
+        flash_temperature_max=math.nan if warmth is None else warmth.flash_max,
+        contact=contact,
+    )

@@ -1,0 +1,502 @@
+"""A set of gears around one carrier, or a pair in the housing: meshes, planets, bearings, discs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+from epicyclic.losses.planet_bearing import RollerLoads
+from epicyclic.losses.ranges import Flags, ModelUse, SomeFlags, ValidityFlag
+from epicyclic.machine.disc import Disc, ThrustBearing, disc_loss, thrust_loss
+from epicyclic.machine.element import (
+    HOUSING,
+    LOAD_INDEPENDENT,
+    OIL,
+    BearingFigures,
+    ElementResult,
+    Figures,
+    Loss,
+    MeshFigures,
+    State,
+    joined_key,
+)
+from epicyclic.machine.gear_mesh import GearMesh, MeshDuty, MeshOutcome, solve_mesh
+from epicyclic.machine.planets import (
+    LoadSharing,
+    PlanetBearing,
+    PlanetContact,
+    PlanetLoad,
+    missing_bearing,
+    planet_load,
+    planet_shares,
+    solve_bearing,
+    tilt_planet,
+)
+from epicyclic.machine.pocket_flow import MeshFlow, mesh_flows
+from epicyclic.units import NEWTON, format_number
+
+WORTH_A_NOTE = 0.1
+"""Centrifugal force of an estimated mass over the load on a bearing, from which a note says so: it
+stands square to the force of the teeth, and changes the load by 0.5 %. [1]"""
+ROUNDING = 1e-12
+"""Torques as small as this, relatively, are the rounding of a difference. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class LossChoice:
+    """What becomes of one loss."""
+
+    include: bool = True
+    factor: float = 1.0  # [1]
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """The body whose torque states the load of a set, without the losses of that set.
+
+    The losses inside the set act between two other bodies, so that the torque of this one and the
+    loads of the meshes stay in the ratio of the lossless set. Theory (K5).
+    """
+
+    body: str
+    # Torque at the first gear of each mesh over the torque of the body. [1]
+    levers: Mapping[str, float]
+    between: tuple[str, str]  # The bodies between which the losses act.
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetMesh:
+    """How a mesh stands to a planet. Attributes as of `PlanetContact`, the mesh by its key."""
+
+    mesh: str
+    member: int
+    outward: tuple[float, float]
+    hand: int = 1
+    position: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Planet:
+    """The planets of one kind: a body that turns on a pin of the carrier."""
+
+    key: str  # First word of the losses of its bearing: ``"planet_bearing"``.
+    body: str
+    pin_radius: float  # From the axis of the set to that of the planet. [m]
+    meshes: tuple[PlanetMesh, ...]
+    mass: float = 0.0  # Mass of one planet with its rollers. [kg]
+    mass_estimated: bool = False  # True if no case states it.
+    bearing: PlanetBearing | None = None
+    no_bearing: str = ""  # Why there is none.
+    tilts: bool = False  # True if the planet tilts in its bearing and misaligns its meshes.
+    nodes: tuple[str, str] = (OIL, OIL)  # The thermal nodes of the planets and of their pins.
+
+    def load(
+        self, duties: Mapping[str, MeshDuty], carrier_speed: float
+    ) -> tuple[Sequence[MeshDuty], PlanetLoad]:
+        """Duties of its meshes, misaligned if the planet tilts, and the load on its bearing.
+
+        Theory (B3).
+        """
+        contacts = self._contacts(duties)
+        centrifugal = self.centrifugal(carrier_speed)
+        idle = all(contact.duty.torque1 == 0 for contact in contacts)
+        if not self.tilts or self.bearing is None or idle:
+            load = planet_load(contacts, centrifugal)
+        else:
+            contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
+        return [contact.duty for contact in contacts], load
+
+    def centrifugal(self, carrier_speed: float) -> float:
+        """Its centrifugal force. [N]"""
+        return self.mass * self.pin_radius * carrier_speed**2
+
+    def notes(self, carrier_speed: float, load: PlanetLoad) -> tuple[str, ...]:
+        """That its mass is estimated, where that matters."""
+        force = self.centrifugal(carrier_speed)
+        if not self.mass_estimated or force < WORTH_A_NOTE * load.force:
+            return ()
+        where = self.key.replace("_", " ")
+        return (
+            f"{where}: the mass of a planet is not given. From its sizes it is "
+            f"{format_number(self.mass, 3)} kg and pulls outward with {NEWTON.text(force, 3)}, "
+            f"of {NEWTON.text(load.force, 3)} on the bearing.",
+        )
+
+    def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:
+        contacts = []
+        for own in self.meshes:
+            duty = duties[own.mesh]
+            # the mesh turns both of its external gears against the torque that gear 1 brings in
+            sense = -1 if duty.torque1 > 0 else 1
+            contacts.append(
+                PlanetContact(duty, own.member, own.outward, sense, own.hand, own.position)
+            )
+        first = contacts[0].sense
+        return contacts if first > 0 else [contact.turned_round() for contact in contacts]
+
+
+@dataclass(frozen=True, slots=True)
+class _Idle:
+    """What follows from the speeds; flows through pockets also by which gears drive.
+
+    `meshes` and `bearings` have what became of each mesh, and of each planet bearing under each
+    share of the load, in the last pass, from where the next one goes on.
+    """
+
+    drags: dict[str, Loss]
+    flags: tuple[ValidityFlag, ...]
+    flows: dict[tuple[bool, ...], Mapping[str, MeshFlow]]
+    meshes: dict[str, MeshOutcome]
+    bearings: dict[tuple[str, float], RollerLoads | None]
+
+
+@dataclass(frozen=True, slots=True)
+class GearSetResult(ElementResult):
+    """Losses, figures, flags of a set; meshes and bearings are those of its most loaded planet."""
+
+    # Share of the load that each planet carries; empty without planets. [1]
+    shares: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Branch:
+    """Losses of all planets with one and the same share, and how figures of one are found."""
+
+    losses: dict[str, Loss]
+    figures: dict[str, Callable[[], Any]]
+    flags: SomeFlags
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class GearSet:
+    """Meshes seen from one carrier, with planets, their bearings, discs and thrust bearings."""
+
+    key: str  # First part of its losses; empty for a single set.
+    carrier: str  # Body from which the meshes are seen; `HOUSING` for a pair.
+    meshes: tuple[GearMesh, ...]
+    planets: tuple[Planet, ...]  # Kinds of planets; empty for a pair.
+    sharing: LoadSharing | None  # None without planets.
+    discs: Mapping[str, tuple[Disc, ...]]  # By the name of their loss, ``"sun_drag"``.
+    missing: Mapping[str, str]  # Losses that the set does not have, and why.
+    thrust: ThrustBearing | None
+    # Every loss of the set, in the order in which they are shown.
+    choices: Mapping[str, LossChoice]
+    # None: each mesh carries what the losses leave, and its losses act on its own bodies.
+    reference: Reference | None = None
+
+    def evaluate(self, state: State) -> GearSetResult:
+        """Losses, figures and flags in a state."""
+        idle = self._known_idle(state)
+        torques = self._torques(state, idle.drags)
+        shares = self.shares(state, torques)
+        flows = self._flows(state, torques, idle)
+        branches = [
+            self._branch(state, torques, share, shares.count(share), flows, idle)
+            for share in sorted(set(shares), reverse=True)
+        ]
+        found = idle.drags | {
+            name: _with_choice(loss, self.choices[name]) for name, loss in _summed(branches).items()
+        }
+        first = branches[0]
+        return GearSetResult(
+            losses={name: found[name] for name in self.choices},
+            figures=Figures(first.figures),
+            flags=Flags(partial(_widest, branches)) + idle.flags,
+            notes=first.notes,
+            shares=shares if self.planets else (),
+        )
+
+    @property
+    def _bodies(self) -> tuple[Disc, ...]:
+        """All its discs."""
+        return tuple(disc for discs in self.discs.values() for disc in discs)
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """Names of its losses, in the order in which they are shown."""
+        return tuple(self.choices)
+
+    @property
+    def figure_types(self) -> tuple[tuple[str, type[Any]], ...]:
+        """Names and types of the figures of its meshes and planet bearings."""
+        return (
+            *((mesh.key, MeshFigures) for mesh in self.meshes),
+            *((planet.key, BearingFigures) for planet in self.planets if planet.bearing),
+        )
+
+    def idle(self, state: State) -> _Idle:
+        """Losses that depend on the speeds only, and their flags."""
+        return self._drags(state)
+
+    def loads(self, state: State) -> Mapping[str, float]:
+        """What each mesh and each planet bearing carries, all planets together. [N m]
+
+        Torques at the first gears of meshes; forces on bearings times the radius of their pins.
+        """
+        torques = self._torques(state, self._known_idle(state).drags)
+        if not self._parts_apart:
+            return torques
+        duties = {duty.key: duty for duty in self.duties(state, torques, 1 / self.count)}
+        speed = state.speeds[self.carrier]
+        bearings = {
+            planet.key: self.count * planet.pin_radius * planet.load(duties, speed)[1].force
+            for planet in self.planets
+            if planet.bearing is not None
+        }
+        return torques | bearings
+
+    @property
+    def _parts_apart(self) -> bool:
+        """True if each mesh and each planet bearing loses by its own load alone."""
+        alike = self.sharing is None or self.sharing.whatever_the_load
+        return alike and not any(planet.tilts for planet in self.planets)
+
+    @property
+    def count(self) -> int:
+        """Number of planets of each kind, which work in parallel."""
+        return 1 if self.sharing is None else self.sharing.count
+
+    def loaded_duties(self, state: State) -> tuple[MeshDuty, ...]:
+        """The meshes of the planet that carries most, misaligned if it tilts."""
+        torques = self._torques(state, self._known_idle(state).drags)
+        share = max(self.shares(state, torques))
+        duties = {duty.key: duty for duty in self.duties(state, torques, share)}
+        for planet in self.planets:
+            tilted, _ = planet.load(duties, state.speeds[self.carrier])
+            duties |= {duty.key: duty for duty in tilted}
+        return tuple(duties.values())
+
+    def mean_duties(self, state: State) -> tuple[MeshDuty, ...]:
+        """The meshes of a planet that carries its mean share."""
+        torques = self._torques(state, self._known_idle(state).drags)
+        return self.duties(state, torques, 1 / self.count)
+
+    def mean_loads(self, state: State) -> dict[str, PlanetLoad]:
+        """Load on the bearing of a planet that carries its mean share and does not tilt."""
+        duties = {duty.key: duty for duty in self.mean_duties(state)}
+        speed = state.speeds[self.carrier]
+        return {
+            planet.key: replace(planet, tilts=False).load(duties, speed)[1]
+            for planet in self.planets
+        }
+
+    def duties(
+        self, state: State, torques: Mapping[str, float], share: float
+    ) -> tuple[MeshDuty, ...]:
+        """The meshes of a planet with `share` of the load. Theory (K4)."""
+        carrier = state.speeds[self.carrier]
+        duties = []
+        for mesh in self.meshes:
+            torque, speed = share * torques[mesh.key], state.speeds[mesh.bodies[0]] - carrier
+            duties.append(MeshDuty(mesh, torque, speed, torque * speed >= 0))
+        return tuple(duties)
+
+    def shares(self, state: State, torques: Mapping[str, float]) -> tuple[float, ...]:
+        """The share of the load that each planet carries."""
+        if self.sharing is None:
+            return (1.0,)
+        bearing = self.planets[0].bearing
+        duties = self.duties(state, torques, 1 / self.count)
+        return planet_shares(self.sharing, duties, None if bearing is None else bearing.bearing)
+
+    def _torques(self, state: State, drags: Mapping[str, Loss]) -> dict[str, float]:
+        """Torque at the first gear of each mesh, all planets together."""
+        passed = {mesh.key: state.torques[f"{self.key}.{mesh.key}"] for mesh in self.meshes}
+        if self.reference is None or state.lossless:
+            return passed
+        # the drag of the body itself does not take from the load that its torque states
+        body, speed = self.reference.body, state.speeds[self.reference.body]
+        own_shaft = ((body, HOUSING, 1.0),)
+        drag = sum(loss.watts for loss in drags.values() if loss.brakes == own_shaft)
+        own = drag / speed if speed else 0.0
+        torques = {}
+        for key, torque in passed.items():
+            added = own * self.reference.levers[key]
+            whole = torque + added
+            torques[key] = 0.0 if abs(whole) <= ROUNDING * abs(added) else whole
+        return torques
+
+    def _flows(
+        self, state: State, torques: Mapping[str, float], idle: _Idle
+    ) -> Mapping[str, MeshFlow]:
+        """Flow through the pockets of each mesh, under the mean load of its planets."""
+        duties = self.duties(state, torques, 1 / self.count)
+        if self.reference is None:
+            duties = tuple(
+                replace(duty, drives1=state.drives[f"{self.key}.{duty.key}"]) for duty in duties
+            )
+        driving = tuple(duty.drives1 for duty in duties)
+        if driving not in idle.flows:
+            idle.flows[driving] = mesh_flows(duties, state.fluids)
+        return idle.flows[driving]
+
+    def _known_idle(self, state: State) -> _Idle:
+        found: _Idle | None = state.idle.get(self.key)
+        return self._drags(state) if found is None else found
+
+    def _drags(self, state: State) -> _Idle:
+        """Losses that do not depend on planets, as the user wants them, where they act."""
+        losses = {
+            name: Loss(LOAD_INDEPENDENT, left_out=reason) for name, reason in self.missing.items()
+        }
+        flags: tuple[ValidityFlag, ...] = ()
+        struck = sum(
+            disc.jets is not None and state.speeds[disc.body] != 0 for disc in self._bodies
+        )
+        for name, discs in self.discs.items():
+            losses[name], found = disc_loss(discs, state, struck)
+            flags += found
+        if self.thrust is not None:
+            losses["thrust_bearing_viscous"], found = thrust_loss(self.thrust, state)
+            flags += found
+        placed = {
+            name: self._placed(_with_choice(loss, self.choices[name]))
+            for name, loss in losses.items()
+        }
+        return _Idle(placed, flags, {}, {}, {})
+
+    def _branch(
+        self,
+        state: State,
+        torques: Mapping[str, float],
+        share: float,
+        planets: int,
+        flows: Mapping[str, MeshFlow],
+        idle: _Idle,
+    ) -> _Branch:
+        duties = {duty.key: duty for duty in self.duties(state, torques, share)}
+        bearings = []
+        notes: tuple[str, ...] = ()
+        carrier = state.speeds[self.carrier]
+        for planet in self.planets:
+            tilted, load = planet.load(duties, carrier)
+            duties |= {duty.key: duty for duty in tilted}
+            if planet.bearing is not None:
+                notes += planet.notes(carrier, load)
+            if planet.bearing is None:
+                bearings.append(missing_bearing(planet.key, planet.no_bearing))
+            else:
+                speed = state.speeds[planet.body] - carrier
+                bearing = solve_bearing(
+                    planet.key,
+                    planet.bearing,
+                    load,
+                    planets,
+                    state.fluids.at(joined_key(self.key, planet.key)),
+                    speed,
+                    idle.bearings.get((planet.key, share)),
+                )
+                idle.bearings[planet.key, share] = bearing.loads
+                bearings.append(bearing)
+        meshes = [
+            solve_mesh(
+                duty,
+                state.fluids,
+                flows[duty.key],
+                planets,
+                state.fluids.at(joined_key(self.key, duty.key)),
+                idle.meshes.get(duty.key),
+            )
+            for duty in duties.values()
+        ]
+        idle.meshes.update(zip(duties, meshes, strict=True))
+        notes += tuple(note for mesh in meshes for note in mesh.notes)
+        branch = _Branch({}, {}, (), notes)
+        losses, figures, flags = branch.losses, branch.figures, branch.flags
+        for planet, bearing in zip(self.planets, bearings, strict=True):
+            losses |= {
+                name: self._in_bearing(loss, planet) for name, loss in bearing.losses.items()
+            }
+            flags += bearing.flags
+            if bearing.figures is not None:
+                figures[planet.key] = bearing.figures
+        for duty, mesh in zip(duties.values(), meshes, strict=True):
+            losses |= self._of_mesh(duty, mesh.losses)
+            flags = mesh.flags + flags
+            figures[duty.key] = mesh.figures
+        return replace(branch, flags=flags)
+
+    def _of_mesh(self, duty: MeshDuty, losses: Mapping[str, Loss]) -> dict[str, Loss]:
+        """Losses of a mesh where they act: sliding is a share of its power, half of the rest brakes
+        each of its gears against the carrier.
+        """
+        follows = (duty.key,) if self._parts_apart else ()
+        if self.reference is not None:
+            return {
+                name: self._inside(loss)._replace(follows=follows) for name, loss in losses.items()
+            }
+        mesh = duty.gears
+        halves = tuple((body, self.carrier, 0.5) for body in mesh.bodies)
+        sliding, own = f"{mesh.key}_sliding", f"{self.key}.{mesh.key}"
+        return {
+            name: loss._replace(brakes=halves, mesh=own if name == sliding else "", follows=follows)
+            for name, loss in losses.items()
+        }
+
+    def _in_bearing(self, loss: Loss, planet: Planet) -> Loss:
+        """A loss of a planet bearing where it acts; that of the rollers heats planet and pin."""
+        between = (planet.body, self.carrier) if self.reference is None else self.reference.between
+        placed = loss._replace(brakes=((*between, 1.0),))
+        if loss.group == LOAD_INDEPENDENT:
+            return placed
+        if planet.bearing is not None and self._parts_apart:
+            placed = placed._replace(follows=(planet.key,))
+        return placed._replace(heat=tuple((node, 0.5) for node in planet.nodes))
+
+    def _inside(self, loss: Loss) -> Loss:
+        """A loss between moving parts of the set where the set has all of them act."""
+        if self.reference is None:
+            return loss
+        return loss._replace(brakes=((*self.reference.between, 1.0),), mesh="")
+
+    def _placed(self, loss: Loss) -> Loss:
+        """Friction inside the set acts where all its losses do, and so do both discs of a pair."""
+        on_shaft = any(HOUSING in brake for brake in loss.brakes) and self.carrier != HOUSING
+        return loss if on_shaft else self._inside(loss)
+
+
+def _with_choice(loss: Loss, choice: LossChoice) -> Loss:
+    """A loss with the user's choice. Theory (P4)."""
+    reason = loss.left_out or ("" if choice.include else "left out by the case")
+    if reason:
+        return Loss(loss.group, left_out=reason)
+    if choice.factor == 1:
+        return loss
+    return loss._replace(watts=choice.factor * loss.watts, factor=choice.factor)
+
+
+def _summed(branches: Sequence[_Branch]) -> dict[str, Loss]:
+    """The losses of all planets together."""
+    if len(branches) == 1:
+        return branches[0].losses
+    return {
+        name: loss._replace(
+            watts=sum(branch.losses[name].watts for branch in branches),
+            heat=_mean_heat([branch.losses[name] for branch in branches]),
+        )
+        for name, loss in branches[0].losses.items()
+    }
+
+
+def _mean_heat(losses: Sequence[Loss]) -> tuple[tuple[str, float], ...]:
+    """Shares of the heat of the same loss of all planets together."""
+    total = sum(loss.watts for loss in losses)
+    if not total:
+        return losses[0].heat
+    shares = dict.fromkeys((node for node, _ in losses[0].heat), 0.0)
+    for loss in losses:
+        for node, share in loss.heat:
+            shares[node] += share * loss.watts / total
+    return tuple(shares.items())
+
+
+def _widest(branches: Sequence[_Branch]) -> tuple[ValidityFlag, ...]:
+    """For each model and quantity the flag of the most loaded planet that raises one."""
+    flags: dict[tuple[ModelUse, str, str], ValidityFlag] = {}
+    for branch in branches:
+        for flag in branch.flags:
+            flags.setdefault((flag.use, flag.quantity, flag.source), flag)
+    return tuple(flags.values())

@@ -1,0 +1,735 @@
+"""Temperatures and losses of a machine that agree: heat network, bulk temperatures, iteration."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.contact.temperatures import bulk_rise_of_flash, bulk_rise_of_loss
+from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
+from epicyclic.machine import convection as shell
+from epicyclic.machine.convection import Fluid
+from epicyclic.machine.element import HOUSING, OIL, Fluids, Loss, MeshFigures
+from epicyclic.machine.gear_mesh import GearMesh
+from epicyclic.machine.gear_set import GearSet
+from epicyclic.machine.heat_flow import Link, Network
+from epicyclic.machine.heat_paths import (
+    INLET,
+    OF_SHAFT,
+    STEEL,
+    Wetting,
+    bearing_capacity,
+    bearing_links,
+    carrier_node,
+    gear_set_capacities,
+    gear_set_links,
+)
+from epicyclic.machine.machine import Machine, Operation
+from epicyclic.machine.shaft_parts import ShaftBearing
+from epicyclic.machine.solve import Solution, solve_machine, start_of
+from epicyclic.units import CELSIUS
+
+# Temperatures and losses that agree with each other.
+
+
+FloatArray = NDArray[np.float64]
+
+AGREEMENT = 3e-5
+"""Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
+QUICK = 0.15
+"""A step of the temperatures over the one before, up to which plain repetition is as quick. [1]"""
+MOST_PASSES = 40
+SCATTERING_FROM, SCATTER = 15, 0.02
+"""Passes after which a larger change is agreement [K]: that of the losses of a flow through pockets
+that does not repeat, which scatter."""
+COLDEST, HOTTEST = 200.0, 770.0
+"""Between which losses are computed; beyond them no gearbox is left to compute. [K]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What the heat of the losses leads to."""
+
+    temperatures: Mapping[str, float]  # Temperatures of all nodes. [K]
+    links: tuple[Link, ...] = ()  # Ways of the heat; empty where temperatures follow from formulas.
+    flows: Mapping[str, float] | None = None  # Heat through every link. [W]
+    # Temperatures of nodes that are given. [K]
+    given: Mapping[str, float] = field(default_factory=dict[str, float])
+    # Largest heat of a node that does not leave it, over all heat or the largest flow. [1]
+    residual: float = 0.0
+
+
+class ThermalModel(Protocol):
+    """How temperatures follow from losses."""
+
+    @property
+    def start(self) -> Mapping[str, float]:
+        """Temperatures of all nodes to start from. [K]"""
+
+    def fluids(self, temperatures: Mapping[str, float]) -> Fluids:
+        """Oil and mixture at the temperatures of the nodes that they meet."""
+
+    def answer(self, temperatures: Mapping[str, float], solution: Solution) -> Answer:
+        """Temperatures that the losses of a solution lead to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """A machine whose temperatures and losses agree."""
+
+    solution: Solution
+    answer: Answer
+    evaluations: int  # Evaluations of the losses.
+    change: float = 0.0  # Largest change of a temperature in the last of them. [K]
+
+
+def isothermal(solution: Solution) -> Settled:
+    """A solution at temperatures that nothing was asked about."""
+    return Settled(solution, Answer({}), 1)
+
+
+def heat_of(solution: Solution) -> dict[str, float]:
+    """Heat that the losses bring to each thermal node. [W]"""
+    heat: dict[str, float] = {}
+    for loss in _losses(solution):
+        for node, share in loss.heat:
+            heat[node] = heat.get(node, 0.0) + share * loss.watts
+    return heat
+
+
+def _losses(solution: Solution) -> list[Loss]:
+    own = [loss for result in solution.results.values() for loss in result.losses.values()]
+    return [*own, *solution.given.values()]
+
+
+def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settled:
+    """Temperatures and losses that agree. Theory (W27).
+
+    Plain repetition of losses and temperatures as long as that is quick, as where nothing but the
+    gears gets warm; else Broyden's method on the temperatures.
+
+    Raises
+    ------
+    ConvergenceError
+        If there is no equilibrium, or only one that no gearbox survives.
+    """
+    nodes = tuple(model.start)
+    unheated = start_of(machine, operation)
+    found: list[tuple[Solution, Answer]] = []
+    steps: list[float] = []
+
+    def change(values: FloatArray) -> FloatArray:
+        at = dict(zip(nodes, map(float, np.clip(values, COLDEST, HOTTEST)), strict=True))
+        with np.errstate(invalid="warn"):
+            solution = solve_machine(machine, operation, model.fluids(at), unheated)
+            answer = model.answer(at, solution)
+        found.append((solution, answer))
+        step: FloatArray = np.array([answer.temperatures[node] for node in nodes]) - values
+        steps.append(float(np.abs(step).max()))
+        return step
+
+    def left(_: FloatArray) -> float:
+        return steps[-1] / (AGREEMENT if len(steps) <= SCATTERING_FROM else SCATTER)
+
+    at = np.array([model.start[node] for node in nodes])
+    for _ in range(2):
+        at = at + change(at)
+    while AGREEMENT < steps[-1] <= QUICK * steps[-2]:
+        at = at + change(at)
+    if not steps[-1] <= AGREEMENT:
+        _by_secants(change, at, left, found)
+    solution, answer = found[-1]
+    temperatures = answer.temperatures.values()
+    if min(temperatures) < COLDEST or max(temperatures) > HOTTEST:
+        raise _no_equilibrium(found)
+    return Settled(solution, answer, len(found), steps[-1])
+
+
+def _by_secants(
+    change: Callable[[FloatArray], FloatArray],
+    start: FloatArray,
+    left: Callable[[FloatArray], float],
+    found: list[tuple[Solution, Answer]],
+) -> None:
+    """Broyden's method from temperatures on."""
+    from scipy.optimize import NoConvergence, broyden1  # takes a sixth of a second
+
+    try:
+        with np.errstate(invalid="ignore"):  # its first check divides infinity by infinity
+            broyden1(
+                change, start, alpha=1.0, f_tol=1.0, tol_norm=left, maxiter=MOST_PASSES,
+                line_search=None,
+            )  # fmt: skip
+    except NoConvergence:
+        raise _no_equilibrium(found) from None
+
+
+def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
+    """What to say of temperatures beyond all bounds, or that do not settle."""
+    for _, answer in found:  # the first to leave the bounds tells on which side they are left
+        coldest, hottest = (end(answer.temperatures.values()) for end in (min, max))
+        if coldest < COLDEST:
+            return _overcooled(answer.temperatures)
+        if hottest > HOTTEST:
+            break
+    return _runaway(found[-1][1].temperatures, found)
+
+
+def _overcooled(temperatures: Mapping[str, float]) -> ConvergenceError:
+    coldest = min(temperatures, key=lambda node: temperatures[node])
+    return ConvergenceError(
+        f"more heat is taken away than arises: the {coldest.replace('_', ' ')} would be colder "
+        f"than {CELSIUS.text(COLDEST, 4)}, down to which losses are computed. Give a smaller "
+        "thermal.cooler_power, or thermal.cooler_conductance, which takes no more than there is."
+    )
+
+
+def _runaway(
+    temperatures: Mapping[str, float], found: list[tuple[Solution, Answer]]
+) -> ConvergenceError:
+    hottest = max(temperatures, key=lambda node: temperatures[node])
+    reached = f"{hottest.replace('_', ' ')} {CELSIUS.text(temperatures[hottest], 4)}"
+    if OIL in temperatures and hottest != OIL:
+        reached += f", oil {CELSIUS.text(temperatures[OIL], 4)}"
+    return ConvergenceError(
+        "the gearbox runs away: its heat would leave only beyond "
+        f"{CELSIUS.text(HOTTEST, 4)}, up to which losses are computed. After {len(found)} passes "
+        f"the temperatures are: {reached}. Take more heat away (thermal.oil_flow, "
+        "thermal.cooler_conductance, a larger [thermal.housing]), or pass less power."
+    )
+
+
+# Bulk temperatures of gears from their own meshes, with the oil at its inlet temperature.
+
+
+BulkMethod = Literal["iso-6336-20", "iso-6336-22"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Side:
+    """A mesh that warms a gear."""
+
+    element: str  # Key of its set.
+    mesh: GearMesh
+    mates: int  # Gears that the gear meets in it.
+    parallel: int  # How many of this mesh the set has.
+
+
+@dataclass(frozen=True, slots=True)
+class FlankModel:
+    """Gears warmer than the oil by what their meshes do to them; nothing else is."""
+
+    machine: Machine
+    oil: float  # Temperature of the oil. [K]
+    method: BulkMethod  # One of `BULK_METHODS`.
+    lubrication_factors: Mapping[str, float]  # X_S of each set, by its key. [1]
+    # Oil and mixture at the temperatures of all nodes.
+    fluids_at: Callable[[Mapping[str, float]], Fluids]
+
+    @property
+    def start(self) -> Mapping[str, float]:
+        """All gears as warm as the oil. [K]"""
+        return dict.fromkeys(_sides(self.machine), self.oil)
+
+    def fluids(self, temperatures: Mapping[str, float]) -> Fluids:
+        """Oil and mixture at the temperatures of the nodes that they meet."""
+        return self.fluids_at(temperatures)
+
+    def answer(self, temperatures: Mapping[str, float], solution: Solution) -> Answer:
+        """Bulk temperatures of all gears."""
+        rise = BULK_METHODS[self.method]
+        return Answer(
+            {
+                node: self.oil + rise(sides, solution, self.lubrication_factors[sides[0].element])
+                for node, sides in _sides(self.machine).items()
+            },
+            given={OIL: self.oil},
+        )
+
+
+def _sides(machine: Machine) -> dict[str, list[_Side]]:
+    """The meshes of every gear, by its thermal node."""
+    found: dict[str, list[_Side]] = {}
+    for own in machine.elements:
+        if isinstance(own, GearSet):
+            planets = {planet.nodes[0] for planet in own.planets}
+            for mesh in own.meshes:
+                for node in mesh.nodes:
+                    mates = 1 if node in planets else own.count
+                    found.setdefault(node, []).append(_Side(own.key, mesh, mates, own.count))
+    return found
+
+
+def _rise_of_flash(sides: list[_Side], solution: Solution, lubrication_factor: float) -> float:
+    """ISO/TS 6336-20 with the mean flash temperature of its loaded meshes. Theory (W7)."""
+    loaded = [(side, flash) for side, flash in _flashes(sides, solution) if not math.isnan(flash)]
+    if not loaded:
+        return 0.0
+    mean = sum(flash for _, flash in loaded) / len(loaded)
+    mates = sum(side.mates for side, _ in loaded)
+    return bulk_rise_of_flash(mean, lubrication_factor, mates)
+
+
+def _flashes(sides: list[_Side], solution: Solution) -> Iterator[tuple[_Side, float]]:
+    for side in sides:
+        figures = solution.results[side.element].figures[side.mesh.key]
+        assert isinstance(figures, MeshFigures)
+        yield side, figures.flash_temperature_mean
+
+
+def _rise_of_loss(sides: list[_Side], solution: Solution, lubrication_factor: float) -> float:
+    """ISO/TS 6336-22 from the loss of one mesh, the mean of those of a gear. Theory (W4)."""
+    rises = []
+    for side in sides:
+        losses = solution.results[side.element].losses
+        watts = losses[f"{side.mesh.key}_sliding"].watts / side.parallel
+        geometry = side.mesh.mesh
+        rises.append(
+            bulk_rise_of_loss(
+                watts, geometry.center_distance, geometry.face_width, lubrication_factor
+            )
+        )
+    return sum(rises) / len(rises)
+
+
+BULK_METHODS: Mapping[str, Callable[[list[_Side], Solution, float], float]] = {
+    "iso-6336-20": _rise_of_flash,
+    "iso-6336-22": _rise_of_loss,
+}
+"""How much warmer than the oil a gear is."""
+
+
+# The network of a machine: nodes of its parts, the oil and the housing, and the ways between.
+
+
+AMBIENT = "air"
+COOLANT = "coolant"
+FUNCK = "ISO/TR 14179-2 (Funck 1985), second hand"
+LEAST_INSIDE = 10.0
+"""Conductance from oil to wall over that from oil to air, at least, by ISO/TR 14179-1. [1]"""
+SAME = 1e-13
+"""Relative error of the temperature of the housing. [1]"""
+WALLS = (1.0, 1e7)
+"""Between which the housing may be while temperatures settle. [K]"""
+AT_REST = 1.0
+"""Conductance that makes a part without heat as warm as the oil. [W/K]"""
+LEAST_SHARE = 0.01
+"""Oil for a part without heat over that for one with all the heat: an estimate. [1]"""
+SMALLEST_HEAT = 1e-6
+"""With which a gearbox without any heat shares its oil evenly. [W]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Housing:
+    """What the housing gives to its surroundings. Areas in m^2, coefficients in W/(m^2 K)."""
+
+    method: Literal["iso-14179-2", "iso-14179-1"]  # ``"iso-14179-2"`` or ``"iso-14179-1"``.
+    area: float
+    inner_area: float
+    height: float  # [m]
+    length: float  # [m]
+    air_speed: float  # [m/s]
+    emissivity: float  # [1]
+    fin_factor: float  # [1]
+    inner_coefficient: float  # From the oil to the wall; from the oil to the air.
+    coefficient: float  # From the oil to the wall; from the oil to the air.
+    foundation: float  # [W/K]
+
+    def outside(self, wall: float, air: float) -> float:
+        """Coefficient from the wall to the air. Theory (W9), (W10), (W11). [W/(m^2 K)]"""
+        if self.air_speed:
+            convection = shell.forced_convection(
+                self.air_speed, self.length, self.height, wall, air
+            )
+        else:
+            convection = shell.free_convection(self.height, wall, air)
+        return self.fin_factor * convection + shell.radiation(self.emissivity, wall, air)
+
+    def links(self, wall: float, air: float) -> Iterator[Link]:
+        """From the oil to the wall, and from there to the air."""
+        inside = self.inner_coefficient * self.inner_area
+        if self.method == "iso-14179-1":
+            whole = self.coefficient * self.area
+            # the coefficient is that of both ways together, whatever the wall adds
+            inside = max(inside, LEAST_INSIDE * whole)
+            outside = whole * inside / (inside - whole)
+            how = "coefficient from oil to air", "ISO/TR 14179-1, second hand"
+        else:
+            outside = self.outside(wall, air) * self.area
+            how = "convection and radiation", FUNCK
+        yield Link("oil-housing", OIL, HOUSING, inside, "splash on the wall", FUNCK)
+        yield Link("housing-air", HOUSING, AMBIENT, outside, *how)
+        if self.foundation:
+            yield Link("housing-foundation", HOUSING, AMBIENT, self.foundation, "given")
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What the user does to a conductance or capacity: another value [W/K, J/K], a factor [1]."""
+
+    value: float | None
+    scale: float
+
+    def __call__(self, computed: float) -> float:
+        """What becomes of a computed value."""
+        return self.scale * (computed if self.value is None else self.value)
+
+
+@dataclass(frozen=True, slots=True)
+class Wet:
+    """How oil gets to gears."""
+
+    bath: float  # Share of them that dips into oil. [1]
+    effectiveness: float  # Effectiveness of jets. [1]
+
+
+@dataclass(frozen=True, slots=True)
+class HeatSettings:
+    """How heat leaves the parts of a machine."""
+
+    inlet: float  # Temperatures of the oil; the outlet where it was measured. [K]
+    outlet: float | None  # Temperatures of the oil; the outlet where it was measured. [K]
+    flow: float  # Flow of oil. [m^3/s]
+    wet: Wet  # How oil gets to what is in no set.
+    wet_sets: Mapping[str, Wet]  # How it gets to each set.
+    # Shares of the flow that meet some of the nodes; what is left meets the others, as their heat
+    # demands. [1]
+    jet_shares: Mapping[str, float]
+    press_fit: float  # [W/(m^2 K)]
+    shaft: float  # From a part to the shaft it is on. [W/K]
+    ambient: float  # [K]
+    coolant: float  # [K]
+    cooler_power: float  # [W]
+    cooler: float  # [W/K]
+    housing: Housing | None
+    changes: Mapping[str, Change]  # By the key of the link.
+    oil_volume: float | None  # [m^3]
+    housing_mass: float | None  # Mass of steel that stores as much as the housing. [kg]
+    capacity_changes: Mapping[str, Change]  # By the node.
+
+
+@dataclass(frozen=True)
+class NetworkModel:
+    """Heat flows between all parts of a machine, the oil and the surroundings."""
+
+    machine: Machine
+    settings: HeatSettings
+    # Oil and mixture at the temperatures of all nodes.
+    fluids_at: Callable[[Mapping[str, float]], Fluids]
+    # The oil, and its mixture with air, as heat sees them, at a temperature.
+    media_at: Callable[[float], tuple[Fluid, Fluid]]
+
+    @property
+    def start(self) -> Mapping[str, float]:
+        """Everything at the temperature of the oil inlet. [K]"""
+        return dict.fromkeys(self.nodes, self.settings.inlet)
+
+    @cached_property
+    def nodes(self) -> tuple[str, ...]:
+        """All nodes of unknown temperature."""
+        carriers = {
+            carrier_node(own): None
+            for own in self.machine.elements
+            if isinstance(own, GearSet) and any(planet.bearing for planet in own.planets)
+        }
+        ends = (OIL,) if self.settings.housing is None else (OIL, HOUSING)
+        return (*self.wetted, *carriers, *self.shafts, *ends)
+
+    @cached_property
+    def wetted(self) -> tuple[str, ...]:
+        """Nodes that oil can be thrown on: gears, pins, bearings of shafts."""
+        found: dict[str, None] = {}
+        for own in self.machine.elements:
+            if isinstance(own, GearSet):
+                found |= dict.fromkeys(_wetted_nodes(own))
+            elif isinstance(own, ShaftBearing):
+                found[own.key] = None
+        return tuple(found)
+
+    @cached_property
+    def shafts(self) -> Mapping[str, tuple[str, ...]]:
+        """Nodes of shafts that join parts of more than one element, with the nodes on them."""
+        on: dict[str, dict[str, str]] = {}
+        for own in self.machine.elements:
+            for body, node in _seats(own):
+                if body != HOUSING:
+                    on.setdefault(body, {})[node] = own.key
+        return {
+            f"{body}_shaft": tuple(nodes)
+            for body, nodes in on.items()
+            if len(set(nodes.values())) > 1
+        }
+
+    def fluids(self, temperatures: Mapping[str, float]) -> Fluids:
+        """Oil and mixture at the temperatures of the nodes that they meet."""
+        return self.fluids_at(temperatures)
+
+    def answer(self, temperatures: Mapping[str, float], solution: Solution) -> Answer:
+        """Temperatures at which the heat of the losses leaves. Theory (W26).
+
+        Raises
+        ------
+        InputError
+            If the heat of a part has no way out.
+        """
+        heat = self._heat(solution)
+        fixed = self._fixed_links(temperatures[OIL], solution, heat)
+        network = self._with_wall(fixed, heat, self._wall(fixed, heat))
+        found = network.steady(heat)
+        flows = network.flows(found)
+        whole = max(sum(map(abs, heat.values())), *map(abs, flows.values()))
+        left = max(map(abs, network.residuals(found, heat).values()))
+        return Answer(
+            temperatures=found,
+            links=network.links,
+            flows=flows,
+            given=network.given,
+            residual=left / whole if whole else 0.0,
+        )
+
+    def network(self, temperature: float, solution: Solution) -> Network:
+        """The network with oil and housing at one temperature. [K]"""
+        heat = self._heat(solution)
+        return self._with_wall(self._fixed_links(temperature, solution, heat), heat, temperature)
+
+    def _heat(self, solution: Solution) -> dict[str, float]:
+        """That arises at each node, less the power of a cooler. [W]"""
+        heat = heat_of(solution)
+        heat[OIL] = heat.get(OIL, 0.0) - self.settings.cooler_power
+        if self.settings.housing is None:
+            heat[OIL] += heat.pop(HOUSING, 0.0)
+        return heat
+
+    def _wall(self, fixed: Sequence[Link], heat: Mapping[str, float]) -> float:
+        """Temperature of the housing, on which the heat to the air depends. [K]"""
+        from scipy.optimize import brentq
+
+        if self.settings.housing is None:
+            return math.nan
+
+        def off(wall: float) -> float:
+            return self._with_wall(fixed, heat, wall).steady(heat)[HOUSING] - wall
+
+        # the warmer the wall is taken to be, the better it is cooled: one temperature fits
+        coldest, hottest = WALLS
+        try:
+            return float(brentq(off, coldest, hottest, xtol=SAME, rtol=SAME))
+        except InputError:
+            raise
+        except ValueError:  # there is no equilibrium, which those who ask for one tell
+            return coldest if off(coldest) < 0 else hottest
+
+    def _with_wall(self, fixed: Sequence[Link], heat: Mapping[str, float], wall: float) -> Network:
+        """The network with the housing at a temperature, as far as conductances depend on it."""
+        own = self.settings
+        outside = () if own.housing is None else own.housing.links(wall, own.ambient)
+        links = (*fixed, *map(self._changed, outside))
+        given = {INLET: own.inlet, AMBIENT: own.ambient, COOLANT: own.coolant}
+        met = {node for link in links for node in (link.hot, link.cold, link.target)}
+        network = Network(
+            self.nodes, {node: value for node, value in given.items() if node in met}, links
+        )
+        self._check_names(network)
+        left = network.cut_off()
+        if any(node == OIL or heat.get(node) for node in left):
+            raise _no_way_out(left)
+        # parts at rest, which nothing heats or cools, are as warm as the oil
+        return replace(network, links=(*links, *map(_as_the_oil, left))) if left else network
+
+    def _fixed_links(
+        self,
+        around: float,  # Temperature of the oil, for its properties. [K]
+        solution: Solution,  # Speeds, and loads of the bearings.
+        heat: Mapping[str, float],  # That arises at each node, less the power of a cooler. [W]
+    ) -> tuple[Link, ...]:
+        """All ways of the heat but that to the air."""
+        own = self.settings
+        oil, mixture = self.media_at(around)
+        carried = self._carried(oil, sum(heat.values()))
+        shares = self._jet_shares(heat)
+
+        def wetting(wet: Wet) -> Wetting:
+            return Wetting(
+                around=oil if wet.bath else mixture,
+                bath=wet.bath,
+                jet=wet.effectiveness * carried,
+                jet_shares=shares,
+                press_fit=own.press_fit,
+            )
+
+        ways = (*self._of_parts(solution, wetting), *self._of_shafts(), *self._of_oil(carried))
+        return tuple(map(self._changed, ways))
+
+    def capacities(self) -> dict[str, float]:
+        """Heat that each node stores for a kelvin. Theory (W35). [J/K]
+
+        Raises
+        ------
+        InputError
+            With everything that is not known of the oil and the housing.
+        """
+        own = self.settings
+        oil, _ = self.media_at(own.inlet)
+        found: dict[str, float | None] = dict.fromkeys(self.shafts, OF_SHAFT)
+        for element in self.machine.elements:
+            if isinstance(element, GearSet):
+                found |= gear_set_capacities(element)
+            elif isinstance(element, ShaftBearing):
+                found[element.key] = bearing_capacity(element)
+        mass, volume = own.housing_mass, own.oil_volume
+        found[OIL] = oil.density * oil.heat_capacity * volume if volume else None
+        found[HOUSING] = mass * STEEL.heat_capacity if mass else None
+        known = {node: found[node] for node in self.nodes}
+        problems = [_no_such_node(name, known) for name in own.capacity_changes.keys() - known]
+        for node in own.capacity_changes.keys() & known:
+            change, computed = own.capacity_changes[node], known[node]
+            if change.value is not None or computed is not None:
+                known[node] = change(computed or 0.0)
+        problems += [_UNKNOWN_CAPACITY[node] for node, value in known.items() if value is None]
+        raise_any(problems)
+        return {node: value for node, value in known.items() if value is not None}
+
+    def _carried(self, oil: Fluid, heat: float) -> float:
+        """Heat capacity of the flow of oil. [W/K]"""
+        own = self.settings
+        if own.outlet is not None:
+            return max(heat, 0.0) / (own.outlet - own.inlet)
+        return oil.density * oil.heat_capacity * own.flow
+
+    def _jet_shares(self, heat: Mapping[str, float]) -> dict[str, float]:
+        """The oil goes where the heat arises, unless the user says otherwise. Theory (W30)."""
+        given = self.settings.jet_shares
+        own = {node: heat.get(node, 0.0) for node in self._met_by_jets() if node not in given}
+        left = max(0.0, 1 - sum(given.values()))
+        even = LEAST_SHARE * sum(own.values()) + SMALLEST_HEAT
+        weights = {node: watts + even for node, watts in own.items()}
+        total = sum(weights.values())
+        return dict(given) | {node: left * weight / total for node, weight in weights.items()}
+
+    def _met_by_jets(self) -> tuple[str, ...]:
+        """Nodes to which oil is not brought by a bath alone; all where it is nowhere else."""
+        elsewhere: set[str] = set()
+        for own in self.machine.elements:
+            if isinstance(own, GearSet) and not self.settings.wet_sets[own.key].effectiveness:
+                elsewhere |= set(_wetted_nodes(own))
+            elif isinstance(own, ShaftBearing) and not self.settings.wet.effectiveness:
+                elsewhere.add(own.key)
+        return tuple(node for node in self.wetted if node not in elsewhere) or self.wetted
+
+    def _of_parts(self, solution: Solution, wetting: Callable[[Wet], Wetting]) -> Iterator[Link]:
+        housing = self.settings.housing is not None
+        for own in self.machine.elements:
+            if isinstance(own, GearSet):
+                result = solution.results[own.key]
+                wet = self.settings.wet_sets[own.key]
+                found = gear_set_links(own, solution.state, result, wetting(wet))
+            elif isinstance(own, ShaftBearing):
+                found = bearing_links(own, wetting(self.settings.wet))
+            else:
+                continue
+            yield from (link for link in found if housing or link.cold != HOUSING)
+
+    def _of_shafts(self) -> Iterator[Link]:
+        for shaft, nodes in self.shafts.items():
+            for node in nodes:
+                yield Link(
+                    f"{node}-{shaft}", node, shaft, self.settings.shaft, "along the shaft", "given"
+                )
+
+    def _of_oil(self, carried: float) -> Iterator[Link]:
+        if carried:
+            yield Link("oil-outflow", OIL, INLET, carried, "flow of oil", "energy balance")
+        if self.settings.cooler:
+            yield Link("oil-coolant", OIL, COOLANT, self.settings.cooler, "cooler", "given")
+
+    def _changed(self, link: Link) -> Link:
+        change = self.settings.changes.get(link.key)
+        return link if change is None else replace(link, conductance=change(link.conductance))
+
+    def _check_names(self, network: Network) -> None:
+        """Names of the case that are not known here are errors."""
+        strangers = set(self.settings.jet_shares) - set(self.wetted)
+        if strangers:
+            raise _no_such("thermal.jet_shares", "part", strangers, self.wetted)
+        known = [link.key for link in network.links]
+        unknown = set(self.settings.changes) - set(known)
+        if unknown:
+            raise _no_such("thermal.conductances", "way of the heat", unknown, known)
+
+
+def _no_way_out(nodes: Iterable[str]) -> InputError:
+    allowed = f"the heat of {', '.join(nodes)} has no way out."
+    remedy = (
+        "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] or "
+        "thermal.cooler_conductance; for single parts thermal.jet_shares or thermal.conductances."
+    )
+    return InputError([Problem("thermal", "", allowed, remedy)])
+
+
+def _as_the_oil(node: str) -> Link:
+    return Link(f"{node}-oil", node, OIL, AT_REST, "at rest", "any conductance serves")
+
+
+def _wetted_nodes(own: GearSet) -> Iterator[str]:
+    """Gears and pins of a set."""
+    yield from (node for mesh in own.meshes for node in mesh.nodes)
+    yield from (planet.nodes[1] for planet in own.planets if planet.bearing)
+
+
+def _seats(own: object) -> Iterator[tuple[str, str]]:
+    """Bodies of an element with the thermal nodes on them, planets left out."""
+    if isinstance(own, GearSet):
+        planets = {planet.nodes[0] for planet in own.planets}
+        for mesh in own.meshes:
+            for body, node in zip(mesh.bodies, mesh.nodes, strict=True):
+                if node not in planets:
+                    yield body, node
+        if any(planet.bearing for planet in own.planets):
+            yield own.carrier, carrier_node(own)
+    elif isinstance(own, ShaftBearing):
+        yield from ((body, own.key) for body in own.between)
+
+
+_UNKNOWN_CAPACITY = {
+    OIL: Problem(
+        "thermal.oil_volume",
+        "",
+        "is not given: how fast the oil warms up depends on it.",
+        'Give it, as "5 l", or thermal.capacities.oil.value.',
+    ),
+    HOUSING: Problem(
+        "thermal.housing.mass",
+        "",
+        "is not given: how fast the housing warms up depends on it.",
+        'Give it, as "40 kg", or thermal.capacities.housing.value.',
+    ),
+}
+
+
+def _no_such_node(name: str, known: Iterable[str]) -> Problem:
+    return Problem(
+        f"thermal.capacities.{name}",
+        "",
+        f"is no part here; there are {', '.join(known)}.",
+        "Take one of these names.",
+    )
+
+
+def _no_such(table: str, noun: str, unknown: Iterable[str], known: Iterable[str]) -> InputError:
+    return InputError(
+        [
+            Problem(
+                f"{table}.{name}",
+                "",
+                f"is no {noun} here; there are {', '.join(known)}.",
+                "Take one of these names.",
+            )
+            for name in sorted(unknown)
+        ]
+    )

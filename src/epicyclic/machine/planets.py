@@ -1,0 +1,625 @@
+"""Planets: their shares of the load, their tilt, and their roller bearings."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.contact.planet_sharing import (
+    Branches,
+    branch_directions,
+    closed_form_branch_forces,
+    mesh_load_factor_shares,
+    solve_branch_forces,
+)
+from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
+from epicyclic.losses.drag import (
+    VISCOUS_METHOD,
+    VISCOUS_SOURCE,
+    bearing_viscous_loss,
+    viscous_flags,
+)
+from epicyclic.losses.fitted import FittedRolling
+from epicyclic.losses.planet_bearing import (
+    BearingLoss,
+    RollerBearing,
+    RollerLoads,
+    fitted_rolling_loss,
+    mixed_ehl_rolling_loss,
+    palmgren_flags,
+    palmgren_loss,
+    radial_stiffness,
+    roller_loads,
+    roller_loads_next_to,
+    tilting_moments,
+)
+from epicyclic.losses.ranges import Flags, SomeFlags
+from epicyclic.machine.convection import roller_conductance
+from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, BearingFigures, Loss
+from epicyclic.machine.gear_mesh import MeshDuty, elastic_loads
+from epicyclic.oil.properties import OilState
+
+# The share of the load that each planet of a set carries.
+
+
+SHARE_DIGITS = 12
+"""Decimals of a share, so that planets that carry alike are solved once. [1]"""
+SHARING_METHODS = {
+    "equal": ("equal loads", ""),
+    "mesh-load-factor": ("one planet overloaded by a given factor", "ISO 6336-1"),
+    "closed-form": (
+        "closed form for equally spaced planets",
+        "T. Ligata, A. Kahraman, A. Singh, J. Mech. Des. 131 (2009) 021007",
+    ),
+    "direct": (
+        "elastic branches between rigid members",
+        "T. Ligata, A. Kahraman, A. Singh, J. Mech. Des. 131 (2009) 021007",
+    ),
+}
+"""What each method of load sharing is, and its source."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadSharing:
+    """How the planets of a set share the load."""
+
+    # A key of `SHARING_METHODS`; the last two are for a sun, a ring and planets between them.
+    method: str
+    mesh_load_factor: float  # K_gamma: load of the most loaded planet over the mean. [1]
+    angles: tuple[float, ...]  # Positions of the planets. [rad]
+    # Error of each pin, against the sense in which a positive torque of the sun pushes it. [m]
+    position_errors: tuple[float, ...]
+    floating_member: str  # The member that gives way, or ``"none"``.
+    support_stiffness: float  # Radial, of that member. [N/m]
+    pin_stiffness: float | None  # Radial, of one pin; None: rigid. [N/m]
+
+    @property
+    def count(self) -> int:
+        """Number of planets."""
+        return len(self.angles)
+
+    @property
+    def whatever_the_load(self) -> bool:
+        """True if the shares do not depend on the load."""
+        return self.method in ("equal", "mesh-load-factor") or self.count == 1
+
+
+def planet_shares(
+    sharing: LoadSharing,
+    # The meshes of a planet under the mean load, that of the sun first.
+    duties: tuple[MeshDuty, ...],
+    bearing: RollerBearing | None,  # Bearing of one planet; None: rigid.
+) -> tuple[float, ...]:
+    """Share of the load that each planet carries; their sum is 1. Theory (S1).
+
+    The closed form holds while all planets carry; where one does not, (S3) and (S4) are solved.
+
+    Raises
+    ------
+    ConvergenceError
+        If no loads of the planets balance.
+    """
+    count = sharing.count
+    if sharing.method == "mesh-load-factor":
+        return mesh_load_factor_shares(count, sharing.mesh_load_factor)
+    idle = not all(duty.torque1 for duty in duties)
+    if sharing.whatever_the_load or idle:
+        return (1 / count,) * count
+    branches = _branches(sharing, duties, bearing)
+    floats = sharing.floating_member != "none"
+    force = count * duties[0].force
+    if sharing.method == "closed-form":
+        forces = closed_form_branch_forces(force, branches, floating=floats)
+    if sharing.method == "direct" or forces.min() < 0:
+        sun_mesh, ring_mesh = duties
+        directions = branch_directions(
+            branches.angles,
+            sun_mesh.mesh.operating_pressure_angle,
+            ring_mesh.mesh.operating_pressure_angle,
+        )
+        supports: dict[str, float] = (
+            {sharing.floating_member: sharing.support_stiffness} if floats else {}
+        )
+        forces = solve_branch_forces(force, branches, directions, supports)
+    return tuple(float(share) for share in np.round(forces / forces.sum(), SHARE_DIGITS))
+
+
+def _branches(
+    sharing: LoadSharing, duties: tuple[MeshDuty, ...], bearing: RollerBearing | None
+) -> Branches:
+    """The branches of all planets. Theory (S6)."""
+    sun_mesh = duties[0]
+    # the branch force reaches the pin through both meshes
+    through_pin = sum(math.cos(duty.mesh.operating_pressure_angle) for duty in duties)
+    pin_force = through_pin * sun_mesh.force
+    pin_compliance = 0.0 if bearing is None else 1 / radial_stiffness(bearing, pin_force)
+    if sharing.pin_stiffness is not None:
+        pin_compliance += 1 / sharing.pin_stiffness
+    compliance = sum(_mesh_compliance(duty) for duty in duties)
+    errors = np.array(sharing.position_errors or np.zeros(sharing.count))
+    return Branches(
+        np.array(sharing.angles),
+        compliance + through_pin**2 * pin_compliance,
+        math.copysign(through_pin, sun_mesh.torque1) * errors,
+    )
+
+
+def _mesh_compliance(duty: MeshDuty) -> float:
+    """Slope of the transmission error over the force, mean of the mesh period. [m/N]"""
+    loaded = elastic_loads(duty)
+    return loaded.mean(1 / loaded.tangent_stiffness)
+
+
+# The load of a planet on its bearing, and how the planet tilts under it.
+#
+# Axes, right-handed: t along the circle of the planets; r outward from the centre of the set; y
+# along the planet's axis, from the middle of the bearing. They are turned about r so that the first
+# mesh turns the planet from t to r: for a sun, t is then the sense in which it pushes the planet.
+
+
+FloatArray = NDArray[np.float64]
+
+TILT_TOLERANCE = 1e-9
+"""Imbalance over the tilt at which the latter counts as found: under next to no load, teeth give
+way by less than a thousandth of what the planet moves in its play. [1]"""
+SMALL_TILT = 1e-6
+"""A tilt as small as this counts as that size in `TILT_TOLERANCE`: 0.02 um across 20 mm. [rad]"""
+NEWTON_MOST = 40
+FLATTER = 0.5
+"""Slope of the energy at the end of a step over that at its start, at most. [1]"""
+SLOPE = 1e-4
+"""Step of differences, over the size of the tilt. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetLoad:
+    """Load of one planet on its bearing, x along the radial force."""
+
+    force: float  # Radial. [N]
+    moment_x: float  # Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
+    moment_y: float  # Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetContact:
+    """A mesh that loads a planet. Theory (A1)."""
+
+    duty: MeshDuty
+    member: int  # Which of its gears sits on the planet, 1 or 2.
+    # Unit vector along t and r from the pitch point to the axis of the planet: the sense in which
+    # the radial force of the mesh pushes the planet.
+    outward: tuple[float, float]
+    sense: int  # +1 if the mesh turns the planet from t to r, else -1.
+    hand: int = 1  # +1 if a positive `sense` pushes the planet along y, else -1.
+    position: float = 0.0  # Position of the middle of the face, along y. [m]
+
+    def turned_round(self) -> PlanetContact:
+        """The same in axes turned about r by half a turn."""
+        t, r = self.outward
+        # not -0.0, which prints oddly
+        outward = (0.0 - t, r)
+        return replace(self, outward=outward, sense=-self.sense, position=0.0 - self.position)
+
+    @property
+    def face_sense(self) -> int:
+        """+1 if y points to the end of the face where contact ends, else -1. Theory (A3).
+
+        That end is the one towards which the mesh pushes its second gear.
+        """
+        return self.hand * self.sense * (1 if self.member == 2 else -1)
+
+    @property
+    def planet_radius(self) -> float:
+        """Operating radius of the planet in this mesh. [m]"""
+        mesh = self.duty.mesh
+        return mesh.operating_radius1 if self.member == 1 else mesh.operating_radius2
+
+    @property
+    def direction(self) -> complex:
+        """Unit vector of the transverse force on the planet, t + i r."""
+        angle = self.duty.mesh.operating_pressure_angle
+        # its arm is -outward, and z x is i times
+        return complex(*self.outward) * complex(math.sin(angle), -self.sense * math.cos(angle))
+
+    @property
+    def axial_force(self) -> float:
+        """Axial force of the mesh on the planet, along y. [N]"""
+        mesh = self.duty.mesh
+        tangential = abs(self.duty.torque1) / mesh.operating_radius1
+        return self.hand * self.sense * tangential * mesh.operating_helix_tangent
+
+
+Contacts = Sequence[PlanetContact]
+
+
+def planet_load(
+    contacts: Contacts,
+    centrifugal: float,  # [N]
+    # Moments of the transverse force of each mesh about the middle of its face. [N m]
+    mesh_moments: Sequence[float] = (),
+) -> PlanetLoad:
+    """Load on the bearing of a planet from all its meshes and the centrifugal force.
+
+    Theory (A2), (B1), (B2), (B17).
+
+    Talbot (2012), Eq. 3.7 and 3.8, for any number of meshes and any pressure angles: the transverse
+    forces add as vectors, the axial ones form couples in the planes of the axes, and a force beside
+    the middle of the bearing a moment.
+    """
+    moment = 0j  # t + i r
+    for contact, own in zip(contacts, mesh_moments or [0.0] * len(contacts), strict=True):
+        lever = own + contact.position * contact.duty.force
+        moment += lever * contact.direction
+        couple = contact.axial_force * contact.planet_radius
+        moment += couple * complex(*contact.outward)
+    force = _radial_force(contacts, centrifugal)
+    turned = moment * cmath.rect(1.0, -cmath.phase(force))
+    return PlanetLoad(abs(force), turned.real, turned.imag)
+
+
+def _radial_force(contacts: Contacts, centrifugal: float) -> complex:
+    """Force of all meshes and of rotation on the planet, t + i r. [N]"""
+    forces = (contact.duty.force * contact.direction for contact in contacts)
+    return sum(forces, complex(0.0, centrifugal))
+
+
+def _axes(force: complex) -> tuple[FloatArray, FloatArray]:
+    """Unit vectors along the radial force and at right angles to it, in t and r."""
+    turn = cmath.phase(force)
+    along = np.array([math.cos(turn), math.sin(turn)])
+    return along, np.array([-along[1], along[0]])
+
+
+def tilt_planet(
+    contacts: Contacts, bearing: RollerBearing, centrifugal: float
+) -> tuple[Contacts, PlanetLoad]:
+    """Meshes misaligned by the tilt of the planet in its bearing, and the load that belongs to it.
+
+    Theory (B17), (B18).
+
+    The tilt opens one end of each mesh, the load moves to the other end, and its moment tilts the
+    planet back. Carrier and pin are rigid; the bearing stands under the middle of the face.
+
+    Raises
+    ------
+    ConvergenceError
+        If the load of a mesh or of the bearing is not found.
+    """
+    from scipy.optimize import root
+
+    tilt = _tilt_under(planet_load(contacts, centrifugal), contacts, bearing, centrifugal)
+    scale = max(math.hypot(*tilt), SMALL_TILT)
+
+    def imbalance(scaled: FloatArray) -> FloatArray:
+        load = _load_at(scaled * scale, contacts, centrifugal)
+        answer = _tilt_under(load, contacts, bearing, centrifugal)
+        residual: FloatArray = scaled - answer / scale
+        return residual
+
+    found = root(imbalance, tilt / scale, method="hybr", tol=TILT_TOLERANCE / 10)
+    if np.abs(found.fun).max() <= TILT_TOLERANCE:
+        tilt = found.x * scale
+        return _misaligned(contacts, tilt), _load_at(tilt, contacts, centrifugal)
+    axes = np.array(_axes(_radial_force(contacts, centrifugal)))
+    excess = _excess(contacts, bearing, centrifugal)
+    reach = (bearing.diametral_clearance + bearing.crown_drop) / bearing.half_width + SMALL_TILT
+    tilts = _tilt_by_newton(excess, reach)
+    if tilts is None:
+        tilts = _tilt_one_by_one(excess, reach)
+    tilt = tilts @ axes
+    return _misaligned(contacts, tilt), _load_at(tilt, contacts, centrifugal)
+
+
+def _excess(
+    contacts: Contacts, bearing: RollerBearing, centrifugal: float
+) -> Callable[[FloatArray], FloatArray]:
+    """Moments with which the bearing holds a tilt less those of the planet. [N m]
+
+    In the planes of the axis and the radial force, and at right angles to it; both rise with the
+    tilt in that plane.
+    """
+    force = _radial_force(contacts, centrifugal)
+    axes = np.array(_axes(force))
+    size = abs(force)
+
+    def excess(tilts: FloatArray) -> FloatArray:
+        load = _load_at(tilts @ axes, contacts, centrifugal)
+        holding = tilting_moments(bearing, size, *map(float, tilts))
+        return np.array(holding) - (load.moment_x, load.moment_y)
+
+    return excess
+
+
+def _tilt_by_newton(excess: Callable[[FloatArray], FloatArray], reach: float) -> FloatArray | None:
+    """Where both excesses are zero; None if Newton's method does not get there. [rad]
+
+    What resists a tilt stores energy, whose slopes the excesses are and which has one minimum.
+    Along each of Newton's directions the step ends where the energy falls far less steeply. A
+    stiffness with which the excess would tilt the planet by `reach` is added, so that steps stay
+    bounded in a play, where nothing resists.
+    """
+    tilts: FloatArray = np.zeros(2)
+    found = excess(tilts)
+    for _ in range(NEWTON_MOST):
+        if not found.any():
+            return tilts
+        size = max(float(np.abs(tilts).max()), SMALL_TILT)
+        slope = np.column_stack(
+            [(excess(tilts + apart) - found) / (SLOPE * size) for apart in SLOPE * size * np.eye(2)]
+        )
+        slope += float(np.hypot(*found)) / reach * np.eye(2)
+        step = np.asarray(np.linalg.solve(slope, -found), dtype=np.float64)
+        if not found @ step < 0:  # the slopes there are but errors of their differences
+            step = -found * (reach / float(np.hypot(*found)))
+        elif np.abs(step).max() <= TILT_TOLERANCE * size:
+            return tilts + step
+        ahead = _down(excess, tilts, step, found)
+        if ahead is None:
+            return None
+        tilts, found = ahead
+    return None
+
+
+def _down(
+    excess: Callable[[FloatArray], FloatArray],
+    tilts: FloatArray,
+    step: FloatArray,
+    found: FloatArray,
+) -> tuple[FloatArray, FloatArray] | None:
+    """Tilts ahead along a step, and their excesses; None if the energy does not fall that way.
+
+    The slope of the energy there is at most `FLATTER` of that at the start.
+    """
+    start = float(found @ step)
+    near, near_slope, far, far_slope = 0.0, start, math.inf, math.inf
+    share = 1.0
+    for _ in range(NEWTON_MOST):
+        ahead = excess(tilts + share * step)
+        along = float(ahead @ step)
+        if abs(along) <= -FLATTER * start:
+            return tilts + share * step, ahead
+        if along < 0:
+            near, near_slope = share, along
+        else:
+            far, far_slope = share, along
+        if math.isinf(far):
+            share *= 2
+        else:
+            secant = near + (far - near) * near_slope / (near_slope - far_slope)
+            margin = (far - near) / 10
+            share = min(max(secant, near + margin), far - margin)
+    return None
+
+
+def _tilt_one_by_one(excess: Callable[[FloatArray], FloatArray], reach: float) -> FloatArray:
+    """Where both excesses are zero, each component in a bracket of its own. [rad]
+
+    What is left where Newton's method ends without a result, ten times slower: bearing and meshes
+    resist the more the farther the planet tilts, so that for any tilt in one plane there is one in
+    the other.
+    """
+
+    def first(second: float) -> float:
+        return _rising_root(lambda tilt: excess(np.array([tilt, second]))[0], reach)
+
+    second = _rising_root(lambda tilt: excess(np.array([first(tilt), tilt]))[1], reach)
+    return np.array([first(second), second])
+
+
+def _rising_root(rising: Callable[[float], float], reach: float) -> float:
+    """Where a rising function is zero, from -`reach` to `reach` or beyond."""
+    from scipy.optimize import brentq
+
+    while rising(-reach) > 0 or rising(reach) < 0:
+        reach *= 2
+    return float(brentq(rising, -reach, reach, xtol=TILT_TOLERANCE * SMALL_TILT))
+
+
+def _turning(contact: PlanetContact) -> float:
+    """Moment of a mesh on its planet, about the middle of the face. [N m]"""
+    return contact.face_sense * _mesh_moment(contact.duty)
+
+
+def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
+    """The meshes with a planet tilted by `tilt` in t and r. Theory (B18)."""
+    return [
+        replace(
+            contact,
+            duty=contact.duty.misaligned(
+                contact.face_sense
+                * contact.duty.mesh.face_width
+                * float(tilt @ (contact.direction.real, contact.direction.imag))
+            ),
+        )
+        for contact in contacts
+    ]
+
+
+def _load_at(tilt: FloatArray, contacts: Contacts, centrifugal: float) -> PlanetLoad:
+    """Load of a planet tilted by `tilt`."""
+    moments = [_turning(contact) for contact in _misaligned(contacts, tilt)]
+    return planet_load(contacts, centrifugal, moments)
+
+
+def _mesh_moment(duty: MeshDuty) -> float:
+    """Moment of the transverse force of a mesh about the middle of its face. Theory (B17). [N m]"""
+    if duty.torque1 == 0:
+        return 0.0
+    loaded = elastic_loads(duty)
+    height = loaded.lines.face_position - duty.mesh.face_width / 2
+    moments = (loaded.line_load * loaded.lines.length * height).sum(axis=(1, 2))
+    return loaded.mean(moments) * math.cos(duty.mesh.gear1.rack.base_helix_angle)
+
+
+def _tilt_under(
+    load: PlanetLoad, contacts: Contacts, bearing: RollerBearing, centrifugal: float
+) -> FloatArray:
+    """Tilt of the planet under `load`, in t and r. [rad]"""
+    loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
+    along, across = _axes(_radial_force(contacts, centrifugal))
+    tilt: FloatArray = loads.displacement[2] * along + loads.displacement[3] * across
+    return tilt
+
+
+# The roller bearing between a planet and its pin.
+
+
+BEARING_METHOD = "mixed-EHL rolling-loss regression, slice by slice"
+BEARING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), Eq. 3.2 to 3.6"
+PALMGREN_METHOD = "friction coefficient f1 of Palmgren"
+PALMGREN_SOURCE = "A. Palmgren, Ball and Roller Bearing Engineering (1959); Talbot (2012), Eq. 3.1"
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetBearing:
+    """A planet bearing and the models of its losses."""
+
+    bearing: RollerBearing
+    # ``"mixed-ehl"``, ``"palmgren"``, or a loss fitted to simulated contacts.
+    model: str | FittedRolling
+    palmgren_coefficient: float  # f1. [1]
+    viscous_factor: float  # f0 of the whole bearing. [1]
+    conductivity: float  # Thermal, of races and rollers. [W/(m K)]
+    oil_held: bool = True  # False to continue the model mixed-ehl beyond its oil.
+    # True if Palmgren's coefficient takes over where a fitted loss was not simulated.
+    palmgren_beyond: bool = False
+
+    @property
+    def method(self) -> tuple[str, str]:
+        """How the load-dependent loss is found, and where that is printed."""
+        if isinstance(self.model, FittedRolling):
+            if self.palmgren_beyond:
+                return (
+                    f"{self.model.title}, beyond them {PALMGREN_METHOD}",
+                    f"{self.model.source}; {PALMGREN_SOURCE}",
+                )
+            return self.model.title, self.model.source
+        if self.model == "mixed-ehl":
+            return BEARING_METHOD, BEARING_SOURCE
+        return PALMGREN_METHOD, PALMGREN_SOURCE
+
+
+@dataclass(frozen=True, slots=True)
+class BearingOutcome:
+    """Losses of the planet bearings, and how the figures of one of them are found.
+
+    `loads`, those on its rollers, is what the next pass goes on from.
+    """
+
+    losses: dict[str, Loss]
+    figures: Callable[[], BearingFigures] | None = None
+    flags: SomeFlags = ()
+    loads: RollerLoads | None = None
+
+
+def missing_bearing(key: str, reason: str) -> BearingOutcome:
+    """The losses of a bearing that is not there."""
+    return BearingOutcome(
+        {
+            f"{key}_mechanical": Loss(LOAD_DEPENDENT, left_out=reason),
+            f"{key}_viscous": Loss(LOAD_INDEPENDENT, left_out=reason),
+        }
+    )
+
+
+def solve_bearing(
+    key: str,  # First word of the losses, ``"planet_bearing"``.
+    own: PlanetBearing,
+    load: PlanetLoad,  # Load of each of them.
+    count: int,
+    oil: OilState,
+    speed: float,  # Speed of the planet against the carrier. [rad/s]
+    last: RollerLoads | None = None,  # The rollers under nearly this load, which saves work.
+) -> BearingOutcome:
+    """Losses of `count` planet bearings under the same load."""
+    bearing = own.bearing
+    if last is None:
+        loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
+    else:
+        loads = roller_loads_next_to(last, bearing, load.force, load.moment_x, load.moment_y)
+    if isinstance(own.model, FittedRolling):
+        beyond = _palmgren(own, loads, load, speed) if own.palmgren_beyond else None
+        loss = fitted_rolling_loss(bearing, loads, speed, oil, own.model, beyond)
+    elif own.model == "mixed-ehl":
+        loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil, oil_held=own.oil_held)
+    else:
+        loss = _palmgren(own, loads, load, speed)
+    viscous_loss = bearing_viscous_loss(
+        own.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
+    )
+    return BearingOutcome(
+        {
+            f"{key}_mechanical": Loss(LOAD_DEPENDENT, count * loss.loss, *own.method),
+            f"{key}_viscous": Loss(
+                LOAD_INDEPENDENT, count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE
+            ),
+        },
+        partial(_bearing_figures, own, loads, load, speed, oil, loss.loss),
+        loss.flags + viscous_flags(key.replace("_", " "), speed, bearing.pitch_diameter),
+        loads,
+    )
+
+
+def _palmgren(
+    own: PlanetBearing, loads: RollerLoads, load: PlanetLoad, speed: float
+) -> BearingLoss:
+    bearing = own.bearing
+    watts = palmgren_loss(own.palmgren_coefficient, load.force, bearing.pitch_diameter, speed)
+    return BearingLoss(watts, Flags(partial(palmgren_flags, bearing, loads, speed)))
+
+
+def _bearing_figures(
+    own: PlanetBearing,
+    loads: RollerLoads,
+    load: PlanetLoad,
+    speed: float,
+    oil: OilState,
+    loss: float,
+) -> BearingFigures:
+    bearing = own.bearing
+    rollers = loads.intensity.sum(axis=2) * bearing.slice_width
+    row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
+    hardest = float(loads.intensity.max()), bearing.inner_radius, bearing.equivalent_modulus
+    resisted = float(rollers.sum()) * bearing.pitch_diameter / 2 * abs(speed)
+    return BearingFigures(
+        radial_force=load.force,
+        moment=math.hypot(load.moment_x, load.moment_y),
+        speed=abs(speed),
+        rollers_loaded=float(np.count_nonzero(rollers)),
+        roller_load_max=float(rollers[row, most]),
+        roller_azimuth=math.remainder(float(loads.azimuth[most]), 2 * math.pi),
+        hertz_pressure_max=hertz_pressure(*hardest),
+        flattening=hertz_half_width(*hardest) / bearing.inner_radius,
+        resistance=loss / resisted if resisted else 0.0,
+        contact_temperature=oil.temperature,
+        heat_conductance=_heat_conductance(own, loads),
+        loads=loads,
+    )
+
+
+def _heat_conductance(own: PlanetBearing, loads: RollerLoads) -> float:
+    """Heat from race to race through the loaded rollers. [W/K]"""
+    bearing = own.bearing
+    inner, outer = (
+        hertz_half_width(
+            loads.intensity,
+            np.full_like(loads.intensity, radius),
+            bearing.equivalent_modulus,
+        )
+        for radius in (bearing.inner_radius, bearing.outer_radius)
+    )
+    return roller_conductance(
+        inner,
+        outer,
+        bearing.slice_width,
+        bearing.roller_diameter,
+        math.pi * bearing.inner_diameter / bearing.rollers_per_row,
+        math.pi * bearing.outer_diameter / bearing.rollers_per_row,
+        own.conductivity,
+    )

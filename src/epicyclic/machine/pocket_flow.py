@@ -1,0 +1,357 @@
+"""Flow through the pockets of meshes: solved, or read from tables of solved flows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.mesh import Mesh
+from epicyclic.losses.pocket_flow import (
+    NETWORK_MODELS,
+    POCKETING_MODELS,
+    PocketFlow,
+    PocketModel,
+    sound_speed,
+)
+from epicyclic.losses.pocket_tables import (
+    FlowFamily,
+    FlowFigures,
+    FlowMemory,
+    FlowTables,
+    stored_table,
+)
+from epicyclic.losses.ranges import Range
+from epicyclic.machine.element import Fluids
+from epicyclic.oil.properties import MixtureState
+from epicyclic.units import BAR, DEGREE, METRE_PER_SECOND, MILLIMETRE, WATT, format_number, percent
+
+if TYPE_CHECKING:
+    from epicyclic.machine.gear_mesh import MeshDuty
+
+POCKETING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), chapter 4"
+STUDY_SOURCE = "Talbot (2012), section 4.4"
+STUDY_RANGES = (
+    Range("transverse_module", "transverse module", 1.786, 2.174, MILLIMETRE, STUDY_SOURCE),
+    Range("face_width", "face width", 15.0, 35.0, MILLIMETRE, STUDY_SOURCE),
+    Range("helix_angle", "helix angle", 0.0, 35.0, DEGREE, STUDY_SOURCE),
+    Range("pitch_line_speed", "pitch line speed", 0.0, 26.2, METRE_PER_SECOND, STUDY_SOURCE),
+)
+"""Ranges of the parametric study: modules of Figure 4.13, face widths and helix angles of Figure
+4.9, and 10000 rpm on a pitch circle of 50 mm."""
+LARGEST_MACH = 0.5
+"""Fastest flow over the speed of sound above which waves matter. [1]"""
+_EDGE = 1e-3
+"""By how much a value may leave a range that is printed with three or four digits. [1]"""
+_AT_VOID = 1e-3
+"""Pressures nearer than this to that of a void are it. [1]"""
+
+FlowRequest = tuple[FlowFamily, float, MixtureState, float]
+"""A flow: its family, then as for `FlowFamily.flow`."""
+
+
+@dataclass(frozen=True, slots=True)
+class PocketSettings:
+    """How the flow through the pockets of a mesh is found."""
+
+    include: bool  # False if the loss is left out, so that nobody asks for the flow.
+    oil_fraction: float  # Oil share by volume at ambient pressure. [1]
+    model: PocketModel
+    void_pressure: float  # Absolute pressure of a void in an incompressible mixture. [Pa]
+    slices: int  # Resolution: across the face, in one pitch.
+    steps: int  # Resolution: across the face, in one pitch.
+    end_length: float  # Length of the control volumes at the ends of the face. [normal modules]
+    file: Path | None = None  # File of a stored table.
+    # Tables that the points of a sweep share.
+    tables: FlowTables = field(default_factory=dict, hash=False, compare=False)
+    # Flows of this very case at other temperatures, while they settle.
+    memory: FlowMemory | None = field(default=None, hash=False, compare=False)
+    fed: float = 0.0  # Oil that is fed into the mesh of one planet as the teeth mesh. [m^3/s]
+    # Whether the gears may be named in any order: the smaller one is then gear 1 of the pockets.
+    any_order: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class MeshFlow:
+    """Flow through the pockets of a mesh."""
+
+    # None without motion, and where the case leaves the loss out.
+    figures: FlowFigures | None = None
+    left_out: str = ""  # Why there can be no such loss; empty if there can.
+
+
+def oil_in_mesh(duty: MeshDuty) -> float:
+    """Share of oil in the pockets of a mesh: that around it, and what is fed into it.
+
+    Theory (N9).
+    """
+    settings, mesh = duty.models.pockets, duty.mesh
+    ratio = mesh.gear1.teeth / mesh.gear2.teeth
+    spaces = _spaces(mesh.gear1) + ratio * _spaces(mesh.gear2)
+    passing = abs(duty.speed1) / (2 * math.pi) * spaces
+    if not settings.fed or not passing:
+        return settings.oil_fraction
+    return min(1.0, settings.oil_fraction + settings.fed / passing)
+
+
+def _spaces(gear: Gear) -> float:
+    """Volume of all tooth spaces of a gear, half of the ring that the teeth stand in. [m^3]"""
+    return math.pi * abs(gear.tip_radius**2 - gear.root_radius**2) * gear.face_width / 2
+
+
+def flow_family(duty: MeshDuty) -> FlowFamily:
+    """The flows that that of a mesh belongs to."""
+    settings, mesh, tools, drives1 = duty.models.pockets, duty.mesh, duty.tools, duty.drives1
+    if _exchanged(duty):
+        mesh = replace(mesh, gear1=mesh.gear2, gear2=mesh.gear1)
+        tools, drives1 = tools[::-1], not drives1
+    return FlowFamily(
+        mesh=mesh,
+        tools=tools,
+        drives1=drives1,
+        oil_fraction=1.0 if settings.model in NETWORK_MODELS else oil_in_mesh(duty),
+        model=settings.model,
+        slices=settings.slices,
+        steps=settings.steps,
+        end_length=settings.end_length,
+    )
+
+
+def _exchanged(duty: MeshDuty) -> bool:
+    """Whether gear 2 is gear 1 of the pockets, whose time steps follow a tooth of that gear."""
+    one, two = (
+        (gear.teeth, gear.tip_radius, gear.root_radius)
+        for gear in (duty.mesh.gear1, duty.mesh.gear2)
+    )
+    return duty.models.pockets.any_order and not duty.mesh.internal and one > two
+
+
+def solve_pockets(duty: MeshDuty, fluids: Fluids) -> PocketFlow | None:
+    """Flow through the pockets of a mesh; None without motion.
+
+    Raises
+    ------
+    ConvergenceError
+        If the flow is not found.
+    ValueError
+        If a tooth has no outline.
+    """
+    if duty.speed1 == 0:
+        return None
+    family, speed, mixture, pressure = flow_request(duty, fluids)
+    return family.flow(speed, mixture, pressure)
+
+
+def flow_numbers(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[tuple[FlowFamily, float]]:
+    """Family and number of the flow of each mesh, as `flow_requests` has them."""
+    for request in flow_requests(duties, fluids):
+        yield request[0], FlowFamily.number(*request[1:])
+
+
+def flow_requests(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[FlowRequest]:
+    """The flow of each mesh whose loss is included.
+
+    Those that a stored table holds are left out, and those that another flow gives by scaling.
+
+    Raises
+    ------
+    InputError
+        If that table was made for other pockets.
+    """
+    for duty in duties:
+        if duty.models.pockets.include and duty.speed1 != 0:
+            request = flow_request(duty, fluids)
+            if _stored_figures(duty.models.pockets, request) is None and not _scales(request):
+                yield request
+
+
+def mesh_flows(duties: Sequence[MeshDuty], fluids: Fluids) -> Mapping[str, MeshFlow]:
+    """Flow through the pockets of each mesh, by its key.
+
+    Read from the stored table of its settings, else scaled from another flow where that can be,
+    else from the tables of a sweep, where they have it.
+
+    Raises
+    ------
+    ConvergenceError
+        If a flow is not found.
+    InputError
+        If the stored table was made for other pockets.
+    """
+    flows: dict[str, MeshFlow] = {duty.key: MeshFlow() for duty in duties}
+    direct: dict[str, FlowRequest] = {}
+    for duty in duties:
+        settings = duty.models.pockets
+        if not settings.include or duty.speed1 == 0:
+            continue
+        request = flow_request(duty, fluids)
+        figures = _stored_figures(settings, request)
+        if figures is None and not _scales(request):
+            figures = _interpolated(settings, request)
+        if figures is None:
+            direct[duty.key] = request
+        else:
+            flows[duty.key] = MeshFlow(figures)
+    solved = dict(zip(direct, _solve_all(tuple(direct.values())), strict=True))
+    for duty in duties:
+        memory = duty.models.pockets.memory
+        figures = solved[duty.key].figures if duty.key in solved else None
+        if memory is not None and figures is not None:
+            memory.add(*direct[duty.key], figures)
+    return flows | solved
+
+
+def flow_request(duty: MeshDuty, fluids: Fluids) -> FlowRequest:
+    """The flow through the pockets of a mesh: family, and as for `FlowFamily.flow`."""
+    settings = duty.models.pockets
+    lowest = settings.void_pressure if settings.model == "incompressible" else 0.0
+    mixture = fluids.mixed(oil_in_mesh(duty))
+    speed = abs(duty.speed1) / (duty.mesh.ratio if _exchanged(duty) else 1.0)
+    return flow_family(duty), speed, mixture, fluids.pressure - lowest
+
+
+def _scales(request: FlowRequest) -> bool:
+    """Whether the flow is another one times density and powers of the speed."""
+    try:
+        return request[0].scales(FlowFamily.number(*request[1:]))
+    except ValueError:  # no tooth outline: the solution says so
+        return False
+
+
+def _interpolated(settings: PocketSettings, request: FlowRequest) -> FlowFigures | None:
+    """From the tables of a sweep or the flows found before; None if they do not hold the flow."""
+    figures = None
+    if request[0] in settings.tables:
+        figures = settings.tables[request[0]].figures(*request[1:])
+    if figures is None and settings.memory is not None:
+        figures = settings.memory.figures(*request)
+    return figures
+
+
+def _stored_figures(settings: PocketSettings, request: FlowRequest) -> FlowFigures | None:
+    """From the stored table; None if there is none, or it does not hold the flow."""
+    if settings.file is None:
+        return None
+    return stored_table(settings.file, request[0]).figures(*request[1:])
+
+
+@lru_cache(maxsize=256)
+def _solve_all(requests: tuple[FlowRequest, ...]) -> tuple[MeshFlow, ...]:
+    """All flows at once: their kernels release the interpreter."""
+    if len(requests) < 2:
+        return tuple(map(_solve, requests))
+    with ThreadPoolExecutor(len(requests)) as pool:
+        return tuple(pool.map(_solve, requests))
+
+
+def _solve(request: FlowRequest) -> MeshFlow:
+    family, speed, mixture, pressure = request
+    try:
+        return MeshFlow(family.figures(speed, mixture, pressure))
+    except ValueError as error:
+        return MeshFlow(left_out=f"no tooth outline: {error}")
+
+
+def pocketing_method(model: PocketModel, figures: FlowFigures | None) -> str:
+    """How the loss was found, in words."""
+    method = POCKETING_MODELS[model]
+    if figures is None or not figures.nodes:
+        return method
+    error = percent(figures.error, 2)
+    if figures.file:
+        return f"{method}, table {figures.file}, interpolated within {error}"
+    return f"{method}, interpolated between {figures.nodes} flows within {error}"
+
+
+def pocket_notes(
+    duty: MeshDuty, figures: FlowFigures | None, fluids: Fluids, count: int, least: float = 0.0
+) -> tuple[str, ...]:
+    """What a user must know about the flow, with the watts that `count` such meshes lose by it.
+
+    Of a loss below `least` watts only whether it was found.
+    """
+    if figures is None:
+        return ()
+    settings, name = duty.models.pockets, duty.mesh.name
+    lost = f"the pockets lose {WATT.text(count * figures.power, 3)}"
+    notes = []
+    if not figures.periodic:
+        notes.append(
+            f"The flow through the pockets of the {name} does not repeat from one mesh period "
+            f"to the next; its loss is the mean of {figures.periods // 2} periods."
+        )
+    if count * figures.power < least:
+        return tuple(notes)
+    lowest = fluids.pressure + figures.pressure_min
+    if lowest < 0:
+        notes.append(
+            f"The pressure in the pockets of the {name} falls to {BAR.text(lowest, 3)} absolute, "
+            f"which no fluid can have ({lost}): models.pocketing = {settings.model} is meant for "
+            "lower speeds."
+        )
+    elif settings.model == "incompressible" and lowest <= settings.void_pressure * (1 + _AT_VOID):
+        notes.append(
+            f"The pockets of the {name} open faster than they fill and hold voids at "
+            f"models.pocket_void_pressure ({lost})."
+        )
+    notes += _sound_note(duty, figures, fluids, lost)
+    notes += _study_note(duty, lost)
+    return tuple(notes)
+
+
+def _sound_note(duty: MeshDuty, figures: FlowFigures, fluids: Fluids, lost: str) -> Iterator[str]:
+    """That waves matter to a model without them, or without choking."""
+    model, mixture = duty.models.pockets.model, fluids.mixed(oil_in_mesh(duty))
+    sound = sound_speed(mixture, fluids.pressure)
+    if model != "isentropic" and figures.speed_max > LARGEST_MACH * sound:
+        yield (
+            f"The flow out of the pockets of the {duty.mesh.name} reaches "
+            f"{format_number(figures.speed_max / sound, 3)} times the speed of sound of an even "
+            f"mixture, {METRE_PER_SECOND.text(sound, 3)} ({lost}). The loss lies "
+            "between those of models.pocketing = incompressible and isentropic; epicyclic pockets "
+            "shows both."
+        )
+
+
+def _study_note(duty: MeshDuty, lost: str) -> Iterator[str]:
+    """That the mesh lies outside the parametric study of the source."""
+    gear = duty.mesh.gear1
+    found = {
+        "transverse_module": gear.rack.transverse_module,
+        "face_width": duty.mesh.face_width,
+        "helix_angle": abs(gear.rack.helix_angle),
+        "pitch_line_speed": abs(duty.speed1) * duty.mesh.operating_radius1,
+    }
+    left = [
+        f"{limit.label} {limit.unit.text(found[limit.name], 3)} "
+        f"({format_number(limit.low or 0.0)} to {format_number(limit.high or 0.0)})"
+        for limit in STUDY_RANGES
+        if not _within(limit, found[limit.name])
+    ]
+    if left:
+        yield (
+            f"The {duty.mesh.name} lies outside the study of {STUDY_SOURCE}: {', '.join(left)}. "
+            f"No other values of the model were published; {lost}."
+        )
+
+
+def _within(limit: Range, value: float) -> bool:
+    low, high = limit.limits()
+    return (low or 0.0) * (1 - _EDGE) <= value <= (high or math.inf) * (1 + _EDGE)
+
+
+def stored_note(
+    settings: PocketSettings, mesh: Mesh, figures: FlowFigures | None
+) -> tuple[str, ...]:
+    """That the flow is not in the stored table."""
+    if settings.file is None or figures is None or figures.file:
+        return ()
+    return (
+        f"models.pocketing_table does not hold the flow through the pockets of the {mesh.name} "
+        "at this speed, oil density and pressure: it was found without the table.",
+    )

@@ -1,0 +1,377 @@
+"""Elements on shafts: rolling bearings, lip seals, and losses that the user tabulates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar, Literal, get_args
+
+from epicyclic.losses.drag import RPM as ONE_RPM
+from epicyclic.losses.loss_table import LossTable
+from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
+from epicyclic.losses.shaft_bearing import (
+    BearingLoad,
+    BearingModel,
+    CatalogueBearing,
+    SkfModel,
+    friction_load,
+    minimum_load,
+)
+from epicyclic.machine.element import (
+    LOAD_DEPENDENT,
+    LOAD_INDEPENDENT,
+    ElementResult,
+    Loss,
+    State,
+    figure,
+)
+from epicyclic.units import METRE_PER_SECOND, NEWTON, NEWTON_METRE, NUMBER, RPM, WATT, format_number
+
+# A loss between two bodies that the user gives as a table: clutch, brake, pump or other drag.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TableLossFigures:
+    """Speed and torque of a loss from a table; the torque is NaN at rest."""
+
+    speed: float = figure("speed difference", RPM)
+    friction_torque: float = figure("drag torque", NEWTON_METRE)
+
+
+@dataclass(frozen=True, slots=True)
+class TableLoss:
+    """Drag between two bodies over their speed difference and the oil temperature."""
+
+    key: str  # First part of the key of its loss.
+    between: tuple[str, str]  # The two bodies, one of which may be `HOUSING`.
+    table: LossTable  # Over speed and temperature.
+
+    terms: ClassVar = ("drag",)
+    figure_types: ClassVar = (("drag", TableLossFigures),)
+
+    def idle(self, state: State) -> None:
+        """Nothing that would be worth keeping."""
+
+    def loads(self, state: State) -> Mapping[str, float]:
+        """Nothing: torques and forces do not matter."""
+        return {}
+
+    def evaluate(self, state: State) -> ElementResult:
+        """Loss, figures and flags in a state."""
+        speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]
+        temperature = state.fluids.oil.temperature
+        watts = self.table.loss(speed=speed, temperature=temperature)
+        loss = Loss(
+            LOAD_INDEPENDENT,
+            watts,
+            "loss table",
+            self.table.source,
+            brakes=((*self.between, 1.0),),
+        )
+        figures = TableLossFigures(
+            speed=abs(speed), friction_torque=watts / abs(speed) if speed != 0 else math.nan
+        )
+        use = ModelUse("drag", "table", self.key)
+        return ElementResult(
+            losses={"drag": loss},
+            figures={"drag": figures},
+            flags=self.table.flags(use, speed=speed, temperature=temperature),
+        )
+
+
+# A radial lip seal on a shaft: ISO/TR 14179-1, ISO/TR 14179-2, Linke, or a table of the user.
+
+
+SealFormula = Literal["iso-14179-1-viton", "iso-14179-1-buna-n", "iso-14179-2", "linke"]
+
+SEAL_METHODS: Mapping[SealFormula, str] = {
+    "iso-14179-1-viton": "lip seal of Viton after ISO/TR 14179-1",
+    "iso-14179-1-buna-n": "lip seal of Buna N after ISO/TR 14179-1",
+    "iso-14179-2": "lip seal after ISO/TR 14179-2",
+    "linke": "lip seal after Linke",
+}
+SEAL_SOURCES: Mapping[SealFormula, str] = {
+    "iso-14179-1-viton": "ISO/TR 14179-1:2001",
+    "iso-14179-1-buna-n": "ISO/TR 14179-1:2001",
+    "iso-14179-2": "ISO/TR 14179-2:2001",
+    "linke": "H. Linke, Stirnradverzahnung, second hand",
+}
+
+TORQUE_PER_DIAMETER: Mapping[str, float] = {
+    "iso-14179-1-viton": 3.736,
+    "iso-14179-1-buna-n": 2.429,
+}
+"""Friction torque over shaft diameter, ISO/TR 14179-1. [N]"""
+
+_KELVIN = 273.15
+"""0 degC in kelvin."""
+_LIMIT = "usual limit of the material, DIN 3760, general knowledge"
+_RANGES: Mapping[SealFormula, tuple[Range, ...]] = {
+    "iso-14179-1-viton": (
+        Range("lip_speed", "speed of the shaft at the seal", None, 38.0, METRE_PER_SECOND, _LIMIT),
+    ),
+    "iso-14179-1-buna-n": (
+        Range("lip_speed", "speed of the shaft at the seal", None, 14.0, METRE_PER_SECOND, _LIMIT),
+    ),
+    "iso-14179-2": (),
+    "linke": (
+        Range(
+            "bracket",
+            "factor of temperature and viscosity of Linke's seal formula",
+            0.0,
+            None,
+            NUMBER,
+            "below zero it has no meaning; held at zero",
+        ),
+    ),
+}
+
+
+def seal_loss(
+    # ``"iso-14179-1-viton"``, ``"iso-14179-1-buna-n"``, ``"iso-14179-2"`` or ``"linke"``.
+    formula: SealFormula,
+    diameter: float,  # Diameter of the shaft under the lip. [m]
+    speed: float,  # Speed of the shaft against the seal. [rad/s]
+    temperature: float,  # Temperature of the oil; only Linke. [K]
+    # Kinematic viscosity of the oil at 40 degC, more than 0.2 mm^2/s; only Linke. [m^2/s]
+    viscosity_40: float,
+) -> float:
+    """Friction loss of one lip seal. [W]
+
+    Theory (J14), (J15), (J16).
+
+    Examples
+    --------
+    A shaft of 40 mm at 3000 rpm, in oil of VG 100 at 60 degC:
+
+    >>> import math
+    >>> round(seal_loss("iso-14179-2", 0.040, 100 * math.pi, 333.15, 100e-6), 1)
+    36.9
+    """
+    if formula in TORQUE_PER_DIAMETER:
+        return TORQUE_PER_DIAMETER[formula] * diameter * abs(speed)
+    group = (diameter * 1e3) ** 2 * abs(speed) / ONE_RPM
+    if formula == "iso-14179-2":
+        return 7.69e-6 * group
+    return 1e-7 * max(0.0, linke_bracket(temperature, viscosity_40)) * group
+
+
+def linke_bracket(temperature: float, viscosity_40: float) -> float:
+    """145 - 1.6 theta + 350 lg lg(nu40 + 0.8), in degC and mm^2/s; may be negative. [1]
+
+    Parameters as for `seal_loss`.
+    """
+    grade = math.log10(math.log10(viscosity_40 * 1e6 + 0.8))
+    return 145 - 1.6 * (temperature - _KELVIN) + 350 * grade
+
+
+def seal_losses(
+    diameter: float, speed: float, temperature: float, viscosity_40: float
+) -> dict[SealFormula, float]:
+    """The loss after every formula, to see how far they spread. [W]
+
+    Parameters as for `seal_loss`.
+    """
+    return {
+        formula: seal_loss(formula, diameter, speed, temperature, viscosity_40)
+        for formula in get_args(SealFormula)
+    }
+
+
+def seal_flags(
+    formula: SealFormula,
+    where: str,
+    diameter: float,
+    speed: float,
+    temperature: float,
+    viscosity_40: float,
+) -> tuple[ValidityFlag, ...]:
+    """Flags of `seal_loss` for the seal called `where`; none at rest."""
+    if speed == 0:
+        return ()
+    values = {
+        "lip_speed": abs(speed) * diameter / 2,
+        "bracket": linke_bracket(temperature, viscosity_40),
+    }
+    return check_ranges(ModelUse("seal", formula, where), _RANGES[formula], values)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SealFigures:
+    """What an engineer checks by eye on a seal, and how far the formulas spread; NaN at rest."""
+
+    speed: float = figure("speed difference at the seal", RPM)
+    lip_speed: float = figure("speed of the shaft at the lip", METRE_PER_SECOND)
+    friction_torque: float = figure("friction torque", NEWTON_METRE)
+    iso_14179_1_viton: float = figure("loss after ISO/TR 14179-1, Viton", WATT)
+    iso_14179_1_buna_n: float = figure("loss after ISO/TR 14179-1, Buna N", WATT)
+    iso_14179_2: float = figure("loss after ISO/TR 14179-2", WATT)
+    linke: float = figure("loss after Linke", WATT)
+
+
+@dataclass(frozen=True, slots=True)
+class Seal:
+    """A radial lip seal between a shaft and the housing, or between two shafts."""
+
+    key: str  # First part of the key of its loss.
+    between: tuple[str, str]  # The shaft that runs under the lip, and the body that holds the seal.
+    diameter: float  # Diameter of the shaft under the lip. [m]
+    model: SealFormula | LossTable  # A formula of `seal_loss`, or a table of the user.
+    viscosity_40: float  # Kinematic viscosity of the oil at 40 degC. [m^2/s]
+
+    terms: ClassVar = ("friction",)
+    figure_types: ClassVar = (("seal", SealFigures),)
+
+    def idle(self, state: State) -> None:
+        """Nothing that would be worth keeping."""
+
+    def loads(self, state: State) -> Mapping[str, float]:
+        """Nothing: torques and forces do not matter."""
+        return {}
+
+    def evaluate(self, state: State) -> ElementResult:
+        """Loss, figures and flags in a state."""
+        speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]
+        temperature = state.fluids.oil.temperature
+        if isinstance(self.model, LossTable):
+            watts = self.model.loss(speed=speed, temperature=temperature)
+            method, source = "loss table", self.model.source
+            flags = self.model.flags(
+                ModelUse("seal", "table", self.key), speed=speed, temperature=temperature
+            )
+        else:
+            at = (self.diameter, speed, temperature, self.viscosity_40)
+            watts = seal_loss(self.model, *at)
+            method, source = SEAL_METHODS[self.model], SEAL_SOURCES[self.model]
+            flags = seal_flags(self.model, self.key, *at)
+        loss = Loss(LOAD_INDEPENDENT, watts, method, source, brakes=((*self.between, 1.0),))
+        return ElementResult(
+            losses={"friction": loss},
+            figures={"seal": self._figures(watts, speed, temperature)},
+            flags=flags,
+        )
+
+    def _figures(self, watts: float, speed: float, temperature: float) -> SealFigures:
+        spread = seal_losses(self.diameter, speed, temperature, self.viscosity_40)
+        return SealFigures(
+            speed=abs(speed),
+            lip_speed=abs(speed) * self.diameter / 2,
+            friction_torque=watts / abs(speed) if speed != 0 else math.nan,
+            iso_14179_1_viton=spread["iso-14179-1-viton"],
+            iso_14179_1_buna_n=spread["iso-14179-1-buna-n"],
+            iso_14179_2=spread["iso-14179-2"],
+            linke=spread["linke"],
+        )
+
+
+# A rolling bearing of a shaft, as a catalogue states it.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShaftBearingFigures:
+    """What an engineer checks by eye on a shaft bearing; NaN where unknown or without motion."""
+
+    radial_force: float = figure("radial force", NEWTON)
+    axial_force: float = figure("axial force", NEWTON)
+    friction_load: float = figure("load P1 that sets the friction", NEWTON)
+    minimum_load: float = figure("minimum load (SKF)", NEWTON)
+    speed: float = figure("speed difference of the rings", RPM)
+    friction_torque: float = figure("friction torque", NEWTON_METRE)
+    coefficient: float = figure("coefficient f1 of the load-dependent moment", NUMBER)
+
+
+@dataclass(frozen=True, slots=True)
+class ShaftBearing:
+    """A rolling bearing between a shaft and the housing, or between two shafts."""
+
+    key: str  # First part of the keys of its losses; `State.forces` has its load under this key.
+    between: tuple[str, str]  # The bodies of its two rings.
+    bearing: CatalogueBearing
+    model: BearingModel  # `PalmgrenModel`, `SkfModel` or `TableModel`.
+    # The load where the user gives it; None to take that of the state.
+    force: BearingLoad | None = None
+    minimum_load_factor: float | None = None  # k_r of SKF; None for the default of the type. [1]
+    # Reference speed of a cylindrical roller bearing, for its minimum load. [rad/s]
+    reference_speed: float | None = None
+
+    figure_types: ClassVar = (("bearing", ShaftBearingFigures),)
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """Names of its losses."""
+        return self.model.terms
+
+    def idle(self, state: State) -> None:
+        """Nothing that would be worth keeping."""
+
+    def loads(self, state: State) -> Mapping[str, float]:
+        """The forces on it; nothing if the user gives them, or the model needs none. [N]"""
+        if self.force is not None or not self.model.depends_on_load:
+            return {}
+        force = state.forces[self.key]
+        return {"radial": force.radial, "axial": force.axial}
+
+    def evaluate(self, state: State) -> ElementResult:
+        """Losses, figures and flags in a state."""
+        load = state.forces[self.key] if self.force is None else self.force
+        speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]
+        oil = state.fluids.at(self.key)
+        parts = self.model.parts(self.bearing, load, speed, oil)
+        least = minimum_load(
+            self.bearing,
+            speed,
+            oil.kinematic_viscosity,
+            self.minimum_load_factor,
+            self.reference_speed,
+        )
+        watts = sum(part.watts for part in parts)
+        figures = ShaftBearingFigures(
+            radial_force=load.radial,
+            axial_force=load.axial,
+            friction_load=friction_load(self.bearing, load),
+            minimum_load=least,
+            speed=abs(speed),
+            friction_torque=watts / abs(speed) if speed != 0 else math.nan,
+            coefficient=self.model.coefficient(self.bearing, load),
+        )
+        return ElementResult(
+            losses={
+                part.key: Loss(
+                    LOAD_DEPENDENT if part.by_load else LOAD_INDEPENDENT,
+                    part.watts,
+                    part.method,
+                    part.source,
+                    brakes=((*self.between, 1.0),),
+                    heat=((self.key, 1.0),),
+                )
+                for part in parts
+            },
+            figures={"bearing": figures},
+            flags=self.model.flags(self.key, self.bearing, load, speed, oil),
+            notes=self._notes(load, least, speed),
+        )
+
+    def _notes(self, load: BearingLoad, least: float, speed: float) -> tuple[str, ...]:
+        if speed == 0:
+            return ()
+        notes = []
+        carried = self._carried(load)
+        if carried < least:
+            notes.append(
+                f"{self.key}: the load of {format_number(carried, 3)} N is below the minimum load "
+                f"of {format_number(least, 3)} N (SKF, second hand). The rolling elements may "
+                "slip; the loss is that of the actual load without slip."
+            )
+        if isinstance(self.model, SkfModel) and self.model.drag_is_estimated:
+            notes.append(
+                f"{self.key}: the drag variable V_M is an estimate, as SKF's diagram was not at "
+                "hand; give drag_variable."
+            )
+        return tuple(notes)
+
+    def _carried(self, load: BearingLoad) -> float:
+        """What holds the rolling elements to the races. [N]"""
+        if self.bearing.type in ("deep-groove", "tapered"):
+            return math.hypot(load.radial, load.axial)
+        return load.radial

@@ -1,1 +1,0 @@
-"""Loss maps over speed, torque and oil temperature, in the formats that simulations read."""

@@ -1,1 +1,0 @@
-"""Measured losses against the model, and fits of uncertain inputs to them."""

@@ -1,0 +1,1 @@
+"""Oils: what is stated of one, and its properties at a temperature."""

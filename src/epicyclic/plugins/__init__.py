@@ -1,0 +1,1 @@
+"""Plug-ins: what the core works without and never imports."""

@@ -1,0 +1,1 @@
+"""The app: pages of a case in the browser."""

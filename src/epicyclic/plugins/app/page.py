@@ -1,0 +1,285 @@
+"""The page: the form on the left, what follows from it on the right, files to open and save."""
+
+from __future__ import annotations
+
+import asyncio
+import tempfile
+from collections.abc import Callable
+from functools import partial
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from nicegui import events, ui
+
+from epicyclic import library
+from epicyclic.errors import EpicyclicError, InputError
+from epicyclic.plugins.app import worker as tasks
+from epicyclic.plugins.app.case_form import ENDINGS, Desk, Shelf, built_in, received
+from epicyclic.plugins.app.fields import Form
+from epicyclic.plugins.app.guard import LARGEST_BODY
+from epicyclic.plugins.app.views import (
+    Chapters,
+    CompareView,
+    Do,
+    MapView,
+    View,
+    key_figures,
+    mark_behind,
+)
+from epicyclic.plugins.app.worker import Doing, Ended, Latest, Study
+
+# Opening and saving: files go through the browser, never by a path on the page.
+
+
+RESULTS = {
+    ".nc": "Result with all its fields",
+    ".json": "Result as JSON",
+    ".html": "Report",
+    ".rexs": "REXS file with the results",
+}
+MOST_FILES = 20
+
+
+def ask_for_case(
+    folder: Path,  # In which uploaded files are kept, each time in a new folder.
+    then: Callable[[Desk], None],
+) -> None:
+    """Ask for a case, built in or a file of the user; call `then` with its desk."""
+    with ui.dialog() as dialog, ui.card().classes("asking"):
+        ui.label("Open a case").classes("section")
+        told = ui.label("").classes("told")
+
+        def take(make: Callable[[], Desk]) -> None:
+            try:
+                desk = make()
+            except InputError as error:
+                # where a received file lies is of no use to who sent it
+                told.set_text(str(InputError(error.problems, Path(error.source).name)))
+                return
+            dialog.close()
+            then(desk)
+
+        async def upload(event: events.MultiUploadEventArguments) -> None:
+            files = [(file.name, await file.read()) for file in event.files]
+            own = Path(tempfile.mkdtemp(dir=folder))
+            take(lambda: received(files, own))
+
+        with ui.row():
+            for name in library.case_files():
+                ui.button(name, on_click=lambda name=name: take(lambda: built_in(name))).props(
+                    "outline no-caps dense"
+                )
+        ui.label(
+            f"Or a file of your own, {', '.join(ENDINGS)}, with the files that it names:"
+        ).classes("soft")
+        ui.upload(
+            label="Drop files here, or choose them",
+            multiple=True,
+            max_file_size=LARGEST_BODY,
+            max_total_size=LARGEST_BODY,
+            max_files=MOST_FILES,
+            auto_upload=True,
+            on_multi_upload=upload,
+            on_rejected=lambda: told.set_text(f"Files of up to {LARGEST_BODY // 10**6} MB."),
+        ).props("flat bordered").classes("upload")
+    dialog.open()
+
+
+def save_menu(desk: Callable[[], Desk], do: Do) -> None:
+    """A menu of all that can be saved of a case."""
+
+    async def save(ending: str) -> None:
+        now = desk()
+        if now.case is None:
+            ui.notify("The case has problems: mend them first.")
+            return
+        original = now.original if ending == ".rexs" else None
+        suffix = Path(original).suffix if original else ending
+        try:
+            content = await do(tasks.saved, now.case, suffix, original)
+        except (Ended, EpicyclicError) as error:
+            ui.notify(str(error), multi_line=True)
+            return
+        ui.download(content, f"{_stem(now)}{suffix}")
+
+    def save_case() -> None:
+        ui.download(desk().text().encode(), f"{_stem(desk())}.toml")
+
+    with ui.button("Save", icon="save").props("flat no-caps"), ui.menu():
+        ui.menu_item("Case file", save_case)
+        for ending, title in RESULTS.items():
+            ui.menu_item(f"{title}, {ending}", partial(save, ending))
+
+
+def _stem(desk: Desk) -> str:
+    return Path(desk.source).stem or "case"
+
+
+# The page: the form of a case on the left, what follows from it on the right.
+
+
+_VERBS = {"run": (), "check": (), "report": ("-o", "report.html")}
+"""Commands that do what the page does, and what they need more."""
+
+
+def add_assets() -> None:
+    """What the page needs before it is connected."""
+    ui.add_css(_asset("app.css"))
+    ui.add_body_html(f"<script>{_asset('turning.js')}</script>")
+
+
+class Page:
+    """What a browser shows of the open case.
+
+    Parameters
+    ----------
+    shelf : Shelf
+    """
+
+    def __init__(self, shelf: Shelf) -> None:
+        self._shelf = shelf
+        self._is_moving = False
+        self._quick = Latest(self._follow_figures)
+        self._slow = Latest(self._follow_chapters)
+
+    @property
+    def desk(self) -> Desk:
+        """The open case."""
+        return self._shelf.desk
+
+    def build(self) -> None:
+        """Make the page; results follow when they are known."""
+        shelf = self._shelf
+        with ui.header().classes("bar"):
+            ui.label("Epicyclic").classes("name")
+            self._title = ui.label().classes("title")
+            ui.space()
+            ui.button("Open", icon="folder_open", on_click=self._ask).props("flat no-caps")
+            save_menu(lambda: self.desk, self._do)
+            ui.button("Command", icon="terminal", on_click=self._show_command).props("flat no-caps")
+        with ui.element("div").classes("desk"):
+            self._form_place = ui.element("aside")
+            with ui.element("main"):
+                self._problems = ui.element("div").classes("problems")
+                self._failed = ui.label().classes("problem")
+                self._failed.set_visibility(False)
+                with ui.element("div") as self._results:
+                    self._figures = ui.element("div").classes("key-figures")
+                    self._doing = Doing(shelf.slow.end)
+                    views: dict[str, View] = {
+                        "map": MapView(lambda: self.desk, shelf.maps),
+                        "compare": CompareView(lambda: self.desk, self._do, self._choose),
+                    }
+                    self._chapters = Chapters(shelf, self._do, views, self._slow.want)
+        self._build_form()
+        ui.timer(0, self._changed, once=True)
+
+    def _build_form(self) -> None:
+        self._form_place.clear()
+        with self._form_place:
+            self._form = Form(self.desk, self._changed, self._moved)
+
+    def _ask(self) -> None:
+        self._choose(self._open)
+
+    def _choose(self, then: Any) -> None:
+        ask_for_case(self._shelf.folder, then)
+
+    def _open(self, desk: Desk) -> None:
+        self._shelf.desk = desk
+        self._figures.clear()
+        self._chapters.clear()
+        self._build_form()
+        with self._results:
+            ui.timer(0, self._changed, once=True)
+
+    async def _do(self, *work: Any) -> Any:
+        return await self._shelf.slow.do(*work, progress=self._doing.progress)
+
+    async def _changed(self) -> None:
+        """After a change of the case."""
+        self._is_moving = False
+        await self._follow()
+
+    async def _moved(self) -> None:
+        """While an input moves."""
+        self._is_moving = True
+        await self._follow()
+
+    async def _follow(self) -> None:
+        self._tell()
+        if self.desk.case is not None:
+            self._chapters.age(Study(self.desk.case))
+            await asyncio.gather(self._quick.want(), self._slow.want())
+
+    def _tell(self) -> None:
+        """Title and problems of the case as it is."""
+        self._title.set_text(self.desk.title)
+        self._form.show_problems()
+        self._problems.clear()
+        with self._problems:
+            for problem in self.desk.problems:
+                ui.label(str(problem)).classes("problem")
+        self._fail("")
+        self._results.classes(**{"add" if self.desk.problems else "remove": "stale"})
+        mark_behind(self._figures, self.desk.case is not None)
+
+    async def _follow_figures(self) -> None:
+        """Key figures of the case as it is."""
+        desk, case = self.desk, self.desk.case
+        if case is None:
+            return
+        try:
+            figures = await self._shelf.quick.do(tasks.moved, case, progress=self._doing.progress)
+        except (Ended, EpicyclicError):
+            return  # what follows the chapters says it
+        if self._figures.is_deleted or desk is not self.desk:
+            return
+        self._figures.clear()
+        with self._figures:
+            key_figures(figures)
+        mark_behind(self._figures, case is not self.desk.case)
+
+    async def _follow_chapters(self) -> None:
+        """All else of the case as it is."""
+        case = self.desk.case
+        if case is None:
+            return
+        self._fail("")  # what was cancelled is of an earlier case
+        study = Study(case)
+
+        def is_wanted() -> bool:
+            """A picture that lags behind is better than none while an input moves."""
+            return self._is_moving or case is self.desk.case
+
+        def is_at_rest() -> bool:
+            return not self._is_moving and case is self.desk.case
+
+        try:
+            with self._doing.shown("solving"):
+                await self._chapters.follow(study, is_wanted)
+                if is_at_rest():
+                    await self._chapters.complete(study, is_at_rest)
+        except (Ended, EpicyclicError) as error:
+            self._fail(str(error))
+        if self.desk.case is not None and not self._figures.is_deleted:
+            self._chapters.age(Study(self.desk.case))
+
+    def _fail(self, text: str) -> None:
+        """Say why the case was not solved."""
+        if not self._failed.is_deleted:
+            self._failed.set_text(text)
+            self._failed.set_visibility(bool(text))
+
+    def _show_command(self) -> None:
+        with ui.dialog() as dialog, ui.card().classes("command"):
+            ui.label("The same on the command line")
+            for verb, more in _VERBS.items():
+                ui.code(self.desk.command(verb, *more), language="bash").classes("wrapped")
+        dialog.open()
+
+
+def _asset(name: str) -> str:
+    """A file of the package that goes into the page."""
+    return (resources.files("epicyclic.plugins.app") / name).read_text(encoding="utf-8")

@@ -1,0 +1,414 @@
+"""The process beside the app that solves and draws, its tasks and its progress."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import multiprocessing
+import os
+import signal
+import tempfile
+from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass, field
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from nicegui import ui
+
+from epicyclic.case.case import Case
+from epicyclic.case.operating import AXES, operating_line
+from epicyclic.errors import EpicyclicError
+from epicyclic.kernels.compiling import listeners
+from epicyclic.plugins.contact_solver.direct import contacts_told
+from epicyclic.plugins.rexs.exporting import rexs_bytes
+from epicyclic.plugins.rexs.files import is_rexs
+from epicyclic.records.contents import contents_of, set_of
+from epicyclic.records.record import ResultRecord, growing_record, sets_of
+from epicyclic.report.drawings import svg_text
+from epicyclic.report.map_page import map_key_figures, map_sections
+from epicyclic.report.page import Drawing, KeyFigure, Section, Table
+from epicyclic.report.result_page import result_section, result_sections
+from epicyclic.report.result_tables import key_figures
+from epicyclic.report.side_by_side import side_by_side
+from epicyclic.results.result import in_words
+from epicyclic.show.plots.catalogue import PLOTS, Stored, figure_of
+from epicyclic.show.plots.drawing import POSITION, Turning, turning_mesh, turning_set
+from epicyclic.show.plots.style import figure_bytes
+from epicyclic.study.maps.compute import loss_map
+from epicyclic.study.solve import solve
+from epicyclic.study.sweeps.plan import parse_vary
+
+# Work that follows what changes faster than it can be done.
+
+
+class Latest:
+    """Does work again after each change, for the last one: what comes meanwhile never queues.
+
+    Work that has begun is done to its end, so that it follows a value that never stands still.
+
+    Parameters
+    ----------
+    work : callable
+        Looks itself at what is to be done.
+    """
+
+    def __init__(self, work: Callable[[], Awaitable[None]]) -> None:
+        self._work = work
+        self._wanted = 0
+        self._is_running = False
+
+    async def want(self) -> None:
+        """Have the work done for what is now; returns at once if it is being done for before."""
+        self._wanted += 1
+        if self._is_running:
+            return
+        self._is_running = True
+        try:
+            done = 0
+            while done != self._wanted:
+                done = self._wanted
+                await self._work()
+        finally:
+            self._is_running = False
+
+
+# A process beside the app that solves and draws: pages stay quick, and work can be ended.
+
+
+Progress = Callable[[int, int], None]
+"""Called with what is done and what there is to do, and with 0 for this while code is compiled."""
+
+
+class Ended(Exception):  # noqa: N818  no error: the user has asked for it
+    """The work was ended before it was done."""
+
+    def __str__(self) -> str:
+        return "Ended before it was done."
+
+
+class WorkError(EpicyclicError):
+    """An error that was not foreseen, from the other process."""
+
+
+class Worker:
+    """Does one thing after the other, each in the same process as long as none is ended.
+
+    Parameters
+    ----------
+    niceness : int
+        How far its process stands back behind others, on systems that know this.
+    """
+
+    def __init__(self, niceness: int = 0) -> None:
+        self._niceness = niceness
+        self.is_closed = False
+        self._waiting = ThreadPoolExecutor(1)  # threads shared by all workers could run out
+        self._process: Any = None
+        self._ours: Connection | None = None
+        self._lock = asyncio.Lock()
+
+    async def do(
+        self,
+        task: Callable[..., Any],  # Takes `arguments` and a function that it tells its progress.
+        *arguments: Any,
+        progress: Progress,  # Called in this process.
+    ) -> Any:
+        """What a function of a module returns, computed in the process.
+
+        Raises
+        ------
+        Ended
+            If `end` or `close` was called meanwhile, or `close` before.
+        EpicyclicError
+            As the task raises it.
+        """
+        loop = asyncio.get_running_loop()
+        async with self._lock:
+            if self.is_closed:
+                raise Ended
+            pipe = self._pipe()
+            try:
+                pipe.send((task, arguments))
+                while True:
+                    what, content = await loop.run_in_executor(self._waiting, pipe.recv)
+                    if what == "done":
+                        return content
+                    if what == "failed":
+                        raise content
+                    progress(*content)
+                    if self.is_closed:  # since then, and there is no thread to wait any more
+                        raise Ended
+            except (EOFError, OSError):
+                self.end()
+                raise Ended from None
+
+    def end(self) -> None:
+        """End what is being done; the next thing starts a new process."""
+        if self._process is not None:
+            _end_group(self._process)
+            self._process = None
+        if self._ours is not None:
+            self._ours = None
+
+    def close(self) -> None:
+        """End what is being done, and begin nothing more."""
+        self.is_closed = True
+        self.end()
+        self._waiting.shutdown(wait=False)
+
+    def _pipe(self) -> Connection:
+        if self._process is None or not self._process.is_alive():
+            context = multiprocessing.get_context("spawn")
+            self._ours, theirs = context.Pipe()
+            self._process = context.Process(target=_serve, args=(theirs, self._niceness))
+            self._process.start()
+            theirs.close()
+        assert self._ours is not None
+        return self._ours
+
+
+def _end_group(process: Any) -> None:
+    """End a process and those that it has started for a map."""
+    with suppress(OSError, AttributeError):  # it has no group yet, or the system has none
+        os.killpg(process.pid, signal.SIGTERM)
+    process.terminate()
+
+
+def _serve(pipe: Connection, niceness: int) -> None:
+    """What the process does: tasks until the pipe is closed."""
+    if hasattr(os, "setsid"):
+        os.setsid()  # a group of its own, see `_end_group`
+        os.nice(niceness)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the app ends this process
+    compiled = itertools.count(1)
+    listeners.append(lambda: pipe.send(("progress", (next(compiled), 0))))
+    with suppress(EOFError, OSError):
+        while True:
+            task, arguments = pipe.recv()
+            try:
+                pipe.send(("done", task(*arguments, lambda *count: pipe.send(("progress", count)))))
+            except EpicyclicError as error:
+                pipe.send(("failed", error))
+            except Exception as error:
+                pipe.send(("failed", WorkError(f"{type(error).__name__}: {error}")))
+    if hasattr(os, "killpg"):  # workers of a map would be waited for
+        os.killpg(0, signal.SIGTERM)
+    os._exit(0)
+
+
+# A line that tells what is being computed, how far it is, and ends it.
+
+
+class Doing:
+    """The line; it is there while something is done.
+
+    Parameters
+    ----------
+    end : callable
+        Ends it.
+    """
+
+    def __init__(self, end: Callable[[], None]) -> None:
+        with ui.row().classes("state idle") as self._row:
+            ui.spinner(size="1.2em")
+            self._label = ui.label()
+            self._bar = ui.linear_progress(0, show_value=False).classes("progress")
+            ui.button("Cancel", on_click=end).props("flat dense no-caps")
+        self._count, self._noun = 0, ""
+
+    @contextmanager
+    def shown(self, noun: str) -> Iterator[None]:
+        """Show the line while the block runs; of blocks within each other until the last ends."""
+        self._noun = noun
+        self._count += 1
+        self._label.set_text(noun)
+        self._bar.set_visibility(False)
+        self._row.classes(remove="idle")
+        try:
+            yield
+        finally:
+            self._count -= 1
+            if not self._count:
+                self._row.classes("idle")
+
+    def progress(self, done: int, total: int) -> None:
+        """Tell how far it is; without a total, functions that a first run has compiled."""
+        self._bar.set_visibility(total > 0)
+        self._bar.set_value(done / total if total else 0)
+        first = f"first run of this version, compiling the numerics: {done} functions so far"
+        self._label.set_text(f"{self._noun}: {done} of {total}" if total else first)
+
+
+# What the worker does for the app: everything that takes longer than a click.
+
+
+STILL = ("gear-set", "teeth")
+"""Plots of what turns, where that is shown."""
+MESH = "/"
+"""Before the key of a mesh among what turns."""
+FIRST, TURNS = "losses", "gears"
+"""The chapter that every result has, and the one in which gears turn."""
+IN_PAGE = "svg-page"
+"""Format of a figure that becomes a part of the page."""
+MOST_KEPT = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """The result of a case, or its map over speed and torque."""
+
+    case: Case
+    speed: str = ""  # Values of the map, as the command has them.
+    torque: str = ""  # Values of the map, as the command has them.
+    temperature: str = ""  # Values of the map, as the command has them.
+    is_map: bool = field(default=False, kw_only=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a page shows of a study; its figures have no pictures yet."""
+
+    key_figures: list[KeyFigure]
+    sections: list[Section]
+    wide: frozenset[str]  # Figures of several panels.
+    # What turns: sets, and meshes with a slash before the key; with its title.
+    turning: dict[str, str]
+
+
+_kept: dict[Study, Stored] = {}
+"""Results of the last studies: their figures are drawn without computing them again."""
+
+
+def _stored(study: Study, progress: Progress) -> Stored:
+    if study not in _kept:
+        _kept[study] = _mapped(study, progress) if study.is_map else _recorded(study, progress)
+        while len(_kept) > MOST_KEPT:
+            del _kept[next(iter(_kept))]
+    return _kept[study]
+
+
+def _recorded(study: Study, progress: Progress) -> ResultRecord:
+    with contacts_told(progress):
+        return growing_record(study.case)
+
+
+def _mapped(study: Study, progress: Progress) -> Stored:
+    texts = {"speed": study.speed, "torque": study.torque, "temperature": study.temperature}
+    options = [f"{AXES[axis]}={text}" for axis, text in texts.items() if text.strip()]
+    values = parse_vary(study.case, options, "map")
+    return loss_map(
+        study.case,
+        values.get(AXES["speed"], ()),
+        values.get(AXES["torque"], ()),
+        values.get(AXES["temperature"]),
+        resolve_zero=":" in study.torque,
+        progress=progress,
+    )
+
+
+class _Drawings(Mapping[str, Sequence[Drawing]]):
+    """The figures of what is stored, without pictures; each is looked for when it is asked for."""
+
+    def __init__(self, found: Stored) -> None:
+        self._found = found
+        self.wide: set[str] = set()
+
+    def __getitem__(self, name: str) -> Sequence[Drawing]:
+        is_hidden = isinstance(self._found, ResultRecord) and name in STILL
+        panels = [] if is_hidden else PLOTS[name].panels(self._found)
+        if not panels:
+            raise KeyError(name)
+        if len(panels) > 1:
+            self.wide.add(name)
+        return (Drawing(name, PLOTS[name].question, ""),)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(PLOTS)
+
+    def __len__(self) -> int:
+        return len(PLOTS)
+
+
+def answered(study: Study, only: str, progress: Progress) -> Answer:
+    """Key figures and chapters of a study; of a result the chapter `only`, if that is not empty."""
+    found = _stored(study, progress)
+    drawings = _Drawings(found)
+    if not isinstance(found, ResultRecord):
+        figures, sections = map_key_figures(found), map_sections(found, drawings)
+        return Answer(figures, sections, frozenset(drawings.wide), {})
+    with contacts_told(progress):
+        if only:
+            sections = [result_section(found, drawings, only)]
+        else:
+            sections = result_sections(found, drawings)
+        turns = _turning_titles(found) if only in ("", TURNS) else {}
+    return Answer(key_figures(found.result), sections, frozenset(drawings.wide), turns)
+
+
+def _turning_titles(found: ResultRecord) -> dict[str, str]:
+    sets = {name: in_words(name) or "gears" for name in sets_of(found.group("gears"))}
+    meshes = {f"{MESH}{key}": in_words(key) for key in found.group("meshes")}
+    return sets | meshes
+
+
+def moved(case: Case, progress: Progress) -> list[KeyFigure]:
+    """Key figures of a case, and nothing that takes longer; nothing is kept."""
+    return key_figures(contents_of(solve(case)))
+
+
+def compared(first: Case, second: Case, names: tuple[str, str], progress: Progress) -> list[Table]:
+    """Two cases side by side."""
+    contents = []
+    for case in (first, second):
+        found = _stored(Study(case), progress)
+        assert isinstance(found, ResultRecord)
+        contents.append(found.result)
+    return list(side_by_side(contents[0], contents[1], names))
+
+
+def picture(study: Study, name: str, ending: str, progress: Progress) -> bytes:
+    """A figure of a study, as a file of this type holds it."""
+    figure = figure_of(_stored(study, progress), name)
+    if ending == IN_PAGE:
+        return svg_text(figure, name).encode()
+    return figure_bytes(figure, ending)
+
+
+def turning(
+    case: Case, what: str, ending: str, phase: float, progress: Progress
+) -> tuple[bytes, dict[str, Any]]:
+    """Gears that turn, as a file at one phase, or for a page with what its script needs."""
+    found = _stored(Study(case), progress)
+    assert isinstance(found, ResultRecord)
+    drawn = _turning(found, what, None if ending == IN_PAGE else phase)
+    if ending != IN_PAGE:
+        return figure_bytes(drawn.figure, ending), {}
+    key = f"turning-{what.removeprefix(MESH)}"
+    svg = svg_text(drawn.figure, key).encode()
+    layers = [asdict(layer) | {"name": f"{key}-{layer.name}"} for layer in drawn.layers()]
+    return svg, {"layers": layers, "phases": drawn.phases, "position": f"{key}-{POSITION}"}
+
+
+def _turning(found: ResultRecord, what: str, phase: float | None) -> Turning:
+    caption = operating_line(found.result.inputs["operation"])
+    sets = sets_of(found.group("gears"))
+    if not what.startswith(MESH):
+        return turning_set(sets[what], found.title, caption, phase or 0.0)
+    key = what.removeprefix(MESH)
+    view, mesh = found.group("views")[key], found.group("meshes")[key]
+    return turning_mesh(view, sets[set_of(key)], mesh, found.title, caption, phase)
+
+
+def saved(case: Case, ending: str, original: str | None, progress: Progress) -> bytes:
+    """The result of a case as a file of this type; of a REXS file, in a copy of the original."""
+    with contacts_told(progress):
+        result = solve(case)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"result{ending}"
+        if is_rexs(path):
+            return rexs_bytes(path, result, original, None)
+        result.save(path)
+        return path.read_bytes()

@@ -1,0 +1,1 @@
+"""The solver of line contacts, and campaigns of simulated contacts of an oil."""

@@ -1,0 +1,677 @@
+"""One line contact: its tables, its solution, its figures, and the limits to know."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from epicyclic.case.oil_laws import (
+    HEATING,
+    PRESET,
+    USUAL,
+    HeatingModel,
+    LoadPressure,
+    OilBehaviour,
+    PresetName,
+    behaviour_of,
+    film_text,
+    law_problems,
+    oil_laws,
+)
+from epicyclic.case.plain import plain, value_at, with_value
+from epicyclic.case.reading import read_file
+from epicyclic.case.schema import NamedMaterial, NamedOil, Roughness, Table
+from epicyclic.case.validation import validate
+from epicyclic.case.wording import key_parts
+from epicyclic.errors import InputError, Problem, Status
+from epicyclic.kernels.ehl_steady import shear_stresses
+from epicyclic.kernels.line_contact import line_load_at_pressure
+from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges, range_left
+from epicyclic.machine.element import oil_flags
+from epicyclic.oil.oil import Conductivity, HeatCapacity
+from epicyclic.oil.properties import OilState, oil_state
+from epicyclic.plugins.contact_solver.conditions import (
+    DEFAULT,
+    DRY_SPEED,
+    FEWEST_KEPT,
+    PRESETS,
+    VALIDATED_FILM_RATIO,
+    Heating,
+    LineContact,
+    contact_oil,
+    heating_of,
+    thinning,
+)
+from epicyclic.plugins.contact_solver.direct import EhlDirect, solver_range
+from epicyclic.plugins.contact_solver.rough import (
+    MOST_BLOCKS,
+    NODES,
+    STATIONARY,
+    AsperityContact,
+    Frame,
+    RoughSolution,
+    solve_rough,
+)
+from epicyclic.plugins.contact_solver.steady import SmoothSolution, solve_smooth
+from epicyclic.plugins.contact_solver.surfaces import (
+    PERIOD,
+    SMOOTH,
+    Profile,
+    generate_profile,
+    read_profile,
+)
+from epicyclic.results.result import versions
+from epicyclic.units import (
+    MICROMETRE,
+    MILLIMETRE,
+    NUMBER,
+    Length,
+    Number,
+    Quantity,
+    SmallLength,
+    Temperature,
+    as_stated,
+    format_number,
+    percent,
+)
+
+# The tables of a line contact, and how it is built from them.
+
+
+LineLoad = Annotated[
+    float, Quantity("a line load", "N/m", "N/mm", low=0.0, high=1e5, open_low=True)
+]
+RollingSpeed = Annotated[float, Quantity("a speed", "m/s", "m/s", low=0.0, high=1e4, open_low=True)]
+SURFACES = ("surface1", "surface2")
+OF_GENERATED: tuple[str, ...] = ("correlation_length", "skewness", "kurtosis", "seed")
+OF_MEASURED: tuple[str, ...] = ("cutoff", "short_cutoff")
+"""Keys of a surface that are for profiles of either kind."""
+
+
+class Contact(Table):
+    """Load, geometry and motion."""
+
+    EXACTLY_ONE = (("line_load", "hertz_pressure"),)
+
+    radius: Length = Field(description="Equivalent radius of curvature.")
+    line_load: LineLoad | None = Field(default=None, description="Normal load per length.")
+    hertz_pressure: LoadPressure | None = Field(
+        default=None, description="Instead of line_load: the pressure of Hertz it causes."
+    )
+    rolling_speed: RollingSpeed = Field(description="Mean of both surface speeds.")
+    slide_to_roll_ratio: Number = Field(
+        default=0.0, ge=0.0, le=2.0, description="Difference of the surface speeds over their mean."
+    )
+
+
+class ContactLubricant(OilBehaviour):
+    """The oil in the contact."""
+
+    oil: NamedOil = Field(
+        description="A name of the oil library (epicyclic oils) or a table of properties."
+    )
+    temperature: Temperature = Field(description="Of the oil at the inlet.")
+
+
+class Surface(Table):
+    """A surface: its material and its roughness, generated or measured."""
+
+    material: NamedMaterial = Field(
+        default=as_stated("steel"), description="A name or a table of elastic constants."
+    )
+    roughness: Roughness | None = Field(
+        default=None, description="Rq; a measured profile is scaled to it. Smooth by default."
+    )
+    correlation_length: SmallLength = Field(
+        default=as_stated("20 um"), description="Where the autocorrelation has fallen to 1/e."
+    )
+    skewness: Number = Field(default=0.0, ge=-5.0, le=5.0, description="Rsk.")
+    kurtosis: Number = Field(default=3.0, ge=1.0, le=50.0, description="Rku.")
+    seed: int = Field(default=1, ge=0, description="Of the generated profile.")
+    profile: str | None = Field(
+        default=None,
+        description="A measured one instead: X3P, or CSV of position in mm and height in um.",
+    )
+    cutoff: Length | None = Field(
+        default=None, description="Of a measured profile: longer waves are taken off."
+    )
+    short_cutoff: Length | None = Field(
+        default=None, description="Of a measured profile: shorter waves are taken off."
+    )
+
+
+class SecondSurface(Surface):
+    """The other surface: a profile of its own."""
+
+    seed: int = Field(default=2, ge=0, description="Of the generated profile.")
+
+
+class Asperities(Table):
+    """Where the film vanishes."""
+
+    film: SmallLength = Field(
+        default=as_stated(film_text(USUAL)),
+        description="Film below which surfaces touch (estimate).",
+    )
+    friction: Number = Field(
+        default=USUAL.friction, ge=0.0, le=1.0, description="Friction where they touch (estimate)."
+    )
+
+
+class ContactHeating(Table):
+    """Heat of sliding."""
+
+    model: HeatingModel = Field(default="isothermal", description=HEATING)
+    solid_conductivity: Conductivity | None = Field(
+        default=None, description="Of both solids. Default: that of the material of each."
+    )
+    solid_heat_capacity: HeatCapacity | None = Field(
+        default=None, description="Of both solids. Default: that of the material of each."
+    )
+
+
+class ContactNumerics(Table):
+    """The grid."""
+
+    nodes: int = Field(default=NODES, ge=128, le=4096, description="In the rough contact.")
+    most_blocks: int = Field(
+        default=MOST_BLOCKS, ge=4, le=100_000,
+        description="Times half-width over rolling speed after which a rough contact is given up.",
+    )  # fmt: skip
+    friction_tolerance: Number = Field(
+        default=STATIONARY, ge=1e-3, le=0.5,
+        description="Standard error over the mean friction at which a rough contact is solved.",
+    )  # fmt: skip
+    frozen_roughness: bool = Field(
+        default=False, description="Hold the roughness still: the steady rough contact."
+    )
+
+
+class ContactCase(Table):
+    """One line contact."""
+
+    kind: Literal["line_contact"] = "line_contact"
+    title: str = ""
+    preset: PresetName = Field(default=DEFAULT, description=PRESET)
+    contact: Contact
+    lubricant: ContactLubricant
+    surface1: Surface = Surface()
+    surface2: SecondSurface = SecondSurface()
+    asperities: Asperities = Asperities()
+    heating: ContactHeating = ContactHeating()
+    numerics: ContactNumerics = ContactNumerics()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _assume(cls, tables: Any) -> Any:
+        """Fill in what the preset says of keys that are not given."""
+        preset = value_at(tables, ("preset",))
+        if preset not in PRESETS:
+            return tables
+        touching = {"film": film_text(PRESETS[preset]), "friction": PRESETS[preset].friction}
+        for name, keys in (("lubricant", behaviour_of(preset)), ("asperities", touching)):
+            given = tables.get(name, {})
+            if isinstance(given, Mapping):
+                tables = {**tables, name: {**keys, **given}}
+        return tables
+
+
+@dataclass(frozen=True, eq=False)
+class ContactModel:
+    """What the solver needs of a case."""
+
+    contact: LineContact
+    surfaces: tuple[Profile, Profile]
+    asperities: AsperityContact
+    heating: Heating | None = None
+
+    @property
+    def smooth(self) -> bool:
+        """Neither surface has a roughness."""
+        return self.composite_roughness == 0
+
+    @property
+    def composite_roughness(self) -> float:
+        """Rq of both surfaces together. [m]"""
+        return math.hypot(*(surface.rms for surface in self.surfaces))
+
+
+def load_contact_case(
+    source: str | Path | Mapping[str, Any],  # A TOML file, with profiles beside it, or its tables.
+    changes: Mapping[str, Any] | None = None,  # Dotted keys to values as a file has them.
+) -> ContactCase:
+    """Read and check a line contact.
+
+    Raises
+    ------
+    InputError
+        With every problem found.
+    """
+    problems: Sequence[Problem] = ()
+    if isinstance(source, Mapping):
+        name, tables = "the command", plain(source)
+    else:
+        name = str(source)
+        tables, problems = read_file(Path(source))
+        tables = _beside(tables, Path(source).parent)
+    tables = {"contact": {}, "lubricant": {}} | tables  # so that what they lack is told
+    for key, value in (changes or {}).items():
+        tables = with_value(tables, key_parts(key), plain(value))
+    checked = validate(ContactCase, tables)
+    found = [*problems, *checked.problems, *_cross_check(checked.sections)]
+    if checked.case is None or found:
+        raise InputError(found, name)
+    return checked.case
+
+
+def _beside(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """`tables` with profiles that are named as seen from `folder`."""
+    for name in SURFACES:
+        profile = value_at(tables, (name, "profile"))
+        if isinstance(profile, str):
+            tables = with_value(tables, (name, "profile"), str(folder / profile))
+    return tables
+
+
+def _cross_check(sections: Mapping[str, Table]) -> list[Problem]:
+    """What is wrong across keys."""
+    problems = []
+    lubricant = sections.get("lubricant")
+    if isinstance(lubricant, ContactLubricant):
+        problems += law_problems("lubricant", lubricant)
+    for name in SURFACES:
+        surface = sections.get(name)
+        if isinstance(surface, Surface):
+            problems += _check_surface(name, surface)
+    return problems
+
+
+def _check_surface(name: str, surface: Surface) -> list[Problem]:
+    """A measured profile must be sound, a generated one possible, and nothing be without effect."""
+    if surface.profile is not None:
+        idle, allowed = OF_GENERATED, "is for a generated profile, not for a measured one."
+    elif surface.roughness is not None:
+        idle, allowed = OF_MEASURED, "is for a measured profile."
+    else:
+        idle, allowed = (*OF_GENERATED, *OF_MEASURED), "has no effect on a smooth surface."
+    remedy = "Give profile or roughness to suit, or leave it out."
+    usual = type(surface)()
+    problems = [
+        Problem(f"{name}.{key}", "", allowed, remedy)
+        for key in idle
+        if getattr(surface, key) != getattr(usual, key)
+    ]
+    if problems:
+        return problems
+    try:
+        _profile(surface)
+    except InputError as error:
+        return [replace(problem, key=f"{name}.{problem.key}") for problem in error.problems]
+    return []
+
+
+def contact_model(case: ContactCase) -> ContactModel:
+    """Contact, profiles and asperities of a case."""
+    modulus = case.surface1.material.modulus_against(case.surface2.material)
+    table = case.contact
+    load = table.line_load
+    if load is None:
+        assert table.hertz_pressure is not None
+        load = line_load_at_pressure(table.hertz_pressure, table.radius, modulus)
+    slip = table.slide_to_roll_ratio / 2
+    contact = LineContact(
+        line_load=load,
+        radius=table.radius,
+        equivalent_modulus=modulus,
+        speed1=table.rolling_speed * (1 + slip),
+        speed2=table.rolling_speed * (1 - slip),
+        oil=contact_oil(_oil_state(case), oil_laws(case.lubricant)),
+    )
+    surfaces = (_profile(case.surface1), _profile(case.surface2))
+    asperities = AsperityContact(case.asperities.film, case.asperities.friction)
+    return ContactModel(contact, surfaces, asperities, _heating(case))
+
+
+def _oil_state(case: ContactCase) -> OilState:
+    return oil_state(case.lubricant.oil, case.lubricant.temperature)
+
+
+def _heating(case: ContactCase) -> Heating | None:
+    table = case.heating
+    if table.model == "isothermal":
+        return None
+    solids = (
+        surface.material.solid_with(table.solid_conductivity, table.solid_heat_capacity)
+        for surface in (case.surface1, case.surface2)
+    )
+    return heating_of(_oil_state(case), *(solid.effusivity for solid in solids))
+
+
+def _profile(table: Surface) -> Profile:
+    """The profile of a surface; problems have its keys."""
+    if table.profile is not None:
+        measured = read_profile(Path(table.profile), table.cutoff, table.short_cutoff)
+        return measured if table.roughness is None else measured.scaled_to(table.roughness)
+    if table.roughness is None:
+        return SMOOTH
+    return generate_profile(
+        table.roughness, table.correlation_length, PERIOD * table.correlation_length,
+        table.seed, table.skewness, table.kurtosis,
+    )  # fmt: skip
+
+
+# What to know before the figures of a line contact are used: ranges left, roughness lost.
+
+
+KELVIN = Quantity("a temperature difference", "K", "K")
+ROUGH_RANGES = (
+    solver_range("film_ratio", "film ratio", NUMBER),
+    solver_range("composite_roughness", "composite roughness", MICROMETRE),
+)
+HIGHEST_RISE = Range(
+    "temperature_rise", "temperature rise", 0.0, 50.0, KELVIN, "thinning by heat, linear in it"
+)
+"""Beyond it the estimate of heat thins the oil too much."""
+FEWEST_POINTS = 16
+"""Points of a profile in the width of the contact, below which it is hardly one."""
+
+
+def film_ratio(model: ContactModel, smooth: SmoothSolution) -> float:
+    """Minimum film of the smooth contact over the composite Rq. [1]"""
+    return smooth.minimum_film / model.composite_roughness
+
+
+def contact_flags(
+    case: ContactCase, model: ContactModel, smooth: SmoothSolution
+) -> tuple[ValidityFlag, ...]:
+    """A flag for every quantity outside what solver and oil data are good for."""
+    contact = model.contact
+    ranges = [*EhlDirect.ranges, HIGHEST_RISE]
+    values = {
+        "radius": contact.radius,
+        "hertz_pressure": contact.hertz_pressure,
+        "rolling_speed": contact.rolling_speed,
+        "slide_to_roll_ratio": abs(contact.sliding_speed) / contact.rolling_speed,
+        "temperature_rise": float(smooth.temperature_rise.max()),
+    }
+    if not model.smooth:
+        ranges += ROUGH_RANGES
+        values["film_ratio"] = film_ratio(model, smooth)
+        values["composite_roughness"] = model.composite_roughness
+    use = ModelUse("solver", "line contact", "contact")
+    oil = case.lubricant
+    return (*check_ranges(use, ranges, values), *oil_flags(oil.oil, oil.temperature))
+
+
+def contact_notes(
+    case: ContactCase, model: ContactModel, smooth: SmoothSolution, rough: RoughSolution | None
+) -> Iterator[str]:
+    """What else limits a rough contact: standing roughness, thin films, unsuitable profiles."""
+    if rough is None or not rough.x.size:
+        return
+    if case.numerics.frozen_roughness:
+        yield (
+            "The roughness stands still: all is of one place of the profiles, whatever the "
+            "standard error, and the rolling loss has no meaning for surfaces that move."
+        )
+    speed = model.contact.rolling_speed
+    if speed < DRY_SPEED:
+        yield (
+            f"At {format_number(speed, 2)} m/s, below {DRY_SPEED:g} m/s, oil leaks out of the "
+            "valleys of real surfaces; ridges that run across, as here, trap it: load and friction "
+            "of the surfaces that touch are too small, and no result to use."
+        )
+    ratio = film_ratio(model, smooth)
+    if ratio < VALIDATED_FILM_RATIO:
+        yield (
+            f"At a film ratio of {format_number(ratio, 2)}, below {VALIDATED_FILM_RATIO:g}, "
+            "friction, load on asperities and rolling loss are not validated: vary "
+            "asperities.film, asperities.friction and the correlation lengths."
+        )
+    spacing = float(rough.x[1] - rough.x[0])
+    for number, surface in enumerate(model.surfaces, 1):
+        if surface.rms > 0:
+            yield from _profile_notes(f"surface{number}", surface, spacing, model)
+
+
+def _profile_notes(
+    name: str, surface: Profile, spacing: float, model: ContactModel
+) -> Iterator[str]:
+    shown = {
+        key: format_number(unit.to_display(value), 4)
+        for key, value, unit in (
+            ("spacing", spacing, MICROMETRE),
+            ("own", surface.spacing, MICROMETRE),
+            ("length", surface.length, MILLIMETRE),
+            ("width", 2 * model.contact.half_width, MILLIMETRE),
+        )
+    }
+    left = surface.kept(spacing)
+    if left < FEWEST_KEPT:
+        yield (
+            f"The nodes, {shown['spacing']} um apart, resolve {percent(left, 0)} of the Rq of "
+            f"{name}: shorter waves are lost. Raise numerics.nodes."
+        )
+    if FEWEST_POINTS * surface.spacing > 2 * model.contact.half_width:
+        yield (
+            f"The points of {name} are {shown['own']} um apart, in a contact {shown['width']} mm "
+            "wide: a finer profile is needed, or its positions are not in mm."
+        )
+    if surface.length < 2 * model.contact.half_width:
+        yield (
+            f"The profile of {name}, {shown['length']} mm long, repeats itself within the contact, "
+            f"{shown['width']} mm wide: give a longer one."
+        )
+
+
+# One line contact: solved, and its figures.
+
+
+FloatArray = NDArray[np.float64]
+
+FRAMES = 60
+"""Moments kept for an animation."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactFigure:
+    """A number of a contact. `value` is SI, `unit` the SI unit, `display` the unit of tables."""
+
+    name: str
+    value: float
+    unit: str
+    display: str
+
+
+@dataclass(frozen=True, eq=False)
+class ContactResult:
+    """Solution of a contact."""
+
+    case: ContactCase
+    model: ContactModel  # What the solver was given.
+    smooth: SmoothSolution
+    rough: RoughSolution | None  # None without roughness.
+
+    @property
+    def status(self) -> Status:
+        """Status of the solution that counts."""
+        return self.smooth.status if self.rough is None else self.rough.status
+
+    @property
+    def message(self) -> str:
+        """Why it failed; empty if it did not."""
+        return self.smooth.message if self.rough is None else self.rough.message
+
+    @property
+    def flags(self) -> tuple[ValidityFlag, ...]:
+        """Quantities outside what solver and oil data are good for."""
+        if self.smooth.status is not Status.CONVERGED:
+            return ()
+        return contact_flags(self.case, self.model, self.smooth)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What to know before the figures are used."""
+        if self.smooth.status is not Status.CONVERGED:
+            return ()
+        left = (range_left([flag]) for flag in self.flags)
+        return (*left, *contact_notes(self.case, self.model, self.smooth, self.rough))
+
+    @property
+    def figures(self) -> list[ContactFigure]:
+        """Everything a table shows; none if the smooth solution failed."""
+        if self.smooth.status is not Status.CONVERGED:
+            return []
+        contact, smooth = self.smooth.contact, self.smooth
+        found = [
+            ContactFigure("Hertz pressure", contact.hertz_pressure, "Pa", "GPa"),
+            ContactFigure("Hertz half-width", contact.half_width, "m", "mm"),
+            ContactFigure("line load", contact.line_load, "N/m", "N/mm"),
+            ContactFigure("sliding speed", contact.sliding_speed, "m/s", "m/s"),
+            ContactFigure("Moes load number", contact.moes_load, "1", "1"),
+            ContactFigure("Moes material number", contact.moes_material, "1", "1"),
+            ContactFigure("smooth: central film", smooth.central_film, "m", "um"),
+            ContactFigure("smooth: minimum film", smooth.minimum_film, "m", "um"),
+            ContactFigure("smooth: highest pressure", float(smooth.pressure.max()), "Pa", "GPa"),
+            ContactFigure(
+                "smooth: highest shear stress", float(smooth.shear_stress.max()), "Pa", "MPa"
+            ),
+            ContactFigure("smooth: friction coefficient", smooth.friction_coefficient, "1", "1"),
+            ContactFigure("smooth: rolling loss", smooth.rolling_loss, "W/m", "W/m"),
+        ]
+        rise = float(smooth.temperature_rise.max())
+        if rise > 0:
+            found.append(ContactFigure("smooth: highest temperature rise", rise, "K", "K"))
+        rough = self.rough
+        if rough is not None:
+            found += [
+                ContactFigure("film ratio", film_ratio(self.model, smooth), "1", "1"),
+                ContactFigure("friction coefficient", rough.friction_coefficient, "1", "1"),
+                ContactFigure("its standard error", rough.friction_error, "1", "1"),
+                ContactFigure("friction of asperities", rough.asperity_friction_share, "1", "%"),
+                ContactFigure("load on asperities", rough.asperity_load_share, "1", "%"),
+                ContactFigure("length in contact", rough.contact_share, "1", "%"),
+                ContactFigure("central film, mean in time", rough.mean_central_film, "m", "um"),
+                ContactFigure("least film, mean in time", rough.mean_least_film, "m", "um"),
+                ContactFigure(
+                    "highest pressure, mean in time", rough.mean_highest_pressure, "Pa", "GPa"
+                ),
+                ContactFigure("rolling loss", rough.rolling_loss, "W/m", "W/m"),
+                ContactFigure(
+                    "standard error of the rolling loss", rough.rolling_loss_error, "W/m", "W/m"
+                ),
+            ]
+        return [figure for figure in found if math.isfinite(figure.value)]
+
+    def shear_stress(self, frame: Frame) -> FloatArray:
+        """At a moment of the rough contact, of film and touching asperities, shape (n,). [Pa]
+
+        Theory (H23).
+        """
+        assert self.rough is not None
+        model, smooth, x = self.model, self.smooth, self.rough.x
+        contact = model.contact
+        thinned = np.zeros_like(x)
+        if model.heating is not None:
+            rise = np.interp(x, smooth.x, smooth.temperature_rise)
+            pressure = np.interp(x, smooth.x, smooth.pressure)
+            thinned = thinning(contact, model.heating, pressure, rise)
+        scaled = frame.pressure / contact.hertz_pressure, frame.film / contact.film_scale
+        fluid = shear_stresses(*scaled, thinned, contact.scaled_fluid()) * contact.hertz_pressure
+        friction = model.asperities.friction if contact.sliding_speed else 0.0
+        return np.where(self.touching(frame), friction * frame.pressure, fluid)
+
+    def touching(self, frame: Frame) -> NDArray[np.bool_]:
+        """Where surfaces touch at a moment of the rough contact, shape (n,). Theory (H23)."""
+        touching: NDArray[np.bool_] = (frame.film < self.model.asperities.film) & (
+            frame.pressure > 0
+        )
+        return touching
+
+    def to_json(self) -> str:
+        """Inputs, status, warnings; in SI units figures and all that varies over x."""
+        data: dict[str, Any] = {
+            "title": self.case.title,
+            "versions": versions(),
+            "inputs": plain(self.case),
+            "status": str(self.status),
+            "message": self.message,
+            "warnings": self.warnings,
+            "out_of_range": [flag.quantity for flag in self.flags],
+            "figures": {
+                figure.name: {"value": figure.value, "unit": figure.unit} for figure in self.figures
+            },
+            "surfaces": [_statistics(surface) for surface in self.model.surfaces],
+        }
+        smooth = self.smooth
+        if smooth.status is Status.CONVERGED:
+            data["smooth"] = {
+                "iterations": smooth.iterations,
+                "x": smooth.x.tolist(),
+                "pressure": smooth.pressure.tolist(),
+                "film": smooth.film.tolist(),
+                "shear_stress": smooth.shear_stress.tolist(),
+                "temperature_rise": smooth.temperature_rise.tolist(),
+            }
+        if self.rough is not None:
+            data["rough"] = self._rough_data(self.rough)
+        return json.dumps(data, indent=2, allow_nan=False)
+
+    def _rough_data(self, rough: RoughSolution) -> dict[str, Any]:
+        data: dict[str, Any] = {
+            "time_steps": rough.steps,
+            "unsolved_time_steps": rough.unsolved_steps,
+            "friction": [value if math.isfinite(value) else None for value in rough.friction],
+        }
+        if rough.frames and np.isfinite(rough.frames[-1].pressure).all():
+            frame = rough.frames[-1]
+            data["last_moment"] = {
+                "time": frame.time,
+                "x": rough.x.tolist(),
+                "pressure": frame.pressure.tolist(),
+                "film": frame.film.tolist(),
+                "shear_stress": self.shear_stress(frame).tolist(),
+            }
+        return data
+
+
+def _statistics(surface: Profile) -> dict[str, float]:
+    """Statistics of a profile, lengths in m."""
+    if surface.rms == 0:
+        return {"rms": 0.0}
+    return {
+        "rms": surface.rms,
+        "correlation_length": surface.correlation_length,
+        "skewness": surface.skewness,
+        "kurtosis": surface.kurtosis,
+    }
+
+
+def solve_contact(
+    case: ContactCase,
+    frames: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> ContactResult:
+    """Solve a contact, with `FRAMES` moments of a rough one over 6 half-widths if `frames`.
+
+    `progress` is called with the numbers of blocks of a rough contact done and expected.
+    """
+    model = contact_model(case)
+    contact = model.contact
+    if model.smooth:
+        return ContactResult(case, model, solve_smooth(contact, heating=model.heating), None)
+    interval = 6 * contact.half_width / contact.rolling_speed / FRAMES if frames else None
+    rough = solve_rough(
+        contact, *model.surfaces, model.asperities, case.numerics.nodes, interval, model.heating,
+        case.numerics.frozen_roughness, case.numerics.most_blocks,
+        case.numerics.friction_tolerance, progress,
+    )  # fmt: skip
+    return ContactResult(case, model, rough.smooth, rough)

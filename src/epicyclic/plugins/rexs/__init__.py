@@ -1,0 +1,1 @@
+"""REXS files: gears from them, results into them."""

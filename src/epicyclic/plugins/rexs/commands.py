@@ -1,0 +1,165 @@
+"""The commands rexs import and rexs export."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Collection, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from epicyclic.cli.common import (
+    EXIT_INCOMPLETE,
+    case_argument,
+    from_rexs,
+    load_with,
+    output_option,
+    parse_changes,
+    set_option,
+)
+from epicyclic.errors import InputError, Problem
+from epicyclic.files import write_file
+from epicyclic.plugins.rexs.importing import RexsImport
+from epicyclic.report.tables import plain_table
+
+# What an import from REXS took, and what the file lacks.
+
+
+def import_tables(
+    found: RexsImport,
+    given: Collection[str],  # Keys that the user set.
+    problems: Sequence[Problem],  # Problems of the case as it is.
+    notes: Sequence[str],  # What is to be known beside the notes of the import itself.
+) -> RenderableType:
+    """Summary of an import."""
+    head = Text(f"REXS {found.version}, {found.component}: {len(found.origins)} keys", "bold")
+    parts: list[RenderableType] = [head]
+    lacking = found.lacking(given)
+    for title, needed in (("The case needs", True), ("Not in the file", False)):
+        table = plain_table(title)
+        table.add_column("key of the case", no_wrap=True)
+        table.add_column("missing in the file", overflow="fold")
+        for lack in lacking:
+            if lack.needed == needed:
+                table.add_row(Text(lack.key), Text(f"{lack.attribute}. {lack.instead}".rstrip()))
+        if table.row_count:
+            parts.append(table)
+    needed_ones = [lack for lack in lacking if lack.needed]
+    others = [item for item in problems if not any(lack.explains(item) for lack in needed_ones)]
+    parts += [Text(f"Problem: {problem}") for problem in others]
+    parts += [Text(f"Note: {note}") for note in (*found.notes, *notes)]
+    return Group(*parts)
+
+
+# The commands rexs import and rexs export.
+
+
+component_option = click.option(
+    "--component", type=int, metavar="ID", help="One stage of several, by its id."
+)
+
+
+@click.group()
+def rexs() -> None:
+    """Gears from REXS files, and results into them (.rexs, .rexsj, .rexsz)."""
+
+
+@rexs.command("import")
+@click.argument("file")
+@output_option(
+    "The case file to write. Default: FILE with the ending .toml, in this folder.", "CASE.toml"
+)
+@component_option
+@click.option("--load-case", type=int, metavar="ID", help="A load case of the load spectrum.")
+@set_option
+def import_(
+    file: str,
+    output: Path | None,
+    component: int | None,
+    load_case: int | None,
+    changes: tuple[str, ...],
+) -> None:
+    """Write a commented case file from a REXS FILE, and say what the file lacks.
+
+    Several stages become one train, unless --component names one of them.
+
+    Every value stands beside the REXS attribute that it comes from. If the case needs more than
+    the file has, it is written all the same, with these keys marked NEEDED, and the command ends
+    with exit code 5.
+    """
+    from epicyclic.plugins.rexs.files import stem
+    from epicyclic.plugins.rexs.importing import read_rexs
+    from epicyclic.report.tables import terminal
+
+    target = output or Path(f"{stem(file)}.toml")
+    if target.exists():
+        problem = Problem("--output", str(target), "exists already.", "Name another file.")
+        raise InputError([problem], "the command")
+    parsed = parse_changes(changes)
+    found = read_rexs(file, component, load_case)
+    unknown = [key for key in parsed if not _is_key(found, key)]
+    if unknown:
+        found.case(parsed)  # tells which keys it does not know
+    write_file(target, found.text(parsed))
+    problems, notes = _state(found, parsed)
+    terminal().print(import_tables(found, parsed, problems, notes))
+    click.echo(f"Wrote {target}.")
+    if problems:
+        click.echo(f"Set what is missing, then: epicyclic run {target}", err=True)
+        sys.exit(EXIT_INCOMPLETE)
+    click.echo(f"Next: epicyclic run {target}")
+
+
+@rexs.command()
+@case_argument
+@click.argument("original", required=False)
+@output_option("The file to write: .rexs, .rexsj or .rexsz.", "FILE", required=True)
+@component_option
+@set_option
+def export(
+    case: str,
+    original: str | None,
+    output: Path,
+    component: int | None,
+    changes: tuple[str, ...],
+) -> None:
+    """Compute a CASE and write its results into a copy of the REXS file ORIGINAL.
+
+    All that ORIGINAL holds stays as it is. Without it a new file describes the gear set; if CASE
+    is a REXS file, it is the original.
+    """
+    from epicyclic.plugins.rexs.exporting import rexs_bytes
+    from epicyclic.plugins.rexs.files import is_rexs
+    from epicyclic.study.solve import solve
+
+    if not is_rexs(output):
+        allowed = "must end in .rexs, .rexsj or .rexsz."
+        raise InputError([Problem("--output", str(output), allowed, "Name such a file.")])
+    if is_rexs(case):
+        original = original or case
+        loaded = from_rexs(case, parse_changes(changes), component)
+    else:
+        loaded = load_with(case, changes)
+    write_file(output, rexs_bytes(output, solve(loaded), original, component))
+    click.echo(f"Wrote {output}.")
+
+
+def _is_key(found: RexsImport, key: str) -> bool:
+    from epicyclic.case.case import KINDS
+    from epicyclic.case.fields import find_field
+
+    return find_field(KINDS[found.kind], key) is not None
+
+
+def _state(
+    found: RexsImport, changes: dict[str, Any]
+) -> tuple[tuple[Problem, ...], tuple[str, ...]]:
+    """Problems of the case as it is written, and how its geometry differs from the file's."""
+    try:
+        case = found.case(changes)
+    except InputError as error:
+        return error.problems, ()
+    return (), found.geometry_notes(case)

@@ -1,0 +1,741 @@
+"""Gears, flanks and planets of a REXS file as tables of a case, checked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from epicyclic.case.build import pair_mesh, planetary_meshes
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.train import TrainCase
+from epicyclic.case.train_tables import PairSet
+from epicyclic.case.train_tables import PlanetarySet as PlanetaryTable
+from epicyclic.gears import mesh as geometry
+from epicyclic.gears.flanks import RA_OVER_RQ
+from epicyclic.gears.gear import involute
+from epicyclic.plugins.rexs.draft import Amount, Draft, Lack, amount_text
+from epicyclic.plugins.rexs.model import Component, Model
+from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, Train, is_internal, rigid_parts
+from epicyclic.units import DEGREE, MILLIMETRE, Quantity, format_number
+
+# Gears of a REXS file to tables of a case.
+#
+# Angles and profile shifts are taken as ISO 21771 has them. Numbers of teeth and diameters of
+# internal gears are taken by their magnitude, because programs write them with either sign.
+
+
+_TOOLS = ("rack_shaped_tool", "cutter_wheel_tool")
+
+
+def flanks_of(model: Model, gears: Iterable[Component]) -> list[Component]:
+    """The flanks of gears, left and right."""
+    return [
+        flank
+        for gear in gears
+        for side in ("left", "right")
+        for flank in model.partners(gear.id, "flank", "gear", side)
+    ]
+
+
+def _tools_of(model: Model, gears: Iterable[Component]) -> list[Component]:
+    """The first tool of each gear: the one that leaves the root."""
+    found: dict[int, Component] = {}
+    for gear in gears:
+        tools = model.partners(gear.id, "ordered_reference", "origin", "referenced", *_TOOLS)
+        for flank in flanks_of(model, [gear]):
+            tools += model.partners(flank.id, "manufacturing_step", "workpiece", "tool", *_TOOLS)
+        if tools:
+            found[tools[0].id] = tools[0]
+    return list(found.values())
+
+
+def shared_table(
+    draft: Draft, model: Model, gears: Sequence[Component], stages: Sequence[Component]
+) -> None:
+    """What all gears share: module, angles, centre distance."""
+    draft.take("gears.normal_module", "normal_module", gears)
+    flanks = flanks_of(model, gears)
+    normal = draft.take("gears.normal_pressure_angle", "normal_pressure_angle", flanks, None)
+    if normal is None:
+        name = "pressure_angle_in_the_transverse_section"
+        if draft.take("gears.transverse_pressure_angle", name, flanks, None) is None:
+            draft.lack("gears.normal_pressure_angle", "normal_pressure_angle", flanks or gears)
+    name = "helix_angle_reference_diameter"
+    magnitudes: dict[str, str] = {}
+    for gear in gears:
+        found = draft.read(name, [gear], "gears.helix_angle")
+        if found is not None:
+            text = amount_text(round(abs(found.number), 9), found.unit)
+            magnitudes.setdefault(text, found.origin)
+    if len(magnitudes) > 1:
+        shown = ", ".join(map(str, magnitudes))
+        draft.notes.append(f"The gears have different helix angles: {shown}. The first is taken.")
+    if magnitudes:
+        draft.give("gears.helix_angle", *next(iter(magnitudes.items())))
+    else:
+        draft.lack("gears.helix_angle", name, gears)
+    draft.take("gears.center_distance", "center_distance", stages, change=abs)
+
+
+def gear_table(draft: Draft, model: Model, key: str, gears: Sequence[Component]) -> None:
+    """Table `key` of one gear, or of several that are alike."""
+    draft.take(f"{key}.teeth", "number_of_teeth", gears, change=abs)
+    draft.take(f"{key}.face_width", "face_width", gears)
+    shift = _thickness(draft, model, key, gears)
+    _tip(draft, model, key, gears, shift)
+    _root(draft, model, key, gears, shift)
+    _roughness(draft, key, gears)
+    _material(draft, model, key, gears)
+
+
+def _thickness(draft: Draft, model: Model, key: str, gears: Sequence[Component]) -> float | None:
+    """The profile shift, or the tooth thickness; the profile shift if it is known."""
+    flanks = flanks_of(model, gears)
+    name = "addendum_modification_coefficient"
+    target = f"{key}.profile_shift_coefficient"
+    shift = draft.take(target, name, flanks, None)
+    if shift is not None:
+        return shift
+    thickness, diameter = (
+        draft.read(attribute, gears, target)
+        for attribute in (
+            "transverse_tooth_thickness_at_reference_diameter",
+            "reference_diameter_cylindrical_gear",
+        )
+    )
+    if thickness is not None and diameter is not None:
+        draft.give(f"{key}.tooth_thickness", thickness.text, thickness.origin)
+        length = amount_text(abs(diameter.number), diameter.unit)
+        draft.give(f"{key}.thickness_diameter", length, diameter.origin)
+        return None
+    settings = [
+        item
+        for flank in flanks
+        for item in model.partners(
+            flank.id, "manufacturing_step", "workpiece", "manufacturing_settings"
+        )
+    ]
+    generated = "generated_addendum_modification_coefficient"
+    if draft.take(target, generated, settings, None) is None:
+        draft.lack(target, name, flanks or gears)
+    return None
+
+
+def _tip(
+    draft: Draft, model: Model, key: str, gears: Sequence[Component], shift: float | None
+) -> None:
+    """Tip diameter, of the file or of the basic profile of its flanks."""
+    target = f"{key}.tip_diameter"
+    if draft.take(target, "tip_diameter", gears, None, abs) is not None:
+        return
+    addendum = draft.read("addendum_coefficient_basic_profile", flanks_of(model, gears))
+    module = draft.read("normal_module", gears)
+    height = addendum.number * module.number if addendum and module else None
+    diameter = _diameter(draft, gears, shift, height)
+    if diameter is None or addendum is None:
+        draft.lack(target, "tip_diameter", gears, "Default: from gears.addendum_coefficient.")
+    else:
+        origin = f"computed without alteration of the tip: {addendum.origin}"
+        draft.give(target, amount_text(diameter, "mm"), origin)
+
+
+def _root(
+    draft: Draft, model: Model, key: str, gears: Sequence[Component], shift: float | None
+) -> None:
+    """Root diameter, of the file or of a rack-shaped tool, and the rounding of the tool's tip."""
+    target = f"{key}.root_diameter"
+    tools = _tools_of(model, gears)
+    module = draft.read("normal_module", gears)
+    rounding = _tool_length(draft, tools, "tip_corner_radius_", "factor_", module)
+    if rounding is not None:
+        draft.give(f"{key}.tool_tip_radius", rounding.text, rounding.origin)
+    if draft.take(target, "root_diameter", gears, None, abs) is not None:
+        return
+    addendum = _tool_length(draft, tools, "addendum_", "coefficient_", module)
+    is_rack = all(tool.type == "rack_shaped_tool" for tool in tools) and not is_internal(gears[0])
+    usable = addendum is not None and addendum.unit == "mm" and is_rack
+    diameter = _diameter(draft, gears, shift, -addendum.number if addendum and usable else None)
+    if diameter is None or addendum is None:
+        draft.lack(target, "root_diameter", gears, "Default: from gears.dedendum_coefficient.")
+    else:
+        origin = f"computed from the addendum of the tool: {addendum.origin}"
+        draft.give(target, amount_text(diameter, "mm"), origin)
+
+
+def _diameter(
+    draft: Draft, gears: Sequence[Component], shift: float | None, height: float | None
+) -> float | None:
+    """Diameter at `height` above the reference circle of a gear with profile shift. ISO 21771.
+
+    In mm; None if anything is not known in the usual units.
+    """
+    teeth = draft.read("number_of_teeth", gears)
+    module = draft.read("normal_module", gears)
+    helix = draft.read("helix_angle_reference_diameter", gears[:1])
+    if not (teeth and module and helix) or shift is None or height is None:
+        return None
+    cosine = math.cos(math.radians(helix.number))
+    if (module.unit, helix.unit) != ("mm", "deg") or cosine <= 0:
+        return None
+    outward = -1 if is_internal(gears[0]) else 1
+    reference = abs(teeth.number) * module.number / cosine
+    return round(reference + outward * 2 * (shift * module.number + height), 9)
+
+
+def _tool_length(
+    draft: Draft, tools: Sequence[Component], start: str, middle: str, module: Amount | None
+) -> Amount | None:
+    """A length of the tools, given itself or as a factor of the module."""
+    length = draft.read(f"{start}reference_profile", tools)
+    if length is not None:
+        return length
+    factor = draft.read(f"{start}{middle}reference_profile", tools)
+    if factor is None or module is None:
+        return None
+    origin = f"{factor.origin}, times normal_module"
+    return Amount(factor.number * module.number, module.unit, origin)
+
+
+def _roughness(draft: Draft, key: str, gears: Sequence[Component]) -> None:
+    """Rq from the Ra of the file: that of a Gaussian profile."""
+    name = "arithmetic_mean_roughness_flank_iso_4287_1997"
+    found = draft.read(name, gears, f"{key}.roughness")
+    if found is None:
+        draft.lack(f"{key}.roughness", name, gears)
+        return
+    number, unit, origin = found
+    value = amount_text(float(f"{number / RA_OVER_RQ:.6g}"), unit)
+    draft.give(
+        f"{key}.roughness",
+        value,
+        f"computed: Rq = {1 / RA_OVER_RQ:.4g} Ra of a Gaussian profile, Ra from {origin}",
+    )
+
+
+def _material(draft: Draft, model: Model, key: str, gears: Sequence[Component]) -> None:
+    materials = {
+        item.id: item
+        for gear in gears
+        for item in model.partners(gear.id, "reference", "origin", "referenced", "material")
+    }
+    sources = list(materials.values())
+    target = f"{key}.material"
+    modulus = draft.read("elastic_modulus", sources, target)
+    if modulus is None:
+        instead = "Default: steel of the material library."
+        draft.lack(target, "material with an elastic_modulus", sources or gears, instead)
+        return
+    title = sources[0].get("material_designation")
+    table: dict[str, object] = {"title": title.text() if title else str(sources[0])}
+    table["elastic_modulus"] = modulus.text
+    for name in ("poisson_ratio", "density"):
+        found = draft.read(name, sources, target)
+        if found is not None:
+            table[name] = found.text
+    draft.give(target, table, f"material {sources[0].id}")
+
+
+# Modifications of the flanks in a REXS file to micro geometry.
+#
+# Taken are those whose meaning is the same on both sides. The others are noted: slopes, whose sign
+# the attribute database does not define, and modifications that differ between the flanks of a
+# gear.
+
+
+@dataclass(frozen=True, slots=True)
+class _Form:
+    """A type of modification, the key of its amount, and the attributes that hold it."""
+
+    type: str
+    key: str
+    amounts: tuple[str, ...]
+    extents: tuple[tuple[str, str], ...] = ()
+    has_shape: bool = False
+    over: str = ""
+
+
+_TAKEN = (
+    _Form("tip_relief", "tip_relief", ("tip_relief_depth",),
+          (("tip_relief_diameter", "tip_relief_datum_diameter"),), has_shape=True),
+    _Form("root_relief", "root_relief", ("root_relief_depth",),
+          (("root_relief_diameter", "root_relief_datum_diameter"),), has_shape=True),
+    _Form("profile_crowning", "profile_crown",
+          ("profile_crowning_at_tip", "profile_crowning_at_root"),
+          over=", over the active profile"),
+    _Form("helix_crowning", "lead_crown",
+          ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face"),
+          over=", over the face width"),
+)  # fmt: skip
+_NOT_TAKEN = {
+    "profile_slope": "profile_slope",
+    "helix_slope": "lead_slope",
+    "end_relief_datum_face": "end_relief",
+    "end_relief_non_datum_face": "end_relief",
+    "topographical_modification": "topography",
+    "triangular_tip_relief": "topography",
+    "triangular_root_relief": "topography",
+    "profile_twist": "topography",
+}
+_AMOUNTS = {
+    "profile_slope": "profile_slope",
+    "helix_slope": "helix_slope",
+    "end_relief_datum_face": "end_relief_depth_datum_face",
+    "end_relief_non_datum_face": "end_relief_depth_non_datum_face",
+}
+_SHAPES = ("linear", "parabolic")
+
+
+def micro_geometry(draft: Draft, model: Model, key: str, gears: Sequence[Component]) -> None:
+    """Table ``micro_geometry`` of gears that are alike."""
+    flanks = flanks_of(model, gears)
+    for form in _TAKEN:
+        items = _of_type(model, flanks, form.type)
+        if items and any(_amount(item, name) != 0 for item in items for name in form.amounts):
+            _take(draft, key, form, items, len(flanks))
+    for kind, name in _NOT_TAKEN.items():
+        items = _of_type(model, flanks, kind)
+        if items and (kind not in _AMOUNTS or any(_amount(i, _AMOUNTS[kind]) != 0 for i in items)):
+            _leave(draft, key, name, items, "its sign or form is not the same here")
+
+
+def _of_type(model: Model, flanks: Sequence[Component], kind: str) -> list[Component]:
+    return [
+        item
+        for flank in flanks
+        for item in model.partners(flank.id, "reference", "origin", "referenced", kind)
+    ]
+
+
+def _take(draft: Draft, key: str, form: _Form, items: Sequence[Component], flanks: int) -> None:
+    amounts = {_amount(item, name) for item in items for name in form.amounts}
+    shapes = {_shape(item) for item in items} if form.has_shape else {"parabolic"}
+    (amount, *others), (shape, *_) = amounts, shapes
+    if len(items) < flanks or others or amount is None or amount <= 0:
+        _leave(draft, key, form.key, items, "it is not the same positive amount on all flanks")
+        return
+    if len(shapes) > 1 or shape not in _SHAPES or any(_is_added(item) for item in items):
+        _leave(draft, key, form.key, items, "its shape is not linear or parabolic")
+        return
+    start = f"{key}.micro_geometry."
+    found = draft.read(form.amounts[0], items)
+    assert found is not None
+    draft.give(f"{start}{form.key}", found.text, f"{found.origin}{form.over}")
+    if form.has_shape:
+        draft.give(f"{start}{form.key}_shape", shape, f"shape_of_relief of {items[0]}")
+    for name, attribute in form.extents:
+        draft.take(f"{start}{name}", attribute, items)
+
+
+def _leave(draft: Draft, key: str, name: str, items: Sequence[Component], reason: str) -> None:
+    full = f"{key}.micro_geometry.{name}"
+    draft.lacks[full] = Lack(
+        full, f"{items[0]} is there, but {reason}", False, "Not taken: set the key yourself."
+    )
+
+
+def _amount(item: Component, name: str) -> float | None:
+    """The amount of a modification; 0 if it is not given, None if it cannot be read."""
+    try:
+        found = item.amount(name)
+    except ValueError:
+        return None
+    return 0.0 if found is None else found[0]
+
+
+def _shape(item: Component) -> str:
+    shape = item.get("shape_of_relief")
+    return "linear" if shape is None else shape.text()
+
+
+def _is_added(item: Component) -> bool:
+    """True if the modification adds material."""
+    added = item.get("is_additive_modification")
+    return added is not None and added.text().lower() == "true"
+
+
+# Parts of a planetary set in a REXS file beside its gears: bearing, carrier, operation.
+
+
+_ROLLING = ("rolling_bearing_with_catalog_geometry", "rolling_bearing_with_detailed_geometry")
+_ROLLERS = ("radial_needle_roller_bearing", "radial_roller_bearing")
+"""Types of bearings that the planet bearing of a case can be."""
+
+_CLEARANCES = (
+    "operating_radial_bearing_clearance",
+    "mounted_radial_bearing_clearance",
+    "radial_bearing_clearance",
+)
+_LEFT_OUT = "Without the bearing's data its loss is left out."
+
+
+def planet_bearings(model: Model, planetary: PlanetaryParts) -> list[Component]:
+    """All bearings between planets and their pins, or between their shafts and the carrier."""
+    planets = {part.id for part in rigid_parts(model, planetary.shafts["planet"])}
+    carried = {part.id for part in rigid_parts(model, planetary.shafts["pin"])}
+    carried |= {part.id for part in rigid_parts(model, planetary.shafts["carrier"])}
+    found: dict[int, Component] = {}
+    for relation in model.relations:
+        if relation.type == "side":
+            sides = {*relation.partners("inner_part"), *relation.partners("outer_part")}
+            joints = [model.components[number] for number in relation.partners("assembly")]
+            if sides & planets and sides & carried:
+                found |= {item.id: item for item in joints if "bearing" in item.type}
+    return list(found.values())
+
+
+def bearing_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:
+    """The planet bearing; every key of it that the file does not give is noted."""
+    key = "planet_bearing"
+    bearings = planet_bearings(model, planetary)
+    rolling = [item for item in bearings if item.type in _ROLLING and _has_rollers(item)]
+    if not rolling or len(rolling) < len(bearings):
+        others = [item for item in bearings if item not in rolling]
+        what = f"; {others[0]} is none" if others else ""
+        where = f"roller bearing with its geometry between planet and pin{what}"
+        draft.lacks[key] = Lack(key, where, False, _LEFT_OUT)
+        return
+    rows = _parts(model, rolling, "rolling_bearing_row")
+    elements = _parts(model, rows, "rolling_element")
+    _rows(draft, planetary, rolling, rows)
+    draft.take(f"{key}.rollers_per_row", "number_of_rolling_elements", rows)
+    roller = draft.take(f"{key}.roller_diameter", "diameter_of_rolling_element", elements)
+    effective = "significant_contact_length_inner_ring"
+    if draft.take(f"{key}.roller_length", effective, rows, None) is None:
+        draft.take(f"{key}.roller_length", "length_of_rolling_element", elements)
+    _pin(draft, rows, roller)
+    for name in _CLEARANCES:
+        if draft.take(f"{key}.diametral_clearance", name, rolling, None) is not None:
+            break
+    else:
+        draft.lack(f"{key}.diametral_clearance", _CLEARANCES[-1], rolling)
+    for name in ("roller_roughness", "race_roughness"):
+        draft.lack(f"{key}.{name}", "roughness (there is no attribute for it)", rolling)
+
+
+def _has_rollers(bearing: Component) -> bool:
+    """True if a bearing is of a type that can be computed, or of none that is stated."""
+    kind = bearing.get("bearing_type")
+    return kind is None or kind.text() in _ROLLERS
+
+
+def _parts(model: Model, owners: Sequence[Component], kind: str) -> list[Component]:
+    """Parts of a kind of all owners, in order."""
+    return [
+        part
+        for owner in owners
+        for part in model.partners(owner.id, "ordered_assembly", "assembly", "part", kind)
+    ]
+
+
+def _rows(
+    draft: Draft, planetary: PlanetaryParts, rolling: list[Component], rows: list[Component]
+) -> None:
+    """Rows of all bearings of one planet together."""
+    count = len(rows) / len(planetary.planets)
+    if count and count.is_integer():
+        several = f" of {len(rolling)} bearings" if len(rolling) > 1 else ""
+        draft.give("planet_bearing.rows", int(count), f"counted: rolling_bearing_row{several}")
+        if count > 1:
+            gap = "gap between the rollers of neighbouring rows"
+            draft.lack("planet_bearing.row_gap", gap, rolling, "Default: none.")
+    else:
+        draft.lack("planet_bearing.rows", "rolling_bearing_row", rolling)
+
+
+def _pin(draft: Draft, rows: list[Component], roller: float | None) -> None:
+    """The inner race: the pitch circle less one roller."""
+    name, key = "reference_diameter_rolling_bearing", "planet_bearing.pin_diameter"
+    pitch = draft.read(name, rows, key)
+    if pitch is None or roller is None:
+        draft.lack(key, name, rows)
+        return
+    draft.give(
+        key,
+        amount_text(pitch.number - roller, pitch.unit),
+        f"computed: {pitch.origin} less the roller diameter",
+    )
+
+
+def carrier_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:
+    """The carrier as a disc: the largest side plate, as wide as all of them stand."""
+    stage = planetary.component.id
+    carriers = model.partners(stage, "assembly", "assembly", "part", "planet_carrier")
+    plates = [
+        plate
+        for carrier in carriers
+        for plate in model.partners(carrier.id, "assembly", "assembly", "part", "side_plate")
+    ]
+    instead = "Without the carrier's size its drag is left out."
+    sizes = [(draft.read("outer_diameter", [p]), draft.read("length", [p]), p) for p in plates]
+    known = [(outer, length, plate) for outer, length, plate in sizes if outer and length]
+    if not known:
+        draft.lack("carrier", "outer_diameter and length of side_plate", carriers, instead)
+        return
+    outer = max(item[0] for item in known)
+    draft.give("carrier.outer_diameter", outer.text, outer.origin)
+    _, length, first = known[0]
+    if len(known) == 1:
+        draft.give("carrier.width", length.text, length.origin)
+        return
+    starts = [_position(plate) for _, _, plate in known]
+    if any(start is None for start in starts):
+        draft.lacks["carrier.width"] = Lack(
+            "carrier.width", f"support_vector of {first}", True, "Give the width over all plates."
+        )
+        return
+    axial = [start[0] for start in starts if start is not None]
+    ends = [start + item[1].number for start, item in zip(axial, known, strict=True)]
+    width = max(ends) - min(axial)
+    draft.give(
+        "carrier.width",
+        amount_text(round(width, 9), length.unit),
+        f"computed over {len(known)} side plates from support_vector and length",
+    )
+
+
+def _position(component: Component) -> tuple[float, ...] | None:
+    """Position in the axes of the gear unit, in mm; None if it is not given."""
+    vector = component.get("support_vector")
+    try:
+        numbers = vector.numbers() if vector is not None else ()
+    except ValueError:
+        return None
+    return numbers if len(numbers) == 3 else None
+
+
+def planet_angles(draft: Draft, planetary: PlanetaryParts) -> None:
+    """Positions of the planets, if they are not spaced equally."""
+    centre = _position(planetary.shafts["sun"][0]) if planetary.shafts["sun"] else None
+    places = [_position(shaft) for shaft in planetary.shafts["planet"]]
+    if centre is None or any(place is None for place in places) or len(places) < 2:
+        return
+    angles = sorted(
+        math.degrees(math.atan2(place[2] - centre[2], place[1] - centre[1])) % 360
+        for place in places
+        if place is not None
+    )
+    turned = [angle - angles[0] for angle in angles]
+    equal = [360 * number / len(turned) for number in range(len(turned))]
+    if any(abs(a - b) > 1e-3 for a, b in zip(turned, equal, strict=True)):
+        values = [f"{angle:.6f} deg" for angle in turned]
+        draft.give("planet.angles", values, "computed from support_vector of the planet shafts")
+
+
+# Does a REXS file agree with itself, and with the geometry that is computed here?
+
+
+AGREES = 1e-3
+"""Relative difference up to which figures of two programs agree."""
+
+SHIFT_AGREES = 0.02
+"""Difference of profile shifts that allowances for backlash can make."""
+
+
+def file_notes(chosen: PlanetaryParts | Pair) -> Iterator[str]:
+    """Contradictions within the file: hands of helices."""
+    said: set[bool] = set()
+    for mesh in chosen.meshes:
+        first, second = map(_signed_helix, mesh.gears)
+        internal = any(map(is_internal, mesh.gears))
+        if first * second == 0 or (first * second > 0) == internal or internal in said:
+            continue
+        said.add(internal)
+        hands = "the same hand, as on internal gears" if internal else "opposite hands"
+        yield f"{mesh.gears[0]} and {mesh.gears[1]} should have {hands}: check the helix angles."
+
+
+def _signed_helix(gear: Component) -> float:
+    found = gear.get("helix_angle_reference_diameter")
+    try:
+        return 0.0 if found is None else found.number()
+    except ValueError:  # told when it is read
+        return 0.0
+
+
+def geometry_notes(
+    case: Case, chosen: PlanetaryParts | Pair | Train, model: Model
+) -> Iterator[str]:
+    """Figures of the file that differ from those of the case's geometry."""
+    for mesh, components, stage in _all_computed(case, chosen):
+        for gear, component in zip((mesh.gear1, mesh.gear2), components, strict=True):
+            reference, base = 2 * gear.reference_radius, 2 * gear.base_radius
+            yield from _compared(
+                component, "reference_diameter_cylindrical_gear", reference, MILLIMETRE
+            )
+            yield from _compared(component, "base_diameter", base, MILLIMETRE)
+        yield from _compared(stage, "radial_contact_ratio", mesh.transverse_contact_ratio)
+        yield from _compared(stage, "overlap_contact_ratio", mesh.overlap_ratio)
+        for data in model.partners(stage.id, "stage_gear_data", "stage", "stage_gear_data"):
+            name = "operating_pressure_angle_in_the_transverse_section"
+            yield from _compared(data, name, mesh.operating_pressure_angle, DEGREE)
+
+
+_Computed = Iterator[tuple[geometry.Mesh, tuple[Component, Component], Component]]
+"""Meshes as they are computed here, each with its gears and its stage in the file."""
+
+
+def _all_computed(case: Case, chosen: PlanetaryParts | Pair | Train) -> _Computed:
+    """Every mesh; of a train those of its sets whose losses are computed."""
+    if not isinstance(chosen, Train):
+        if not isinstance(case, TrainCase):
+            yield from _computed(case, chosen)
+        return
+    sets = case.sets if isinstance(case, TrainCase) else {}
+    for name, one in chosen.sets.items():
+        table = sets.get(name)
+        if isinstance(table, PlanetaryTable | PairSet):
+            yield from _computed(table, one)
+
+
+def _computed(
+    case: PlanetaryCase | GearPairCase | PlanetaryTable | PairSet, chosen: PlanetaryParts | Pair
+) -> _Computed:
+    """The meshes of a set."""
+    if isinstance(case, PlanetaryCase | PlanetaryTable) and isinstance(chosen, PlanetaryParts):
+        sun_mesh, ring_mesh = planetary_meshes(case.gears, case.sun, case.planet, case.ring)
+        planet = chosen.planets[0]
+        yield sun_mesh, (chosen.sun, planet), chosen.sun_meshes[0].stage
+        yield ring_mesh, (planet, chosen.ring), chosen.ring_meshes[0].stage
+    elif isinstance(case, GearPairCase | PairSet) and isinstance(chosen, Pair):
+        mesh = pair_mesh(case.gears, case.pinion, case.gear)
+        yield mesh, (chosen.pinion, chosen.gear), chosen.mesh.stage
+
+
+def _compared(
+    component: Component, attribute: str, computed: float, unit: Quantity | None = None
+) -> Iterator[str]:
+    """A note if `attribute` is given and is another than `computed`, in SI."""
+    try:
+        stated = component.amount(attribute)
+        if stated is None:
+            return
+        number, name = stated
+        value = abs(number) if unit is None else abs(unit.parse(f"{number!r} {name}"))
+    except ValueError as error:
+        yield f"{attribute} of {component} cannot be compared: it {error}."
+        return
+    if not math.isclose(value, computed, rel_tol=AGREES, abs_tol=AGREES * (unit is None)):
+        here = format_number(computed) if unit is None else unit.text(computed)
+        there = f"{format_number(number)} {name}".rstrip()
+        yield f"{attribute} of {component} is {there}; computed here: {here}."
+
+
+def closing_shift(tables: Mapping[str, Any], member1: str, member2: str) -> float | None:
+    """Profile shift of `member2` that leaves no backlash at the centre distance. ISO 21771.
+
+    None if the tables do not have all that it takes, or cannot mesh.
+    """
+    try:
+        gears = tables["gears"]
+        z1, z2 = (_signed_teeth(tables, name) for name in (member1, member2))
+        x1 = tables[member1]["profile_shift_coefficient"]
+        module = MILLIMETRE.parse(gears["normal_module"])
+        center = MILLIMETRE.parse(gears["center_distance"])
+        normal = DEGREE.parse(gears["normal_pressure_angle"])
+        helix = DEGREE.parse(gears["helix_angle"])
+        transverse = math.atan(math.tan(normal) / math.cos(helix))
+        reference = abs(z1 + z2) * module / (2 * math.cos(helix))
+        operating = math.acos(reference * math.cos(transverse) / center)
+        difference = involute(operating) - involute(transverse)
+        return (z1 + z2) * difference / (2 * math.tan(normal)) - float(x1)
+    except (KeyError, ValueError, ArithmeticError):  # lacking, or no gears: told elsewhere
+        return None
+
+
+def _signed_teeth(tables: Mapping[str, Any], name: str) -> int:
+    """Number of teeth as in ISO 21771: negative for internal gears."""
+    table = tables[name]
+    sign = -1 if name == "ring" or table.get("internal") else 1
+    return sign * int(table["teeth"])
+
+
+def shift_notes(
+    tables: Mapping[str, Any], member1: str, member2: str, place: str = ""
+) -> Iterator[str]:
+    """A note if the profile shift of an internal gear seems to count the other way.
+
+    `place` is where `tables` stand in the case.
+    """
+    table = tables.get(member2, {})
+    shift = table.get("profile_shift_coefficient")
+    is_ring = member2 == "ring" or table.get("internal", False)
+    closing = closing_shift(tables, member1, member2) if is_ring else None
+    if closing is None or not isinstance(shift, float) or abs(shift) < SHIFT_AGREES:
+        return
+    if abs(shift - closing) > SHIFT_AGREES >= abs(-shift - closing):
+        yield (
+            f"The profile shift {format_number(shift)} of the {member2} fits the centre distance "
+            f"with the other sign only; if so, set {place}{member2}.profile_shift_coefficient = "
+            f"{format_number(-shift)}."
+        )
+
+
+# The tables of a planetary set or a pair from a REXS file: gears, bearing, carrier.
+
+
+ROUNDING = 1e-3
+"""Sum of the profile shifts of a mesh, as printed with three decimals, less the exact sum. [1]"""
+
+_SHIFT = "profile_shift_coefficient"
+
+
+def set_tables(draft: Draft, model: Model, chosen: PlanetaryParts | Pair, place: str = "") -> None:
+    """What describes a set or a pair; `place` is where its tables stand in the case."""
+    if isinstance(chosen, Pair):
+        _pair(draft, model, chosen, place)
+    else:
+        _planetary(draft, model, chosen, place)
+
+
+def _planetary(draft: Draft, model: Model, chosen: PlanetaryParts, place: str) -> None:
+    gears = [chosen.sun, *chosen.planets, chosen.ring]
+    shared_table(draft, model, gears, [mesh.stage for mesh in chosen.meshes])
+    for key, own in (("sun", [chosen.sun]), ("planet", chosen.planets), ("ring", [chosen.ring])):
+        gear_table(draft, model, key, own)
+        micro_geometry(draft, model, key, own)
+    draft.give("planet.count", len(chosen.planets), f"counted: planets of {chosen.component}")
+    draft.take("planet.mass", "mass_of_component", chosen.planets, None)
+    _shifts(draft, place, "sun", "planet", "sun")
+    _shifts(draft, place, "planet", "ring", "ring")
+    planet_angles(draft, chosen)
+    bearing_table(draft, model, chosen)
+    carrier_table(draft, model, chosen)
+    rims = model.partners(chosen.ring.id, "assembly", "assembly", "part", "gear_body")
+    draft.take("ring.rim_thickness", "gear_body_rim_thickness", rims, None)
+
+
+def _pair(draft: Draft, model: Model, chosen: Pair, place: str) -> None:
+    shared_table(draft, model, [chosen.pinion, chosen.gear], [chosen.mesh.stage])
+    for key, own in (("pinion", [chosen.pinion]), ("gear", [chosen.gear])):
+        gear_table(draft, model, key, own)
+        micro_geometry(draft, model, key, own)
+    if is_internal(chosen.gear):
+        draft.give("gear.internal", True, f"{chosen.gear}")
+    _shifts(draft, place, "pinion", "gear", "gear")
+
+
+def _shifts(draft: Draft, place: str, member1: str, member2: str, changed: str) -> None:
+    """Look at the profile shifts of a mesh.
+
+    Say which one would close it if one is lacking, and if one seems to have the wrong sign. Shifts
+    of a mesh without backlash may overlap by the last digit that is printed of them; the one of
+    `changed` is then reduced.
+    """
+    draft.notes += shift_notes(draft.tables, member1, member2, place)
+    for own, other in ((member2, member1), (member1, member2)):
+        key = f"{own}.profile_shift_coefficient"
+        closing = closing_shift(draft.tables, other, own)
+        if closing is None:
+            continue
+        shown = math.floor(closing * 1e6) / 1e6 + 0.0
+        if key in draft.lacks:
+            text = f"With the {other}, {format_number(shown)} leaves no backlash."
+            draft.lacks[key] = replace(draft.lacks[key], instead=text)
+            continue
+        shift = draft.tables[own].get(_SHIFT)
+        is_too_much = isinstance(shift, float) and 0 < shift - shown <= ROUNDING
+        if own == changed and is_too_much:
+            origin = f"{draft.origins[key]}: {shift}, less what the printed digits are too much"
+            draft.give(key, shown, origin)

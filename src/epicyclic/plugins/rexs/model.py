@@ -1,0 +1,430 @@
+"""What a REXS file holds, and the ids, units and versions of REXS."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import math
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
+from importlib import resources
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from epicyclic.case.wording import one_line
+from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.units import Quantity
+
+# Ids, units and versions of REXS, from the one file that has them.
+
+
+CUSTOM = "custom_epicyclic_"
+"""Start of the ids of attributes that the standard does not have."""
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """An attribute of the standard."""
+
+    id: str  # As in the newest version.
+    type: str  # Value type, ``"floating_point"``.
+    unit: str  # Name of the unit in REXS; ``"none"`` for pure numbers and text.
+    former: tuple[tuple[str, str], ...]  # Earlier ids, each with the version that brought it.
+    since: str  # The version that brought `id`.
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """Every id that the attribute has had, the newest first."""
+        return (self.id, *(name for name, _ in reversed(self.former)))
+
+
+@cache
+def _file() -> dict[str, Any]:
+    text = resources.files(__package__).joinpath("vocabulary.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
+@cache
+def term(name: str) -> Term:
+    """The attribute with the newest id `name`; KeyError if it is not in use here."""
+    entry = _file()["attributes"][name]
+    former = tuple((item["id"], item["since"]) for item in entry.get("former", ()))
+    return Term(name, entry["type"], entry.get("unit", "none"), former, entry["since"])
+
+
+def versions() -> tuple[str, ...]:
+    """The versions that can be read, the newest last."""
+    return tuple(_file()["versions"])
+
+
+def id_in(name: str, version: str) -> str | None:
+    """The id of attribute `name` in a version of the standard; None if it was not there yet."""
+    known = term(name)
+    order = versions().index(version)
+    found = None
+    for candidate, since in (*known.former, (known.id, known.since)):
+        if versions().index(since) <= order:
+            found = candidate
+    return found
+
+
+def types_of(component_type: str) -> tuple[str, ...]:
+    """Every name that a type of component has had."""
+    entry = _file()["components"].get(component_type, {})
+    return (component_type, *entry.get("former", ()))
+
+
+def unit_of(name: str) -> str | None:
+    """The unit of this package for a unit of REXS; None if it is not known."""
+    unit: str | None = _file()["units"].get(name)
+    return unit
+
+
+def rexs_unit(unit: str) -> str:
+    """The unit of REXS in which a number with a unit of this package is written."""
+    data = _file()
+    if unit in data["written"]:
+        return str(data["written"][unit])
+    names: list[str] = [name for name, here in data["units"].items() if here == unit]
+    return names[-1]
+
+
+def written(value: float, unit: str, name: str) -> float:
+    """A number in a unit of this package, as one in a unit of REXS of that `name`."""
+    here = _file()["units"][name]
+    return value if unit == here else Quantity("a number", here, here).parse(f"{value!r} {unit}")
+
+
+def oil_kind(text: str) -> str | None:
+    """The kind of oil that a text of a file names; None if it names none."""
+    kind: str | None = _file()["oil_kinds"].get(text)
+    return kind
+
+
+# What a REXS file holds, whichever form it has: components, their attributes and relations.
+
+
+_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+_CODES = {"float64": "<f8", "float32": "<f4", "int32": "<i4"}
+
+
+class _KindError(ValueError):
+    """A value of another type than the attribute needs."""
+
+
+def refuse(allowed: str, remedy: str = "Correct the file.") -> InputError:
+    """The error of a file that cannot be used as a whole."""
+    return InputError([Problem("", "", f"the file {allowed}", remedy)])
+
+
+@dataclass(frozen=True, slots=True)
+class Coded:
+    """An array as bytes in base64, little-endian."""
+
+    code: str
+    text: str
+
+    def numbers(self) -> tuple[float, ...]:
+        """The numbers; ValueError if there are none."""
+        kind = _CODES.get(self.code)
+        if kind is None:
+            raise ValueError("is an array of unknown code")
+        try:
+            content = base64.b64decode("".join(self.text.split()), validate=True)
+            return tuple(np.frombuffer(content, kind).astype(float).tolist())
+        except (binascii.Error, ValueError):
+            raise ValueError("is not an array in base64") from None
+
+
+@dataclass(frozen=True, slots=True)
+class Attribute:
+    """One attribute as the file has it: `value` is text, a number, true, an array or nothing."""
+
+    id: str
+    unit: str | None
+    value: Any
+
+    def number(self) -> float:
+        """The value as a number; ValueError with what is wrong if it is none."""
+        return _number(self.value)
+
+    def numbers(self) -> tuple[float, ...]:
+        """The value as an array of numbers; ValueError with what is wrong if it is none."""
+        if isinstance(self.value, Coded):
+            return self.value.numbers()
+        if not isinstance(self.value, tuple):
+            raise _KindError("is not an array")
+        return tuple(map(_number, self.value))
+
+    def flags(self) -> tuple[bool, ...]:
+        """The value, or those of an array, as true or false; ValueError if it is neither."""
+        values = self.value if isinstance(self.value, tuple) else (self.value,)
+        known = {"true": True, "false": False}
+        flags = tuple(known[text] for text in map(str.lower, map(str, values)) if text in known)
+        if len(flags) < len(values) or not flags:
+            raise ValueError("is neither true nor false")
+        return flags
+
+    def flag(self) -> bool:
+        """The value as true or false, all of an array; ValueError if it is neither."""
+        return all(self.flags())
+
+    def text(self) -> str:
+        """The value as one line of text."""
+        return one_line(str(self.value).strip())
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, str):
+        if _NUMBER.fullmatch(value.strip()) is None:
+            raise ValueError("is not a finite number")
+        value = float(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise _KindError("is not a number")
+    try:
+        number = float(value)
+    except OverflowError:  # a whole number of hundreds of digits
+        number = math.inf
+    if not math.isfinite(number):
+        raise ValueError("is not a finite number")
+    return number
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """A machine part, a stage, a load or a property, with its attributes by id."""
+
+    id: int
+    type: str
+    name: str = ""
+    attributes: Mapping[str, Attribute] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        name = f' "{one_line(self.name)}"' if self.name.strip() else ""
+        return f"{self.type} {self.id}{name}"
+
+    def get(self, name: str) -> Attribute | None:
+        """The attribute with the newest id `name`, under any id that it has had."""
+        known = term(name)
+        for candidate in known.ids:
+            found = self.attributes.get(candidate)
+            if found is not None and found.value not in (None, "", ()):
+                return found if found.unit else replace(found, unit=known.unit)
+        return None
+
+    def amount(self, name: str) -> tuple[float, str] | None:
+        """Number and unit, of this package, of an attribute; None if it is not given.
+
+        Raises
+        ------
+        ValueError
+            If it is not a finite number, or its unit is not known.
+        """
+        found = self.get(name)
+        return None if found is None else (found.number(), checked_unit(found))
+
+
+def checked_unit(attribute: Attribute) -> str:
+    """The unit of this package for that of an attribute; ValueError if it is not known."""
+    unit = unit_of(attribute.unit or "none")
+    if unit is None:
+        raise ValueError(f"has the unit {one_line(str(attribute.unit))}, which is not one of REXS")
+    return unit
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """A relation between components; a component has one or several roles in it."""
+
+    id: int
+    type: str
+    refs: tuple[tuple[str, int], ...]
+    order: int | None = None
+
+    def partners(self, role: str) -> Iterator[int]:
+        """Ids of the components with `role`."""
+        return (component for name, component in self.refs if name == role)
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """The content of a file."""
+
+    version: str
+    components: Mapping[int, Component]
+    relations: tuple[Relation, ...]
+    # For each load case the components with the attributes that it changes.
+    load_cases: Mapping[int, Mapping[int, Component]] = field(default_factory=dict)
+
+    def of_type(self, component_type: str) -> list[Component]:
+        """The components of a type, in the order of the file."""
+        types = types_of(component_type)
+        return [item for item in self.components.values() if item.type in types]
+
+    def partners(
+        self, component: int, relation_type: str, own_role: str, other_role: str, *types: str
+    ) -> list[Component]:
+        """Components that stand in a relation to a component; of some types only, if given."""
+        wanted = {name for one in types for name in types_of(one)}
+        relations = [
+            relation
+            for relation in self.relations
+            if relation.type == relation_type and component in relation.partners(own_role)
+        ]
+        relations.sort(key=lambda relation: relation.order or 0)
+        found = [
+            self.components[other]
+            for relation in relations
+            for other in relation.partners(other_role)
+        ]
+        return [item for item in found if not wanted or item.type in wanted]
+
+    def with_load_case(self, load_case: int) -> Model:
+        """The model with the attributes that a load case changes."""
+        components = dict(self.components)
+        for number, changed in self.load_cases[load_case].items():
+            own = components[number]
+            components[number] = replace(own, attributes={**own.attributes, **changed.attributes})
+        return replace(self, components=components)
+
+
+# The parts of a REXS file as its form gives them, and the model they make.
+
+
+_SHOWN = 20
+"""Problems of one file that are told."""
+
+_ID = re.compile(r"[0-9]{1,9}")
+
+
+class RawComponent(NamedTuple):
+    """A component with its id as written."""
+
+    id: Any
+    type: str
+    name: str
+    attributes: tuple[Attribute, ...]
+
+
+class RawRelation(NamedTuple):
+    """A relation with ids as written."""
+
+    id: Any
+    type: str
+    order: Any
+    refs: tuple[tuple[str, Any], ...]
+
+
+class Content(Protocol):
+    """A file in one of its forms; what it does not understand stays as it is."""
+
+    def version(self) -> str: ...
+
+    def components(self) -> Iterable[RawComponent]: ...
+
+    def relations(self) -> Iterable[RawRelation]: ...
+
+    def load_cases(self) -> Iterable[tuple[Any, Iterable[RawComponent]]]: ...
+
+    def set_attribute(self, component: int, attribute: Attribute) -> None:
+        """Give a component an attribute, in place of one with the same id."""
+
+    def add(self, part: Component | Relation) -> None:
+        """Append a component or a relation."""
+
+    def to_bytes(self) -> bytes: ...
+
+
+def build_model(content: Content) -> Model:
+    """The model of a file.
+
+    Raises
+    ------
+    InputError
+        If the version is not known, ids are no numbers or stand twice, or relations lead nowhere.
+    """
+    version = _version(content.version())
+    problems: list[Problem] = []
+    components = _components(content.components(), problems)
+    relations = tuple(_relations(content.relations(), components, problems))
+    load_cases: dict[int, Mapping[int, Component]] = {}
+    for number, changed in content.load_cases():
+        key = _id(number, "load_case", load_cases, problems)
+        changes = _components(changed, problems)
+        problems += [
+            _problem(f"load_case {number}", f"changes component {other}, which is not there.")
+            for other in changes.keys() - components.keys()
+        ]
+        if key is not None:
+            load_cases[key] = changes
+    raise_any(problems[:_SHOWN])
+    return Model(version, components, relations, load_cases)
+
+
+def _version(text: str) -> str:
+    known = versions()
+    version = {"2.0": "2.0.0"}.get(text, text)
+    if version not in known:
+        raise refuse(
+            f'is REXS of version "{one_line(text)}"; versions {known[0]} to {known[-1]} are read.',
+            "Export it in one of these versions.",
+        )
+    return version
+
+
+def _components(raw: Iterable[RawComponent], problems: list[Problem]) -> dict[int, Component]:
+    components: dict[int, Component] = {}
+    for item in raw:
+        number = _id(item.id, "component", components, problems)
+        attributes: dict[str, Attribute] = {}
+        for attribute in item.attributes:
+            if attribute.id in attributes:
+                what = f"has the attribute {one_line(attribute.id)} twice."
+                problems.append(_problem(f"component {one_line(str(item.id))}", what))
+            attributes[attribute.id] = attribute
+        if number is not None:
+            components[number] = Component(number, item.type, item.name, attributes)
+    return components
+
+
+def _relations(
+    raw: Iterable[RawRelation], components: Mapping[int, Component], problems: list[Problem]
+) -> Iterator[Relation]:
+    seen: dict[int, None] = {}
+    for item in raw:
+        number = _id(item.id, "relation", seen, problems)
+        refs: list[tuple[str, int]] = []
+        for role, other in item.refs:
+            component = _whole(other)
+            if component is not None and component in components:
+                refs.append((role, component))
+            else:
+                what = f"leads to component {one_line(str(other))}, which is not there."
+                problems.append(_problem(f"relation {one_line(str(item.id))}", what))
+        if number is not None:
+            seen[number] = None
+            yield Relation(number, item.type, tuple(refs), _whole(item.order))
+
+
+def _id(given: Any, noun: str, known: Mapping[int, Any], problems: list[Problem]) -> int | None:
+    number = _whole(given)
+    if number is None:
+        problems.append(_problem(f"{noun} {one_line(str(given))}", "has no whole number as id."))
+    elif number in known:
+        problems.append(_problem(f"{noun} {number}", "is there twice."))
+    return number
+
+
+def _whole(given: Any) -> int | None:
+    if isinstance(given, str) and _ID.fullmatch(given.strip()):
+        return int(given)
+    is_whole = isinstance(given, int) and not isinstance(given, bool)
+    return given if is_whole and abs(given) < 10**9 else None
+
+
+def _problem(what: str, allowed: str) -> Problem:
+    return Problem(what, "", allowed, "Correct the file.")

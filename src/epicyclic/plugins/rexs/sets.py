@@ -1,0 +1,567 @@
+"""The gear sets of a REXS file, and the train that several of them make."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.machine.element import HOUSING
+from epicyclic.plugins.rexs.model import Component, Model, types_of
+
+# Which gear sets a REXS file holds, and the components that each consists of.
+
+
+GEARS = ("cylindrical_gear", "ring_gear")
+
+_RIGID = (
+    *types_of("coupling"),
+    "switchable_coupling",
+    "cylindrical_interference_fit",
+    "tapered_interference_fit",
+    "feather_key_connection",
+    "involute_spline_connection",
+)
+"""Components that make two parts turn as one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """A stage and its two gears."""
+
+    stage: Component
+    gears: tuple[Component, Component]
+
+    def mate(self, gear: Component) -> Component:
+        """The other gear."""
+        return self.gears[1] if self.gears[0].id == gear.id else self.gears[0]
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two gears that mesh; the pinion is the smaller one, and the external one of two."""
+
+    mesh: Mesh
+    pinion: Component
+    gear: Component
+
+    @property
+    def component(self) -> Component:
+        """The component that stands for the whole."""
+        return self.mesh.stage
+
+    @property
+    def meshes(self) -> tuple[Mesh, ...]:
+        """Every mesh."""
+        return (self.mesh,)
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetaryParts:
+    """One sun, planets that are all alike, one ring."""
+
+    component: Component  # The planetary stage.
+    sun: Component
+    ring: Component
+    planets: tuple[Component, ...]
+    sun_meshes: tuple[Mesh, ...]  # One for each planet.
+    ring_meshes: tuple[Mesh, ...]  # One for each planet.
+    shafts: dict[str, tuple[Component, ...]]  # Shafts of sun, ring, carrier, planet and pin.
+
+    @property
+    def meshes(self) -> tuple[Mesh, ...]:
+        """Every mesh."""
+        return (*self.sun_meshes, *self.ring_meshes)
+
+
+def is_internal(gear: Component) -> bool:
+    """True for a ring gear, by its type or by a negative number of teeth."""
+    teeth = gear.get("number_of_teeth")
+    return gear.type == "ring_gear" or (teeth is not None and str(teeth.value).startswith("-"))
+
+
+def gear_sets(model: Model) -> list[Component]:
+    """Planetary stages, and cylindrical stages outside of them."""
+    planetary = model.of_type("planetary_stage")
+    inside = {mesh.stage.id for stage in planetary for mesh in _planet_meshes(model, stage)}
+    inside |= {
+        part.id
+        for stage in planetary
+        for part in model.partners(stage.id, "assembly", "assembly", "part", "cylindrical_stage")
+    }
+    cylindrical = model.of_type("cylindrical_stage")
+    return [*planetary, *(stage for stage in cylindrical if stage.id not in inside)]
+
+
+def choose(model: Model, component: int | None) -> PlanetaryParts | Pair:
+    """The gear set of a component, or the only one.
+
+    Raises
+    ------
+    InputError
+        If there is none, if there are several to choose from, or if it is of a kind that is not
+        covered.
+    """
+    if component is not None:
+        chosen = model.components.get(component)
+        if chosen is None or chosen.type not in ("planetary_stage", "cylindrical_stage"):
+            allowed = "is neither a planetary_stage nor a cylindrical_stage of the file."
+            raise InputError([Problem("--component", str(component), allowed, _remedy(model))])
+    else:
+        sets = gear_sets(model)
+        if len(sets) != 1:
+            allowed = f"the file has {len(sets) or 'no'} stages to choose from."
+            raise InputError([Problem("--component", "", allowed, _remedy(model))])
+        chosen = sets[0]
+    return read_stage(model, chosen)
+
+
+def read_stage(model: Model, stage: Component) -> PlanetaryParts | Pair:
+    """The gear set of a stage; InputError if it is of a kind that is not covered."""
+    return _planetary_set(model, stage) if stage.type == "planetary_stage" else _pair(model, stage)
+
+
+def _remedy(model: Model) -> str:
+    stages = [*model.of_type("planetary_stage"), *model.of_type("cylindrical_stage")]
+    if not stages:
+        return "Cylindrical gears and planetary stages can be read."
+    shown = "; ".join(map(str, stages[:12])) + ("; ..." if len(stages) > 12 else "")
+    return f"Import one by its id: {shown}."
+
+
+def _meshes(model: Model) -> Iterator[Mesh]:
+    for relation in model.relations:
+        if relation.type == "stage":
+            by_role = {role: model.components[number] for role, number in relation.refs}
+            gears = [by_role[name] for name in ("gear_1", "gear_2") if name in by_role]
+            if len(gears) == 2 and "stage" in by_role:
+                yield Mesh(by_role["stage"], (gears[0], gears[1]))
+
+
+def gears_on(model: Model, shafts: Iterable[Component]) -> list[Component]:
+    """The gears that turn with shafts."""
+    return [part for part in rigid_parts(model, shafts) if part.type in GEARS]
+
+
+def _planet_meshes(model: Model, stage: Component) -> list[Mesh]:
+    shafts = model.partners(stage.id, "planet_shaft", "planetary_stage", "shaft")
+    planets = {gear.id for gear in gears_on(model, shafts)}
+    return [mesh for mesh in _meshes(model) if any(gear.id in planets for gear in mesh.gears)]
+
+
+def _planetary_set(model: Model, stage: Component) -> PlanetaryParts:
+    shafts = {
+        "planet": model.partners(stage.id, "planet_shaft", "planetary_stage", "shaft"),
+        "pin": model.partners(stage.id, "planet_pin", "planetary_stage", "shaft"),
+        "carrier": model.partners(stage.id, "planet_carrier_shaft", "planetary_stage", "shaft"),
+    }
+    central = model.partners(stage.id, "central_shaft", "planetary_stage", "shaft")
+    planets = {gear.id: gear for gear in gears_on(model, shafts["planet"])}
+    meshes = _planet_meshes(model, stage)
+    suns: dict[int, Component] = {}
+    rings: dict[int, Component] = {}
+    between = False
+    for mesh in meshes:
+        mates = [gear for gear in mesh.gears if gear.id not in planets]
+        between |= not mates
+        for mate in mates:
+            (rings if is_internal(mate) else suns)[mate.id] = mate
+    counts = (len(suns), len(rings), len(planets), len(meshes))
+    if between or counts[:2] != (1, 1) or not planets or counts[3] != 2 * counts[2]:
+        found = f"{counts[0]} suns, {counts[2]} planets, {counts[1]} rings and {counts[3]} meshes"
+        if between:
+            found += ", planets that mesh with each other"
+        raise InputError(
+            [
+                Problem(
+                    str(stage),
+                    "",
+                    f"has {found}.",
+                    "One sun, one ring and planets that mesh with both can be read.",
+                )
+            ]
+        )
+    (sun,), (ring,) = suns.values(), rings.values()
+    for name, gear in (("sun", sun), ("ring", ring)):
+        own = [shaft for shaft in central if gear.id in {g.id for g in gears_on(model, [shaft])}]
+        shafts[name] = own or model.partners(gear.id, "assembly", "part", "assembly", "shaft")
+    return PlanetaryParts(
+        stage,
+        sun,
+        ring,
+        tuple(planets.values()),
+        tuple(mesh for mesh in meshes if sun.id in (gear.id for gear in mesh.gears)),
+        tuple(mesh for mesh in meshes if ring.id in (gear.id for gear in mesh.gears)),
+        {name: tuple(found) for name, found in shafts.items()},
+    )
+
+
+def _pair(model: Model, stage: Component) -> Pair:
+    meshes = [mesh for mesh in _meshes(model) if mesh.stage.id == stage.id]
+    if len(meshes) != 1:
+        allowed = f"has {len(meshes)} relations of type stage with two gears."
+        raise InputError([Problem(str(stage), "", allowed, "Correct the file.")])
+
+    def size(gear: Component) -> tuple[bool, float]:
+        teeth = gear.get("number_of_teeth")
+        try:
+            return is_internal(gear), 0.0 if teeth is None else abs(teeth.number())
+        except ValueError:  # told when the number of teeth is read
+            return is_internal(gear), 0.0
+
+    pinion, gear = sorted(meshes[0].gears, key=size)
+    return Pair(meshes[0], pinion, gear)
+
+
+def rigid_parts(model: Model, start: Iterable[Component]) -> list[Component]:
+    """`start` and all that turns with it: parts on shafts and parts coupled to them."""
+    found = {component.id: component for component in start}
+    waiting = list(found)
+    neighbours = _rigid_neighbours(model)
+    while waiting:
+        for other in neighbours.get(waiting.pop(0), ()):
+            component = model.components[other]
+            if other not in found and component.type != "gear_casing":
+                found[other] = component
+                waiting.append(other)
+    return list(found.values())
+
+
+def _rigid_neighbours(model: Model) -> dict[int, list[int]]:
+    neighbours: dict[int, list[int]] = {}
+    for first, second in rigid_links(model):
+        neighbours.setdefault(first, []).append(second)
+        neighbours.setdefault(second, []).append(first)
+    return neighbours
+
+
+def rigid_links(model: Model, *, switched: bool = True) -> Iterator[tuple[int, int]]:
+    """Parts that turn as one, two by two; without clutches that are `switched` if that is False."""
+    owners = ("shaft", "planet_carrier")
+    for relation in model.relations:
+        sides: Sequence[int] = ()
+        if relation.type == "assembly":
+            sides = [*relation.partners("assembly"), *relation.partners("part")]
+            if model.components[sides[0]].type not in owners if sides else True:
+                sides = ()
+        elif relation.type == "side" and is_rigid(
+            model, relation.partners("assembly"), switched=switched
+        ):
+            sides = [*relation.partners("inner_part"), *relation.partners("outer_part")]
+        if len(sides) == 2:
+            yield sides[0], sides[1]
+
+
+class Joint(NamedTuple):
+    """A coupling, a bearing or the like, and the parts at its two sides."""
+
+    component: Component
+    inner: int
+    outer: int
+
+
+def joints(model: Model) -> Iterator[Joint]:
+    """Everything that stands between two parts."""
+    for relation in model.relations:
+        if relation.type == "side":
+            roles = (relation.partners(role) for role in ("assembly", "inner_part", "outer_part"))
+            joint, inner, outer = (next(parts, None) for parts in roles)
+            if joint is not None and inner is not None and outer is not None:
+                yield Joint(model.components[joint], inner, outer)
+
+
+def is_switched(joint: Component) -> bool:
+    """True for a clutch or brake whose positions the file states."""
+    return joint.type == "switchable_coupling" and joint.get("is_engaged") is not None
+
+
+def is_rigid(model: Model, parts: Iterable[int], *, switched: bool = True) -> bool:
+    """True if the joint of a relation, the first of `parts`, makes its sides turn as one.
+
+    A clutch with several positions does if it is closed in all; none does if `switched` is False.
+    """
+    for number in parts:
+        joint = model.components[number]
+        engaged = joint.get("is_engaged")
+        if not switched and is_switched(joint):
+            return False
+        try:
+            return joint.type in _RIGID and (engaged is None or engaged.flag())
+        except ValueError:
+            return False
+    return False
+
+
+def fixed_by(model: Model, parts: Iterable[Component]) -> Component | None:
+    """The joint that holds one of `parts` to the casing; None if none does."""
+    numbers = {part.id for part in parts}
+    for relation in model.relations:
+        if relation.type == "side" and is_rigid(model, relation.partners("assembly")):
+            sides = [*relation.partners("inner_part"), *relation.partners("outer_part")]
+            to_casing = any(model.components[side].type == "gear_casing" for side in sides)
+            if to_casing and numbers & set(sides):
+                return model.components[next(relation.partners("assembly"))]
+    return None
+
+
+# Several stages of a REXS file as one train: its sets, its shafts, its clutches and brakes.
+
+
+MOST_STAGES, MOST_BEARINGS = 40, 400
+"""A file with more than this is not a gear unit."""
+
+_LONGEST_NAME = 32
+
+
+@dataclass(frozen=True, slots=True)
+class Shaft:
+    """What turns together, always."""
+
+    # Name of the shaft in the case; if the file has none there, the name of its first member.
+    name: str
+    parts: Mapping[int, Component]  # Shafts, gears, loads.
+    members: tuple[str, ...]  # Members of sets, ``"S1.sun"``.
+    held: Component | None  # What joins it to the casing.
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        """The shafts of the file."""
+        return tuple(part for part in self.parts.values() if part.type == "shaft")
+
+    @property
+    def loads(self) -> tuple[Component, ...]:
+        """Loads from outside."""
+        return tuple(part for part in self.parts.values() if part.type == "external_load")
+
+    @property
+    def is_listed(self) -> bool:
+        """False for a member alone, of which the file has no shaft: the case does not name it."""
+        return bool(self.components) or len(self.members) > 1 or self.held is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Switch:
+    """A clutch or brake; a brake joins a shaft to the housing."""
+
+    component: Component
+    shafts: tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Train:
+    """The stages of a file and the shafts between them.
+
+    Attributes
+    ----------
+    unit : Component
+        The gear unit, or the first stage if the file has none.
+    sets : dict of str to PlanetarySet or Pair
+        By their names in the case.
+    shafts : dict of str to Shaft
+        By their names.
+    switches : tuple of Switch
+    bearings : dict of str to Joint
+        All but those of planets, by their names in the case.
+    """
+
+    unit: Component
+    sets: dict[str, PlanetaryParts | Pair]
+    shafts: dict[str, Shaft]
+    switches: tuple[Switch, ...]
+    bearings: dict[str, Joint]
+
+    @property
+    def meshes(self) -> tuple[Mesh, ...]:
+        """Every mesh."""
+        return tuple(mesh for one in self.sets.values() for mesh in one.meshes)
+
+    def __str__(self) -> str:
+        return f"{self.unit}, {len(self.sets)} stages"
+
+    def shaft_of(self, part: int) -> Shaft | None:
+        """The shaft with which a part turns; None if it turns with no gear of a set."""
+        return next((shaft for shaft in self.shafts.values() if part in shaft.parts), None)
+
+    def pieces(self) -> list[list[str]]:
+        """Names of sets that shafts or clutches join; one list if all hang together."""
+        bodies = [{name.partition(".")[0] for name in one.members} for one in self.shafts.values()]
+        for switch in self.switches:
+            owners = [self.shafts[name].members for name in switch.shafts if name != HOUSING]
+            if len(owners) == 2:
+                bodies.append({name.partition(".")[0] for own in owners for name in own})
+        pieces: list[set[str]] = [{name} for name in self.sets]
+        for body in bodies:
+            touched = [piece for piece in pieces if piece & body]
+            pieces = [piece for piece in pieces if not piece & body]
+            if touched:
+                pieces.append(set().union(*touched))
+        return [[name for name in self.sets if name in piece] for piece in pieces]
+
+
+def chosen_train(model: Model) -> Train | None:
+    """The train of a file with several stages; None for a file with fewer.
+
+    Raises
+    ------
+    InputError
+        If there are too many, or if one is of a kind that is not covered.
+    """
+    kinds = ("planetary_stage", "cylindrical_stage")
+    if len(model.of_type(kinds[0])) > MOST_STAGES:
+        raise _too_many(f"{len(model.of_type(kinds[0]))} stages", MOST_STAGES)
+    stages = gear_sets(model)
+    if len(stages) < 2:
+        return None
+    if len(stages) > MOST_STAGES:
+        raise _too_many(f"{len(stages)} stages", MOST_STAGES)
+    order = list(model.components)
+    names = Names()
+    sets: dict[str, PlanetaryParts | Pair] = {}
+    problems: list[Problem] = []
+    for stage in sorted(stages, key=lambda stage: order.index(stage.id)):
+        try:
+            sets[names.of(stage, "stage")] = read_stage(model, stage)
+        except InputError as error:
+            problems += error.problems
+    raise_any(problems)
+    units = model.of_type("gear_unit")
+    shafts = _shafts(model, sets, names)
+    by_part = {part: name for name, shaft in shafts.items() for part in shaft.parts}
+    switches = tuple(_switches(model, by_part))
+    borne = list(_bearings(model, sets))
+    if len(borne) > MOST_BEARINGS:
+        raise _too_many(f"{len(borne)} bearings", MOST_BEARINGS)
+    bearings = {names.of(joint.component, "bearing"): joint for joint in borne}
+    return Train(units[0] if units else stages[0], sets, shafts, switches, bearings)
+
+
+def _too_many(found: str, most: int) -> InputError:
+    allowed = f"has {found}; up to {most} are read as one train."
+    remedy = "Import one stage with --component, or export fewer."
+    return InputError([Problem("", "", f"the file {allowed}", remedy)])
+
+
+class Names:
+    """Names in the case for components of the file: short, safe, each once."""
+
+    def __init__(self) -> None:
+        self._taken = {HOUSING}
+
+    def of(self, component: Component, kind: str) -> str:
+        """A name from that of a component, or from its `kind` and number."""
+        plain = unicodedata.normalize("NFKD", component.name[:200]).replace("ß", "ss")
+        text = re.sub(r"[^A-Za-z0-9]+", "_", plain.encode("ascii", "ignore").decode())
+        text = text.strip("_")[:_LONGEST_NAME].strip("_")
+        if not text or text[0].isdigit():
+            text = f"{kind}_{text or component.id}"
+        return self.free(text, component.id)
+
+    def free(self, text: str, number: int) -> str:
+        """`text`, with a number if another part has this name."""
+        while text.lower() in self._taken:
+            text = f"{text}_{number}"
+        self._taken.add(text.lower())
+        return text
+
+
+def _shafts(
+    model: Model, sets: Mapping[str, PlanetaryParts | Pair], names: Names
+) -> dict[str, Shaft]:
+    """The shafts of all sets, in the order of the sets."""
+    owned = {
+        f"{name}.{member}": parts for name, one in sets.items() for member, parts in _members(one)
+    }
+    bodies = _bodies(model, owned.values())
+    members: dict[int, list[str]] = {}
+    for number, (member, parts) in enumerate(owned.items()):
+        body = bodies[parts[0].id] if parts else -1 - number
+        members.setdefault(body, []).append(member)
+    held = _held(model, bodies)
+    found: dict[str, Shaft] = {}
+    for body, joined in members.items():
+        turning = {part: model.components[part] for part, root in bodies.items() if root == body}
+        shaft = Shaft(joined[0], turning, tuple(joined), held.get(body))
+        if shaft.is_listed:
+            own = shaft.components
+            named = names.of(own[0], "shaft") if own else names.free("shaft", abs(body))
+            shaft = replace(shaft, name=named)
+        found[shaft.name] = shaft
+    return found
+
+
+def _members(one: PlanetaryParts | Pair) -> Iterator[tuple[str, list[Component]]]:
+    """The members of a set, each with parts that turn with it."""
+    if isinstance(one, Pair):
+        yield "pinion", [one.pinion]
+        yield "gear", [one.gear]
+    else:
+        yield "sun", [one.sun, *one.shafts["sun"]]
+        yield "carrier", list(one.shafts["carrier"])
+        yield "ring", [one.ring, *one.shafts["ring"]]
+
+
+def _bodies(model: Model, joined: Iterable[list[Component]]) -> dict[int, int]:
+    """For each part that turns with others, which body it belongs to, by one of its parts."""
+    own = [(parts[0].id, part.id) for parts in joined for part in parts]
+    others = [
+        pair
+        for pair in rigid_links(model, switched=False)
+        if all(model.components[part].type != "gear_casing" for part in pair)
+    ]
+    neighbours: dict[int, list[int]] = {}
+    for one, two in (*own, *others):
+        neighbours.setdefault(one, []).append(two)
+        neighbours.setdefault(two, []).append(one)
+    bodies: dict[int, int] = {}
+    for start in neighbours:
+        waiting = [start]
+        while waiting:
+            part = waiting.pop()
+            if part not in bodies:
+                bodies[part] = start
+                waiting += neighbours[part]
+    return bodies
+
+
+def _held(model: Model, bodies: Mapping[int, int]) -> dict[int, Component]:
+    """Bodies that something joins to the casing, and what does."""
+    held: dict[int, Component] = {}
+    for joint in joints(model):
+        sides = {side: model.components[side].type for side in (joint.inner, joint.outer)}
+        if "gear_casing" in sides.values() and is_rigid(
+            model, [joint.component.id], switched=False
+        ):
+            for side, kind in sides.items():
+                if kind != "gear_casing" and side in bodies:
+                    held.setdefault(bodies[side], joint.component)
+    return held
+
+
+def _bearings(model: Model, sets: Mapping[str, PlanetaryParts | Pair]) -> Iterator[Joint]:
+    """The bearings of the file but for those of planets, each once."""
+    planetary = [one for one in sets.values() if isinstance(one, PlanetaryParts)]
+    planets = {part.id for one in planetary for part in (*one.planets, *one.shafts["planet"])}
+    seen: set[int] = set()
+    for joint in joints(model):
+        number = joint.component.id
+        is_bearing = "bearing" in joint.component.type
+        if is_bearing and number not in seen and not planets & {joint.inner, joint.outer}:
+            seen.add(number)
+            yield joint
+
+
+def _switches(model: Model, by_part: Mapping[int, str]) -> Iterator[Switch]:
+    """Clutches and brakes between shafts of the train."""
+    for joint in joints(model):
+        if not is_switched(joint.component):
+            continue
+        ends = [
+            HOUSING if model.components[side].type == "gear_casing" else by_part.get(side)
+            for side in (joint.inner, joint.outer)
+        ]
+        one, two = ends
+        if one is not None and two is not None and one != two:
+            yield Switch(joint.component, (one, two))

@@ -1,0 +1,581 @@
+"""The train of a REXS file: shafts, bearings, clutches, operation."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.case.wording import one_line
+from epicyclic.machine.element import HOUSING
+from epicyclic.plugins.rexs import gears as checks
+from epicyclic.plugins.rexs.draft import (
+    Amount,
+    Draft,
+    amount_text,
+    at,
+    lubricant_table,
+    speed_and_torque,
+    speed_of,
+    stated_load,
+    temperature,
+)
+from epicyclic.plugins.rexs.gears import set_tables
+from epicyclic.plugins.rexs.model import Component, Model
+from epicyclic.plugins.rexs.sets import Joint, Pair, PlanetaryParts, Shaft, Train
+
+# Where gears stand along the shafts of a train, and the rolling bearings of the shafts.
+
+
+FloatArray = NDArray[np.float64]
+
+_TYPES = {
+    "radial_grooved_ball_bearing": "deep-groove",
+    "radial_roller_bearing": "cylindrical",
+    "radial_needle_roller_bearing": "needle",
+    "radial_tapered_roller_bearing": "tapered",
+}
+_SENSES = {"both_directions": "both", "positive": "positive", "negative": "negative"}
+_OPPOSITE = {"both": "both", "positive": "negative", "negative": "positive"}
+_ABOUT_FORCE = "Needed for the force on the bearings; or give their radial_force."
+_SHORTEST, _FARTHEST = 1e-6, 1e8
+"""Bounds of the length of an axis vector and of the coordinates of parts. [mm]"""
+
+_SUPPORTS = 2
+"""Bearings of a shaft whose forces statics gives."""
+
+
+def shaft_parts(draft: Draft, model: Model, train: Train) -> None:
+    """Tables ``positions`` and ``bearings``, and the directions of pairs."""
+    places = _Places(draft, model, train)
+    borne = _bearings(draft, model, train, places)
+    for name, one in train.sets.items():
+        if isinstance(one, Pair):
+            _pair(draft, train, places, (name, one), borne)
+
+
+# --- places ---------------------------------------------------------------------------------------
+
+
+class _Places:
+    """Places in the axes of the gear unit, along the axis about which the input turns forward."""
+
+    def __init__(self, draft: Draft, model: Model, train: Train) -> None:
+        self.model = model
+        units = model.of_type("gear_unit")
+        axis = _vector(units[0], "u_axis_vector") if units else None
+        length = 0.0 if axis is None else float(np.linalg.norm(axis))
+        usual = np.array([1.0, 0.0, 0.0])
+        self.unit_axis = axis / length if axis is not None and length > _SHORTEST else usual
+        self.axis = self.unit_axis
+        driven = train.shafts.get(str(draft.tables.get("operation", {}).get("input")))
+        speed = speed_of(draft, list(driven.parts.values())) if driven is not None else None
+        shafts = driven.components if driven is not None else ()
+        if speed is not None and shafts and speed.number * self.sense(shafts[0]) < 0:
+            self.axis = -self.axis
+        across = np.eye(3)[int(np.argmin(np.abs(self.axis)))]
+        second = np.cross(self.axis, across)
+        self.frame = np.array([np.cross(second, self.axis), second])
+
+    def sense(self, part: Component) -> float:
+        """+1 or -1 if a part lies along the axis or against it, 0 across it."""
+        own = _vector(part, "u_axis_vector")
+        along = (self.unit_axis if own is None else own) @ self.axis
+        return float(np.sign(np.round(along, 6)))
+
+    def _point(self, part: Component) -> FloatArray | None:
+        """Position in the axes of the gear unit. [mm]"""
+        reference = part.get("reference_component_for_position")
+        try:
+            number = None if reference is None else int(reference.number())
+        except ValueError:
+            return None
+        owner = self.model.components.get(number) if number is not None else None
+        in_unit = number is None or (owner is not None and owner.type == "gear_unit")
+        return _vector(part, "support_vector") if in_unit else None
+
+    def along(self, shaft: Shaft, part: Component) -> Amount | None:
+        """Position of a gear or bearing along its shaft."""
+        starts = [self._point(own) for own in shaft.components]
+        point = self._point(part)
+        if point is not None and all(start is not None for start in starts):
+            return _amount(float(point @ self.axis), f"support_vector of {part}")
+        if len(starts) != 1:
+            return None
+        on_shaft = self._on_shaft(part)
+        if on_shaft is None:
+            return None
+        number, origin = on_shaft
+        start = 0.0 if starts[0] is None else float(starts[0] @ self.axis)
+        return _amount(start + self.sense(shaft.components[0]) * number, origin)
+
+    def _on_shaft(self, part: Component) -> tuple[float, str] | None:
+        """Position from the start of the shaft, of the middle of a part. [mm]"""
+        is_gear = part.get("number_of_teeth") is not None
+        name = "u_coordinate_on_shaft" if is_gear else "u_coordinate_on_shaft_inner_side"
+        try:
+            found = part.amount(name)
+            width = part.amount("face_width")
+        except ValueError:
+            return None
+        if found is None or found[1] != "mm":
+            return None
+        if is_gear and self.model.version == "1.0":
+            if width is None or width[1] != "mm":
+                return None
+            return found[0] + width[0] / 2, f"{name} of {part} plus half its face width"
+        return found[0], f"{name} of {part}"
+
+    def direction(self, first: Iterable[Component], second: Iterable[Component]) -> float | None:
+        """Angle from the axis of the first to that of the second, about the axis. [deg]"""
+        starts = (self._first_point(first), self._first_point(second))
+        if starts[0] is None or starts[1] is None:
+            return None
+        across = self.frame @ (starts[1] - starts[0])
+        if float(np.hypot(*across)) < 1e-6:
+            return None
+        return math.degrees(math.atan2(across[1], across[0]))
+
+    def _first_point(self, parts: Iterable[Component]) -> FloatArray | None:
+        return next((point for part in parts if (point := self._point(part)) is not None), None)
+
+
+def _vector(part: Component, name: str) -> FloatArray | None:
+    found = part.get(name)
+    try:
+        numbers = found.numbers() if found is not None else ()
+    except ValueError:
+        return None
+    is_place = len(numbers) == 3 and max(map(abs, numbers)) < _FARTHEST
+    return np.array(numbers) if is_place else None
+
+
+def _amount(number: float, origin: str) -> Amount:
+    return Amount(round(number, 6), "mm", origin)
+
+
+def _pair(
+    draft: Draft, train: Train, places: _Places, named: tuple[str, Pair], borne: set[str]
+) -> None:
+    """Positions of the gears of a pair, and where the gear lies from the pinion."""
+    name, pair = named
+    for member, gear in (("pinion", pair.pinion), ("gear", pair.gear)):
+        shaft = train.shaft_of(gear.id)
+        key = f'positions."{name}.{member}"'
+        place = places.along(shaft, gear) if shaft is not None else None
+        if place is not None:
+            draft.give(key, place.text, place.origin)
+        elif shaft is not None and shaft.name in borne:
+            draft.need(key, "support_vector or u_coordinate_on_shaft", [gear], _ABOUT_FORCE)
+    shafts = [train.shaft_of(gear.id) for gear in (pair.pinion, pair.gear)]
+    ends = [
+        [*(shaft.components if shaft is not None else ()), gear]
+        for shaft, gear in zip(shafts, (pair.pinion, pair.gear), strict=True)
+    ]
+    angle = places.direction(*ends)
+    key = f"sets.{name}.direction"
+    if angle is not None:
+        origin = f"computed from support_vector of {ends[0][0]} and {ends[1][0]}"
+        draft.give(key, f"{angle:.6f} deg", origin)
+    elif any(shaft is not None and shaft.name in borne for shaft in shafts):
+        draft.lack(key, "support_vector", [end[0] for end in ends], "Default: 0 deg.")
+
+
+# --- bearings -------------------------------------------------------------------------------------
+
+
+def _bearings(draft: Draft, model: Model, train: Train, places: _Places) -> set[str]:
+    """The bearings of the shafts; the shafts whose bearings need forces."""
+    by_shaft: dict[str, dict[str, str]] = {}
+    still = draft.tables.get("shafts", {}).get(HOUSING, ())
+    for name, joint in train.bearings.items():
+        ends = _ends(draft, model, train, joint, still)
+        if ends is not None:
+            by_shaft.setdefault(ends[0], {})[name] = ends[1]
+    borne: set[str] = set()
+    for shaft, own in by_shaft.items():
+        if any(_has_size(train.bearings[name].component) for name in own):
+            for name, against in own.items():
+                _bearing(draft, train, places, name, (shaft, against))
+            _supports(draft, train, train.shafts[shaft], list(own))
+            borne.add(shaft)
+        else:
+            for name in own:
+                attribute = "bore and outside diameter (inner_diameter, outer_diameter)"
+                bearing = train.bearings[name].component
+                draft.lack(f"bearings.{name}", attribute, [bearing], "Its loss is left out.")
+    return borne
+
+
+def _ends(
+    draft: Draft, model: Model, train: Train, joint: Joint, still: Sequence[str]
+) -> tuple[str, str] | None:
+    """The shaft in the bore and what holds the outer ring; None for bearings of no shaft here."""
+    names = []
+    for side in (joint.inner, joint.outer):
+        shaft = train.shaft_of(side)
+        is_casing = model.components[side].type == "gear_casing"
+        if shaft is None and not is_casing:
+            draft.notes.append(f"{joint.component} is on no shaft of the train and is left out.")
+            return None
+        held = shaft is None or set(shaft.members) <= set(still)
+        names.append(HOUSING if held else shaft.name if shaft is not None else "")
+    inner, outer = names
+    if inner == outer:
+        return None
+    return (outer, inner) if inner == HOUSING else (inner, outer)
+
+
+def _has_size(bearing: Component) -> bool:
+    sizes = ("inner_diameter", "outer_diameter")
+    return bearing.type.startswith("rolling_bearing") and all(map(bearing.get, sizes))
+
+
+def _bearing(
+    draft: Draft, train: Train, places: _Places, name: str, between: tuple[str, str]
+) -> None:
+    """The table of one bearing."""
+    bearing = train.bearings[name].component
+    shaft, against = between
+    key = f"bearings.{name}"
+    draft.give(f"{key}.shaft", shaft, "relation side")
+    if against != HOUSING:
+        draft.give(f"{key}.against", against, "relation side")
+    kind = _type(draft, key, bearing)
+    draft.take(f"{key}.bore", "inner_diameter", [bearing])
+    draft.take(f"{key}.outside_diameter", "outer_diameter", [bearing])
+    for inner, attribute in (
+        ("width", "width"),
+        ("dynamic_load_rating", "radial_dynamic_load_rating"),
+        ("static_load_rating", "radial_static_load_rating"),
+    ):
+        draft.take(f"{key}.{inner}", attribute, [bearing], None)
+    if kind == "tapered":
+        hint = "Or give contact_angle."
+        if draft.take(f"{key}.axial_factor", "axial_factor_y_2", [bearing], None) is None:
+            draft.need(f"{key}.axial_factor", "axial_factor_y_2", [bearing], hint)
+    if kind != "needle":
+        _locating(draft, key, bearing, places.sense(bearing))
+    place = places.along(train.shafts[shaft], bearing)
+    if place is None:
+        attribute = "support_vector or u_coordinate_on_shaft_inner_side"
+        draft.need(f"{key}.position", attribute, [bearing], _ABOUT_FORCE)
+    else:
+        draft.give(f"{key}.position", place.text, place.origin)
+
+
+def _type(draft: Draft, key: str, bearing: Component) -> str | None:
+    stated = bearing.get("bearing_type")
+    kind = None if stated is None else _TYPES.get(stated.text())
+    if stated is not None and kind is not None:
+        draft.give(f"{key}.type", kind, f"bearing_type {stated.text()} of {bearing}")
+    else:
+        shown = "" if stated is None else f" that is covered ({stated.text()} is not)"
+        hint = f"Choose a type, or take the bearing out: {key}=."
+        draft.need(f"{key}.type", f"bearing_type{shown}", [bearing], hint)
+    return kind
+
+
+def _locating(draft: Draft, key: str, bearing: Component, sense: float) -> None:
+    """Whether a bearing takes axial forces, and in which sense."""
+    name = "axial_force_absorption"
+    stated = bearing.get(name)
+    text = "" if stated is None else stated.text()
+    if stated is None or (text not in _SENSES and text != "no_direction"):
+        instead = "Default: it takes no axial force unless it is the first of a shaft without."
+        draft.lack(f"{key}.locating", name, [bearing], instead)
+        return
+    origin = f"{name} {text} of {bearing}"
+    draft.give(f"{key}.locating", text in _SENSES, origin)
+    if text in ("positive", "negative"):
+        held = _SENSES[text] if sense >= 0 else _OPPOSITE[text]
+        draft.give(f"{key}.axial_sense", held, origin)
+
+
+def _supports(draft: Draft, train: Train, shaft: Shaft, names: Sequence[str]) -> None:
+    """Statics gives the forces of two bearings: the outermost ones, if there are more.
+
+    A single one is enough for gears that planets stand around.
+    """
+    owners = [train.sets[member.partition(".")[0]] for member in shaft.members]
+    is_pushed = any(isinstance(one, Pair) for one in owners)
+    tables = draft.tables["bearings"]
+
+    def place(name: str) -> float:
+        text = tables[name].get("position")
+        return 0.0 if text is None else float(text.split()[0])
+
+    ordered = sorted(names, key=place)
+    alone = ordered if len(names) == 1 and is_pushed else []
+    for name in ordered[1:-1] if len(names) > _SUPPORTS else alone:
+        hint = f"Statics gives the forces of two bearings; {shaft.name} has {len(names)}."
+        draft.need(f"bearings.{name}.radial_force", "force that is read here", [], hint)
+
+
+# How the train of a REXS file runs: clutches and brakes, who drives, who is driven.
+
+
+_LOAD = "external_load"
+
+
+def train_operation(draft: Draft, model: Model, train: Train) -> None:
+    """Tables ``shafts``, ``states`` and ``operation``, but for the temperature of the oil."""
+    still = {name: at([shaft.held]) for name, shaft in train.shafts.items() if shaft.held}
+    closed = _states(draft, model, train)
+    braked = {name for pair in closed or () if HOUSING in pair for name in pair}
+    free = {
+        name: shaft
+        for name, shaft in train.shafts.items()
+        if name not in still and name not in braked
+    }
+    driven = _input(draft, free)
+    _output(draft, train, free, driven)
+    shafts = [part for shaft in free.values() for part in shaft.components]
+    if driven is None:
+        speed_and_torque(draft, [], shafts)
+    else:
+        own = free[driven]
+        speed_and_torque(draft, list(own.parts.values()), own.components or shafts)
+    if closed is not None:
+        still |= _further_speeds(draft, train, free, driven, closed)
+    _shafts(draft, train, still)
+    _whole(draft, train)
+
+
+def _shafts(draft: Draft, train: Train, still: Mapping[str, str]) -> None:
+    """What turns together, and what stands still."""
+    held = [member for name in still for member in train.shafts[name].members]
+    for name, shaft in train.shafts.items():
+        if shaft.is_listed and name not in still:
+            parts = shaft.components or tuple(shaft.parts.values())
+            draft.give(f"shafts.{name}", list(shaft.members), at(parts))
+    if held:
+        draft.give(f"shafts.{HOUSING}", held, ", ".join(dict.fromkeys(still.values())))
+
+
+def _whole(draft: Draft, train: Train) -> None:
+    """Note it if sets have no shaft in common with the others."""
+    pieces = train.pieces()
+    if len(pieces) < 2:
+        return
+    loose = [part for shaft in train.shafts.values() if not shaft.components
+             for part in shaft.parts.values()]  # fmt: skip
+    apart = " and ".join(", ".join(piece) for piece in pieces)
+    hint = f"Nothing joins {apart}: name what turns together in [shafts]."
+    draft.need("shafts", "relation assembly with a shaft, or coupling of shafts,", loose, hint)
+
+
+def _states(draft: Draft, model: Model, train: Train) -> list[tuple[str, str]] | None:
+    """What clutches and brakes join in each position.
+
+    Returns the pairs of the position that is chosen, None if the file does not say which.
+    """
+    positions: list[tuple[bool, ...]] = []
+    for switch in train.switches:
+        engaged = switch.component.get("is_engaged")
+        assert engaged is not None
+        try:
+            positions.append(engaged.flags())
+        except ValueError as error:
+            draft.wrong("states", engaged, switch.component, str(error))
+            return None
+    if not positions:
+        return []
+    count = max(map(len, positions))
+    origin = f"is_engaged of {at([switch.component for switch in train.switches])}"
+    states = [_closed(train, positions, number) for number in range(count)]
+    for number, closed in enumerate(states, start=1):
+        fixed = [one if two == HOUSING else two for one, two in closed if HOUSING in (one, two)]
+        joined = [list(pair) for pair in closed if HOUSING not in pair]
+        draft.give(f"states.{number}", {"fixed": fixed, "joined": joined}, origin)
+    units = model.of_type("gear_unit")
+    index = draft.read("gear_shift_index", units, "operation.state")
+    chosen = index.number if index is not None else 1.0 if count == 1 else 0.0
+    if not (1 <= chosen <= count and chosen.is_integer()):
+        draft.lack("operation.state", f"gear_shift_index from 1 to {count}", units)
+        return None
+    draft.give("operation.state", f"{chosen:.0f}", index.origin if index else "the only one")
+    return states[int(chosen) - 1]
+
+
+def _closed(
+    train: Train, positions: Sequence[tuple[bool, ...]], number: int
+) -> list[tuple[str, str]]:
+    """What is joined in a position, each pair of shafts once."""
+    closed = (
+        switch.shafts
+        for switch, engaged in zip(train.switches, positions, strict=True)
+        if number < len(engaged) and engaged[number]
+    )
+    return list(dict.fromkeys(closed))
+
+
+def _input(draft: Draft, free: Mapping[str, Shaft]) -> str | None:
+    """The shaft whose load states torque or power; of several one that power enters."""
+    loaded = {name: origin for name in free if (origin := stated_load(free[name].loads))}
+    if not loaded:
+        shafts = [part for shaft in free.values() for part in shaft.components]
+        attribute = f"{_LOAD} with torque_around_u_axis or power"
+        draft.need("operation.input", attribute, shafts, _choices(free))
+        return None
+    driving = [name for name in loaded if _power_enters(draft, free[name])]
+    known = [name for name in loaded if speed_of(draft, list(free[name].parts.values()))]
+    driven = next(iter([*driving, *known, *loaded]))
+    if len(loaded) > 1:
+        others = ", ".join(origin for name, origin in loaded.items() if name != driven)
+        draft.notes.append(f"{driven} is taken as the input; a load is stated by {others} too.")
+    draft.give("operation.input", driven, loaded[driven])
+    return driven
+
+
+def _power_enters(draft: Draft, shaft: Shaft) -> bool:
+    """True if speed and torque of a shaft have the same sense."""
+    speed = speed_of(draft, list(shaft.parts.values()))
+    torques = [draft.read("torque_around_u_axis", [load]) for load in shaft.loads]
+    total = sum(torque.number for torque in torques if torque is not None)
+    return speed is not None and speed.number * total > 0
+
+
+def _output(draft: Draft, train: Train, free: Mapping[str, Shaft], driven: str | None) -> None:
+    """The shaft whose torque balances: the other one with a load; torques of further ones."""
+    others = {name: shaft for name, shaft in free.items() if name != driven and shaft.loads}
+    open_ones = [name for name, shaft in others.items() if not stated_load(shaft.loads)]
+    ends = list(others) if len(others) == 1 else open_ones
+    if len(ends) != 1 or driven is None:
+        left = {name: shaft for name, shaft in free.items() if name != driven}
+        attribute = f"{_LOAD} on one shaft that is driven"
+        draft.need("operation.output", attribute, [], _choices(left))
+        return
+    draft.give("operation.output", ends[0], at(others[ends[0]].loads))
+    sense = _sense(draft, train.shafts[driven])
+    torques: dict[str, Amount] = {}
+    for name, shaft in others.items():
+        if name != ends[0]:
+            torque = draft.read("torque_around_u_axis", shaft.loads, "operation.torques")
+            if torque is not None:
+                torques[name] = torque
+    _give_all(draft, "operation.torques", torques, sense)
+
+
+def _choices(shafts: Mapping[str, Shaft]) -> str:
+    """The shafts that could be meant; those with one gear first."""
+    ends = [name for name, shaft in shafts.items() if len(shaft.members) == 1]
+    return f"Shafts of one set only are {', '.join(ends)}." if ends else ""
+
+
+def _sense(draft: Draft, shaft: Shaft) -> float:
+    """Sense of rotation of the input in the file; in the case it is positive."""
+    speed = speed_of(draft, list(shaft.parts.values()))
+    return 1.0 if speed is None else math.copysign(1.0, speed.number)
+
+
+def _further_speeds(
+    draft: Draft,
+    train: Train,
+    free: Mapping[str, Shaft],
+    driven: str | None,
+    closed: Iterable[tuple[str, str]],
+) -> dict[str, str]:
+    """Speeds of further shafts if the input alone does not determine all.
+
+    Returns the shafts that stand still, each with what says so.
+    """
+    joined = sum(1 for pair in closed if HOUSING not in pair)
+    open_ones = len(free) - joined - len(train.sets) - 1
+    if open_ones < 1:
+        return {}
+    stated = {
+        name: speed
+        for name, shaft in free.items()
+        if name != driven and (speed := speed_of(draft, _definers(shaft))) is not None
+    }
+    sense = 1.0 if driven is None else _sense(draft, free[driven])
+    taken = dict(list(stated.items())[:open_ones])
+    still = {name: speed.origin for name, speed in taken.items() if speed.number == 0}
+    turning = {name: speed for name, speed in taken.items() if name not in still}
+    _give_all(draft, "operation.speeds", turning, sense)
+    lacking = open_ones - len(stated)
+    if lacking > 0 and len(train.pieces()) == 1:
+        more = f"coupling to a gear_casing, or speed of {lacking} more shaft(s),"
+        hint = f"Give a speed, or hold one: {', '.join(free)}."
+        draft.need("operation.speeds", more, [], hint)
+    return still
+
+
+def _give_all(draft: Draft, key: str, amounts: Mapping[str, Amount], sense: float) -> None:
+    """A table of amounts by shafts, if there are any."""
+    if amounts:
+        table = {name: amount_text(sense * one.number, one.unit) for name, one in amounts.items()}
+        draft.give(key, table, ", ".join(one.origin for one in amounts.values()))
+
+
+def _definers(shaft: Shaft) -> Sequence[Component]:
+    """Parts of a shaft whose speed is one that the user set, if the file tells which are."""
+    marked = [part for part in shaft.components if part.get("defines_speed") is not None]
+    return [part for part in marked if _is_true(part)] if marked else shaft.components
+
+
+def _is_true(part: Component) -> bool:
+    defines = part.get("defines_speed")
+    return defines is not None and defines.text().lower() == "true"
+
+
+# The train of a REXS file as the tables of a case.
+
+
+_OTHER_STAGES = ("bevel_stage", "worm_stage")
+_HELIX = "helix_angle_reference_diameter"
+
+
+def train_draft(model: Model, train: Train) -> Draft:
+    """What the file says of a train, and what it lacks."""
+    draft = Draft({"kind": "train", "title": one_line(train.unit.name.strip())})
+    train_operation(draft, model, train)
+    for name, one in train.sets.items():
+        own = Draft({})
+        set_tables(own, model, one, f"sets.{name}.")
+        _hand(own, one)
+        own.notes += checks.file_notes(one)
+        draft.adopt(own, name)
+    shaft_parts(draft, model, train)
+    stages = [mesh.stage for mesh in train.meshes]
+    _temperature(draft, model, stages)
+    lubricant_table(draft, model, stages)
+    draft.notes += _notes(model, train)
+    return draft
+
+
+def _hand(draft: Draft, one: PlanetaryParts | Pair) -> None:
+    """Hand of the helix of the sun or pinion: positive angles are right-handed, ISO 21771."""
+    gear = one.pinion if isinstance(one, Pair) else one.sun
+    helix = draft.read(_HELIX, [gear])
+    if helix is not None and helix.number != 0:
+        draft.give("hand", "right" if helix.number > 0 else "left", f"sign of {helix.origin}")
+
+
+def _temperature(draft: Draft, model: Model, stages: Sequence[Component]) -> None:
+    """Temperature of the oil: that of the first stage, if they differ."""
+    name, key = "temperature_lubricant", "operation.oil_inlet_temperature"
+    stated = [found for stage in stages if (found := draft.read(name, [stage], key)) is not None]
+    if len({found.text for found in stated}) < 2:
+        temperature(draft, model, stages)
+        return
+    draft.give(key, stated[0].text, stated[0].origin)
+    draft.notes.append(f"The stages have different {name}; that of the first is taken.")
+
+
+def _notes(model: Model, train: Train) -> Iterator[str]:
+    """Stages that are left out; gears that stand in two sets."""
+    for kind in _OTHER_STAGES:
+        for stage in model.of_type(kind)[:4]:
+            yield f"{stage} is left out: cylindrical and planetary stages can be read."
+    sets = train.sets.values()
+    gears = [gear for one in sets for gear in ((one.pinion, one.gear) if isinstance(one, Pair)
+             else (one.sun, one.ring))]  # fmt: skip
+    counts = Counter(gear.id for gear in gears)
+    for number, count in counts.items():
+        if count > 1:
+            yield f"{model.components[number]} stands in {count} sets, with its drag in each."

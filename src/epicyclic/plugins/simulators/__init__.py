@@ -1,0 +1,1 @@
+"""Loss maps for simulators: FMU, VECTO, Modelica, Simscape, Excel."""

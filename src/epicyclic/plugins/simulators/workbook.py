@@ -1,0 +1,138 @@
+"""Maps as Excel workbooks and as MATLAB files."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from epicyclic.case.operating import STATE
+from epicyclic.case.plain import flattened
+from epicyclic.errors import Problem, Status
+from epicyclic.study.maps.tables import statements
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MOST_ROWS = 1_048_574
+"""Rows of a sheet of Excel below the two of names and units."""
+_LONG_TEXT = ("warnings",)
+"""Variables that are too long for a cell to be read in."""
+
+
+def workbook_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
+    """More points than a sheet has rows; every state has its own."""
+    count = int(np.prod([len(values) for name, values in axes.items() if name != STATE]))
+    if count <= _MOST_ROWS:
+        return []
+    allowed = f"have {count} points; a sheet of Excel holds {_MOST_ROWS}."
+    return [Problem("all axes", "", allowed, "Give fewer values, or write .parquet.")]
+
+
+def write_workbook(data: xr.Dataset, path: Path) -> None:
+    """Sheets: the map with a row of names and a row of units, the inputs, what the numbers mean.
+
+    A train has an overview of its states, and a sheet for each of them.
+    """
+    from openpyxl import Workbook
+
+    book = Workbook(write_only=True)
+    if STATE in data.dims:
+        overview = book.create_sheet("overview")
+        for row in _overview(data):
+            _append(overview, row)
+        for number, state in enumerate(data[STATE].values):
+            _append_map(book, _sheet_name(str(state), number), data.sel({STATE: [state]}))
+    else:
+        _append_map(book, "map", data)
+    inputs = book.create_sheet("inputs")
+    _append(inputs, ["key", "value"])
+    for key, value in flattened(json.loads(data.attrs["case"])):
+        _append(inputs, [key, json.dumps(value) if isinstance(value, list) else value])
+    about = book.create_sheet("about")
+    for key, text in statements(data).items():
+        _append(about, [key, text])
+    _append(about, ["versions", data.attrs["versions"]])
+    book.save(path)
+
+
+def _append_map(book: Any, name: str, data: xr.Dataset) -> None:
+    """A sheet of points."""
+    sheet = book.create_sheet(name)
+    sheet.freeze_panes = "A3"
+    table = data.drop_vars(_LONG_TEXT).to_dataframe().reset_index()
+    _append(sheet, table.columns)
+    _append(sheet, [_unit(data, str(name)) for name in table.columns])
+    for row in table.itertuples(index=False, name=None):
+        _append(sheet, row)
+
+
+def _sheet_name(state: str, number: int) -> str:
+    """A name that Excel takes, of 31 characters at most; with the number where it is cut."""
+    name = re.sub(r"[\[\]:*?/\\]", "_", f"state {state}")
+    return name if name == f"state {state}" and len(name) <= 31 else f"{name[:25]} ({number + 1})"
+
+
+def _overview(data: xr.Dataset) -> Iterator[Sequence[Any]]:
+    """One row for each state: its ratio, brakes and clutches, and its best point."""
+    states = json.loads(data.attrs["case"]).get("states", {})
+    yield ["state", "ratio", "fixed", "joined", "points", "failed", "highest efficiency"]
+    for name in map(str, data[STATE].values):
+        own = data.sel({STATE: name})
+        table = states.get(name, {})
+        yield [
+            name,
+            float(own["ratio"].max()),
+            ", ".join(table.get("fixed", ())),
+            "; ".join(" + ".join(group) for group in table.get("joined", ())),
+            own["total"].size,
+            int((own["status"] != Status.CONVERGED).sum()),
+            float(own["efficiency"].max()),
+        ]
+
+
+def _append(sheet: Any, row: Sequence[Any]) -> None:
+    """A row of numbers and text; text that looks like a formula stays text, NaN is empty."""
+    from openpyxl.cell import WriteOnlyCell
+    from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
+
+    cells = []
+    for value in row:
+        if isinstance(value, str):
+            cell = WriteOnlyCell(sheet, ILLEGAL_CHARACTERS_RE.sub("", value))
+            cell.data_type = "s"
+            cells.append(cell)
+        else:
+            cells.append(None if value != value else value)  # only NaN differs from itself
+    sheet.append(cells)
+
+
+def _unit(data: xr.Dataset, name: str) -> str:
+    return str(data[name].attrs.get("units", ""))
+
+
+def write_matlab(data: xr.Dataset, path: Path) -> None:
+    """A struct ``loss_map``: axes, variables over them, their units, and what the numbers mean."""
+    from scipy.io import savemat
+
+    content: dict[str, Any] = {_field(name): _matlab(data[name].values) for name in data.variables}
+    content["dimensions"] = _matlab(np.array(data["torque_loss"].dims, dtype=object))
+    content["units"] = {_field(name): _unit(data, str(name)) for name in data.variables}
+    content["about"] = dict(data.attrs)
+    with path.open("wb") as file:
+        savemat(file, {"loss_map": content}, long_field_names=True, oned_as="column")
+
+
+def _matlab(values: Any) -> Any:
+    """Numbers as they are, text as a cell array."""
+    return values.astype(object) if values.dtype.kind in "OU" else values
+
+
+def _field(name: object) -> str:
+    """The name of a variable as that of a field of a struct."""
+    text = re.sub(r"\W", "_", str(name), flags=re.ASCII)
+    return text if text[:1].isalpha() else f"x{text}"

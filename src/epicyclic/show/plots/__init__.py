@@ -1,0 +1,1 @@
+"""Figures, for a terminal, a page and a notebook."""

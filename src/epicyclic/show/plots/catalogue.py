@@ -1,0 +1,443 @@
+"""What can be drawn from a stored result or a map: one entry for each question of an engineer."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from epicyclic.case.operating import operating_line
+from epicyclic.errors import InputError, Problem
+from epicyclic.records.contents import set_of
+from epicyclic.records.files import is_sweep
+from epicyclic.records.record import ResultRecord, sets_of
+from epicyclic.results.result import in_words
+from epicyclic.show.plots.drawing import plot_gear_set, plot_teeth
+from epicyclic.show.plots.heat_network import plot_heat_network
+from epicyclic.show.plots.loss_map import (
+    Limits,
+    limits_of,
+    limits_of_band,
+    limits_of_half_width,
+    map_at,
+    map_line,
+    plot_band_lines,
+    plot_half_width,
+    plot_map,
+    plot_map_lines,
+    plot_map_parts,
+    shown_panels,
+)
+from epicyclic.show.plots.losses import (
+    WIDE,
+    banded,
+    plot_band,
+    plot_drivers,
+    plot_loss_sum,
+    plot_losses,
+)
+from epicyclic.show.plots.mesh import (
+    plot_along_path,
+    plot_mesh_stiffness,
+    plot_pair_loads,
+    plot_plane_of_action,
+    plot_roller_loads,
+    plot_roller_profile,
+    plot_transmission_error,
+)
+from epicyclic.show.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
+from epicyclic.show.plots.power_flow import SLIDE, plot_power_flow
+from epicyclic.show.plots.style import PANEL, TITLE_CHARACTERS, room_of, styled_figure
+from epicyclic.show.plots.sweep import (
+    fields_of,
+    plot_sweep_field,
+    plot_sweep_lines,
+    plot_sweep_parallel,
+    shown_results,
+    sweep_line,
+    varied,
+)
+from epicyclic.study.maps.tables import map_case, map_inputs
+from epicyclic.study.shapes import gear_shapes
+
+Stored = ResultRecord | xr.Dataset
+MM_PER_INCH = 25.4
+SLIDE_WIDTHS = (6.4, 9.6, 12.8)
+"""Widths of figures of one, two, three and more panels in a row: letters stay readable. [inch]"""
+FLATTEST = 0.75
+"""Height of a figure over that of a slide of its width, at least."""
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """One Axes of a plot."""
+
+    subject: str  # What it is of, ``"sun mesh"``; empty if it is of the whole.
+    draw: Callable[[Axes], Axes]  # Draws on Axes.
+
+
+@dataclass(frozen=True, slots=True)
+class Plot:
+    """One plot."""
+
+    question: str  # Which it answers.
+    # The panels that a stored result or map has; none if it lacks what the plot shows.
+    panels: Callable[[Stored], list[Panel]]
+    projection: str | None = None  # Projection of its Axes.
+    size: tuple[float, float] = PANEL  # Width and height of one of its Axes. [inch]
+
+    @property
+    def is_wide(self) -> bool:
+        """True if it takes the width of a page."""
+        return self.size != PANEL
+
+
+def _of_result(draw: Callable[..., Axes]) -> Callable[[Stored], list[Panel]]:
+    def panels(stored: Stored) -> list[Panel]:
+        return [Panel("", partial(draw, stored.result))] if isinstance(stored, ResultRecord) else []
+
+    return panels
+
+
+def _of_group(
+    group: str, draw: Callable[..., Axes], *more: object
+) -> Callable[[Stored], list[Panel]]:
+    """One panel for each field of a group."""
+
+    def panels(stored: Stored) -> list[Panel]:
+        if not isinstance(stored, ResultRecord):
+            return []
+        found = stored.group(group)
+        return [
+            Panel(in_words(name) if len(found) > 1 else "", partial(draw, data, *more))
+            for name, data in found.items()
+        ]
+
+    return panels
+
+
+def _gears_of(stored: Stored) -> Mapping[str, xr.Dataset]:
+    """Shapes of the gears; those of a map follow from its case."""
+    if isinstance(stored, ResultRecord):
+        return stored.group("gears")
+    case = None if is_sweep(stored) else map_case(stored)
+    return {} if case is None else gear_shapes(case)
+
+
+def _gear_set(stored: Stored) -> list[Panel]:
+    """The gears of a set, or of every set of a train."""
+    return [
+        Panel(in_words(name), partial(plot_gear_set, gears))
+        for name, gears in sets_of(_gears_of(stored)).items()
+    ]
+
+
+def _teeth(stored: Stored) -> list[Panel]:
+    if not isinstance(stored, ResultRecord):
+        return []
+    gears, views = sets_of(stored.group("gears")), stored.group("views")
+    return [
+        Panel(in_words(key) if len(views) > 1 else "", partial(plot_teeth, view, gears[name]))
+        for key, view in views.items()
+        for name in (set_of(key),)
+    ]
+
+
+def _of_map(draw: Callable[..., Axes], name: str, *more: object) -> Callable[[Stored], list[Panel]]:
+    """The panels of a map, all with one scale for `name`."""
+
+    def panels(stored: Stored) -> list[Panel]:
+        if isinstance(stored, ResultRecord) or "torque_loss" not in stored:
+            return []
+        limits = limits_of(stored, name)
+        return _over_plane(stored, lambda data: partial(draw, data, name, *more, limits=limits))
+
+    return panels
+
+
+def _of_band(
+    draw: Callable[..., Axes], limits: Callable[[xr.Dataset], Limits], *more: object
+) -> Callable[[Stored], list[Panel]]:
+    """The panels of a map with its uncertainty, all with one scale."""
+
+    def panels(stored: Stored) -> list[Panel]:
+        if isinstance(stored, ResultRecord) or not {"torque_loss", "explained"} <= set(stored):
+            return []
+        scale = limits(stored)
+        return _over_plane(stored, lambda data: partial(draw, data, *more, limits=scale))
+
+    return panels
+
+
+def _over_plane(
+    data: xr.Dataset, draw: Callable[[xr.Dataset], Callable[[Axes], Axes]]
+) -> list[Panel]:
+    """One panel for each shown state and temperature, at the first value of further keys."""
+    titles = {"state": "state {}", "temperature": "{:g} °C"}
+    shown = {name: data[name].values[places] for name, places in shown_panels(data).items()}
+    panels = []
+    for point in itertools.product(*(values.tolist() for values in shown.values())):
+        at = dict(zip(shown, point, strict=True))
+        subject = ", ".join(titles[name].format(value) for name, value in at.items())
+        panels.append(Panel(subject, draw(map_at(data, **at))))
+    return panels
+
+
+def _uncertainty_of(stored: Stored) -> xr.Dataset | None:
+    """How well a result is known, or the energy of a cycle."""
+    if isinstance(stored, ResultRecord):
+        return next(iter(stored.group("uncertainty").values()), None)
+    return stored if "contribution" in stored else None
+
+
+def _drivers(stored: Stored) -> list[Panel]:
+    data = _uncertainty_of(stored)
+    return [] if data is None else [Panel("", partial(plot_drivers, data))]
+
+
+def _band(stored: Stored) -> list[Panel]:
+    """Total loss, and efficiency if it is known."""
+    data = _uncertainty_of(stored)
+    if data is None:
+        return []
+    return [Panel("", partial(plot_band, data, name)) for name in banded(data)]
+
+
+def _of_sweep(
+    draw: Callable[..., Axes], dimensions: Callable[[xr.Dataset], list[str]], least: int
+) -> Callable[[Stored], list[Panel]]:
+    """One panel for each result of a sweep that has enough dimensions."""
+
+    def panels(stored: Stored) -> list[Panel]:
+        if isinstance(stored, ResultRecord) or not is_sweep(stored):
+            return []
+        enough = len(dimensions(stored)) >= least
+        names = shown_results(stored) if enough else []
+        return [Panel("", partial(draw, stored, name)) for name in names]
+
+    return panels
+
+
+def _sweep_points(stored: Stored) -> list[Panel]:
+    if (
+        isinstance(stored, ResultRecord)
+        or "total" not in shown_results(stored)
+        or len(varied(stored)) < 2
+    ):
+        return []
+    return [Panel("", partial(plot_sweep_parallel, stored))]
+
+
+def _pocket_pressure(stored: Stored) -> list[Panel]:
+    """Both kinds of pocket of each mesh."""
+    if not isinstance(stored, ResultRecord):
+        return []
+    return [
+        Panel(in_words(name), partial(plot_life_with_scale, data, "pressure", kind))
+        for name, data in stored.group("pockets").items()
+        for kind in range(data.sizes["tooth"])
+    ]
+
+
+def _power_flow(stored: Stored) -> list[Panel]:
+    if not isinstance(stored, ResultRecord) or not stored.result.input_power:
+        return []
+    return _of_result(plot_power_flow)(stored)
+
+
+def _heat(stored: Stored) -> list[Panel]:
+    heat = stored.result.heat if isinstance(stored, ResultRecord) else None
+    if heat is None or not heat.ways:
+        return []
+    return [Panel("", partial(plot_heat_network, heat.balance))]
+
+
+PLOTS: dict[str, Plot] = {
+    "gear-set": Plot("What does the gear set look like, to scale?", _gear_set),
+    "teeth": Plot("How do the teeth touch, and where is the path of contact?", _teeth),
+    "losses": Plot("Where do the watts go?", _of_result(plot_losses)),
+    "loss-sum": Plot("How do the losses add up?", _of_result(plot_loss_sum)),
+    "power-flow": Plot(
+        "Where does the power flow, what circulates, what is lost?",
+        _power_flow,
+        size=SLIDE,
+    ),
+    "drivers": Plot("What is the uncertainty of the total loss due to?", _drivers, size=WIDE),
+    "band": Plot("How well are total loss and efficiency known?", _band),
+    "heat-network": Plot(
+        "How warm is every part, and where does its heat flow?", _heat, size=SLIDE
+    ),
+    "line-load": Plot(
+        "How is the load distributed over the flanks?",
+        _of_group("meshes", plot_plane_of_action, "line_load"),
+    ),
+    "pressure": Plot(
+        "How high is the contact pressure, and where?",
+        _of_group("meshes", plot_plane_of_action, "hertz_pressure"),
+    ),
+    "pair-load": Plot(
+        "How does one tooth pair carry through its engagement?",
+        _of_group("meshes", plot_pair_loads),
+    ),
+    "transmission-error": Plot(
+        "How large is the loaded transmission error?", _of_group("meshes", plot_transmission_error)
+    ),
+    "stiffness": Plot("How stiff is the mesh?", _of_group("meshes", plot_mesh_stiffness)),
+    "friction": Plot(
+        "How does friction change along the path of contact?",
+        _of_group("meshes", plot_along_path, "friction_coefficient"),
+    ),
+    "sliding": Plot(
+        "How fast do the flanks slide?", _of_group("meshes", plot_along_path, "sliding_speed")
+    ),
+    "film": Plot(
+        "Does the oil film separate the flanks?", _of_group("meshes", plot_along_path, "film_ratio")
+    ),
+    "friction-power": Plot(
+        "Where on the flanks is power lost?",
+        _of_group("meshes", plot_plane_of_action, "friction_power"),
+    ),
+    "roller-loads": Plot(
+        "Which rollers of the planet bearing carry?",
+        _of_group("bearings", plot_roller_loads),
+        projection="polar",
+    ),
+    "roller-pressure": Plot(
+        "How is the load distributed along the rollers?",
+        _of_group("bearings", plot_roller_profile),
+    ),
+    "pocket-pressure": Plot(
+        "How does the pressure in a pocket change through its life?", _pocket_pressure
+    ),
+    "pocket-volume": Plot(
+        "How do the pockets change in volume?", _of_group("pockets", plot_volumes)
+    ),
+    "pocket-power": Plot(
+        "How much power do the pockets take over a mesh period?", _of_group("pockets", plot_power)
+    ),
+    "efficiency-map": Plot(
+        "How efficient is it over speed and torque?", _of_map(plot_map, "efficiency")
+    ),
+    "loss-map": Plot("How much power is lost over speed and torque?", _of_map(plot_map, "total")),
+    "torque-loss-map": Plot(
+        "How much torque is lost over speed and torque?", _of_map(plot_map, "torque_loss")
+    ),
+    "loss-over-speed": Plot(
+        "How does the loss grow with speed?", _of_map(plot_map_lines, "total", "speed")
+    ),
+    "loss-over-torque": Plot(
+        "How does the loss grow with torque?", _of_map(plot_map_lines, "total", "torque")
+    ),
+    "loss-parts": Plot("Which components make up the loss?", _of_map(plot_map_parts, "total")),
+    "loss-band": Plot(
+        "How well is the loss known over speed and torque?",
+        _of_band(plot_half_width, limits_of_half_width),
+    ),
+    "loss-band-lines": Plot(
+        "How far may the loss be off along a line?",
+        _of_band(plot_band_lines, limits_of_band, "torque"),
+    ),
+    "lines": Plot(
+        "How do loss and efficiency follow the keys that are varied?",
+        _of_sweep(plot_sweep_lines, varied, 1),
+    ),
+    "contours": Plot(
+        "Where over two keys is the least loss?", _of_sweep(plot_sweep_field, fields_of, 2)
+    ),
+    "parallel": Plot("Which values of all keys go with a small loss?", _sweep_points, size=WIDE),
+}
+"""By the names that ``epicyclic plot`` takes."""
+
+
+def available(stored: Stored) -> dict[str, Plot]:
+    """The plots for which `stored` holds the data."""
+    return {name: plot for name, plot in PLOTS.items() if plot.panels(stored)}
+
+
+def panels_of(stored: Stored, name: str) -> list[Panel]:
+    """The panels of a plot.
+
+    Raises
+    ------
+    InputError
+        If there is no such plot, or the file lacks what it shows.
+    """
+    panels = PLOTS[name].panels(stored) if name in PLOTS else []
+    if panels:
+        return panels
+    found = available(stored)
+    allowed = "cannot be drawn from this file" if name in PLOTS else "is not a plot"
+    problem = Problem(
+        "WHAT", name, f"{allowed}; it has {', '.join(found)}.", "Choose one of these."
+    )
+    raise InputError([problem], "the command")
+
+
+def in_inches(size: tuple[float, float]) -> tuple[float, float]:
+    """Width and height in millimetres as Matplotlib has them."""
+    return size[0] / MM_PER_INCH, size[1] / MM_PER_INCH
+
+
+def figure_of(
+    stored: Stored,  # As `epicyclic.open_result` returns it.
+    name: str,  # One of `PLOTS`.
+    *,
+    # Width and height; default: in the proportion of a slide. [mm]
+    size: tuple[float, float] | None = None,
+    # Pixels an inch; default: such that the figure has the width of a slide in pixels.
+    dpi: float | None = None,
+) -> Figure:
+    """A plot as a figure, its panels side by side, the operating point below."""
+    panels = panels_of(stored, name)
+    columns = 3 if len(panels) == 3 else math.ceil(math.sqrt(len(panels)))
+    rows = math.ceil(len(panels) / columns)
+    title, point = about(stored)
+    plot = PLOTS[name]
+    inches = _slide(rows, columns)
+    if plot.is_wide:
+        inches = (plot.size[0] * columns, plot.size[1] * rows)
+    if size is not None:
+        inches = in_inches(size)
+    with styled_figure(
+        rows, columns, title, projection=plot.projection, size=inches, dpi=dpi, caption=point
+    ) as (figure, axes):
+        spare = axes.ravel()[len(panels) :]
+        for panel, ax in zip(panels, axes.ravel(), strict=False):
+            panel.draw(ax)
+            if panel.subject:
+                ax.set_title(_with_subject(ax, panel.subject))
+        for ax in spare:
+            ax.remove()
+    return figure
+
+
+def _with_subject(ax: Axes, subject: str) -> str:
+    """The title of Axes and what they are of, on two lines where one has no room."""
+    title = ax.get_title(loc="left")
+    whole = f"{title}, {subject}"
+    return whole if len(whole) < TITLE_CHARACTERS * room_of(ax) else f"{title},\n{subject}"
+
+
+def about(stored: Stored) -> tuple[str, str]:
+    """Title and operating point, or the points of a map, sweep or cycle."""
+    if isinstance(stored, ResultRecord):
+        return stored.title, operating_line(stored.result.inputs["operation"])
+    title = str(stored.attrs.get("title", ""))
+    if is_sweep(stored):
+        return title, sweep_line(stored)
+    if "torque_loss" in stored:
+        return title, map_line(stored)
+    cycle = str(stored.attrs.get("cycle", ""))
+    return title, cycle or operating_line(map_inputs(stored)["operation"])
+
+
+def _slide(rows: int, columns: int) -> tuple[float, float]:
+    """Width and height of a figure in which all panels can be read on one slide. [inch]"""
+    width = SLIDE_WIDTHS[min(columns, len(SLIDE_WIDTHS)) - 1]
+    return width, width * SLIDE[1] / SLIDE[0] * max(FLATTEST, rows / columns)

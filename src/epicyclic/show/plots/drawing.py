@@ -1,0 +1,471 @@
+"""Drawings to scale of gear sets and meshes, still or turning."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch, Rectangle
+from matplotlib.path import Path
+from numpy.typing import NDArray
+
+from epicyclic.results.result import in_words
+from epicyclic.show.plots.mesh import top_of_scale
+from epicyclic.show.plots.style import COLOUR_MAP, COLOURS, label_of, legend_below, styled_figure
+
+# Drawings to scale: the gear set in the transverse plane, and the teeth of a mesh in contact.
+
+
+Floats = NDArray[np.float64]
+
+FILLS = {
+    "sun": ("#F6D58A", "#E3B24C", "#FBEBC8", "#C08F2F"),
+    "planet": ("#BFD9EA", "#8DB7D5", "#DFECF5", "#6496BB"),
+    "ring": ("0.85", "0.7", "0.93"),
+}
+"""Shades of gears that stand alone, several times, and around others."""
+CIRCLE_POINTS = 181
+SHOWN_MODULES = 5.0
+"""Half the width of a drawing of teeth. [transverse modules]"""
+SKIPPED_POINTS = 4
+"""A whole gear is drawn with one point of so many: the others are too near to be seen."""
+HEIGHT_SHARE = 0.5
+"""Height of a drawing of teeth over its width, at least. [1]"""
+MARGIN = 1.04
+
+
+def plot_gear_set(
+    gears: Mapping[str, xr.Dataset],  # As `epicyclic.study.shapes.gear_shapes` returns them.
+    ax: Axes,
+) -> Axes:
+    """All gears at their places, to scale, seen along the axis."""
+    low, high = np.full(2, math.inf), np.full(2, -math.inf)
+    fills = _fills(gears)
+    order = sorted(gears.items(), key=_is_behind)
+    for row, (name, gear) in enumerate(order):
+        label = f"{in_words(name)}, {int(gear.attrs['teeth'])} teeth"
+        if hider := next((one for one, front in order[row + 1 :] if _hides(front, gear)), ""):
+            label += f", behind {in_words(hider)}"
+        outline = _whole_outline(gear, SKIPPED_POINTS)
+        inside = bool(gear.attrs["internal"])
+        for number in range(gear.sizes["place"]):
+            center, turn = _place(gear, number)
+            shape = _path(outline @ _rotation(turn) + center)
+            if inside:
+                rim = _circle(_scalar(gear, "outside_diameter") / 2) + center
+                shape = Path.make_compound_path(_path(rim[::-1]), shape)
+            ax.add_patch(
+                PathPatch(
+                    shape,
+                    facecolor=fills[name],
+                    edgecolor="black",
+                    linewidth=0.5,
+                    label=label if number == 0 else None,
+                    gid=layer_of(name, number),
+                )
+            )
+            ax.plot(*center, marker="+", color="black", ms=5, mew=0.6)
+            radius = _scalar(gear, "outside_diameter") / 2
+            low, high = np.minimum(low, center - radius), np.maximum(high, center + radius)
+    _frame(ax, (low + high) / 2, MARGIN * (high - low) / 2)
+    ax.set_adjustable("box")
+    ax.set_anchor("N")
+    legend_below(ax, ncols=3)
+    ax.set_title("Gear pair to scale" if "pinion" in gears else "Gear set to scale")
+    return ax
+
+
+def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
+    """Teeth of a mesh touching at the pitch point, with line of action and path of contact."""
+    names = [str(name) for name in view["gear"].values]
+    module = max(
+        _scalar(gears[name], "reference_diameter") / gears[name].attrs["teeth"] for name in names
+    )
+    half = SHOWN_MODULES * module
+    fills = _fills(gears)
+    for number, name in enumerate(names):
+        gear, center = gears[name], np.array([view["center_x"][number], view["center_y"][number]])
+        turn = math.radians(float(view["direction"][number])) - math.pi / 2
+        ax.add_patch(
+            PathPatch(
+                _path(_some_teeth(gear, turn, half) + center),
+                facecolor=fills[name],
+                edgecolor="black",
+                linewidth=0.8,
+                label=in_words(name),
+                gid=layer_of(name, 0),
+            )
+        )
+        pitch = _circle(float(view["operating_radius"][number])) + center
+        base = _circle(_scalar(gear, "base_diameter") / 2) + center
+        label = number == 0
+        ax.plot(*pitch.T, color="0.35", lw=0.8, ls="-.", label="operating pitch circles" * label)
+        ax.plot(*base.T, color="0.35", lw=0.8, ls=":", label="base circles" * label)
+    slope = math.tan(math.radians(float(view["pressure_angle"])))
+    ax.axline((0.0, 0.0), slope=slope, color=COLOURS[0], lw=1.0, ls="--", label="line of action")
+    ax.plot(view["path_x"], view["path_y"], color=COLOURS[1], lw=2.4, label="path of contact")
+    ax.plot(0.0, 0.0, marker="o", color="black", ms=4, ls="", label="pitch point")
+    _frame(ax, np.zeros(2), np.array([half, half * HEIGHT_SHARE]))
+    legend_below(ax, ncols=3)
+    ax.set_title("Teeth in contact")
+    return ax
+
+
+def layer_of(name: str, number: int) -> str:
+    """What the layer of a gear is called in a picture, at one of its places."""
+    return f"gear-{name}-{number}"
+
+
+def _is_behind(item: tuple[str, xr.Dataset]) -> tuple[bool, float]:
+    """Sorts gears from the last to the first that is seen: smaller ones stand before larger."""
+    _, gear = item
+    return not gear.attrs["internal"], -_scalar(gear, "tip_diameter")
+
+
+def _hides(front: xr.Dataset, gear: xr.Dataset) -> bool:
+    """True if a gear in front of another one leaves at most the teeth of this to be seen."""
+    seen = _scalar(gear, "tip_diameter") - _scalar(front, "tip_diameter")
+    height = _scalar(gear, "tip_diameter") - _scalar(gear, "root_diameter")
+    return not gear.attrs["internal"] and seen < height and _centers(front) == _centers(gear)
+
+
+def _fills(gears: Mapping[str, xr.Dataset]) -> dict[str, str]:
+    """Colour of each gear: one for each kind, in several shades."""
+    kinds: dict[str, list[str]] = {}
+    for name, gear in gears.items():
+        alone = "planet" if gear.sizes["place"] > 1 else "sun"
+        around = gear.attrs["internal"] or name == "gear"
+        kinds.setdefault("ring" if around else alone, []).append(name)
+    return {
+        name: shade
+        for kind, names in kinds.items()
+        for name, shade in zip(names, itertools.cycle(FILLS[kind]), strict=False)
+    }
+
+
+def _frame(ax: Axes, middle: Floats, half: Floats) -> None:
+    """Millimetres of equal length on both axes; the wider side shows more."""
+    ax.set(xlabel="x, mm", ylabel="y, mm")
+    ax.set_xlim(middle[0] - half[0], middle[0] + half[0], auto=True)
+    ax.set_ylim(middle[1] - half[1], middle[1] + half[1], auto=True)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.grid(visible=False)
+
+
+def _scalar(gear: xr.Dataset, name: str) -> float:
+    return float(gear[name])
+
+
+def _centers(gear: xr.Dataset) -> list[list[float]]:
+    centers: list[list[float]] = np.column_stack([gear["center_x"], gear["center_y"]]).tolist()
+    return centers
+
+
+def _place(gear: xr.Dataset, number: int) -> tuple[Floats, float]:
+    """Centre of a gear, and by how much it is turned from a tooth that points along y. [rad]"""
+    center = np.array([gear["center_x"][number], gear["center_y"][number]])
+    return center, math.radians(float(gear["direction"][number])) - math.pi / 2
+
+
+def _rotation(angle: float) -> Floats:
+    """For points in rows."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return np.array([[cosine, sine], [-sine, cosine]])
+
+
+def _circle(radius: float) -> Floats:
+    angle = np.linspace(0, 2 * math.pi, CIRCLE_POINTS)
+    return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def _path(points: Floats) -> Path:
+    return Path(points, closed=False)
+
+
+def _whole_outline(gear: xr.Dataset, step: int) -> Floats:
+    """All teeth, of their points every `step`-th, or the tip circle if there is no outline."""
+    if "x" not in gear:
+        return _circle(_scalar(gear, "tip_diameter") / 2)
+    thinned = gear.isel(point=slice(None, None, step))
+    return _teeth(thinned, range(int(gear.attrs["teeth"])))
+
+
+def _teeth(gear: xr.Dataset, numbers: range) -> Floats:
+    """Outline of some teeth side by side; tooth 0 points along y."""
+    tooth = np.column_stack([gear["x"], gear["y"]])
+    pitch = 2 * math.pi / int(gear.attrs["teeth"])
+    return np.concatenate([tooth @ _rotation(number * pitch) for number in numbers])
+
+
+def _some_teeth(gear: xr.Dataset, turn: float, half: float) -> Floats:
+    """The teeth within `half` of the origin, closed to a solid, turned by `turn`."""
+    if "x" not in gear:
+        return _circle(_scalar(gear, "tip_diameter") / 2)
+    count = int(gear.attrs["teeth"])
+    radius = _scalar(gear, "reference_diameter") / 2
+    side = min(count // 2, math.ceil(2 * half / (2 * math.pi * radius / count)))
+    outline = _teeth(gear, range(-side, side + 1))
+    if gear.attrs["internal"]:
+        first, last = np.arctan2(outline[[0, -1], 1], outline[[0, -1], 0]).tolist()
+        angle = np.linspace(last, first, CIRCLE_POINTS)
+        outside = _scalar(gear, "outside_diameter") / 2
+        back = outside * np.column_stack([np.cos(angle), np.sin(angle)])
+    else:
+        back = np.zeros((1, 2))
+    return np.concatenate([outline, back, outline[:1]]) @ _rotation(turn)
+
+
+# Gears that turn: drawings in which each gear, and each position of a mesh, is a layer of its own.
+#
+# A page turns the layers of the gears and shows one position after the other; a file has one of
+# them.
+
+
+POSITION = "position"
+"""Layers of a mesh position are called so, with its number and that of their Axes."""
+POINTS_PER_INCH = 72
+SET_SIZE, MESH_SIZE = (7.2, 6.4), (12.8, 5.6)
+"""Width and height of the drawings. [inch]"""
+LARGEST_DOT = 260.0
+"""Area of the contact of a tooth pair that carries all. [point^2]"""
+LINE_WIDTH = 4.0
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """A gear that turns on paper."""
+
+    name: str  # Name of its layer in a picture.
+    x: float  # Its centre, from the left and the top of the picture. [point]
+    y: float  # Its centre, from the left and the top of the picture. [point]
+    # How far it is turned against the clock at phase 0 from how it is drawn, and for each mesh
+    # period. [deg]
+    start: float
+    rate: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Turning:
+    """A drawing with what turns in it."""
+
+    figure: Figure
+    ax: Axes  # On which the gears are.
+    # By layer: centre in the coordinates of `ax`, start and rate as of `Layer`.
+    gears: dict[str, tuple[float, float, float, float]]
+    phases: tuple[float, ...]  # Phases of the positions that are layers, in mesh periods.
+
+    def layers(self) -> list[Layer]:
+        """The gears where they are on the picture, once that has been written."""
+        height = self.figure.get_figheight()
+        found = []
+        for name, (x, y, start, rate) in self.gears.items():
+            across, up = (self.ax.transData.transform((x, y)) / self.figure.dpi).tolist()
+            place = POINTS_PER_INCH * across, POINTS_PER_INCH * (height - up)
+            found.append(Layer(name, *place, start, rate))
+        return found
+
+
+def turning_set(
+    # Gears of one set, as `epicyclic.study.shapes.gear_shapes` returns them.
+    gears: Mapping[str, xr.Dataset],
+    title: str,
+    caption: str,
+    phase: float = 0.0,  # At which it is drawn. [mesh periods of the first gear]
+) -> Turning:
+    """A set seen along its axis, from its carrier."""
+    turns = {name: _degrees_per_period(gears, name) for name in gears}
+    turned = {
+        name: gear.assign(direction=gear["direction"] + phase * turns[name])
+        for name, gear in gears.items()
+    }
+    with styled_figure(1, 1, title, size=SET_SIZE, caption=caption) as (figure, axes):
+        ax = plot_gear_set(turned, axes[0, 0])
+        layers = {
+            layer_of(name, number): (
+                float(gear["center_x"][number]),
+                float(gear["center_y"][number]),
+                -phase * turns[name],
+                turns[name],
+            )
+            for name, gear in gears.items()
+            for number in range(gear.sizes["place"])
+        }
+    return Turning(figure, ax, layers, ())
+
+
+def _degrees_per_period(gears: Mapping[str, xr.Dataset], name: str) -> float:
+    first = next(iter(gears.values()))
+    return 360.0 / int(first.attrs["teeth"]) * float(gears[name].attrs["relative_speed"])
+
+
+def turning_mesh(
+    view: xr.Dataset,  # As `epicyclic.study.shapes.mesh_views` returns it.
+    gears: Mapping[str, xr.Dataset],  # Gears of its set.
+    mesh: xr.Dataset,  # As `epicyclic.mesh_details` returns it.
+    title: str,
+    caption: str,
+    # The only one that is drawn; default: all, in layers. [mesh periods]
+    phase: float | None = None,
+) -> Turning:
+    """Teeth in mesh beside their contact lines on the plane of action."""
+    phases = mesh["roll_angle"].to_numpy() / float(mesh.attrs["pitch_angle_deg"])
+    shown = range(len(phases)) if phase is None else [_nearest(phases, phase % 1)]
+    now = 0.0 if phase is None else phase % 1
+    turns = _mesh_turns(view, gears, mesh, phases)
+    drawn = [start + now * rate for start, rate in turns]
+    turned = view.assign(direction=view["direction"] + xr.DataArray(drawn, dims="gear"))
+    with styled_figure(1, 2, title, size=MESH_SIZE, caption=caption) as (figure, axes):
+        teeth, plane = axes[0]
+        plot_teeth(turned, gears, teeth)
+        window = teeth.get_xlim(), teeth.get_ylim()
+        _draw_plane(mesh, plane)
+        for number in shown:
+            _draw_points(mesh, view, number, teeth)
+            _draw_lines(mesh, number, plane)
+        teeth.set_xlim(window[0], auto=True)
+        teeth.set_ylim(window[1], auto=True)
+        layers = {
+            layer_of(str(name), 0): (
+                float(view["center_x"][number]),
+                float(view["center_y"][number]),
+                turns[number][0] - drawn[number],
+                turns[number][1],
+            )
+            for number, name in enumerate(view["gear"].values)
+        }
+    figure.draw_without_rendering()  # labels of the ticks follow from the window, room from them
+    return Turning(figure, teeth, layers, tuple(phases.tolist()))
+
+
+def _nearest(phases: Floats, phase: float) -> int:
+    """The number of the position nearest to a phase, round the period."""
+    away = np.abs(phases - phase)
+    return int(np.argmin(np.minimum(away, 1 - away)))
+
+
+def _mesh_turns(
+    view: xr.Dataset, gears: Mapping[str, xr.Dataset], mesh: xr.Dataset, phases: Floats
+) -> list[tuple[float, float]]:
+    """How far each gear is turned from touching at the pitch point: at phase 0, for each period."""
+    number, path = next(
+        (number, path) for number in range(len(phases)) for path, _ in _in_the_middle(mesh, number)
+    )
+    one, two = (str(name) for name in view["gear"].values)
+    pitch = float(mesh.attrs["pitch_angle_deg"])
+    # the flank of gear 1 moves along the line of action as its base circle unwinds
+    base = float(gears[one]["base_diameter"]) / 2
+    start = math.degrees(path / base) - phases[number] * pitch
+    ratio = int(gears[one].attrs["teeth"]) / int(gears[two].attrs["teeth"])
+    mate = -ratio if gears[two].attrs["internal"] else ratio
+    return [(-start, -pitch), (start * mate, pitch * mate)]
+
+
+def _in_the_middle(mesh: xr.Dataset, number: int) -> list[tuple[float, float]]:
+    """Place on the path of contact, and load, of the pairs that touch amid the face.
+
+    The drawing shows the section amid the face; pairs there carry the load of their whole line.
+    """
+    face, path = _values(mesh, "face_position", number), _values(mesh, "path_position", number)
+    loads = mesh["pair_load"].isel(mesh_position=number).to_numpy()
+    middle = _middle(mesh)
+    found = []
+    for line in range(len(face)):
+        order = np.argsort(face[line])
+        if face[line][order[0]] <= middle <= face[line][order[-1]] and np.ptp(face[line]) > 0:
+            place = float(np.interp(middle, face[line][order], path[line][order]))
+            found.append((place, float(loads[line])))
+    return found
+
+
+def _middle(mesh: xr.Dataset) -> float:
+    low, high = (float(pick(mesh["face_position"])) for pick in (np.nanmin, np.nanmax))
+    return (low + high) / 2
+
+
+def _values(mesh: xr.Dataset, name: str, number: int) -> Floats:
+    """At one position, by line and segment."""
+    at = mesh[name].isel(mesh_position=number).transpose("contact_line", "segment")
+    return at.to_numpy().astype(float)
+
+
+def _draw_points(mesh: xr.Dataset, view: xr.Dataset, number: int, ax: Axes) -> None:
+    """Where pairs touch amid the face, larger with more load."""
+    alpha = math.radians(float(view["pressure_angle"]))
+    found = _in_the_middle(mesh, number)
+    most = float(mesh["pair_load"].max())
+    along = np.array([place for place, _ in found])
+    loads = np.array([load for _, load in found])
+    ax.scatter(
+        along * math.cos(alpha),
+        along * math.sin(alpha),
+        s=LARGEST_DOT * loads / most if most else LARGEST_DOT,
+        color=COLOURS[1],
+        edgecolor="black",
+        zorder=4,
+        gid=f"{POSITION}-{number}-points",
+    )
+
+
+def _draw_plane(mesh: xr.Dataset, ax: Axes) -> None:
+    """The plane of action without its lines, and their scale."""
+    lows, sizes = [], []
+    for name in ("path_position", "face_position"):
+        values = mesh[name].where(mesh["line_load"].notnull())
+        lows.append(float(values.min()))
+        sizes.append(float(values.max()) - lows[-1])
+    ax.add_patch(Rectangle((lows[0], lows[1]), *sizes, facecolor="0.96", edgecolor="0.6"))
+    ax.axvline(0.0, color="black", lw=0.8, ls="--")
+    ax.margins(0.04)
+    ax.autoscale_view()
+    ax.grid(visible=False)
+    ax.set(
+        title="Contact lines and line load",
+        xlabel=label_of(mesh["path_position"]),
+        ylabel=label_of(mesh["face_position"]),
+    )
+    _, told = _top(mesh)
+    ax.figure.colorbar(
+        ScalarMappable(_scale(mesh), COLOUR_MAP),
+        ax=ax,
+        label=f"{label_of(mesh['line_load'])}{told}",
+        extend="max" if told else "neither",
+    )
+
+
+def _scale(mesh: xr.Dataset) -> Normalize:
+    return Normalize(0.0, _top(mesh)[0] or 1.0)
+
+
+def _top(mesh: xr.Dataset) -> tuple[float, str]:
+    loads = mesh["line_load"].to_numpy()
+    return top_of_scale(loads[np.isfinite(loads)])
+
+
+def _draw_lines(mesh: xr.Dataset, number: int, ax: Axes) -> None:
+    """The contact lines at one position, coloured by their line load."""
+    path, face, load = (
+        _values(mesh, name, number) for name in ("path_position", "face_position", "line_load")
+    )
+    points = np.stack([path, face], axis=-1)
+    pieces = np.stack([points[:, :-1], points[:, 1:]], axis=2).reshape(-1, 2, 2)
+    loads = ((load[:, :-1] + load[:, 1:]) / 2).ravel()
+    known = np.isfinite(loads)
+    drawn = LineCollection(
+        list(pieces[known]),
+        array=loads[known],
+        cmap=COLOUR_MAP,
+        norm=_scale(mesh),
+        linewidths=LINE_WIDTH,
+        capstyle="round",
+        gid=f"{POSITION}-{number}-lines",
+    )
+    ax.add_collection(drawn, autolim=False)

@@ -1,0 +1,360 @@
+"""Loss maps: one variable over speed and torque, as a field or as lines."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import FuncNorm, Normalize
+from matplotlib.patheffects import AbstractPathEffect, withStroke
+from matplotlib.ticker import MaxNLocator, NullLocator
+from numpy.typing import NDArray
+
+from epicyclic.case.operating import AXES, PLANE, STATE
+from epicyclic.show.plots.style import (
+    COLOUR_MAP,
+    COLOURS,
+    LINE_STYLES,
+    in_percent,
+    label_of,
+    legend_below,
+    title_of,
+)
+from epicyclic.units import format_number, unit_text
+
+FloatArray = NDArray[np.float64]
+Limits = tuple[float, float] | None
+
+HALF_WIDTH = "half_width"
+LEVELS = 7
+EFFICIENCIES = (50, 70, 80, 90, 95, 97, 98, 98.5, 99, 99.3, 99.5, 99.7, 99.9)
+"""Efficiencies that get a line and a tick. [%]"""
+LEAST_EFFICIENCY, BEST_EFFICIENCY = 50.0, 99.95
+"""Between which colours of an efficiency differ, evenly in the logarithm of the loss. [%]"""
+LEAST_LINE = 90
+"""Lines of lower efficiencies run into one another where the torque is zero. [%]"""
+LABELS = 4
+"""Most labels that a line of equal value gets: more collide where lines are close."""
+EDGE = 0.04
+"""Share of the width and height of the Axes, along its edges, in which no such label begins."""
+HATCHES = ("", "///", "...", "\\\\\\", "xxx")
+ROOM = 1.03
+"""Height of an axis over the greatest value that it has to show. [1]"""
+STRETCHED = 0.02
+"""Part of the torque axis of an efficiency that is linear, over the largest torque. [1]"""
+MOST_LINES = 5
+MOST_PANELS = 12
+"""States and temperatures with a picture and tables of their own."""
+LOSS_SUMS = ("load_dependent", "load_independent", "total", "input_power")
+"""Powers of a map that are no components."""
+
+
+def map_at(data: xr.Dataset, **values: object) -> xr.Dataset:
+    """The map over speed and torque at one value of every other dimension: the first, or `values`.
+
+    The values chosen are left as scalar coordinates.
+    """
+    others = {dim: 0 for dim in data["total"].dims if dim not in (*PLANE, *values)}
+    return data.sel(values).isel(others)
+
+
+def shown_panels(data: xr.Dataset) -> dict[str, list[int]]:
+    """Places of the states and temperatures that are shown: `MOST_PANELS` at most, evenly spaced.
+
+    Of few states all are shown, and as many temperatures as there is room for.
+    """
+    room, shown = MOST_PANELS, {}
+    for name in (STATE, "temperature"):
+        if name in data.dims:
+            size = data.sizes[name]
+            count = min(size, room)
+            shown[name] = [int(one) for one in np.linspace(0, size - 1, count).round()]
+            room //= count
+    return shown
+
+
+def left_out_line(data: xr.Dataset) -> str:
+    """How many states and temperatures are shown, if not all are; else empty."""
+    parts = [
+        f"{len(places)} of {data.sizes[name]} {name}s"
+        for name, places in shown_panels(data).items()
+        if len(places) < data.sizes[name]
+    ]
+    return f"shown at {' and '.join(parts)}" if parts else ""
+
+
+def at_temperatures(data: xr.Dataset) -> dict[int, xr.Dataset]:
+    """The map over speed and torque at the shown oil temperatures, each by its number.
+
+    At the first value of further keys.
+    """
+    if "temperature" not in data.dims:
+        return {0: map_at(data)}
+    places = shown_panels(data)["temperature"]
+    celsius = data["temperature"].to_numpy()
+    return {place: map_at(data, temperature=float(celsius[place])) for place in places}
+
+
+def map_line(data: xr.Dataset) -> str:
+    """Which points the map has, in one line."""
+    axes = [name for name in AXES if name in data.dims]
+    spans = [f"{name} {_span(data[name])}" for name in axes]
+    line = f"at the {data.attrs['reference_shaft']}: {', '.join(spans)}"
+    return "; ".join(filter(None, (line, left_out_line(data))))
+
+
+def _span(axis: xr.DataArray) -> str:
+    low, high = float(axis.min()), float(axis.max())
+    unit = unit_text(str(axis.attrs["units"]))
+    if low == high:
+        return f"{format_number(low)} {unit}"
+    return f"{format_number(low)} to {format_number(high)} {unit}"
+
+
+def limits_of(data: xr.Dataset, name: str) -> Limits:
+    """Least and greatest value in all panels: states and temperatures, at the first of other keys.
+
+    An efficiency is in percent; None if there is no value.
+    """
+    values = in_percent(data[name])
+    panels = (*AXES, STATE)
+    found = values.isel({dim: 0 for dim in values.dims if dim not in panels}).to_numpy()
+    known = found[np.isfinite(found)]
+    return (float(known.min()), float(known.max())) if known.size else None
+
+
+def plot_map(
+    data: xr.Dataset,  # As `map_at` returns them.
+    name: str,
+    ax: Axes,
+    # Limits of the scale of colours, from `limits_of`; default: those of `data`.
+    limits: Limits = None,
+) -> Axes:
+    """`name` over speed and torque, with lines of equal value."""
+    values = in_percent(data[name]).transpose("torque", "speed")
+    if min(values.shape) < 2 or not np.isfinite(values).any():
+        longest = "torque" if data.sizes["torque"] > data.sizes["speed"] else "speed"
+        return plot_map_lines(data, name, longest, ax, limits)
+    low, high = limits or limits_of(data, name) or (0.0, 1.0)
+    speed, torque = (data[axis].to_numpy() for axis in PLANE)
+    of_efficiency = name == "efficiency"
+    norm = _efficiency_norm(low, high) if of_efficiency else Normalize(low, high)
+    field = ax.pcolormesh(
+        speed, torque, values, shading="gouraud", cmap=COLOUR_MAP, norm=norm, rasterized=True
+    )
+    below = of_efficiency and low < LEAST_EFFICIENCY
+    bar = ax.figure.colorbar(
+        field, ax=ax, label=label_of(values), extend="min" if below else "neither"
+    )
+    levels: list[float] | int = LEVELS
+    if name == HALF_WIDTH:
+        whole = MaxNLocator(LEVELS, integer=True).tick_values(low, high)
+        levels = [one for one in whole if low <= one <= high]
+        bar.set_ticks(levels, labels=[f"{one:g}" for one in levels])
+    if of_efficiency:
+        levels = [one for one in EFFICIENCIES if low <= one <= high]
+        bar.set_ticks(levels, labels=[f"{one:g}" for one in levels])
+        bar.ax.minorticks_off()
+        levels = [one for one in levels if one >= LEAST_LINE] or levels
+    if of_efficiency and torque.min() <= 0 <= torque.max():
+        _stretch_zero(ax, torque)
+    draw_lines(ax, (speed, torque, values.to_numpy()), levels)
+    ax.grid(visible=False)
+    ax.set(
+        title=title_of(values),
+        xlabel=_axis_label(data, "speed"),
+        ylabel=_axis_label(data, "torque"),
+    )
+    return ax
+
+
+def draw_lines(
+    ax: Axes,
+    field: tuple[Any, Any, Any],  # Places across and up, values.
+    # Values of the lines, of which the highest have labels; or about how many there are.
+    levels: Sequence[float] | int,
+) -> None:
+    """Lines of equal value, some of them with it."""
+    low, high = float(np.nanmin(field[2])), float(np.nanmax(field[2]))
+    even = isinstance(levels, int)
+    wanted = MaxNLocator(levels).tick_values(low, high) if isinstance(levels, int) else levels
+    drawn = [float(one) for one in wanted if low < one < high]
+    if not drawn:
+        return
+    lines = ax.contour(*field, levels=drawn, colors="white", linewidths=0.7)
+    edge: list[AbstractPathEffect] = [withStroke(linewidth=2.0, foreground="0.25")]
+    labelled = drawn[:: -(-len(drawn) // LABELS)] if even else drawn[-LABELS:]
+    to_axes = ax.transData - ax.transAxes
+    for text in ax.clabel(lines, labelled, fontsize="x-small", fmt="%g", inline=False):
+        text.set_path_effects(edge)
+        place = to_axes.transform(text.get_position())
+        if np.abs(place - 0.5).max() > 0.5 - EDGE:  # a part of it would be cut off
+            text.remove()
+
+
+def _efficiency_norm(low: float, high: float) -> FuncNorm:
+    """Colours of efficiencies, for which 98 and 99 % differ as much as 80 and 90 %."""
+    best = min(high, BEST_EFFICIENCY)
+    least = min(max(low, LEAST_EFFICIENCY), best)
+    if least == best:
+        best += 100 - BEST_EFFICIENCY
+    return FuncNorm((_log_of_loss, _from_log_of_loss), least, best)
+
+
+def _log_of_loss(efficiency: FloatArray) -> FloatArray:
+    found: FloatArray = -np.log10(100 - np.minimum(efficiency, BEST_EFFICIENCY))
+    return found
+
+
+def _from_log_of_loss(value: FloatArray) -> FloatArray:
+    found: FloatArray = 100 - np.power(10.0, -value)
+    return found
+
+
+def _stretch_zero(ax: Axes, torque: FloatArray) -> None:
+    """A torque axis that is linear next to zero and logarithmic beyond."""
+    full = float(np.abs(torque).max())
+    ax.set_yscale("symlog", linthresh=full * STRETCHED, linscale=0.5)
+    ticks = full * np.array([STRETCHED, 0.1, 0.3, 1.0])
+    ticks = np.concatenate([-ticks[::-1], [0.0], ticks])
+    ax.set_yticks(ticks[(ticks >= torque.min()) & (ticks <= torque.max())])
+    ax.yaxis.set_major_formatter(lambda value, _: format_number(value, 3))
+    ax.yaxis.set_minor_locator(NullLocator())
+
+
+def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes, limits: Limits = None) -> Axes:
+    """`name` over speed or torque, one line for some values of the other that are not negative."""
+    other = "torque" if over == "speed" else "speed"
+    unit = unit_text(str(data[other].attrs["units"]))
+    for number, index in enumerate(_some(data[other])):
+        line = data.isel({other: index})
+        ax.plot(
+            line[over],
+            in_percent(line[name]),
+            color=COLOURS[number],
+            ls=LINE_STYLES[number],
+            marker=".",
+            ms=3,
+            label=f"{format_number(float(line[other]), 3)} {unit}",
+        )
+    legend_below(ax, title=other, title_fontsize="small", ncols=3)
+    if limits is not None and limits[1] > 0:
+        ax.set_ylim(min(0.0, limits[0]), ROOM * limits[1])
+    values = in_percent(data[name])
+    ax.set(
+        title=f"{title_of(values)} over {over}",
+        xlabel=_axis_label(data, over),
+        ylabel=label_of(values),
+    )
+    return ax
+
+
+def plot_map_parts(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Axes:
+    """Components of the loss `name` over speed, one above the other, at the highest torque."""
+    highest = data.isel(torque=-1)
+    unit = data[name].attrs["units"]
+    parts = [
+        part
+        for part, values in highest.data_vars.items()
+        if values.attrs.get("units") == unit and part not in LOSS_SUMS and float(values.max()) > 0
+    ]
+    parts = parts or [name]  # nothing is lost, as where a train turns as one body
+    areas = ax.stackplot(
+        highest["speed"],
+        [highest[part] for part in parts],
+        labels=[str(part).replace("_", " ") for part in parts],
+        colors=COLOURS,
+        edgecolor="white",
+        linewidth=0.6,
+    )
+    for number, area in enumerate(areas):  # which tell the same colours apart, and all in grey
+        area.set_hatch(HATCHES[number % len(HATCHES)])
+    if limits is not None and limits[1] > 0:
+        ax.set_ylim(0.0, ROOM * limits[1])
+    torque = f"{float(highest['torque']):g} {unit_text(str(highest['torque'].attrs['units']))}"
+    ax.set(
+        title=f"Components of the loss at {torque}",
+        xlabel=_axis_label(data, "speed"),
+        ylabel=label_of(data[name]),
+    )
+    handles, labels = ax.get_legend_handles_labels()
+    ax.legend(
+        handles[::-1],
+        labels[::-1],
+        fontsize="x-small",
+        loc="center left",
+        bbox_to_anchor=(1.0, 0.5),
+        frameon=False,
+    )
+    return ax
+
+
+def plot_half_width(
+    data: xr.Dataset,  # As `map_at` returns them, from a map with its uncertainty.
+    ax: Axes,
+    limits: Limits = None,  # Limits of the scale of colours, from `limits_of_half_width`.
+) -> Axes:
+    """Half the width of the 95 % band of the total loss, over the loss, over speed and torque."""
+    share = _half_width(data)
+    known = data.assign({HALF_WIDTH: share}).sel(
+        speed=share.notnull().any([dim for dim in share.dims if dim != "speed"])
+    )  # at rest nothing is lost
+    return plot_map(known, HALF_WIDTH, ax, limits)
+
+
+def limits_of_half_width(data: xr.Dataset) -> Limits:
+    """Least and greatest half width in all panels, in whole percent: it is not known better."""
+    found = limits_of(data.assign({HALF_WIDTH: _half_width(data)}), HALF_WIDTH)
+    return found and (math.floor(found[0]), math.ceil(found[1]))
+
+
+def _half_width(data: xr.Dataset) -> xr.DataArray:
+    total = data.sel(result="total", drop=True)
+    share = 50 * (total["high"] - total["low"]) / total["nominal"].where(total["nominal"] > 0)
+    about = {"long_name": "half width of the 95 % band of the loss", "units": "%"}
+    return share.assign_attrs(about)
+
+
+def plot_band_lines(data: xr.Dataset, over: str, ax: Axes, limits: Limits = None) -> Axes:
+    """The total loss with its 95 % band over speed or torque, for some values of the other."""
+    plot_map_lines(data, "total", over, ax, limits)
+    other = "torque" if over == "speed" else "speed"
+    total = data.sel(result="total")
+    for number, index in enumerate(_some(data[other])):
+        line = total.isel({other: index})
+        for end in ("low", "high"):
+            ax.plot(line[over], line[end], color=COLOURS[number], lw=0.6)
+        ax.fill_between(
+            line[over], line["low"], line["high"], color=COLOURS[number], alpha=0.2, linewidth=0
+        )
+    ax.set_title(f"{ax.get_title(loc='left')}, with its 95 % band")
+    return ax
+
+
+def limits_of_band(data: xr.Dataset) -> Limits:
+    """Lower end of the lowest and upper end of the highest band of the loss in all panels."""
+    total = data.sel(result="total", drop=True)
+    ends = [limits for end in ("low", "high") if (limits := limits_of(total, end)) is not None]
+    return (min(low for low, _ in ends), max(high for _, high in ends)) if ends else None
+
+
+def _some(axis: xr.DataArray) -> list[int]:
+    """Places of values near to evenly spaced ones on an axis, of one sign if there are both."""
+    values = axis.to_numpy()
+    places = np.flatnonzero(values >= 0)
+    if not places.size:
+        places = np.arange(axis.size)
+    wanted = np.linspace(values[places].min(), values[places].max(), MOST_LINES)
+    nearest = np.abs(values[places] - wanted[:, None]).argmin(axis=1)
+    return [int(one) for one in np.unique(places[nearest])]
+
+
+def _axis_label(data: xr.Dataset, name: str) -> str:
+    """``"speed of the sun, rpm"``."""
+    unit = unit_text(str(data[name].attrs["units"]))
+    preposition = "of" if name == "speed" else "on"
+    return f"{name} {preposition} the {data.attrs['reference_shaft']}, {unit}"

@@ -1,0 +1,1 @@
+"""How well losses are known."""

@@ -1,0 +1,177 @@
+"""What limits the trust in a result, and what would raise it most."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic import library
+from epicyclic.builders.build import layout_of
+from epicyclic.case.case import Case
+from epicyclic.case.uncertain_values import MODEL_FORM
+from epicyclic.errors import ConvergenceError
+from epicyclic.losses.ranges import range_text
+from epicyclic.results.result import Result
+from epicyclic.study.friction import compare_friction, recommended
+from epicyclic.units import known_text, percent
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# How well a result is known: what sentences about it need, however it was found.
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """The band of a result, what makes it, and what to know of it."""
+
+    unit: str  # Unit of the total and its parts.
+    nominal: Mapping[str, float]  # Results of the case.
+    ends: Mapping[str, tuple[float, float]]  # Ends of the symmetric 95 % interval of each result.
+    draws: Mapping[str, NDArray[np.float64]]  # What each result may be.
+    shares: Mapping[str, float]  # Shares of drivers in the variance of the total, each alone. [1]
+    names: Mapping[str, str]  # What each input is called, and how to know it better.
+    advice: Mapping[str, str]  # What each input is called, and how to know it better.
+    remarks: tuple[str, ...]  # Sentences on warnings and models.
+
+    @property
+    def width(self) -> float:
+        """Width of the band of the total."""
+        low, high = self.ends["total"]
+        return high - low
+
+    @property
+    def drivers(self) -> list[tuple[str, float]]:
+        """Drivers with their shares, the largest first."""
+        return sorted(self.shares.items(), key=lambda item: -item[1])
+
+
+def known_of(data: xr.Dataset) -> Known:
+    """What a dataset of `uncertainty`, of a case or cycle or kept with a result, says."""
+    results = [str(name) for name in data["result"].values]
+    inputs = [str(key) for key in data["input"].values]
+    own = data["first_order"].sel(sum="total").clip(0.0, 1.0)
+    ends = zip(data["low"].values.tolist(), data["high"].values.tolist(), strict=True)
+    return Known(
+        unit=str(data["unit"].sel(result="total").values),
+        nominal=dict(zip(results, data["nominal"].values.tolist(), strict=True)),
+        ends=dict(zip(results, ends, strict=True)),
+        draws=dict(zip(results, data["value"].values, strict=True)),
+        shares=dict(zip(map(str, own["driver"].values), own.values.tolist(), strict=True)),
+        names=dict(zip(inputs, map(str, data["input_name"].values), strict=True)),
+        advice=dict(zip(inputs, map(str, data["input_advice"].values), strict=True)),
+        remarks=tuple(str(data.attrs["remarks"]).splitlines()),
+    )
+
+
+# What limits the trust in a result, and what would raise it most.
+
+
+LEAST = 0.02
+"""Share in the variance of the total from which a value is said to limit the trust. [1]"""
+CONCERNED = 0.05
+"""Part of the total loss from which a warning matters. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A value, or several that are correlated, that the band is due to."""
+
+    name: str
+    advice: str  # What to do about it.
+    width: float  # Width of the band that it makes alone, in the unit of the total.
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """Something that could be measured."""
+
+    name: str
+    is_input: bool  # False for a part of the loss.
+    width: float  # Width of the band that is left once it is known, in the unit of the total.
+
+
+def limits_of(known: Known) -> list[Limit]:
+    """What makes the band, the most important first.
+
+    The band that a value makes alone is that of the total times the root of its share.
+    """
+    found = []
+    for driver, share in known.drivers:
+        if share < LEAST:
+            break
+        advice = dict.fromkeys(known.advice[key] for key in _keys(driver))
+        found.append(Limit(_called(known, driver), "; ".join(advice), known.width * sqrt(share)))
+    return found
+
+
+def measurements_of(known: Known) -> list[Measurement]:
+    """What could be measured, that which narrows the band most first. Theory (U12)."""
+    found = [
+        Measurement(_called(known, driver), True, known.width * sqrt(1 - share))
+        for driver, share in known.shares.items()
+        if not driver.startswith(MODEL_FORM)
+    ]
+    for entry in library.uncertainty_table()["measurements"]:
+        left = _left(known, entry["result"], entry["uncertainty"])
+        name = f"{entry['name']} (u {percent(entry['uncertainty'], 0)})"
+        found.append(Measurement(name, False, known.width * sqrt(left)))
+    return sorted(found, key=lambda it: it.width)
+
+
+def _keys(driver: str) -> list[str]:
+    """Keys of one value, or of several that are correlated."""
+    return driver.split(" + ")
+
+
+def _called(known: Known, driver: str) -> str:
+    return " + ".join(known.names[key] for key in _keys(driver))
+
+
+def _left(known: Known, name: str, uncertainty: float) -> float:
+    """Part of the variance of the total that is left once a part of the loss is measured."""
+    part, total = known.draws[name], known.draws["total"]
+    sound = np.isfinite(part) & np.isfinite(total)
+    (own, both), (_, whole) = np.cov(part[sound], total[sound])
+    error = uncertainty * known.nominal[name]
+    spread = own + error**2
+    return float(np.clip(1 - both**2 / spread / whole, 0.0, 1.0)) if spread and whole else 1.0
+
+
+def model_remarks(case: Case, result: Result, *, brief: bool = False) -> list[str]:
+    """Which warnings matter, in watts, and which friction model suits the oil and the range.
+
+    With `brief` only what takes a fraction of a second.
+    """
+    return [*_warnings(result), *_friction(case, brief)]
+
+
+def _warnings(result: Result) -> Iterator[str]:
+    flags = sorted(result.flags_with_loss, key=lambda pair: -np.nan_to_num(pair[0], nan=np.inf))
+    told = [
+        f"{range_text(group)} ({known_text(watts)})"
+        for watts, group in flags
+        if watts >= CONCERNED * result.total
+    ]
+    if told:
+        yield f"Warnings that matter, with the loss that they concern: {'; '.join(told)}."
+    elif flags:
+        yield f"No warning concerns more than {percent(CONCERNED, 0)} of the loss."
+
+
+def _friction(case: Case, brief: bool) -> Iterator[str]:
+    quick = case.kind != "train" and case.models.temperatures == "inlet"
+    if not layout_of(case).meshes or not case.operation.torque or (brief and not quick):
+        return
+    try:
+        best, why = recommended(compare_friction(case, brief=True))
+    except ConvergenceError:  # of a model that is not that of the case
+        return
+    does = "suits" if best.chosen else "would suit better than that of the case"
+    yield f"Friction: {best.name} {does}: {why}."

@@ -1,0 +1,184 @@
+"""What follows from the gears of a case before anything is computed, as on a data sheet."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from epicyclic.case import build
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.listed_set import gear_of, meshes_of
+from epicyclic.case.thickness import allowance_shift, allowances, tolerances_of
+from epicyclic.case.train import TrainCase
+from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet
+from epicyclic.gears import measures
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.measures import FlankTolerances
+from epicyclic.gears.mesh import Mesh, recommended_backlash
+from epicyclic.oil.properties import OilState, oil_state
+
+
+@dataclass(frozen=True, slots=True)
+class GearSheet:
+    """One gear."""
+
+    gear: Gear
+    nominal_shift: float  # x before allowances. [1]
+    normal_thickness: float  # s_n at the reference circle. [m]
+    roughness: float  # Rq. [m]
+    # k and W_k [m]; None for a helical ring, and where a span does not touch the flanks.
+    span: tuple[int, float] | None
+    pins: tuple[float, float] | None  # D_M and M_d [m]; None where balls do not touch the flanks.
+    allowances: tuple[float, float] | None  # A_sne and A_sni, where the case states them. [m]
+    tolerances: FlankTolerances | None  # By the class that the case states.
+
+
+@dataclass(frozen=True, slots=True)
+class MeshSheet:
+    """One mesh."""
+
+    mesh: Mesh
+    recommended_backlash: float  # Least j_bn of ISO/TR 10064-2. [m]
+    # Sliding over rolling speed of each member at its root. [1]
+    specific_sliding: tuple[float | None, float | None]
+
+
+@dataclass(frozen=True, slots=True)
+class DataSheet:
+    """The gears of a set or pair."""
+
+    gears: tuple[GearSheet, ...]
+    meshes: tuple[MeshSheet, ...]
+
+
+def data_sheets(case: Case) -> dict[str, DataSheet]:
+    """The gears of every computed set, by its name; that of a set or pair has none.
+
+    Examples
+    --------
+    >>> import epicyclic as ep
+    >>> sheet = data_sheets(ep.load_case("talbot-2012"))[""]
+    >>> [one.gear.name for one in sheet.gears]
+    ['sun', 'planet', 'ring']
+    >>> round(sheet.meshes[0].mesh.transverse_contact_ratio, 2)
+    1.38
+    """
+    if isinstance(case, TrainCase):
+        return {
+            name: _sheet(gears, meshes)
+            for name, table in case.sets.items()
+            if (gears := dict(_gears(table)))
+            for meshes in [_meshes(case, name, table)]
+        }
+    tables = _tables(case)
+    gears = {name: (build.gear(name, table, case.gears), table) for name, table in tables.items()}
+    return {"": _sheet(gears, _own_meshes(case))}
+
+
+def _tables(table: PlanetaryCase | GearPairCase | PlanetarySet | PairSet) -> dict[str, GearTable]:
+    if isinstance(table, PlanetaryCase | PlanetarySet):
+        return {"sun": table.sun, "planet": table.planet, "ring": table.ring}
+    return {"pinion": table.pinion, "gear": table.gear}
+
+
+def _own_meshes(
+    table: PlanetaryCase | GearPairCase | PlanetarySet | PairSet,
+) -> tuple[Mesh, ...]:
+    if isinstance(table, PlanetaryCase | PlanetarySet):
+        return build.planetary_meshes(table.gears, table.sun, table.planet, table.ring)
+    return (build.pair_mesh(table.gears, table.pinion, table.gear),)
+
+
+def _gears(
+    table: object,
+) -> Iterator[tuple[str, tuple[Gear, GearTable]]]:
+    """Gears of a computed set of a train; none of one of given efficiency."""
+    if isinstance(table, ListedSet):
+        for gear, member in table.members.items():
+            yield gear, (gear_of(table, gear), member)
+    elif isinstance(table, PlanetarySet | PairSet):
+        for gear, own in _tables(table).items():
+            yield gear, (build.gear(gear, own, table.gears), own)
+
+
+def _meshes(case: TrainCase, name: str, table: object) -> tuple[Mesh, ...]:
+    if isinstance(table, ListedSet):
+        return tuple(mesh for _, mesh, _ in meshes_of(table, case.shape.sets[name]))
+    assert isinstance(table, PlanetarySet | PairSet)
+    return _own_meshes(table)
+
+
+def _sheet(gears: Mapping[str, tuple[Gear, GearTable]], meshes: tuple[Mesh, ...]) -> DataSheet:
+    return DataSheet(
+        tuple(_gear_sheet(gear, table) for gear, table in gears.values()),
+        tuple(_mesh_sheet(mesh) for mesh in meshes),
+    )
+
+
+def _gear_sheet(gear: Gear, table: GearTable) -> GearSheet:
+    rack = gear.rack
+    thickness = 2 * gear.reference_radius * gear.thickness_half_angle
+    return GearSheet(
+        gear,
+        gear.profile_shift_coefficient - allowance_shift(table, rack),
+        thickness * math.cos(rack.helix_angle),
+        table.roughness,
+        _span(gear, table),
+        _pins(gear, table),
+        allowances(table, rack),
+        tolerances_of(gear, table),
+    )
+
+
+def _on_flank(gear: Gear, radius: float) -> bool:
+    low, high = sorted((gear.root_radius, gear.tip_radius))
+    return low < radius < high
+
+
+def _span(gear: Gear, table: GearTable) -> tuple[int, float] | None:
+    """As stated, or over the number of teeth whose span touches in the middle."""
+    if gear.internal and gear.rack.helix_angle > 0:
+        return None
+    count = table.teeth_in_span or measures.usual_span_teeth(gear)
+    value = measures.span(gear, count)
+    return (count, value) if _on_flank(gear, measures.span_contact_radius(gear, value)) else None
+
+
+def _pins(gear: Gear, table: GearTable) -> tuple[float, float] | None:
+    pin = table.measuring_pin_diameter or measures.usual_pin(gear.rack)
+    try:
+        radius, value = (
+            measures.pin_contact_radius(gear, pin),
+            measures.dimension_over_pins(gear, pin),
+        )
+    except ValueError:
+        return None
+    return (pin, value) if _on_flank(gear, radius) else None
+
+
+def _mesh_sheet(mesh: Mesh) -> MeshSheet:
+    rack = mesh.gear1.rack
+    start, end = mesh.path_start, mesh.path_end
+    return MeshSheet(
+        mesh,
+        recommended_backlash(rack, mesh.center_distance),
+        (
+            _sliding(start, mesh.curvature2(start) / mesh.ratio),
+            _sliding(mesh.curvature2(end), end * mesh.ratio),
+        ),
+    )
+
+
+def _sliding(own: float, other: float) -> float | None:
+    """zeta = 1 - v_other/v_own, the specific sliding of DIN 3960; None at the base circle. [1]"""
+    return 1 - other / own if own > 0 else None
+
+
+def oil_at_inlet(case: Case) -> OilState | None:
+    """Properties of the oil at the inlet temperature; None of a case without oil."""
+    temperature = case.operation.oil_inlet_temperature
+    if case.lubricant is None or temperature is None:
+        return None
+    return oil_state(case.lubricant.oil, temperature)

@@ -1,0 +1,243 @@
+"""Friction models side by side on one case, and the methods that a case asks for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from epicyclic.builders.build import build
+from epicyclic.builders.gearing import SetCase
+from epicyclic.builders.models import (
+    fitted_oil_model,
+    friction_of,
+    friction_settings,
+    pocketing_of,
+    resolve_models,
+    rolling_of,
+    standing_of,
+)
+from epicyclic.builders.train import set_cases
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.listed_set import ListedCase
+from epicyclic.case.train import TrainCase
+from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
+from epicyclic.losses.drag import DRAG_METHOD, DRAG_SOURCE, VISCOUS_METHOD, VISCOUS_SOURCE
+from epicyclic.losses.fitted import FittedOrSchlenk
+from epicyclic.losses.friction import FRICTION_MODELS
+from epicyclic.losses.ranges import ValidityFlag, range_left, share_text
+from epicyclic.machine.element import LOAD_DEPENDENT
+from epicyclic.machine.gear_mesh import OHLENDORF_SOURCE
+from epicyclic.machine.gear_set import GearSet
+from epicyclic.machine.planets import SHARING_METHODS
+from epicyclic.machine.pocket_flow import POCKETING_SOURCE, pocketing_method
+from epicyclic.results.result import Result, in_words
+from epicyclic.study.solve import build_computed, solve
+from epicyclic.units import percent
+
+# Friction models side by side on one case, and which of them suits it.
+
+
+MOSTLY = 0.5
+"""Share of the loss outside its range up to which a model made for the oil is preferred. [1]"""
+UNEQUAL = 0.01
+"""Relative difference of sliding losses from which the pairing of the flanks matters. [1]"""
+PAIRED = "mixed-ehl+pairing"
+_FOR_ONE_OIL = ("mixed-ehl", FittedOrSchlenk.name, "xu-2007")
+"""Models made for an oil, the one that is known best first."""
+_OF_ALL_OILS = ("schlenk", "niemann-winter")
+"""Fitted to gear tests with many oils, the one recommended first."""
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionComparison:
+    """One friction model on one case."""
+
+    name: str  # The model.
+    title: str  # The model.
+    source: str  # The model.
+    chosen: bool  # True for the model of the case.
+    mean_friction: dict[str, float]  # For each mesh. [1]
+    sliding: float  # Sliding loss of all meshes, local along the contact lines. [W]
+    quick: float  # The same by mean friction times Ohlendorf's loss factor. [W]
+    flagged: bool  # True if the model was used outside the range in which it was made.
+    # Which ranges it leaves, by how much, and with what share of the loss.
+    reasons: tuple[str, ...]
+    outside: float  # Share of the sliding loss outside its range. [1]
+    # The fluid that it was made for, if that is not the oil of the case; else empty.
+    other_oil: str
+    own_oil: bool  # True if it was made for the oil of the case, and for no other.
+    standing: str  # How well it is known to be right.
+
+
+def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionComparison, ...]:
+    """Every friction model on `case`, by the local and by the quick method.
+
+    In a train all sets get the same model; none is chosen if the case chooses several.
+
+    The model ``table`` takes part if the case has a friction table, ``fitted-or-schlenk`` if there
+    are fitted models of the oil, ``fitted`` and ``ehl-direct`` if the case chooses them. With
+    `brief` only those that `recommended` looks at, without the quick method, whose loss is NaN.
+
+    Raises
+    ------
+    InputError
+        If the case is a train of given efficiencies.
+    """
+    built = build_computed(case)
+    owners = [own for _, own in set_cases(case, built.sets)]
+    chosen = {resolve_models(own)["friction"] for own in owners}
+    rows = []
+    for name in dict.fromkeys([*_models_for(owners), *sorted(chosen)]):
+        if brief and name not in (*_FOR_ONE_OIL, PAIRED, *_OF_ALL_OILS, *chosen):
+            continue
+        local = solve(_with(case, {"friction": name, "mesh": "local"}))
+        quick_case = _with(case, {"friction": name, "mesh": "loss-factor"})
+        quick = math.nan if brief else _sliding(solve(quick_case))
+        own = next(own for _, own in set_cases(quick_case, built.sets))
+        model = friction_of(own)
+        flags = [flag for flag in local.flags if flag.use.role == "friction"]
+        fluid = model.made_for
+        same = fluid is not None and fluid.key == own.lubricant.oil.friction_regression
+        rows.append(
+            FrictionComparison(
+                name=name,
+                title=model.title,
+                source=model.source,
+                chosen=chosen == {name},
+                mean_friction={key: mesh.friction_mean for key, mesh in local.meshes.items()},
+                sliding=_sliding(local),
+                quick=quick,
+                flagged=bool(flags),
+                reasons=tuple(_reason(flag) for flag in flags),
+                outside=_outside(local, flags),
+                other_oil="" if fluid is None or same else fluid.title,
+                own_oil=same or name == FittedOrSchlenk.name,
+                standing=standing_of(own)["friction"].removeprefix(f"{name}: "),
+            )
+        )
+    return tuple(rows)
+
+
+def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison, str]:
+    """The model that suits the oil and the conditions, and why.
+
+    A model made for the oil comes first, if most of the loss lies where it was made; then the
+    formulas of gear tests, which many oils stand behind; of these the one that leaves its range
+    least.
+    """
+    by_name = {row.name: row for row in rows}
+    own = [by_name[name] for name in _FOR_ONE_OIL if name in by_name and by_name[name].own_oil]
+    paired = by_name.get(PAIRED)
+    for row in own:
+        if row.outside <= MOSTLY:
+            if row.name == "mixed-ehl" and paired is not None and _differ(row, paired):
+                why = "it was made for this oil, and tells flanks of unequal roughness apart"
+                return paired, f"{why}; {_inside(paired)}"
+            fitted = row.name == FittedOrSchlenk.name
+            made = "fitted to simulated contacts of" if fitted else "made for"
+            return row, f"it was {made} this oil, and {_inside(row)}"
+    general = min((by_name[name] for name in _OF_ALL_OILS), key=lambda row: row.outside)
+    why = "it was fitted to gear tests with many oils"
+    if own:
+        outside = percent(own[0].outside, 0)
+        why += f", while {outside} of the loss is outside the range of {own[0].name}"
+    else:
+        why += ", and no model was made for this oil ('epicyclic oil characterise' makes one)"
+    return general, f"{why}; {_inside(general)}"
+
+
+def _differ(row: FrictionComparison, paired: FrictionComparison) -> bool:
+    """Whether the pairing of the flanks matters."""
+    return abs(paired.sliding - row.sliding) > UNEQUAL * row.sliding
+
+
+def _inside(row: FrictionComparison) -> str:
+    if not row.flagged:
+        return "all of the loss is within its range"
+    return f"{percent(1 - row.outside, 0)} of the loss is within its range"
+
+
+def _models_for(owners: Sequence[SetCase]) -> Iterator[str]:
+    """The models that can be used for every set."""
+    for name in FRICTION_MODELS:
+        if name != "table" or friction_settings(owners[0]).table is not None:
+            yield name
+    fitted = [fitted_oil_model(own) for own in owners]
+    if all(model is not None and "friction" in model.fits for model in fitted):
+        yield FittedOrSchlenk.name
+
+
+def _reason(flag: ValidityFlag) -> str:
+    """``"sun mesh: Hertz pressure 0.1 to 0.4 GPa; range from 0.5 GPa (...), 20 % of the loss"``."""
+    left = range_left([flag]).removeprefix("Out of range: ").removesuffix(".")
+    instead = f", {flag.use.instead} takes over" if flag.use.instead else ""
+    return f"{flag.use.where}: {left}, {share_text(flag.share)} of the loss{instead}"
+
+
+def _outside(result: Result, flags: Sequence[ValidityFlag]) -> float:
+    """Share of the sliding loss of all meshes that is outside some range. [1]"""
+    total, outside = 0.0, 0.0
+    for key in result.meshes:
+        watts = result.losses[f"{key}_sliding"]
+        shares = [flag.share for flag in flags if flag.use.where == in_words(key)]
+        total += watts
+        outside += watts * max(shares, default=0.0)
+    return outside / total if total else 0.0
+
+
+def _with(case: Case, models: Mapping[str, str]) -> Case:
+    """The case with other models, in a train also of the sets that choose their own."""
+    changes = {f"models.{key}": model for key, model in models.items()}
+    if isinstance(case, TrainCase):
+        changes |= {
+            f"sets.{name}.models.{key}": model
+            for name, tables in case.given()["sets"].items()
+            if "models" in tables
+            for key, model in models.items()
+        }
+    return case.updated(changes)
+
+
+def _sliding(result: Result) -> float:
+    return math.fsum(
+        term.watts
+        for term in result.terms
+        if term.group == LOAD_DEPENDENT and term.name.endswith("_sliding")
+    )
+
+
+# The methods that a case asks for and where they are printed, without solving it.
+
+
+def methods_of(case: Case) -> dict[str, tuple[str, str]]:
+    """Title and source of the method for each role, ``"friction"``; of a train with the set."""
+    built = build(case)
+    methods: dict[str, tuple[str, str]] = {}
+    for name, own in set_cases(case, built.sets):
+        prefix = f"{name}: " if name else ""
+        found = _methods_of_set(own, built.sets[name])
+        methods |= {f"{prefix}{role}": method for role, method in found.items()}
+    return methods
+
+
+def _methods_of_set(
+    case: PlanetaryCase | GearPairCase | ListedCase, own: GearSet
+) -> dict[str, tuple[str, str]]:
+    friction, rolling = friction_of(case), rolling_of(case)
+    methods = {"friction": (friction.title, friction.source)}
+    if resolve_models(case)["mesh"] == "loss-factor":
+        methods["mesh loss"] = ("friction times the loss factor", OHLENDORF_SOURCE)
+    else:
+        methods["rolling"] = (rolling.title, rolling.source)
+    distribution = LOAD_DISTRIBUTIONS[case.models.load_distribution]
+    methods["load distribution"] = (distribution.title, distribution.source)
+    methods["pocketing"] = (pocketing_method(pocketing_of(case), None), POCKETING_SOURCE)
+    methods["drag"] = (DRAG_METHOD, DRAG_SOURCE)
+    if own.sharing is not None:
+        methods["load sharing"] = SHARING_METHODS[own.sharing.method]
+    for planet in own.planets:
+        if planet.bearing is not None:
+            methods["planet bearing"] = planet.bearing.method
+            methods["bearings, viscous"] = (VISCOUS_METHOD, VISCOUS_SOURCE)
+    return methods

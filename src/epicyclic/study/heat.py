@@ -1,0 +1,383 @@
+"""How hot a gearbox gets, and which cooling, flow or power leads to a temperature of its oil."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from pydantic_core import PydanticCustomError
+
+from epicyclic.builders.temperatures import oil_medium
+from epicyclic.case.case import Case
+from epicyclic.case.fields import quantity_of
+from epicyclic.case.wording import refused, written
+from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.machine.element import LOAD_DEPENDENT
+from epicyclic.machine.heat import COLDEST, HOTTEST
+from epicyclic.plugins.contact_solver.direct import EhlDirect
+from epicyclic.results.heat import HeatBalance
+from epicyclic.results.result import Result, in_words
+from epicyclic.study.solve import solve
+from epicyclic.units import CELSIUS, NEWTON_METRE, Power, Quantity, Temperature, VolumeFlow
+
+NETWORK = {"models.temperatures": "network"}
+TEMPERATURE = "oil temperature"
+"""What ranges of formulas call the temperature of a contact."""
+ROLES = {"friction": "sliding", "rolling": "rolling", "bearing": "mechanical"}
+"""Models whose oil is held in their range, with the losses that they compute."""
+CLOSE = 1e-5
+"""Difference to the wanted temperature that counts as none. [K]"""
+STILL = 1e-3
+"""Change of a temperature below which more of a quantity has no effect. [K]"""
+EXPECTED = 8
+"""Settled states that a search mostly takes. [1]"""
+MOST_STEPS, STEP = 6, 4.0
+"""In search of a temperature on the other side of the wanted one: how many, how far. [1]"""
+
+
+# --- what a result says about its temperatures ----------------------------------------------------
+
+
+def heat_balance(case: Case) -> HeatBalance:
+    """Temperatures of all parts of a gearbox, and the ways of its heat.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+        Whatever its ``models.temperatures`` is, the network of all its parts is solved.
+
+    Returns
+    -------
+    HeatBalance
+
+    Raises
+    ------
+    InputError
+        If all losses of the case are given, or its heat has no way out.
+    ConvergenceError
+        If it runs away: losses and heat find no balance.
+
+    Examples
+    --------
+    >>> import epicyclic as ep
+    >>> case = ep.load_case("talbot-2012-pair", {
+    ...     "operation.torque": "100 N*m", "operation.speed": "2000 rpm",
+    ...     "thermal.oil_flow": "2 l/min"})
+    >>> heat = ep.heat_balance(case)
+    >>> heat.temperatures["pinion"] > heat.oil > heat.given["oil_inlet"]
+    True
+    """
+    found = solve(with_network(case)).heat
+    assert found is not None
+    return found
+
+
+def with_network(case: Case) -> Case:
+    """The case with the network of its parts.
+
+    Raises
+    ------
+    InputError
+        If all its losses are given, so that it has no oil.
+    """
+    _check_oil(case)
+    return case.updated(NETWORK)
+
+
+def _check_oil(case: Case) -> None:
+    if case.lubricant is None:
+        allowed = "needs a case that computes losses; all those of this one are given."
+        raise InputError([Problem("models.temperatures", "network", allowed, "")], case.source)
+
+
+def hottest(heat: HeatBalance) -> str:
+    """The hottest part."""
+    return max(heat.temperatures, key=lambda node: heat.temperatures[node])
+
+
+def takes_minutes(result: Result) -> bool:
+    """True if the contacts of a mesh are solved, so that another solution takes minutes."""
+    return EhlDirect.name in result.models.values()
+
+
+def with_warm_flanks(case: Case) -> Result:
+    """The result of a case at the bulk temperatures that its own meshes give to its gears."""
+    return solve(case.updated({"models.temperatures": "flank"}))
+
+
+@dataclass(frozen=True, slots=True)
+class BeyondRange:
+    """Meshes with oil hotter than the range of their formulas, and held at its limit."""
+
+    share: float  # Share of the load-dependent loss. [1]
+    low: float  # The range. [degC]
+    high: float  # The range. [degC]
+
+
+def beyond_range(case: Case, result: Result) -> BeyondRange | None:
+    """The part of the loss whose oil is too hot for its formula; None if there is none.
+
+    Theory (F5).
+    """
+    terms = {in_words(term.name): term.watts for term in result.terms}
+    hot = [
+        flag
+        for flag in result.flags
+        if flag.quantity == TEMPERATURE
+        and flag.use.role in ROLES
+        and flag.high is not None
+        and flag.found_high > flag.high
+    ]
+    watts = sum(flag.share * terms[f"{flag.use.where} {ROLES[flag.use.role]}"] for flag in hot)
+    if not watts or case.models.oil_beyond_range != "held":
+        return None
+    low, high = hot[0].low, hot[0].high
+    assert low is not None
+    assert high is not None
+    loaded = sum(term.watts for term in result.terms if term.group == LOAD_DEPENDENT)
+    return BeyondRange(watts / loaded, low, high)
+
+
+def without_holding(case: Case) -> Result:
+    """The result of a case whose formulas go on beyond their range of oil."""
+    return solve(case.updated({"models.oil_beyond_range": "extrapolated"}))
+
+
+# --- what leads to a temperature ------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A value with which the oil has a wanted temperature.
+
+    Attributes
+    ----------
+    key : str
+        Key of the case.
+    value : float
+        In SI.
+    unit : Quantity
+        How it is shown.
+    temperature : float
+        Temperature of the oil, as wanted. [K]
+    case : Case
+        With the value.
+    result : Result
+        Result of that case.
+    """
+
+    key: str
+    value: float
+    unit: Quantity
+    temperature: float
+    case: Case
+    result: Result
+
+    def to_dict(self) -> dict[str, Any]:
+        """What was found and for which temperature, in the units stated beside them."""
+        return {
+            "key": self.key,
+            "value": self.unit.to_display(self.value),
+            "unit": self.unit.display,
+            "oil_temperature": {
+                "value": CELSIUS.to_display(self.temperature),
+                "unit": CELSIUS.display,
+            },
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class _Search:
+    """One quantity as a number from 0 upwards."""
+
+    key: str
+    unit: Quantity
+    value: Callable[[float], float]  # The quantity of a number.
+    scale: float  # The number where the temperature is guessed to be the wanted one.
+    warms: bool  # True if larger numbers make the oil hotter.
+    start: float | None = None  # Temperature of the oil at 0 where no case can have it. [K]
+    # Keys that the quantity replaces.
+    changes: Mapping[str, None] = field(default_factory=dict[str, None])
+
+
+def solve_for(
+    case: Case,
+    quantity: str,
+    temperature: str | float,
+    *,
+    progress: Callable[[int, int], object] | None = None,
+) -> Found:
+    """The cooling, flow or power with which the oil has a temperature.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+    quantity : str
+        ``"cooler_power"``: heat that a cooler takes from the oil; ``"oil_flow"``: oil that leaves
+        and comes back at the inlet temperature; ``"input_power"``: torque at the given speed.
+    temperature : str or float
+        Temperature of the oil in the gearbox: text with a unit, or in kelvin.
+    progress : callable, optional
+        Called with the number of settled states found, and of those expected.
+
+    Returns
+    -------
+    Found
+
+    Raises
+    ------
+    InputError
+        If no value of the quantity leads to that temperature.
+
+    Examples
+    --------
+    >>> import epicyclic as ep
+    >>> case = ep.load_case("talbot-2012-pair", {
+    ...     "operation.torque": "100 N*m", "operation.speed": "2000 rpm"})
+    >>> found = ep.solve_for(case, "oil_flow", "110 degC")
+    >>> round(found.result.heat.oil - 273.15, 4)
+    110.0
+    """
+    if quantity not in QUANTITIES:
+        allowed = f"is none of {', '.join(QUANTITIES)}."
+        raise InputError([Problem("quantity", written(quantity), allowed, "Name one of them.")])
+    target = _temperature(temperature)
+    _check_oil(case)
+    search = QUANTITIES[quantity](case, target)
+    tried: dict[float, Found | None] = {}
+
+    def excess(number: float) -> float:
+        if not number and search.start is not None:
+            return search.start - target
+        if number not in tried:
+            tried[number] = _attempt(case, search, number, target)
+            if progress is not None:
+                progress(len(tried), max(EXPECTED, len(tried) + 1))
+        found = tried[number]
+        if found is None:
+            is_hot = search.warms or number < search.scale
+            return (HOTTEST if is_hot else COLDEST) - target
+        over = _oil(found.result) - target
+        return 0.0 if abs(over) <= CLOSE else over
+
+    from scipy.optimize import brentq
+
+    ends = _bracket(excess, search, target)
+    number = brentq(excess, *ends, xtol=1e-12 * search.scale, rtol=1e-14)
+    found = tried.get(number)
+    if found is None or abs(_oil(found.result) - target) > 10 * CLOSE:
+        raise ConvergenceError(
+            f"no {search.key} gives the oil {CELSIUS.text(target)}: near "
+            f"{search.unit.text(search.value(number))} its temperature jumps."
+        )
+    return found
+
+
+def _oil(result: Result) -> float:
+    assert result.heat is not None
+    return result.heat.oil
+
+
+def _temperature(given: str | float) -> float:
+    """A temperature given as text or in kelvin. [K]"""
+    try:
+        return _unit(Temperature).parse(f"{given} K" if isinstance(given, int | float) else given)
+    except PydanticCustomError as error:
+        raise InputError([refused(error, "temperature", written(given))]) from None
+
+
+def _attempt(base: Case, search: _Search, number: float, target: float) -> Found | None:
+    """The result at a number; None if the gearbox runs away there."""
+    value = search.value(number)
+    changes = {search.key: search.unit.exact_text(value), **NETWORK, **search.changes}
+    case = base.updated(changes)
+    try:
+        return Found(search.key, value, search.unit, target, case, solve(case))
+    except ConvergenceError:
+        return None
+
+
+def _bracket(
+    excess: Callable[[float], float], search: _Search, target: float
+) -> tuple[float, float]:
+    """Numbers on both sides of the wanted temperature."""
+    before, number = 0.0, search.scale
+    over = excess(before)
+    for _ in range(MOST_STEPS):
+        next_over = excess(number)
+        if over * next_over <= 0:
+            return before, number
+        if abs(next_over) > abs(over) - STILL:
+            break
+        before, over, number = number, next_over, STEP * number
+    ends = (
+        f"{_limit(search, at)} it is at {CELSIUS.text(excess(at) + target, 4)}"
+        for at in (0.0, before or number)
+    )
+    raise InputError(
+        [
+            Problem(
+                f"oil at {CELSIUS.text(target)}",
+                "",
+                f"cannot be reached: {', '.join(ends)}.",
+                "Choose another temperature, or change other ways of the heat, [thermal].",
+            )
+        ]
+    )
+
+
+def _limit(search: _Search, number: float) -> str:
+    if not number and search.start is not None:
+        return f"with {search.key} beyond all bounds"
+    return f"with {search.key} = {search.unit.text(search.value(number), 4)}"
+
+
+def _unit(kind: Any) -> Quantity:
+    unit = quantity_of(kind)
+    assert unit is not None
+    return unit
+
+
+def _losses(base: Case) -> float:
+    """About what is lost. [W]"""
+    return solve(base.updated({"models.temperatures": "inlet"})).total or 1.0
+
+
+def _cooler_power(base: Case, _: float) -> _Search:
+    unit = _unit(Power)
+    return _Search("thermal.cooler_power", unit, float, _losses(base), warms=False)
+
+
+def _oil_flow(base: Case, target: float) -> _Search:
+    """The number is one over the flow: the temperature is about proportional to it."""
+    assert base.lubricant is not None
+    inlet = base.operation.oil_inlet_temperature
+    assert inlet is not None
+    oil = oil_medium(base.lubricant.oil, target)
+    rise = max(target - inlet, 1.0)
+    return _Search(
+        "thermal.oil_flow",
+        _unit(VolumeFlow),
+        lambda number: 1 / number,
+        scale=oil.density * oil.heat_capacity * rise / _losses(base),
+        warms=True,
+        start=inlet,
+        changes={"thermal.oil_outlet_temperature": None},
+    )
+
+
+def _input_power(base: Case, _: float) -> _Search:
+    torque = base.operation.torque
+    sign = -1.0 if torque < 0 else 1.0
+    return _Search(
+        "operation.torque", NEWTON_METRE, sign.__mul__, scale=abs(torque) or 100.0, warms=True
+    )
+
+
+QUANTITIES: Mapping[str, Callable[[Case, float], _Search]] = {
+    "cooler_power": _cooler_power,
+    "oil_flow": _oil_flow,
+    "input_power": _input_power,
+}
+"""What `solve_for` finds."""

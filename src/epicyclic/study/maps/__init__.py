@@ -1,0 +1,1 @@
+"""Loss maps, duty cycles and warming up."""

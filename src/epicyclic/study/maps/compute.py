@@ -1,0 +1,661 @@
+"""Loss maps: computed over speed, torque and temperature, resolved near zero torque."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import PydanticCustomError
+
+from epicyclic.builders.build import layout_of
+from epicyclic.case.case import Case, PlanetaryCase
+from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
+from epicyclic.case.train import TrainCase
+from epicyclic.case.wording import written
+from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
+from epicyclic.machine.element import HOUSING
+from epicyclic.results.result import Layout, number_fields
+from epicyclic.study.maps.tables import Lookup, check_map, map_case
+from epicyclic.study.solve import solve
+from epicyclic.study.sweeps.axes import Axis
+from epicyclic.study.sweeps.plan import PointList, SweepPlan, make_plan
+from epicyclic.study.sweeps.run import by_keys, to_dataset
+from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
+from epicyclic.units import NEWTON_METRE, RPM, WATT, format_number, unit_text
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# How far the energy lost over a duty cycle is off, because a map is interpolated.
+#
+# A sample of the points is solved directly. They are drawn with a probability that grows with the
+# energy that they lose, in one pass over points of unknown number: a point of energy w gets the key
+# E/w, E from the exponential distribution, and the smallest keys stay (Efraimidis and Spirakis,
+# Information Processing Letters 97 (2006) 181). With tau the smallest key left out, such a point
+# had the probability p = 1 - exp(-w tau) to stay, and the sum of x/p over the sample estimates the
+# sum of x over all points, with the variance (1 - p) x^2/p^2 of each, uncorrelated (Cohen and
+# Kaplan, PODC 2007, 225). A cycle of no more points than the sample is summed exactly.
+
+
+Array = NDArray[np.float64]
+_SEED = 0
+"""The same cycle and map give the same sample."""
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """What interpolation adds to the energy lost."""
+
+    energy: float  # Estimate of the energy by interpolation less that by direct solution. [J]
+    standard_error: float  # Standard error of the estimate, because only a sample is solved. [J]
+    # Largest deviation of the loss of one point of the sample, relative to its direct solution.
+    largest: float
+    method: str  # How it was found.
+
+
+class Sample:
+    """A sample of the points of a cycle."""
+
+    def __init__(self, size: int) -> None:
+        self._size = size
+        self._random = np.random.default_rng(_SEED)
+        self._keys = np.empty(0)
+        self._rows = np.empty((0, 0))
+
+    def add(self, point: Sequence[Array], power: Array, energy: Array) -> None:
+        """Offer points as the axes of the map, in their units; W and J."""
+        losing = energy > 0
+        rows = np.stack([*point, power, energy], axis=1)[losing]
+        keys = self._random.exponential(size=len(rows)) / rows[:, -1]
+        self._keys = np.append(self._keys, keys)
+        self._rows = np.concatenate([self._rows, rows]) if self._rows.size else rows
+        stay = np.argsort(self._keys)[: self._size + 1]
+        self._keys, self._rows = self._keys[stay], self._rows[stay]
+
+    def drawn(self) -> tuple[Array, Array]:
+        """Rows of the values of the axes, power, energy; and the probability of each."""
+        rows = self._rows[: self._size]
+        threshold = self._keys[self._size] if self._keys.size > self._size else math.inf
+        return rows, -np.expm1(-rows[:, -1] * threshold)
+
+
+def further_values(data: xr.Dataset) -> dict[str, Any]:
+    """The keys of the axes of a map beyond its own, which have one value each, and these."""
+    return {
+        str(values.attrs["case_key"]): written_values(values)[0]
+        for name, values in data.coords.items()
+        if "case_key" in values.attrs and name not in (*AXES, STATE)
+    }
+
+
+def written_values(axis: xr.DataArray) -> list[Any]:
+    """The values of an axis as a case has them."""
+    unit = axis.attrs.get("units", "1")
+    return [
+        number if isinstance(number, str) or unit == "1" else f"{number!r} {unit}"
+        for number in axis.values.ravel().tolist()
+    ]
+
+
+def solve_sample(case: Case, lookup: Lookup, sample: Sample, runner: Runner = HERE) -> Deviation:
+    """The deviation by direct solution of the points of `sample`."""
+    rows, chance = sample.drawn()
+    points = tuple(changes_at(lookup, row) for row in rows.tolist())
+    exact = case.updated({"numerics.pocket_interpolation": 0})
+    plan = PointList(exact, points)
+    direct = runner.within(plan).run(plan).numbers("total")
+    found = np.isfinite(direct)
+    method = f"{found.sum()} points of the cycle solved directly"
+    if not found.all():
+        method += f", {(~found).sum()} more without a solution"
+    if not found.any():
+        return Deviation(math.nan, math.nan, math.nan, method)
+    power, energy = rows[found, -2], rows[found, -1]
+    direct, chance = direct[found], chance[found]
+    difference = energy * (power - direct) / power / chance
+    return Deviation(
+        float(difference.sum()),
+        float(np.sqrt(np.sum((1 - chance) * difference**2))),
+        float(np.abs(power / direct - 1).max()),
+        method,
+    )
+
+
+def changes_at(lookup: Lookup, row: Sequence[float]) -> dict[str, str]:
+    """The keys that make a case of a point of a cycle."""
+    point = dict(zip(lookup.names, row, strict=False))
+    changes = {
+        part.key: part.text(point[name]) for name, part in OPERATING.items() if name in point
+    }
+    if STATE in point:
+        changes[STATE_KEY] = lookup.states[round(point[STATE]) - 1]
+    return changes
+
+
+def leave_out(lookup: Lookup, node_work: Array) -> Deviation:
+    """The deviation of a map of every second node from the whole one: more than that of the latter.
+
+    `node_work` is the angle turned through at each node. [rad]
+    """
+    thinned = lookup.thinned()
+    difference = float(node_work @ (thinned.total - lookup.total))
+    used = node_work > 0
+    relative = np.abs(thinned.total - lookup.total)[used] / lookup.total[used]
+    method = "map with every second node left out against the whole map; an upper estimate"
+    return Deviation(difference, math.nan, float(relative.max(initial=0.0)), method)
+
+
+# Torques that resolve zero, and how far a map is off between its torques.
+#
+# Near zero torque the rolling loss rises like a root, and at the torque that just drives the drag
+# behind a mesh the loss has a kink. A map that is read linearly needs torques there that crowd.
+
+
+FloatArray = NDArray[np.float64]
+
+RATIO = 2.0
+"""Between torques that crowd at zero: a loss that rises like a root is then met to 2 % of the part
+that rises. [1]"""
+CROWD = 10
+"""Torques between zero and the smallest of an even spacing, which is 1000 times the least."""
+CHECKED_NEAR_ZERO, CHECKED_BEYOND = 4, 4
+"""Intervals on each side of zero, and of all others, in whose middle a map is checked."""
+CLOSER_TO_ZERO = (1 / 8, 1 / 32)
+"""Where it is checked too in the first interval on each side, from its end at zero. [1]"""
+
+
+def resolving_zero(
+    torques: Iterable[float],
+    crowd: int = CROWD,  # How many on each side.
+) -> list[float]:
+    """`torques`, and on each side of zero that they reach more that crowd there, and zero.
+
+    Returns
+    -------
+    list of float
+        Rising. As given if zero is not among them or between them.
+
+    Examples
+    --------
+    >>> resolving_zero([0.0, 40.0, 80.0], crowd=4)
+    [0.0, 2.5, 5.0, 10.0, 20.0, 40.0, 80.0]
+    """
+    given = np.unique(np.array(list(torques), dtype=float))
+    if not given.size or given[0] > 0 or given[-1] < 0:
+        return list(map(float, given))
+    ends = [
+        side[np.abs(side).argmin()] for side in (given[given < 0], given[given > 0]) if side.size
+    ]
+    steps = RATIO ** -np.arange(1.0, crowd + 1)
+    found = np.concatenate([given, [0.0], *(end * steps for end in ends)])
+    return list(map(float, np.unique(found) + 0.0))  # no -0.0
+
+
+def resolving_texts(torques: Iterable[Any]) -> list[Any]:
+    """`torques` with units, and those that resolve zero; as given if one is no torque."""
+    given = list(torques)
+    try:
+        values = [NEWTON_METRE.to_display(NEWTON_METRE.parse(torque)) for torque in given]
+    except PydanticCustomError:
+        return given
+    return [f"{torque!r} {NEWTON_METRE.display}" for torque in resolving_zero(values)]
+
+
+def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]:
+    """What a map says of the error of linear interpolation between its torques.
+
+    Measured where it is largest, near zero torque, and at some torques beyond: between torques of
+    the map, at the middle one of its speeds and the first value of all other
+    axes, the loss is solved directly.
+
+    Returns
+    -------
+    dict
+        ``torque_interpolation_error``, relative [1], and ``torque_interpolation`` in words; nothing
+        if there is only one torque, no point can be solved, or one takes minutes.
+    """
+    torques = data["torque"].values.astype(float)
+    speeds = data["speed"].values[data["speed"].values != 0]
+    if torques.size < 2 or not speeds.size or _takes_minutes(case):
+        return {}
+    first = {name: 0 for name in data["total"].dims if name not in ("speed", "torque")}
+    speed = float(speeds[speeds.size // 2])
+    line = data.sel(speed=speed).isel(first)
+    middles = _checked(torques)
+    changes = further_values(line) | {OPERATING["speed"].key: OPERATING["speed"].text(speed)}
+    if "temperature" in first:
+        oil = OPERATING["temperature"]
+        changes[oil.key] = oil.text(line["temperature"].item())
+    if STATE in first:
+        changes[STATE_KEY] = line[STATE].item()
+    torque_key = OPERATING["torque"]
+    direct = np.array(
+        [
+            _total(case, changes | {torque_key.key: torque_key.text(float(middle))})
+            for middle in middles
+        ]
+    )
+    error = np.abs(np.interp(middles, torques, line["total"].values) / direct - 1)
+    if not np.isfinite(error).any():
+        return {}
+    worst = int(np.nanargmax(error))
+    return {
+        "torque_interpolation_error": float(f"{error[worst]:.2g}"),
+        "torque_interpolation": "linear in the torque, the total loss is off by "
+        f"{100 * error[worst]:.2g} % at most, at {format_number(float(middles[worst]), 3)} "
+        f"{unit_text(NEWTON_METRE.display)}: {np.isfinite(error).sum()} points between torques "
+        f"solved directly, at {format_number(speed)} rpm",
+    }
+
+
+def _checked(torques: FloatArray) -> FloatArray:
+    """Middles of the intervals next to zero and of some others, and more of the first on each side.
+
+    There the error is largest near the end at zero.
+    """
+    low, high = torques[:-1], torques[1:]
+    middles = (low + high) / 2
+    order = np.argsort(np.abs(middles), kind="stable")
+    sides = [order[middles[order] < 0], order[middles[order] >= 0]]
+    near = np.concatenate([side[:CHECKED_NEAR_ZERO] for side in sides])
+    others = np.setdiff1d(np.arange(middles.size), near)
+    places = np.linspace(0, others.size - 1, min(CHECKED_BEYOND, others.size)).astype(int)
+    first = np.concatenate([side[:1] for side in sides])
+    backwards = middles[first] < 0
+    inner = np.where(backwards, high[first], low[first])
+    outer = np.where(backwards, low[first], high[first])
+    closer = [inner + part * (outer - inner) for part in CLOSER_TO_ZERO]
+    found: FloatArray = np.unique(np.concatenate([middles[near], middles[others[places]], *closer]))
+    return found
+
+
+def _total(case: Case, changes: dict[str, Any]) -> float:
+    try:
+        return solve(case.updated(changes)).total
+    except (ConvergenceError, InputError):  # as in the map
+        return float("nan")
+
+
+def _takes_minutes(case: Case) -> bool:
+    tables = case.sets.values() if isinstance(case, TrainCase) else (case,)
+    models = (getattr(table, "models", None) for table in tables)
+    return any(getattr(own, "friction", "") == "ehl-direct" for own in models)
+
+
+# Loss maps: losses, torque loss and efficiency over speed, torque and oil temperature.
+#
+# A train has its states of brakes and clutches as a further dimension; one whose losses are all
+# given has no oil, and no temperature.
+#
+# The torque loss refers to the input member, `reference_shaft` in the attributes: the power loss
+# over the magnitude of the speed of that shaft. With it the torque that the shaft passes on is the
+# torque on it less the torque loss times the sign of its speed, driving and coasting.
+
+
+_OWN_AXES = {**AXES, STATE: STATE_KEY}
+_SHAFT_KEYS = (
+    "operation.input",
+    "operation.output",
+    "operation.fixed",
+    "operation.second_input",
+)
+"""Keys that decide which shaft is the reference, and which the output."""
+_SUMS = (
+    "load_dependent",
+    "load_independent",
+    "total",
+    "input_power",
+    "efficiency",
+    "ratio",
+    "power_ratio",
+)
+_TEMPERATURES = {
+    "inlet": "everything is at the temperature of the oil inlet",
+    "flank": "temperature is that of the oil; flanks are as hot as their own losses make them",
+    "network": "temperature is that of the oil inlet; the oil in the gearbox and all parts are as "
+    "hot as the losses make them in the long run",
+}
+"""What the axis of temperatures means, by ``models.temperatures``."""
+_CREEP = 1e-9
+"""Speed that stands for slow motion; losses over speed have reached their limit by then. [rpm]"""
+
+
+@dataclass(frozen=True, slots=True)
+class MapPlan(SweepPlan):
+    """The points of a map."""
+
+    kind: ClassVar[str] = "map"
+
+    @property
+    def batch(self) -> int:
+        """Points next to each other that differ in torque only."""
+        return len(self.axes[-1].values)
+
+
+def loss_map(
+    case: Case,
+    speed: Iterable[Any],
+    torque: Iterable[Any],
+    temperature: Iterable[Any] | None = None,
+    vary: Mapping[str, Iterable[Any]] | None = None,
+    *,
+    states: Iterable[Any] | None = None,
+    resolve_zero: bool = False,
+    jobs: int | None = None,
+    dask: str | None = None,
+    shard: tuple[int, int] | None = None,
+    journal: str | Path | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Losses over speed, torque and oil temperature.
+
+    Parameters
+    ----------
+    case : PlanetaryCase, GearPairCase or TrainCase
+    speed, torque : iterable
+        Speeds and torques of the input member (the pinion of a pair, the input shaft of a train),
+        as text with units.
+        A torque against the speed is coasting.
+    temperature : iterable, optional
+        Oil inlet temperatures. Default: that of the case.
+    vary : mapping of str to iterable, optional
+        Further keys and their values, as for `sweep`.
+    states : iterable, optional
+        States of a train. Default: all in which it can run; the attribute ``states_left_out``
+        names the others.
+    resolve_zero : bool
+        True to add torques that crowd at zero, where losses rise steeply, if zero is among the
+        torques or between them.
+    jobs, dask, shard, journal, progress
+        As for `sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions ``speed`` [rpm], ``torque`` [N m], ``temperature`` [degC], rising, ``state`` of
+        a train with states, and one for each further key, its dots replaced by underscores. A train
+        whose losses are all given has no temperature. ``torque_loss`` [N m] is the power loss
+        over the magnitude of the input speed; the losses of the components and their sums [W],
+        ``efficiency`` [1], and speeds and torques of all members stand beside it; of a train also
+        ``power_ratio`` and, over the state, ``ratio``. At zero speed
+        powers are zero, and torques, torque loss and efficiency are the limits of slow motion in
+        positive direction; but the torque loss is NaN there if a second member is driven. The
+        efficiency is NaN where nothing is lost. Points that failed are NaN, with status
+        ``"failed"``. The attributes state the reference shaft, the signs, and how far linear
+        interpolation between the torques is off.
+
+    Raises
+    ------
+    InputError
+        As for `sweep`, for keys that decide which shaft is which, and for states that are not there
+        or in which the train cannot run.
+    """
+    runner = Runner(jobs, dask, shard, journal, progress)
+    torques = resolving_texts(torque) if resolve_zero else torque
+    plan = map_plan(case, speed, torques, temperature, vary, states)
+    return checked_map(plan, runner.run(plan))
+
+
+def checked_map(plan: MapPlan, rows: Rows) -> xr.Dataset:
+    """The map of `plan`, with what it states about interpolation between its torques."""
+    data = to_map(plan, rows)
+    return data.assign_attrs(torque_interpolation(data, plan.case))
+
+
+def map_plan(
+    case: Case,
+    speed: Iterable[Any],
+    torque: Iterable[Any],
+    temperature: Iterable[Any] | None = None,
+    vary: Mapping[str, Iterable[Any]] | None = None,
+    states: Iterable[Any] | None = None,
+) -> MapPlan:
+    """The points of a map. Parameters as for `loss_map`."""
+    further = dict(vary or {})
+    problems = [_own_option(key) for key in further if key in _OWN_AXES.values()]
+    problems += [_shaft_key(key) for key in further if key in _SHAFT_KEYS]
+    chosen, found = _states(case, states)
+    problems += found
+    if temperature is not None and not case.computed:
+        allowed = "has no effect: every loss of the train is given."
+        problems.append(Problem("temperature", "", allowed, "Leave it out."))
+    raise_any(problems, "the map")
+    given: dict[str, Iterable[Any]] = {}
+    if chosen:
+        given[STATE_KEY] = chosen
+    if case.computed:
+        if temperature is None:
+            temperature = [case.inputs()["operation"]["oil_inlet_temperature"]]
+        given[AXES["temperature"]] = temperature
+    # torque innermost: flows through pockets, which cost most, do not depend on its magnitude
+    given |= {AXES["speed"]: speed, AXES["torque"]: torque}
+    plan = make_plan(case, {**further, **given})
+    turns_alone = not _drives_others(case)
+    return MapPlan(case, tuple(_prepared(axis, turns_alone) for axis in plan.axes))
+
+
+def stored_plan(data: xr.Dataset) -> MapPlan:
+    """The plan by which a map was computed.
+
+    Raises
+    ------
+    InputError
+        If `data` is no map, or its case is none of this version.
+    """
+    check_map(data)
+    case = map_case(data)
+    if case is None:
+        allowed = "is none of this version of the program."
+        problem = Problem("case", "", allowed, "Compute the map again.")
+        raise InputError([problem], "the map")
+    values = {str(name): written_values(data[name]) for name in data["torque_loss"].dims}
+    own = {name: values.pop(name, None) for name in (*AXES, STATE)}
+    further = {str(data[name].attrs["case_key"]): texts for name, texts in values.items()}
+    speed, torque, temperature, states = own.values()
+    return map_plan(case, speed or (), torque or (), temperature, further, states)
+
+
+def _own_option(key: str) -> Problem:
+    (name,) = (name for name, own in _OWN_AXES.items() if own == key)
+    option = "states" if name == STATE else name
+    return Problem(key, "", f"is varied by {option}.", f"Give its values there, as --{option}.")
+
+
+def _shaft_key(key: str) -> Problem:
+    allowed = "decides which shaft is which, and stays the same in a map."
+    return Problem(key, "", allowed, "Make a map of each.")
+
+
+def _states(case: Case, chosen: Iterable[Any] | None) -> tuple[list[str], list[Problem]]:
+    """The states of a map, and what is wrong with those that were chosen."""
+    known = list(case.states)
+    if not known:
+        if chosen is None:
+            return [], []
+        allowed = "cannot be chosen: the case has none."
+        return [], [Problem("states", "", allowed, "Leave them out.")]
+    if chosen is None:
+        left_out = states_left_out(case)
+        able = [name for name in known if name not in left_out]
+        return able, [] if able else [_unable(*item) for item in left_out.items()]
+    names = [str(name) for name in ([chosen] if isinstance(chosen, str) else chosen)]
+    problems = [
+        Problem(
+            "states",
+            written(name),
+            "is no state of the train.",
+            did_you_mean(name, known) or f"Known are: {', '.join(known)}.",
+        )
+        for name in dict.fromkeys(names)
+        if name not in known
+    ]
+    left_out = states_left_out(case, [name for name in names if name in known])
+    problems += [_unable(*item) for item in left_out.items()]
+    return names, problems
+
+
+def _unable(name: str, reason: str) -> Problem:
+    return Problem("states", written(name), reason, "Leave this state out.")
+
+
+def states_left_out(case: Case, names: Iterable[str] | None = None) -> dict[str, str]:
+    """Those of the states `names`, by default all, in which a train cannot run, and why."""
+    left_out = {}
+    for name in case.states if names is None else names:
+        try:
+            case.updated({STATE_KEY: name})
+        except InputError as error:
+            left_out[name] = error.problems[0].allowed
+    return left_out
+
+
+def held_shaft(case: Case) -> str:
+    """What takes up the difference of the torques of input and output.
+
+    The member that stands still, or the housing of a pair or train; empty if a further shaft is
+    driven.
+    """
+    if isinstance(case, PlanetaryCase):
+        return case.operation.fixed or ""
+    if isinstance(case, TrainCase) and (case.operation.speeds or case.operation.torques):
+        return ""
+    return HOUSING
+
+
+def _drives_others(case: Case) -> bool:
+    """True if a further shaft turns while the reference shaft stands still."""
+    if isinstance(case, TrainCase):
+        return bool(case.operation.speeds)
+    return isinstance(case, PlanetaryCase) and case.operation.second_input is not None
+
+
+def _prepared(axis: Axis, turns_alone: bool) -> Axis:
+    """Operating axes in rising order, zero speed replaced by slow motion."""
+    if axis.key not in AXES.values():
+        return axis
+    order = np.argsort(np.array(axis.coordinate, float))
+    points = [(axis.values[i], axis.coordinate[i]) for i in order]
+    if axis.key == AXES["speed"] and turns_alone:
+        creep = (f"{_CREEP} {RPM.display}", _CREEP)
+        points = [creep if coordinate == 0 else (value, coordinate) for value, coordinate in points]
+    values, coordinate = zip(*points, strict=True)
+    return replace(axis, values=values, coordinate=coordinate)
+
+
+def coordinates(plan: MapPlan) -> dict[str, tuple[float | str, ...]]:
+    """Values of the axes of the map of `plan`, by their names in it."""
+    values = {axis_name(axis.key): axis.coordinate for axis in plan.axes}
+    values["speed"] = tuple(0.0 if value == _CREEP else value for value in values["speed"])
+    return values
+
+
+def to_map(plan: MapPlan, rows: Rows) -> xr.Dataset:
+    """The map of `plan` from the rows of all its points."""
+    layout = layout_of(plan.case)
+    data = by_keys(to_dataset(plan, rows))[
+        [*_kept_variables(layout), "status", "message", "warnings"]
+    ]
+    data = data.rename({axis.key: axis_name(axis.key) for axis in plan.axes})
+    data = data.transpose(*(name for name in (*AXES, STATE) if name in data.dims), ...)
+    to_rpm, _ = RPM.scale_and_offset()
+    torque_loss = data["total"] / (abs(data["speed"]) / to_rpm).where(data["speed"] != 0)
+    torque_loss.attrs = {
+        "long_name": f"torque loss at the {_ends(plan.case)[0]}",
+        "units": NEWTON_METRE.display,
+    }
+    data = data.assign(torque_loss=torque_loss.transpose(*data["total"].dims))
+    data = _at_rest(data)
+    if "ratio" in data and not _drives_others(plan.case):
+        data["ratio"] = _one_ratio(data["ratio"])
+    for axis in plan.axes:
+        data[axis_name(axis.key)].attrs["case_key"] = axis.key
+    data.attrs = _attributes(plan, data.attrs)
+    return data[["torque_loss", *(name for name in data.data_vars if name != "torque_loss")]]
+
+
+def _one_ratio(ratio: xr.DataArray) -> xr.DataArray:
+    """The ratio without the axes that it does not depend on."""
+    operating = [name for name in AXES if name in ratio.dims]
+    points = ratio.stack(point=operating).transpose("point", ...)
+    known = points.notnull().argmax("point")  # the first point that did not fail
+    found = points.isel(point=known).drop_vars(["point", *operating], errors="ignore")
+    return found.assign_attrs(ratio.attrs)
+
+
+def _kept_variables(layout: Layout) -> list[str]:
+    """Losses, their sums, efficiency, ratios, speeds and torques of members, temperatures."""
+    kept = {*layout.losses, *_SUMS}
+    kept |= {f"{name}_{what}" for name in layout.members for what in ("speed", "torque")}
+    kept |= {f"{node}_temperature" for node in layout.nodes}
+    return [item.key for item in number_fields(layout) if item.key in kept]
+
+
+def _at_rest(data: xr.Dataset) -> xr.Dataset:
+    """The map with powers and speeds of slow motion replaced by zero."""
+    creeps = data["speed"] == _CREEP
+    for name, array in data.data_vars.items():
+        if array.attrs.get("units") in (WATT.display, RPM.display):
+            data[name] = array.where(~creeps | array.isnull(), 0.0).transpose(*array.dims)
+            data[name].attrs = array.attrs
+    rest = data["speed"].where(~creeps, 0.0)
+    rest.attrs = data["speed"].attrs
+    return data.assign_coords(speed=rest)
+
+
+def _ends(case: Case) -> tuple[str, str]:
+    """The reference shaft and the output shaft."""
+    if isinstance(case, TrainCase):
+        ends = (case.operation.input, case.operation.output)
+        reference, output = (case.shape.shaft_of(name) or "" for name in ends)
+        return reference, output
+    if not isinstance(case, PlanetaryCase):
+        return "pinion", "gear"
+    operation = case.operation
+    (output,) = set(layout_of(case).members) - {
+        operation.input,
+        operation.fixed or operation.second_input,
+    }
+    return operation.input, output
+
+
+def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:
+    reference, output = _ends(plan.case)
+    text = {
+        "title": given["title"],
+        "source": given["source"],
+        "reference_shaft": reference,
+        "output_shaft": output,
+        "held_shaft": held_shaft(plan.case),
+        "sign_convention": f"speed and torque are those of the {reference}; speeds are positive in "
+        "one common sense of rotation, torques act on the gear set from outside; torque times "
+        "speed > 0: the shaft drives, < 0: it is driven (coasting); losses are never negative",
+        "torque_loss_definition": f"power loss over the magnitude of the speed of the {reference}: "
+        f"the torque passed on, at the {reference}, is torque - sign(speed) * torque_loss, in both "
+        "directions of the power",
+        "zero_speed": "powers are 0; torque loss, torques and efficiency are the limits of slow "
+        "motion in positive direction, without friction of rest",
+        "zero_torque": "efficiency is 0, there and wherever the loss takes all of the power; the "
+        "torque loss is that of drag and of teeth that drive it",
+        "temperatures": _TEMPERATURES[plan.case.models.temperatures],
+        "conventions": "losses in W of the whole gear set, summed over planets; efficiency: power "
+        "that leaves over power that enters, 0 if the loss takes all of it",
+        "pocketing": given["pocketing"],
+        "versions": given["versions"],
+        "case": given["case"],
+    }
+    if _drives_others(plan.case):
+        text["zero_speed"] = f"no torque loss: a second member is driven while the {reference} "
+        text["zero_speed"] += "stands still"
+    chosen = {axis_name(axis.key): axis.coordinate for axis in plan.axes}.get(STATE, ())
+    left_out = states_left_out(plan.case).items()
+    reasons = [f"{name}: {reason}" for name, reason in left_out if name not in chosen]
+    if reasons:
+        text["states_left_out"] = " ".join(reasons)
+    return text

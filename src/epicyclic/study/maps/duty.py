@@ -1,0 +1,528 @@
+"""Energy that a duty cycle puts in, takes out and loses."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import PydanticCustomError
+
+from epicyclic.case.case import Case
+from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.operating import STATE
+from epicyclic.case.wording import refused, written
+from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.study.maps.compute import (
+    Deviation,
+    MapPlan,
+    Sample,
+    further_values,
+    leave_out,
+    map_plan,
+    resolving_zero,
+    solve_sample,
+    to_map,
+)
+from epicyclic.study.maps.cycle import Cycle, Piece, open_cycle
+from epicyclic.study.maps.tables import Lookup, loss_power, make_lookup, map_case
+from epicyclic.study.sweeps.runner import HERE, Progress, Runner
+from epicyclic.units import CELSIUS, KILOJOULE, NEWTON_METRE, RPM, SECOND, Quantity, format_number
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# Energy that a duty cycle puts in, takes out and loses, by interpolation in a loss map.
+#
+# Linear interpolation is a weighted sum of the values at the nodes of the map. The weights of all
+# points are added up first, each times the angle turned through; multiplied by the torque losses at
+# the nodes they give the energy of every component at once.
+
+
+Array = NDArray[np.float64]
+
+MODES = ("driving", "coasting", "idling")
+"""The reference shaft drives, is driven, or passes no power: no torque or no speed."""
+
+_SPEEDS, _TORQUES, _TEMPERATURES = 9, 9, 4
+"""Values of the axes of a map that is made for a cycle."""
+_CROWDING = 1.5
+"""Exponent by which its speeds and torques crowd at zero, where losses bend most."""
+_CROWD = 6
+"""Further torques next to zero, on each side. [1]"""
+SAMPLES = 20
+"""Points that are solved to measure the error of the interpolation."""
+
+
+def duty_cycle(
+    map_or_case: xr.Dataset | Case,
+    cycle: Any,
+    temperature: Iterable[Any] | None = None,
+    *,
+    clamp: bool = False,
+    samples: int = SAMPLES,
+    jobs: int | None = None,
+    dask: str | None = None,
+    journal: str | Path | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Energy in, out and lost over a duty cycle, by component.
+
+    Parameters
+    ----------
+    map_or_case : xarray.Dataset, PlanetaryCase or GearPairCase
+        A loss map. For a case a map that covers the cycle is computed first.
+    cycle : str, Path, pandas.DataFrame or mapping
+        A file that ends in .csv or .parquet, or columns by name: ``"speed [rpm]"``,
+        ``"torque [N*m]"`` of the input member, ``"temperature [degC]"`` if it varies, and
+        ``"time [s]"`` of a time series, or ``"duration [s]"`` or ``"share"`` of a histogram.
+        Any units; a train with states has a column ``"state"`` of their names. Other columns are
+        left alone.
+    temperature : iterable, optional
+        Oil inlet temperatures as text with units, for a cycle without a column of them. Default:
+        that of the case, or of a map that has one.
+    clamp : bool
+        True: points outside of the map lose what the point at its border loses. False: they are
+        refused.
+    samples : int
+        Points of the cycle that are solved directly to measure the error of the interpolation.
+    jobs, dask
+        As for `sweep`.
+    journal : str or Path, optional
+        Folder that keeps finished points, those of the map and of the check.
+    progress
+        As for `sweep`, for the map of a case.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``energy_in``, ``energy_out`` [kJ], ``duration`` [s] and ``efficiency`` over ``mode``;
+        ``energy_lost`` [kJ] over ``mode`` and ``component``; ``total_efficiency``;
+        ``share_outside`` of the duration; ``interpolation_error`` [kJ] of the energy lost, its
+        ``interpolation_standard_error`` and the ``largest_deviation`` of a point, with the way they
+        were found in the attributes. A train with states has ``state_energy_in``,
+        ``state_energy_out``, ``state_energy_lost``, ``state_duration`` and ``state_efficiency``
+        over ``state`` too. With `temperature` all have that dimension.
+
+    Raises
+    ------
+    InputError
+        With all problems of the cycle; for points outside of the map and states that it does not
+        have; for a map with gaps, further axes of several values, or two driven members.
+    """
+    runner = Runner(jobs, dask, journal=journal)
+    checked = open_cycle(cycle)
+    celsius = parse_temperatures(checked, temperature)
+    data = map_or_case
+    if isinstance(data, Case):
+        data = cycle_map(data, checked, celsius, replace(runner, progress=progress))
+    sums = add_up(data, checked, celsius, clamp=clamp, samples=samples)
+    return make_duty(data, checked, sums, runner)
+
+
+def parse_temperatures(cycle: Cycle, temperature: Iterable[Any] | None) -> tuple[float, ...] | None:
+    """Temperatures that were asked for; None if none were. [degC]"""
+    if temperature is None:
+        return None
+    texts = [temperature] if isinstance(temperature, str) else list(temperature)
+    problems, values = [], []
+    for text in texts:
+        try:
+            values.append(CELSIUS.to_display(CELSIUS.parse(text)))
+        except PydanticCustomError as error:
+            problems.append(refused(error, "temperature", written(text)))
+    if "temperature" in cycle.ranges:
+        allowed = "is a column of the cycle too."
+        problems.append(Problem("temperature", "", allowed, "Leave one of them."))
+    if not texts or len(set(values)) < len(values):
+        problems.append(Problem("temperature", "", "must name each value once.", "Name others."))
+    raise_any(problems, "the command")
+    return tuple(values)
+
+
+def cycle_map(
+    case: Case,
+    cycle: Cycle,
+    celsius: tuple[float, ...] | None,
+    runner: Runner = HERE,
+) -> xr.Dataset:
+    """A map of `case` that covers a cycle."""
+    plan = cycle_plan(case, cycle, celsius)
+    return to_map(plan, runner.within(plan).run(plan))
+
+
+def cycle_plan(case: Case, cycle: Cycle, celsius: tuple[float, ...] | None) -> MapPlan:
+    """The points of that map."""
+    speeds = crowded(*cycle.ranges["speed"], _SPEEDS)
+    torques = resolving_zero(crowded(*cycle.ranges["torque"], _TORQUES), _CROWD)
+    temperatures, states = celsius, None
+    if case.states:
+        check_states(cycle, tuple(case.states))
+        states = [name for name in case.states if name in cycle.states]
+    if not case.computed:
+        pass  # without an oil its temperature has no effect
+    elif "temperature" in cycle.ranges:
+        low, high = cycle.ranges["temperature"]
+        temperatures = tuple(np.unique(np.linspace(low, high, _TEMPERATURES)).tolist())
+    return map_plan(
+        case,
+        texts_of(speeds, RPM),
+        texts_of(torques, NEWTON_METRE),
+        None if temperatures is None else texts_of(temperatures, CELSIUS),
+        states=states,
+    )
+
+
+def crowded(low: float, high: float, count: int) -> Array:
+    """About `count` values from `low` to `high`, and zero, where they crowd."""
+    ends = [end for end in (min(low, 0.0), max(high, 0.0)) if end]
+    steps = np.linspace(0, 1, (count - 1) // max(len(ends), 1) + 1) ** _CROWDING
+    return np.unique(np.concatenate([[0.0], *(end * steps for end in ends)])) + 0.0  # no -0.0
+
+
+def texts_of(values: Iterable[float], quantity: Quantity) -> list[str]:
+    return [f"{float(value)!r} {quantity.display}" for value in values]
+
+
+@dataclass(slots=True)
+class Totals:
+    """Sums over a cycle; arrays have a row for each of `MODES`, a column for each state or one."""
+
+    node_work: Array  # Angle turned through at each node of the map. [rad]
+    duration: Array  # [s]
+    energy_in: Array  # [J]
+    energy_out: Array  # [J]
+    outside: float = 0.0  # Duration outside of the map. [s]
+
+
+@dataclass(frozen=True, slots=True)
+class Sums:
+    """A cycle added up: once for each oil temperature, or once at its own temperatures."""
+
+    lookup: Lookup
+    celsius: tuple[float, ...] | None  # Temperatures that were asked for.
+    clamp: bool
+    totals: tuple[Totals, ...]
+    samples: tuple[Sample, ...]
+
+
+def add_up(
+    data: xr.Dataset,
+    cycle: Cycle,
+    celsius: tuple[float, ...] | None = None,
+    *,
+    clamp: bool = False,
+    samples: int = SAMPLES,
+    progress: Progress | None = None,
+) -> Sums:
+    """Go through a checked cycle; raises `InputError` if it leaves the map."""
+    lookup = make_lookup(data)
+    if len(lookup.states) > 1 or (lookup.states and cycle.states):
+        check_states(cycle, lookup.states)
+    totals, drawn = [], []
+    for value in _temperatures(lookup, cycle, celsius):
+        sample = Sample(samples)
+        found = _go_through(lookup, cycle, value, sample, progress)
+        if found.outside and not clamp:
+            raise _outside(lookup, cycle, value, found)
+        totals.append(found)
+        drawn.append(sample)
+    return Sums(lookup, celsius, clamp, tuple(totals), tuple(drawn))
+
+
+def make_duty(
+    data: xr.Dataset,
+    cycle: Cycle,
+    sums: Sums,
+    runner: Runner = HERE,
+) -> xr.Dataset:
+    """The result of `duty_cycle`, its error measured at the points that were drawn."""
+    import xarray as xr
+
+    case = map_case(data, further_values(data))
+    results = []
+    for totals, sample in zip(sums.totals, sums.samples, strict=True):
+        error = (
+            leave_out(sums.lookup, totals.node_work.sum(axis=0))
+            if case is None
+            else solve_sample(case, sums.lookup, sample, runner)
+        )
+        results.append(_to_dataset(sums.lookup, totals, error))
+    (result, *_) = results
+    if sums.celsius is not None:
+        axis = xr.Variable("temperature", list(sums.celsius), {"units": CELSIUS.display})
+        result = xr.concat(results, axis)
+    method = {"interpolation_error_method": error.method}
+    result.attrs = _attributes(data, cycle, sums.clamp) | method
+    return result
+
+
+def _temperatures(
+    lookup: Lookup, cycle: Cycle, celsius: tuple[float, ...] | None
+) -> tuple[float | None, ...]:
+    """The oil temperatures at which to run a cycle; None stands for that of its column."""
+    if "temperature" not in lookup.names:
+        if celsius is not None:
+            allowed = "has no effect: every loss of the train is given."
+            problem = Problem("temperature", "", allowed, "Leave it out.")
+            raise InputError([problem], "the command")
+        return (None,)
+    if "temperature" in cycle.ranges:
+        return (None,)
+    if celsius is not None:
+        return celsius
+    axis = lookup.axes[lookup.names.index("temperature")]
+    if axis.size > 1:
+        allowed = f"is not a column of the cycle, and the map has {axis.size} of them."
+        remedy = f'Choose some, as "{format_number(float(axis[0]))} degC".'
+        raise InputError([Problem("temperature", "", allowed, remedy)], "the command")
+    return (float(axis[0]),)
+
+
+def check_states(cycle: Cycle, known: tuple[str, ...]) -> None:
+    """Raise `InputError` unless a cycle has a column of states, all of them `known`."""
+    text = ", ".join(known)
+    if not cycle.states:
+        allowed = f"is not among the columns, and there are several: {text}."
+        problem = Problem(STATE, "", allowed, f"Name a column {STATE}, or make a map of one state.")
+        raise InputError([problem], cycle.source.name)
+    problems = [
+        Problem(
+            STATE,
+            written(name),
+            f"is none of {text}.",
+            did_you_mean(name, known) or "Correct these rows, or make a map of this state too.",
+        )
+        for name in cycle.states
+        if name not in known
+    ]
+    raise_any(problems, cycle.source.name)
+
+
+def point_of(lookup: Lookup, cycle: Cycle, piece: Piece) -> tuple[Array, ...]:
+    """The points of a piece as the axes of the map."""
+    point = {"speed": piece.speed, "torque": piece.torque, "temperature": piece.temperature}
+    if piece.state is not None and lookup.states:
+        numbers = np.array([1.0 + lookup.states.index(name) for name in cycle.states])
+        point[STATE] = numbers[piece.state]
+    else:
+        point[STATE] = np.ones_like(piece.speed)
+    values = [point[name] for name in lookup.names]
+    return tuple(array for array in values if array is not None)
+
+
+def _go_through(
+    lookup: Lookup,
+    cycle: Cycle,
+    celsius: float | None,
+    sample: Sample,
+    progress: Progress | None,
+) -> Totals:
+    """All points of a cycle added up, at its own temperatures or at one."""
+    modes, nodes, states = len(MODES), lookup.size, max(1, len(lookup.states))
+    totals = Totals(np.zeros((modes, nodes)), *np.zeros((3, modes, states)))
+    torque_loss = lookup.total
+    done = 0
+    for piece in cycle.pieces(celsius):
+        point = point_of(lookup, cycle, piece)
+        corners, weights = lookup.corners(*point)
+        loss = loss_power((torque_loss[corners] * weights).sum(axis=0), piece.speed)
+        at_shaft = loss_power(piece.torque, piece.speed) * np.sign(piece.speed)
+        mode = np.select([at_shaft > 0, at_shaft < 0], [0, 1], 2)
+        turned = loss_power(piece.duration, piece.speed)
+        totals.node_work += np.bincount(
+            (corners + nodes * mode).ravel(), (weights * turned).ravel(), modes * nodes
+        ).reshape(modes, nodes)
+        # power enters at either shaft: what the reference shaft does not bring comes from the other
+        entering = np.maximum(at_shaft, 0) + np.maximum(loss - at_shaft, 0)
+        leaving = np.maximum(-at_shaft, 0) + np.maximum(at_shaft - loss, 0)
+        if lookup.states:
+            mode = mode * states + point[-1].astype(np.intp) - 1
+        for total, per_second in (
+            (totals.duration, 1.0),
+            (totals.energy_in, entering),
+            (totals.energy_out, leaving),
+        ):
+            weights_now = per_second * piece.duration
+            total += np.bincount(mode, weights_now, modes * states).reshape(modes, states)
+        totals.outside += float(piece.duration[lookup.outside(*point)].sum())
+        sample.add(point, loss, loss * piece.duration)
+        done += piece.speed.size
+        if progress is not None:
+            progress(min(done, cycle.rows), cycle.rows)
+    return totals
+
+
+def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: Totals) -> InputError:
+    """What of a cycle is not in the map."""
+    ranges = dict(cycle.ranges)
+    if celsius is not None:
+        ranges["temperature"] = (celsius, celsius)
+    share = totals.outside / totals.duration.sum()
+    problems = []
+    units = (RPM, NEWTON_METRE, CELSIUS)
+    for name, axis, unit in zip(lookup.names, lookup.axes, units, strict=False):
+        if name == STATE:
+            continue
+        low, high = (format_number(value) for value in ranges[name])
+        first, last = (format_number(float(value)) for value in (axis[0], axis[-1]))
+        if ranges[name][0] < axis[0] or ranges[name][1] > axis[-1]:
+            allowed = f"leaves the map, which has {first} to {last} {unit.display}."
+            problems.append(
+                Problem(
+                    name,
+                    f"{low} to {high} {unit.display}",
+                    allowed,
+                    f"Make a larger map, or clamp; {share:.3g} of the duration is outside.",
+                )
+            )
+    return InputError(problems, "the cycle")
+
+
+def _to_dataset(lookup: Lookup, totals: Totals, error: Deviation) -> xr.Dataset:
+    import xarray as xr
+
+    entering, leaving = totals.energy_in.sum(axis=1), totals.energy_out.sum(axis=1)
+    duration = totals.duration.sum(axis=1)
+    by_component = totals.node_work @ lookup.torques.reshape(len(lookup.components), -1).T
+    seconds, energy, pure = SECOND.display, KILOJOULE.display, "1"
+    kilo, _ = KILOJOULE.scale_and_offset()
+    outside = totals.outside / duration.sum()
+    of_mode, of_both = ("mode",), ("mode", "component")
+    table = (
+        ("duration", of_mode, duration, seconds, "duration"),
+        ("energy_in", of_mode, entering * kilo, energy, "energy that enters"),
+        ("energy_out", of_mode, leaving * kilo, energy, "energy that leaves"),
+        ("energy_lost", of_both, by_component * kilo, energy, "energy lost"),
+        ("efficiency", of_mode, _ratio(leaving, entering), pure, "efficiency"),
+        ("total_efficiency", (), _ratio(leaving.sum(), entering.sum()), pure,
+         "efficiency over the cycle"),
+        ("share_outside", (), outside, pure, "share of the duration outside of the map"),
+        ("interpolation_error", (), error.energy * kilo, energy,
+         "energy lost that interpolation adds, estimate"),
+        ("interpolation_standard_error", (), error.standard_error * kilo, energy,
+         "standard error of the estimate"),
+        ("largest_deviation", (), error.largest, pure, "largest deviation of a checked point"),
+        *_of_states(lookup, totals),
+    )  # fmt: skip
+    coords = {"mode": list(MODES), "component": list(lookup.components)}
+    if lookup.states:
+        coords[STATE] = list(lookup.states)
+    return xr.Dataset(
+        {
+            name: (dims, values, {"long_name": label, "units": unit})
+            for name, dims, values, unit, label in table
+        },
+        coords,
+    )
+
+
+def _of_states(
+    lookup: Lookup, totals: Totals
+) -> Iterator[tuple[str, tuple[str, ...], Array, str, str]]:
+    """Sums over each state, as `_to_dataset` has the others; none without states."""
+    if not lookup.states:
+        return
+    kilo, _ = KILOJOULE.scale_and_offset()
+    entering, leaving = totals.energy_in.sum(axis=0), totals.energy_out.sum(axis=0)
+    # states are the last axis of the map
+    turned = totals.node_work.sum(axis=0).reshape(-1, len(lookup.states))
+    torques = lookup.torques.reshape(len(lookup.components), -1, len(lookup.states))
+    lost = np.einsum("ns,cns->sc", turned, torques)
+    energy = KILOJOULE.display
+    of_state = (STATE,)
+    yield "state_duration", of_state, totals.duration.sum(axis=0), SECOND.display, "duration"
+    yield "state_energy_in", of_state, entering * kilo, energy, "energy that enters"
+    yield "state_energy_out", of_state, leaving * kilo, energy, "energy that leaves"
+    yield "state_energy_lost", (STATE, "component"), lost * kilo, energy, "energy lost"
+    yield "state_efficiency", of_state, _ratio(leaving, entering), "1", "efficiency"
+
+
+def _ratio(part: Any, whole: Any) -> Any:
+    """`part` over `whole`, NaN where there is nothing."""
+    return np.divide(part, whole, out=np.full(np.shape(whole), np.nan), where=whole > 0)
+
+
+def _attributes(data: xr.Dataset, cycle: Cycle, clamp: bool) -> dict[str, str]:
+    shaft, output = data.attrs["reference_shaft"], data.attrs["output_shaft"]
+    basis = {"time": "time series, trapezoidal rule over time", "duration": "histogram"}
+    outside = "taken at its border" if clamp else "any would be refused"
+    return {
+        "title": data.attrs["title"],
+        "source": data.attrs.get("source", ""),
+        "cycle": f"{cycle.source.name}, {cycle.rows} rows",
+        "reference_shaft": shaft,
+        "output_shaft": output,
+        "sign_convention": data.attrs.get("sign_convention", ""),
+        "modes": f"driving: power enters at the {shaft}; coasting: power leaves there; idling: no "
+        "speed or no torque. Energy in and out is counted at both shafts, never negative",
+        "basis": basis.get(cycle.weighting, "histogram of shares; energies are those of one hour"),
+        "interpolation": "linear, of the loss over the speed",
+        "points_outside": outside,
+        "case": data.attrs["case"],
+    }
+
+
+# The map that a duty cycle needs, as a plan that knows its cycle: its points can be shared out.
+
+
+@dataclass(frozen=True, slots=True)
+class DutyPlan(MapPlan):
+    """The points of the map of a duty cycle."""
+
+    kind: ClassVar[str] = "duty"
+    digest: str = field(kw_only=True)  # Of the file of the cycle.
+    # Oil inlet temperatures that were asked for. [degC]
+    celsius: tuple[float, ...] | None = field(kw_only=True)
+    clamp: bool = field(kw_only=True)  # As for `duty_cycle`.
+
+    @classmethod
+    def of(
+        cls,
+        case: Case,
+        cycle: Cycle,
+        celsius: tuple[float, ...] | None,
+        *,
+        digest: str,
+        clamp: bool,
+    ) -> Self:
+        """The map of a cycle; raises `InputError` as `cycle_plan`."""
+        plan = cycle_plan(case, cycle, celsius)
+        return cls(plan.case, plan.axes, digest=digest, celsius=celsius, clamp=clamp)
+
+    @classmethod
+    def again(cls, content: Mapping[str, Any], source: str) -> Self:
+        """The plan that `describe` described."""
+        plan, asked = MapPlan.again(content, source), content["duty"]
+        celsius = None if asked["celsius"] is None else tuple(asked["celsius"])
+        return cls(
+            plan.case, plan.axes, digest=asked["cycle"], celsius=celsius, clamp=asked["clamp"]
+        )
+
+    def describe(self) -> dict[str, Any]:
+        """The map, and what is asked of it."""
+        celsius = None if self.celsius is None else list(self.celsius)
+        duty = {"cycle": self.digest, "celsius": celsius, "clamp": self.clamp}
+        return {**MapPlan.describe(self), "duty": duty}
+
+
+def digest_of(cycle: Path) -> str:
+    """What tells the content of a file that can be read from any other."""
+    with cycle.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def check_same(plan: DutyPlan, cycle: Path) -> None:
+    """Raise `InputError` if `cycle` is not the file of which shards were computed."""
+    try:
+        allowed = "" if digest_of(cycle) == plan.digest else "has changed since then."
+    except OSError as error:
+        allowed = f"cannot be read: {error.strerror}."
+    if allowed:
+        remedy = "Put back the cycle of which the shards were computed."
+        raise InputError([Problem("CYCLE", str(cycle), allowed, remedy)], "the command")

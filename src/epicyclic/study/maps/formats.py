@@ -1,0 +1,162 @@
+"""The formats of loss maps: what each can hold, and how it is written."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from epicyclic.case.operating import AXES, PLANE, STATE
+from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.files import check_place, whole_file
+from epicyclic.plugins.simulators import fmu, workbook
+from epicyclic.plugins.simulators import tables as simscape
+from epicyclic.plugins.simulators import tables as simulation
+from epicyclic.study.maps import tables
+from epicyclic.study.sweeps.run import write_netcdf
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Coordinates = Mapping[str, Sequence[Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """One format of a map."""
+
+    suffix: str  # Ending of its files; empty if it must be asked for by name.
+    about: str  # What it is.
+    write: Callable[[xr.Dataset, Path], None]  # Writes a map to a file.
+    # What of the axes of a map the format cannot hold.
+    problems: Callable[[Coordinates], list[Problem]] = lambda axes: []
+    # Axes that may have several values; a map then has no gaps and one member held. None: any.
+    axes: tuple[str, ...] | None = None
+    each_state: bool = False  # True: a map of several states becomes several files.
+
+
+_SPACE = (*AXES, STATE)
+
+FORMATS = {
+    "netcdf": Format(".nc", "NetCDF", write_netcdf),
+    "csv": Format(".csv", "table of all points", tables.write_csv),
+    "parquet": Format(".parquet", "table of all points", tables.write_parquet),
+    "excel": Format(".xlsx", "Excel workbook", workbook.write_workbook, workbook.workbook_problems),
+    "matlab": Format(".mat", "MATLAB", workbook.write_matlab),
+    "vecto": Format(
+        ".vtlm", "VECTO", simulation.write_vecto, simulation.vecto_problems, PLANE, each_state=True
+    ),
+    "modelica": Format(
+        ".mo",
+        "Modelica",
+        simulation.write_modelica,
+        simulation.modelica_problems,
+        PLANE,
+        each_state=True,
+    ),
+    "simscape": Format(".m", "Simscape and Simulink", simscape.write_simscape, axes=_SPACE),
+    "fmu": Format(".fmu", "FMI 2.0", fmu.write_fmu, fmu.fmu_problems, _SPACE),
+    "gem": Format(
+        "", "EPA GEM", simulation.write_gem, simulation.gem_problems, PLANE, each_state=True
+    ),
+}
+
+
+def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> None:
+    """Write a loss map to a file, whole or not at all.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        As `loss_map` returns it.
+    path : str or Path
+        A format of one table of speed and torque has a file for each state of a train, its name
+        with that of the state, ``gearbox-1.vtlm``.
+    format : str, optional
+        Name of the format. Default: the one that the ending of `path` names.
+
+    Raises
+    ------
+    InputError
+        If there is no such format, it cannot hold the map, or there is no place for the file.
+    """
+    target = Path(path)
+    tables.check_map(data)
+    axes = {name: list(data[name].values) for name in map(str, data["torque_loss"].dims)}
+    chosen = check_map_output(target, format, axes, data.attrs["held_shaft"])
+    if chosen.axes is not None:
+        tables.check_gaps(data)
+    kept = data if chosen is FORMATS["netcdf"] else tables.bare_map(data)
+    with ExitStack() as stack:
+        for state, file in files_of_map(target, chosen, axes).items():
+            part = kept.sel({STATE: [state]}) if state else kept
+            chosen.write(part, stack.enter_context(whole_file(file)))
+
+
+def files_of_map(path: Path, chosen: Format, axes: Coordinates) -> dict[str, Path]:
+    """The files of a map by the states that they hold; a single one of all by an empty name."""
+    states = [str(name) for name in axes.get(STATE, ())]
+    if not chosen.each_state or len(states) < 2:
+        return {"": path}
+    return {
+        state: path.with_name(f"{path.stem}-{re.sub(r'[^A-Za-z0-9_.+-]', '_', state)}{path.suffix}")
+        for state in states
+    }
+
+
+def check_map_output(path: Path, format: str | None, axes: Coordinates, held: str) -> Format:
+    """The format of `path`; raises `InputError` if a map of these axes cannot be written to it.
+
+    `held` is the shaft that stands still, empty if there is none.
+    """
+    chosen = _choose(path, format)
+    files = files_of_map(path, chosen, axes)
+    for file in files.values():
+        check_place(file)
+    problems = chosen.problems(axes)
+    if len(set(files.values())) < len(files):
+        allowed = "have names that make the same file."
+        problems.append(Problem("states", "", allowed, "Choose them one by one."))
+    if chosen.axes is not None:
+        several = (*chosen.axes, STATE) if chosen.each_state else chosen.axes
+        problems = _several(axes, several) + problems
+        if not held:
+            problems.append(
+                tables.driven_problem("the format holds gears of one input and one output")
+            )
+    raise_any(problems, f"the map for {chosen.about}")
+    return chosen
+
+
+def _choose(path: Path, format: str | None) -> Format:
+    if format is not None:
+        if format in FORMATS:
+            return FORMATS[format]
+        problem = Problem(
+            "--format", f'"{format}"', f"must be one of {', '.join(FORMATS)}.", "Choose one."
+        )
+        raise InputError([problem], "the command")
+    by_suffix = {item.suffix: item for item in FORMATS.values() if item.suffix}
+    if path.suffix in by_suffix:
+        return by_suffix[path.suffix]
+    problem = Problem(
+        "-o",
+        str(path),
+        f"must end in {', '.join(by_suffix)}, or --format must be given.",
+        "Choose one of these formats.",
+    )
+    raise InputError([problem], "the command")
+
+
+def _several(axes: Coordinates, allowed: tuple[str, ...]) -> list[Problem]:
+    """Axes of which the format can hold one value only."""
+    return [
+        Problem(
+            name, "", f"has {len(values)} values; the format holds one.", "Write one file for each."
+        )
+        for name, values in axes.items()
+        if name not in allowed and len(values) > 1
+    ]

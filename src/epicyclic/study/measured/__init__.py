@@ -1,0 +1,1 @@
+"""Measured losses beside computed ones."""

@@ -1,0 +1,336 @@
+"""Measured losses beside computed ones, with or without a fit of uncertain inputs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.case.case import Case, build_case
+from epicyclic.case.parameters import make_parameters
+from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.study.measured.comparison import (
+    AS_GIVEN,
+    CALIBRATED,
+    MeasuredComparison,
+    all_errors,
+    notes_on,
+)
+from epicyclic.study.measured.fit import Tell, fit_parameters
+from epicyclic.study.measured.intervals import Fit, reaches
+from epicyclic.study.measured.residuals import Computed, MeasuredPoints
+from epicyclic.study.measured.table import (
+    LOAD_DEPENDENT,
+    Grid,
+    Measurements,
+    parse_measurements,
+    parts_of,
+    read_frame,
+    read_grid,
+)
+from epicyclic.study.sweeps.plan import CasePlan, PointList
+from epicyclic.study.sweeps.run import AS_TESTED, COMPUTED, LoadDependent
+from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+# What a comparison asks: a case at measured points; also as a plan whose points shards share.
+
+
+BoolArray = NDArray[np.bool_]
+
+_GROUPS = ("temperature", "state", "speed")
+_OUTLET = "thermal.oil_outlet_temperature"
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What is to be compared: a case, measurements, and what was measured."""
+
+    case: Case
+    grid: Grid  # The measurements as they are in their file.
+    component: str  # As for `compare_measured`.
+    load_dependent: LoadDependent  # As for `compare_measured`.
+    group: str | None  # As for `compare_measured`.
+    table: Measurements
+
+    def problems(self) -> Iterator[Problem]:
+        """What is wrong with the question, beside mistakes in the table."""
+        if self.group is not None and self.group not in self.table.labels:
+            known = ", ".join(self.table.labels)
+            yield Problem("group", self.group, "is not a column.", f"Columns are {known}.")
+        yield from _tested_problems(self.case, self.table, self.load_dependent)
+
+    def points(self, runner: Runner = HERE) -> MeasuredPoints:
+        """The case at the measured points."""
+        # what is uncertain changes no loss, and takes time to be checked at every point
+        plain = self.case.updated({"uncertainty": None}) if self.case.uncertainty else self.case
+        return MeasuredPoints(plain, self.table, runner, self.load_dependent)
+
+    def answer(
+        self,
+        given: Computed,
+        held_out: BoolArray | None = None,
+        calibrated: Computed | None = None,
+        fit: Fit | None = None,
+    ) -> MeasuredComparison:
+        """The comparison, of what was computed with the case as given, and calibrated."""
+        if held_out is None:
+            held_out = np.zeros(len(self.table), dtype=bool)
+        group = self.group or next(name for name in _GROUPS if name in self.table.labels)
+        states = {AS_GIVEN: given.loss}
+        if calibrated is not None:
+            states[CALIBRATED] = calibrated.loss
+        return MeasuredComparison(
+            case=self.case,
+            measured=self.table,
+            computed=given.loss,
+            calibrated=None if calibrated is None else calibrated.loss,
+            held_out=held_out,
+            load_dependent=self.load_dependent,
+            group=group,
+            errors=tuple(all_errors(self.table, states, held_out, group)),
+            fit=fit,
+            notes=tuple(notes_on(self.table, given if calibrated is None else calibrated)),
+        )
+
+
+def ask(
+    case: Case,
+    grid: Grid,
+    component: str = "total",
+    load_dependent: LoadDependent = COMPUTED,
+    group: str | None = None,
+) -> Question:
+    """The question with its measurements; raises `InputError` with every mistake in them."""
+    table = parse_measurements(grid, case, component)
+    return Question(case, grid, component, load_dependent, group, table)
+
+
+def check_any(given: Computed) -> None:
+    """Raise `InputError` if no point could be computed."""
+    if not np.isfinite(given.loss).any():
+        reason = next(message for message in given.messages if message)
+        problem = Problem("measurements", "", f"no point can be computed: {reason}", "")
+        raise InputError([problem], "the comparison")
+
+
+@dataclass(frozen=True, slots=True)
+class ComparisonPlan(PointList):
+    """The points of a question without a fit."""
+
+    kind: ClassVar[str] = "comparison"
+    may_fail: ClassVar[bool] = True
+    question: Question = field(kw_only=True)
+
+    @classmethod
+    def of(cls, question: Question) -> Self:
+        """The points of a question; raises `InputError` if something is wrong with it."""
+        raise_any(question.problems(), "the comparison")
+        points = question.points()
+        asked, _ = points.asked({})
+        return cls(points.case, asked, question=question)
+
+    @classmethod
+    def again(cls, content: Mapping[str, Any], source: str) -> Self:
+        """The plan that `describe` described."""
+        asked = content["question"]
+        rows = ((line, tuple(cells)) for line, cells in asked["rows"])
+        grid = Grid(tuple(asked["header"]), tuple(rows), asked["measured"])
+        how = (asked["component"], asked["load_dependent"], asked["group"])
+        return cls.of(ask(build_case(content["case"], {}, source), grid, *how))
+
+    def describe(self) -> dict[str, Any]:
+        """The case, the measurements and what was measured: the points follow from them."""
+        asked = self.question
+        about = {
+            "measured": asked.grid.source,
+            "header": list(asked.grid.header),
+            "rows": [[line, list(cells)] for line, cells in asked.grid.rows],
+            "component": asked.component,
+            "load_dependent": asked.load_dependent,
+            "group": asked.group,
+        }
+        return {**CasePlan.describe(self), "case": asked.case.given(), "question": about}
+
+    def comparison(self, rows: Rows) -> MeasuredComparison:
+        """What `compare_measured` returns, of the rows of all points."""
+        points = self.question.points()
+        _, unloaded = points.asked({})
+        (given,) = points.losses(rows, unloaded)
+        check_any(given)
+        return self.question.answer(given)
+
+
+def _tested_problems(case: Case, table: Measurements, load_dependent: str) -> Iterator[Problem]:
+    if load_dependent == COMPUTED:
+        return
+    key = "load_dependent"
+    if load_dependent != AS_TESTED:
+        allowed = f"is neither {COMPUTED} nor {AS_TESTED}."
+        yield Problem(key, load_dependent, allowed, f"Give {AS_TESTED}.")
+    if not any(LOAD_DEPENDENT in parts_of(component) for component in table.component):
+        allowed = "is about load-dependent losses, and none was measured."
+        yield Problem(key, load_dependent, allowed, f"Name the component {LOAD_DEPENDENT}.")
+    outlets = [case.thermal.oil_outlet_temperature, *(row.get(_OUTLET) for row in table.changes)]
+    if any(outlet is not None for outlet in outlets):
+        allowed = "is not known without torque, where less oil would follow from the same."
+        yield Problem(_OUTLET, "", allowed, "Give thermal.oil_flow in its place.")
+
+
+# Measured losses beside computed ones, with or without a fit of uncertain inputs.
+#
+# A fit never passes for a prediction: what it touched is named ``calibrated`` everywhere, and its
+# errors are given apart for the points it used and for those held out.
+
+
+_EQUATION = re.compile(r"(?P<column>[^=]+)=(?P<value>.*)")
+
+
+def compare_measured(
+    case: Case,
+    measured: str | Path | pd.DataFrame,
+    *,
+    component: str = "total",
+    load_dependent: LoadDependent = COMPUTED,
+    group: str | None = None,
+    fit: Iterable[str] = (),
+    hold_out: str | float | None = None,
+    seed: int = 0,
+    confidence: float = 0.95,
+    jobs: int | None = None,
+    dask: str | None = None,
+    journal: str | Path | None = None,
+    progress: Progress | None = None,
+    tell: Tell = lambda text: None,
+) -> MeasuredComparison:
+    """Compare measured losses with those of a case, and fit uncertain inputs if asked to.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+        Everything that the table does not state.
+    measured : str, Path or pandas.DataFrame
+        CSV, Excel or Parquet file, or a table: columns ``speed``, ``torque``, ``temperature`` and
+        ``loss`` with units, ``"speed [rpm]"``; optionally ``uncertainty``, ``component``, of a
+        train with states ``state``, any dotted key of the case, and labels. A train whose losses
+        are all given needs no temperature.
+    component : str, optional
+        The loss that was measured, where no column says so: a term, terms joined by ``+``,
+        ``"load_dependent"``, ``"load_independent"`` or ``"total"``.
+    load_dependent : {"computed", "as-tested"}, optional
+        What load-dependent losses are: the sum of those that depend on the load, or, as a test rig
+        finds them, the total loss less that without torque at the same speed and oil inlet
+        temperature, each at its own temperatures.
+    group : str, optional
+        Column by whose values the errors are given. Default: the temperature, else the state, else
+        the speed.
+    fit : iterable of str, optional
+        Keys of the case to be fitted, from their values there and within the range of the schema.
+    hold_out : str or float, optional
+        Points that the fit must not see: ``"COLUMN=VALUE"``, or a share of all points, drawn with
+        `seed`.
+    seed : int, optional
+    confidence : float, optional
+        Confidence of the intervals of fitted values. [1]
+    jobs, dask, progress
+        As for `sweep`; the progress starts again with every round of a fit.
+    journal : str or Path, optional
+        Folder that keeps finished points, those of each round in a file.
+    tell : callable, optional
+        Called with a sentence on how the fit gets on, in every round.
+
+    Returns
+    -------
+    MeasuredComparison
+
+    Raises
+    ------
+    InputError
+        With every mistake in the table, or if the fit cannot be made.
+    ConvergenceError
+        If the fit does not converge.
+    """
+    import pandas as pd
+
+    runner = Runner(jobs, dask, journal=journal, progress=progress)
+    grid = read_frame(measured) if isinstance(measured, pd.DataFrame) else read_grid(Path(measured))
+    question = ask(case, grid, component, load_dependent, group)
+    table = question.table
+    keys = tuple(dict.fromkeys(fit))
+    varied = {key for change in table.changes for key in change}
+    problems = [*question.problems(), *_fit_problems(keys, hold_out, confidence)]
+    raise_any(problems, "the comparison")
+    parameters = make_parameters(case, keys, varied)
+    held_out = _held_out(table, hold_out, seed)
+    points = question.points(runner)
+    (given,) = points.compute({})
+    check_any(given)
+    if not parameters:
+        return question.answer(given, held_out)
+    used = np.isfinite(given.loss) & ~held_out
+    reach = reaches(case, parameters)
+    found = fit_parameters(points, parameters, used, confidence, reach, tell)
+    (calibrated,) = points.compute(found.settings)
+    return question.answer(given, held_out, calibrated, found)
+
+
+def _fit_problems(
+    keys: tuple[str, ...], hold_out: str | float | None, confidence: float
+) -> Iterator[Problem]:
+    if hold_out is not None and not keys:
+        allowed = "keeps points from a fit, and there is none."
+        yield Problem("hold_out", str(hold_out), allowed, "Name the keys to fit.")
+    if not 0 < confidence < 1:
+        yield Problem("confidence", f"{confidence:g}", "must be > 0 and < 1.", "Give 0.95.")
+
+
+def _held_out(table: Measurements, hold_out: str | float | None, seed: int) -> BoolArray:
+    """Which points the fit must not see."""
+    count = len(table)
+    if hold_out is None:
+        return np.zeros(count, dtype=bool)
+    share = _share(hold_out)
+    if share is not None:
+        chosen = np.zeros(count, dtype=bool)
+        drawn = np.random.default_rng(seed).permutation(count)[: round(share * count)]
+        chosen[drawn] = True
+        return chosen
+    match = _EQUATION.fullmatch(str(hold_out))
+    column = match["column"].strip() if match else ""
+    if match is None or column not in table.labels:
+        allowed = "must be COLUMN=VALUE, or a share between 0 and 1."
+        remedy = f"Columns are {', '.join(table.labels)}."
+        raise InputError([Problem("hold_out", str(hold_out), allowed, remedy)], "the comparison")
+    wanted = match["value"].strip()
+    chosen = np.array([_same(cell, wanted) for cell in table.labels[column]])
+    if not chosen.any():
+        values = ", ".join(dict.fromkeys(table.labels[column]))
+        allowed = f"holds for no row; {column} has {values[:200]}."
+        raise InputError(
+            [Problem("hold_out", str(hold_out), allowed, "Name one of them.")], "the comparison"
+        )
+    return chosen
+
+
+def _share(hold_out: str | float) -> float | None:
+    try:
+        share = float(hold_out)
+    except ValueError:
+        return None
+    return share if 0 < share < 1 else None
+
+
+def _same(cell: str, wanted: str) -> bool:
+    """Equal as text or as numbers."""
+    try:
+        return cell == wanted or float(cell) == float(wanted)
+    except ValueError:
+        return False

@@ -1,0 +1,355 @@
+"""What a comparison of measured with computed losses comes to."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from collections import defaultdict
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.builders.notes import NOT_INCLUDED
+from epicyclic.case.case import Case
+from epicyclic.case.operating import OPERATING
+from epicyclic.case.uncertain_values import MODEL_FORM, model_form_of
+from epicyclic.losses.ranges import OUT_OF_RANGE
+from epicyclic.results.result import versions
+from epicyclic.study.measured.intervals import Fit, FittedParameter
+from epicyclic.study.measured.residuals import Computed
+from epicyclic.study.measured.table import Measurements
+from epicyclic.study.sweeps.run import LoadDependent
+from epicyclic.units import CELSIUS
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+# A calibrated case: fitted values, and how well they are known, as its table [uncertainty].
+
+
+SHRUNK = 1 - 1e-6
+"""Factor of coefficients of correlation, so that rounding leaves their matrix possible. [1]"""
+DIGITS = 8
+"""Decimals of coefficients of correlation."""
+
+
+def calibrated_case(case: Case, fit: Fit) -> Case:
+    """The case with the fitted values and what the fit says about them.
+
+    Where the factors of all losses of a kind were fitted, their model has no other error.
+    """
+    own = case.given().get("uncertainty", {})
+    fitted = {item.key for item in fit.parameters}
+    kept = {key: _without(table, fitted) for key, table in own.items() if key not in fitted}
+    known = uncertainty_tables(fit)
+    settled = {f"{MODEL_FORM}{kind}": {"exact": True} for kind in _settled(case, known.keys())}
+    return case.updated({**fit.settings, "uncertainty": (settled | kept | known) or None})
+
+
+def _settled(case: Case, keys: Collection[str]) -> Iterator[str]:
+    """Kinds of losses whose factors are all among some keys."""
+    factors: dict[str, set[str]] = defaultdict(set)
+    losses = getattr(case, "losses", None)
+    for term in type(losses).model_fields if losses is not None else ():
+        if getattr(losses, term).include:
+            factors[model_form_of(term)].add(f"losses.{term}.factor")
+    return (kind for kind, wanted in factors.items() if wanted.issubset(keys))
+
+
+def uncertainty_tables(fit: Fit) -> dict[str, dict[str, Any]]:
+    """Entries of [uncertainty] for the fitted values that have an interval. Theory (X8).
+
+    Normal, with their correlations; of a value at its bound the half that lies within.
+    """
+    known = [i for i, item in enumerate(fit.parameters) if math.isfinite(item.uncertainty)]
+    tables = {fit.parameters[i].key: {"normal": _stated(fit.parameters[i])} for i in known}
+    for i, j in itertools.combinations(known, 2):
+        coefficient = round(SHRUNK * float(fit.correlation[i, j]), DIGITS)
+        if np.isfinite(coefficient):
+            entry = tables[fit.parameters[j].key].setdefault("correlated", {})
+            entry[fit.parameters[i].key] = coefficient
+    return tables
+
+
+def _stated(item: FittedParameter) -> Any:
+    """A standard uncertainty as a case file has it."""
+    number = float(f"{item.uncertainty:.6g}")
+    unit = "K" if item.unit == CELSIUS.display else item.unit
+    return f"{number!r} {unit}" if unit else number
+
+
+def _without(table: dict[str, Any], keys: Collection[str]) -> dict[str, Any]:
+    """What a case states of another key, without correlations with `keys`."""
+    left = {key: value for key, value in table.get("correlated", {}).items() if key not in keys}
+    others = {key: value for key, value in table.items() if key != "correlated"}
+    return others | ({"correlated": left} if left else {})
+
+
+# How far computed losses are from measured ones, by set of points and by group.
+
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+AS_GIVEN, CALIBRATED = "as given", "CALIBRATED"
+"""State of the case behind computed losses."""
+ALL, USED, HELD_OUT = "all points", "fitted points", "held-out points"
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorFigures:
+    """How far computed losses are from measured ones, in one set of points.
+
+    Errors are computed less measured; relative ones are over the measured loss, of points where
+    that is positive.
+
+    Attributes
+    ----------
+    state : str
+        ``"as given"`` or ``"CALIBRATED"``.
+    points : str
+        Which points: all, those of the fit, or those held out from it.
+    group : str
+        The group within these, such as ``"temperature 40"``; empty for all of them.
+    count : int
+        How many of them could be computed.
+    bias, rms : float
+        Mean error, and root of the mean squared error. [W]
+    relative_bias, mean_percentage : float
+        Mean relative error, and mean of its magnitude. [1]
+    largest, relative_largest : float
+        Error of largest magnitude [W], and relative error of largest magnitude [1].
+    largest_line : int
+        Line of the error of largest magnitude.
+    chi_squared : float
+        Sum of squared errors over uncertainties; NaN without uncertainties. [1]
+    """
+
+    state: str
+    points: str
+    group: str
+    count: int
+    bias: float
+    rms: float
+    relative_bias: float
+    mean_percentage: float
+    largest: float
+    relative_largest: float
+    largest_line: int
+    chi_squared: float
+
+
+def all_errors(
+    table: Measurements, states: Mapping[str, FloatArray], held_out: BoolArray, group: str
+) -> Iterator[ErrorFigures]:
+    """Errors of every state and set of points, then of the groups within the set."""
+    sets = {ALL: np.ones(len(table), dtype=bool)}
+    if CALIBRATED in states:
+        sets = {USED: ~held_out} | ({HELD_OUT: held_out} if held_out.any() else {})
+    labels = np.array(table.labels[group])
+    values = list(dict.fromkeys(table.labels[group]))
+    for state, computed in states.items():
+        for name, members in sets.items():
+            yield _errors(table, computed, members, (state, name, ""))
+            parts = {value: members & (labels == value) for value in values}
+            parts = {value: part for value, part in parts.items() if part.any()}
+            for value, part in parts.items() if len(parts) > 1 else ():
+                yield _errors(table, computed, part, (state, name, f"{group} {value}"))
+
+
+def _errors(
+    table: Measurements, computed: FloatArray, members: BoolArray, names: tuple[str, str, str]
+) -> ErrorFigures:
+    kept = np.flatnonzero(members & np.isfinite(computed))
+    error, measured = (computed - table.loss)[kept], table.loss[kept]
+    if kept.size == 0:
+        none = math.nan
+        return ErrorFigures(*names, 0, none, none, none, none, none, none, 0, none)
+    positive = measured > 0
+    relative = error[positive] / measured[positive] if positive.any() else np.array([math.nan])
+    worst = int(np.argmax(np.abs(error)))
+    sigma = None if table.uncertainty is None else table.uncertainty[kept]
+    return ErrorFigures(
+        *names,
+        count=kept.size,
+        bias=float(error.mean()),
+        rms=float(np.sqrt(np.mean(error**2))),
+        relative_bias=float(relative.mean()),
+        mean_percentage=float(np.abs(relative).mean()),
+        largest=float(error[worst]),
+        relative_largest=float(relative[np.argmax(np.abs(relative))]),
+        largest_line=table.lines[kept[worst]],
+        chi_squared=math.nan if sigma is None else float(np.sum((error / sigma) ** 2)),
+    )
+
+
+# What a comparison of measured with computed losses comes to: errors, notes, tables.
+#
+# A fit never passes for a prediction: what it touched is named ``calibrated`` everywhere, and its
+# errors are given apart for the points it used and for those held out.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeasuredComparison:
+    """Measured and computed losses of one case.
+
+    Attributes
+    ----------
+    case : PlanetaryCase or GearPairCase
+        As it was given.
+    measured : Measurements
+    computed : ndarray, shape (n,)
+        With the case as given; NaN where a point failed. [W]
+    calibrated : ndarray, shape (n,), or None
+        With the fitted values. [W]
+    held_out : ndarray of bool, shape (n,)
+        Points that the fit did not see.
+    load_dependent : {"computed", "as-tested"}
+        What computed load-dependent losses are.
+    group : str
+        Column by whose values the errors are given.
+    errors : tuple of ErrorFigures
+    fit : Fit or None
+    notes : tuple of str
+        What to know: failed points, models outside their ranges.
+    """
+
+    case: Case
+    measured: Measurements
+    computed: FloatArray
+    calibrated: FloatArray | None
+    held_out: BoolArray
+    load_dependent: LoadDependent
+    group: str
+    errors: tuple[ErrorFigures, ...]
+    fit: Fit | None
+    notes: tuple[str, ...]
+
+    @property
+    def states(self) -> dict[str, FloatArray]:
+        """Computed losses by the state of the case. [W]"""
+        given = {AS_GIVEN: self.computed}
+        return given if self.calibrated is None else given | {CALIBRATED: self.calibrated}
+
+    @property
+    def calibrated_case(self) -> Case | None:
+        """The case with the fitted values and their uncertainties; None without a fit."""
+        return None if self.fit is None else calibrated_case(self.case, self.fit)
+
+    def table(self) -> pd.DataFrame:
+        """One row for each measurement, units in the column names."""
+        import pandas as pd
+
+        own = {"loss", "uncertainty", "component"}
+        labels = {
+            name: list(text) for name, text in self.measured.labels.items() if name not in own
+        }
+        conditions = {
+            f"{name} [{OPERATING[name].unit}]": values
+            for name, values in self.measured.conditions.items()
+        }
+        columns: dict[str, Any] = {"line": self.measured.lines} | conditions
+        columns |= {name: text for name, text in labels.items() if name not in OPERATING}
+        columns |= {"component": self.measured.component, "measured [W]": self.measured.loss}
+        if self.measured.uncertainty is not None:
+            columns["uncertainty [W]"] = self.measured.uncertainty
+        for state, computed in self.states.items():
+            name = "computed" if state == AS_GIVEN else state
+            columns |= {f"{name} [W]": computed, f"{name} less measured [W]": self.residuals(state)}
+            if self.measured.uncertainty is not None:
+                columns[f"{name} less measured, over uncertainty"] = self.normalised(state)
+        if self.calibrated is not None:
+            columns["held out"] = self.held_out
+        return pd.DataFrame(columns)
+
+    def residuals(self, state: str) -> FloatArray:
+        """Computed less measured losses of one of the `states`, shape (n,). [W]"""
+        return self.states[state] - self.measured.loss
+
+    def normalised(self, state: str) -> FloatArray:
+        """The same over the uncertainty of the measurement; NaN without uncertainties. [1]"""
+        sigma = self.measured.uncertainty
+        return self.residuals(state) / (math.nan if sigma is None else sigma)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain numbers and text; None stands for NaN."""
+        content = {
+            "title": self.case.title,
+            "measurements": self.measured.source,
+            "load_dependent": self.load_dependent,
+            "points": self.table().to_dict(orient="records"),
+            "errors": [asdict(row) for row in self.errors],
+            "error_units": {"bias": "W", "rms": "W", "largest": "W", "others": "1"},
+            "fit": None if self.fit is None else _fit_dict(self.fit),
+            "notes": list(self.notes),
+            "case": self.case.inputs(),
+            "versions": versions(),
+        }
+        clean: dict[str, Any] = _without_nan(content)
+        return clean
+
+    def to_json(self) -> str:
+        """`to_dict` as indented JSON text."""
+        return json.dumps(self.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
+
+
+def notes_on(table: Measurements, computed: Computed) -> Iterator[str]:
+    """What to know of a comparison: failed points, what is not included, ranges."""
+    failed = [
+        (line, text) for line, text in zip(table.lines, computed.messages, strict=True) if text
+    ]
+    if failed:
+        line, reason = failed[0]
+        yield f"{len(failed)} of {len(table)} points could not be computed; line {line}: {reason}"
+    warned = {
+        line: text.split(" | ")
+        for line, text in zip(table.lines, computed.warnings, strict=True)
+        if text
+    }
+    missing = (note for notes in warned.values() for note in notes if note.startswith(NOT_INCLUDED))
+    yield from dict.fromkeys(missing)
+    flagged = [line for line, notes in warned.items() if any(map(_is_flag, notes))]
+    if flagged:
+        yield (
+            f"{len(flagged)} of {len(table)} points use a model outside its range, the first in "
+            f"line {flagged[0]}; 'epicyclic run' at its conditions names the model."
+        )
+    if (table.loss < 0).any():
+        yield "some measured losses are negative."
+
+
+def _is_flag(note: str) -> bool:
+    return note.startswith(OUT_OF_RANGE)
+
+
+def _fit_dict(fit: Fit) -> dict[str, Any]:
+    return {
+        "state": CALIBRATED,
+        "parameters": [asdict(item) for item in fit.parameters],
+        "confidence": fit.confidence,
+        "correlation": fit.correlation.tolist(),
+        "points": fit.points,
+        "degrees_of_freedom": fit.degrees_of_freedom,
+        "chi_squared": fit.chi_squared,
+        "widening": fit.widening,
+        "discrepancy": fit.discrepancy,
+        "combinations": [asdict(one) for one in fit.combinations],
+        "uncertainty": uncertainty_tables(fit),
+        "evaluations": fit.evaluations,
+        "warnings": list(fit.warnings),
+    }
+
+
+def _without_nan(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _without_nan(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_without_nan(item) for item in value]
+    if isinstance(value, float):
+        return None if not math.isfinite(value) else value
+    return value

@@ -1,0 +1,345 @@
+"""Fit of uncertain inputs to measured losses: weighted least squares within bounds."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator, Sequence
+from statistics import NormalDist
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.case.parameters import Parameter
+from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
+from epicyclic.study.measured.intervals import (
+    PROFILED,
+    Combination,
+    Fit,
+    FittedParameter,
+    Linearised,
+    combinations,
+    profile_ends,
+)
+from epicyclic.study.measured.residuals import MeasuredPoints, Residuals
+from epicyclic.units import format_number
+
+# What to know before using calibrated values.
+
+
+FloatArray = NDArray[np.float64]
+
+CURVED = 2.0
+"""Growth of the sum of squares over that of a linear model beyond which a warning says so. [1]"""
+ALIKE = 0.95
+"""Magnitude of a correlation from which a warning names it. [1]"""
+
+
+def fit_warnings(
+    residuals: Residuals, fitted: Sequence[FittedParameter], found: Linearised
+) -> Iterator[str]:
+    """What limits a fit, in sentences."""
+    yield from _of_values(fitted, found)
+    if not found.is_separable:
+        yield "these points cannot tell the inputs apart: fix some of them."
+    yield from _alike(fitted, found)
+    if found.freedom == 0:
+        yield "there are as many inputs as points: the fit cannot fail, and proves nothing."
+    if found.weighted and found.spread > 1:
+        yield (
+            f"the points scatter {found.spread:.2f} times as much about the fit as their "
+            "uncertainties allow; the intervals are widened by that factor."
+        )
+    if len(fitted) > PROFILED:
+        yield from _curved(residuals, found)
+    else:
+        yield from _skewed(residuals, fitted, found)
+
+
+def _of_values(fitted: Sequence[FittedParameter], found: Linearised) -> Iterator[str]:
+    for item, is_idle in zip(fitted, found.is_idle, strict=True):
+        if item.at_bound:
+            beyond = "there is no interval" if math.isnan(item.low) else "its interval ends there"
+            yield (
+                f"{item.key} ended at the bound {format_number(item.value)} {item.unit}".rstrip()
+                + f": the measurements ask for a value beyond it, and {beyond}."
+            )
+        elif is_idle:
+            yield (
+                f"{item.key} has no influence at its calibrated value, where the models hold it or "
+                "what follows from it at the limit of their range: the value means nothing."
+            )
+        elif item.high - item.low > 2 * abs(item.value):
+            yield f"{item.key} is hardly determined: its interval is wider than twice its value."
+
+
+def _alike(fitted: Sequence[FittedParameter], found: Linearised) -> Iterator[str]:
+    correlation = found.correlation()
+    for i, j in itertools.combinations(range(len(fitted)), 2):
+        if abs(correlation[i, j]) >= ALIKE:
+            yield (
+                f"{fitted[i].key} and {fitted[j].key} can hardly be told apart (correlation "
+                f"{correlation[i, j]:.3f}): fix one of them."
+            )
+
+
+def _skewed(
+    residuals: Residuals, fitted: Sequence[FittedParameter], found: Linearised
+) -> Iterator[str]:
+    """Where the profile of the likelihood says another thing than the linearised model."""
+    for item, parameter in zip(fitted, residuals.parameters, strict=True):
+        half = found.quantile * item.standard_error
+        if math.isnan(half):
+            continue
+        if not item.profiled:
+            yield f"no ends were found of the profile of {item.key}: take its interval as rough."
+        ends = [end for end in (item.low, item.high) if end not in (parameter.low, parameter.high)]
+        if all(1 / CURVED <= (abs(end - item.value) / half) ** 2 <= CURVED for end in ends):
+            continue
+        down, up, linear = (
+            f"{format_number(one, 2)} {item.unit}".rstrip()
+            for one in (item.value - item.low, item.high - item.value, half)
+        )
+        yield (
+            f"the losses are far from linear within the interval of {item.key}: it reaches {down} "
+            f"down and {up} up, where a linear model has {linear}. Bands take it as symmetric."
+        )
+
+
+def _curved(residuals: Residuals, found: Linearised) -> Iterator[str]:
+    """What the sum of squares at the ends of the intervals says about the linearised model."""
+    expected = (found.quantile * found.spread) ** 2
+    if not (found.is_separable and expected > 0):
+        return
+    pairs = {int(parameter): found.ends(int(parameter)) for parameter in found.free}
+    inside = {
+        parameter: pair
+        for parameter, pair in pairs.items()
+        if all(_is_inside(residuals.parameters, end) for end in pair)
+    }
+    deviations = residuals.at([end for pair in inside.values() for end in pair])
+    growth = [(float(one @ one) - found.sum_of_squares) / expected for one in deviations]
+    for parameter, grown in zip(inside, zip(growth[::2], growth[1::2], strict=True), strict=True):
+        if not all(1 / CURVED <= one <= CURVED for one in grown):
+            yield (
+                "the losses are far from linear within the interval of "
+                f"{residuals.parameters[parameter].key}: at its ends the sum of squares grows "
+                f"{grown[0]:.2g} and {grown[1]:.2g} times as much as it should. Take it as rough."
+            )
+
+
+def _is_inside(parameters: Sequence[Parameter], scaled: FloatArray) -> bool:
+    """True if all of `scaled` are within the bounds."""
+    return all(
+        item.ends[0] <= z <= item.ends[1] for item, z in zip(parameters, scaled, strict=True)
+    )
+
+
+# Fit of uncertain inputs to measured losses: weighted least squares, bounded by the schema.
+#
+# `scipy.optimize.least_squares` with its trust-region-reflective method, which keeps to bounds.
+# Covariances are those of the linearised model at the solution, from its derivatives there;
+# intervals of few parameters follow from profiles of the likelihood.
+
+
+Tell = Callable[[str], None]
+"""Is told how a fit gets on, a sentence at a time."""
+
+MOST_ROUNDS = 200
+"""Trial solutions after which the fit is given up; a curved valley takes some fifty."""
+TOLERANCE = 1e-5
+"""Relative change of the parameters that ends the fit. [1]"""
+SQUARES_TOLERANCE = 1e-5
+"""Relative change of the sum of squares that ends the fit. [1]"""
+NO_INFLUENCE = 1e-9
+"""Relative change of every loss, over that of a parameter, below which it has no influence. [1]"""
+NEAR_BOUND = 1e-4
+"""Distance from a bound, over the start value, that counts as at the bound. [1]"""
+
+
+def fit_parameters(
+    points: MeasuredPoints,
+    parameters: Sequence[Parameter],
+    used: NDArray[np.bool_],
+    confidence: float,
+    reach: FloatArray | None = None,
+    tell: Tell = lambda text: None,
+) -> Fit:
+    """Fit `parameters` to the measured losses of the points `used`. Theory (X4).
+
+    `reach` is how far each may be off before the fit, over its start value; see `reaches`.
+
+    Raises
+    ------
+    InputError
+        If there are fewer points than parameters, or a parameter has no influence.
+    ConvergenceError
+        If the fit does not converge.
+    """
+    count, size = int(used.sum()), len(parameters)
+    if count < size:
+        allowed = f"{size} inputs cannot be fitted to {count} usable points."
+        raise InputError(
+            [Problem("fit", "", allowed, "Fit fewer, or give more points.")], "the fit"
+        )
+    residuals = Residuals(points.shared(), parameters, used)
+    names = ", ".join(item.key for item in parameters)
+    tell(f"fit: {count} points, {names}")
+    slopes = residuals.derivatives(np.ones(size))
+    _check_influence(residuals, slopes)
+    known = combinations(
+        parameters,
+        residuals(np.ones(size)),
+        slopes,
+        np.ones(size) if reach is None else reach,
+        weighted=residuals.uncertainty is not None,
+    )
+    for one in known:
+        if not one.told_apart:
+            tell(one.warning)
+    found = _solution(residuals, Residuals(points, parameters, used), confidence, tell)
+    return _described(residuals, found, known, tell)
+
+
+def _solution(residuals: Residuals, exact: Residuals, confidence: float, tell: Tell) -> Linearised:
+    """The solution, at last with exact flows through pockets and better derivatives."""
+    from scipy.optimize import least_squares
+
+    def told(scaled: FloatArray) -> FloatArray:
+        deviations = residuals(scaled)
+        values = ", ".join(
+            f"{item.key} {format_number(float(z) * item.start, 4)} {item.unit}".rstrip()
+            for item, z in zip(residuals.parameters, scaled, strict=True)
+        )
+        root = math.sqrt(float(np.mean(deviations**2)))
+        unit = "W rms" if residuals.uncertainty is None else "of the uncertainties, rms"
+        tell(f"fit: off by {format_number(root, 3)} {unit}, at {values}")
+        return deviations
+
+    ends = residuals.bounds
+    found = least_squares(
+        told,
+        np.ones(len(ends)),
+        residuals.derivatives,
+        (ends[:, 0], ends[:, 1]),
+        xtol=TOLERANCE,
+        ftol=SQUARES_TOLERANCE,
+        gtol=TOLERANCE**2,
+        max_nfev=MOST_ROUNDS,
+    )
+    if found.status < 1:
+        raise ConvergenceError(
+            f"the fit did not converge in {MOST_ROUNDS} rounds; fit fewer keys, or start from "
+            "other values with --set."
+        )
+    distance = np.abs(found.x[:, None] - ends)
+    at_bound = (found.active_mask != 0) | (distance < NEAR_BOUND).any(axis=1)
+    nearest = ends[np.arange(len(ends)), distance.argmin(axis=1)]
+    start = np.where(at_bound, nearest, found.x)  # the method itself stays off the bounds
+    residuals.correct(exact, start)
+    slopes = residuals.derivatives(start, central=True)
+    solution = _last_step(residuals, start, slopes, at_bound)
+    residuals.correct(exact, solution)
+    weighted = residuals.uncertainty is not None
+    return Linearised(solution, residuals(solution), slopes, at_bound, weighted, confidence)
+
+
+def _last_step(
+    residuals: Residuals, start: FloatArray, slopes: FloatArray, at_bound: NDArray[np.bool_]
+) -> FloatArray:
+    """To where a linear model puts the least squares."""
+    deviations = residuals(start)
+    ends = start.copy()
+    ends[~at_bound] -= np.linalg.lstsq(slopes[:, ~at_bound], deviations)[0]
+    ends = np.clip(ends, residuals.bounds[:, 0], residuals.bounds[:, 1])
+    there = residuals(ends)
+    return ends if there @ there < deviations @ deviations else start
+
+
+def _check_influence(residuals: Residuals, slopes: FloatArray) -> None:
+    loss = residuals.points.measured.loss[residuals.used]
+    sigma = residuals.uncertainty
+    scale = np.abs(loss) if sigma is None else np.abs(loss) / sigma
+    problems = [
+        Problem(item.key, "", "has no influence on the measured losses.", "Do not fit it.")
+        for item, slope in zip(residuals.parameters, np.abs(slopes).max(axis=0), strict=True)
+        if slope <= NO_INFLUENCE * scale.max()
+    ]
+    raise_any(problems, "the fit")
+
+
+def _described(
+    residuals: Residuals, found: Linearised, known: tuple[Combination, ...], tell: Tell
+) -> Fit:
+    """The fit with intervals and warnings."""
+    fitted = _intervals(residuals, found, tell)
+    return Fit(
+        parameters=fitted,
+        settings=residuals.settings(found.solution),
+        confidence=found.confidence,
+        correlation=found.correlation(),
+        points=found.deviations.size,
+        degrees_of_freedom=found.freedom,
+        chi_squared=found.sum_of_squares if found.weighted else math.nan,
+        widening=found.spread if found.weighted else math.nan,
+        discrepancy=_discrepancy(residuals, found),
+        combinations=known,
+        warnings=(
+            *(one.warning for one in known if not one.told_apart),
+            *fit_warnings(residuals, fitted, found),
+        ),
+        evaluations=residuals.evaluations,
+    )
+
+
+def _discrepancy(residuals: Residuals, found: Linearised) -> float:
+    """Error of the model as an extra variance, after Birge. Theory (X6). [W]"""
+    if residuals.uncertainty is None:
+        return found.spread
+    square = float(np.mean(residuals.uncertainty**2))
+    return math.sqrt(square * (found.spread**2 - 1))
+
+
+def _intervals(residuals: Residuals, found: Linearised, tell: Tell) -> tuple[FittedParameter, ...]:
+    errors = found.standard_errors()
+    reach = found.quantile * errors
+    ends = np.full((errors.size, 2), np.nan)
+    if errors.size <= PROFILED:
+        tell("fit: profiles of the likelihood")
+        ends = profile_ends(residuals, found)
+    profiled = np.isfinite(ends).all(axis=1)
+    linear = np.stack([found.solution - reach, found.solution + reach], axis=1)
+    ends = np.where(profiled[:, None], ends, linear)
+    return tuple(
+        _fitted(item, found, number, ends[number], bool(profiled[number]))
+        for number, item in enumerate(residuals.parameters)
+    )
+
+
+def _fitted(
+    item: Parameter, found: Linearised, number: int, ends: FloatArray, profiled: bool
+) -> FittedParameter:
+    """A parameter in its unit; `ends` are over its start value."""
+    at_bound = bool(found.at_bound[number])
+    error = float(found.standard_errors()[number]) * abs(item.start)
+    value, *rising = (
+        min(max(float(z) * item.start, item.low), item.high) if math.isfinite(z) else math.nan
+        for z in (found.solution[number], *ends)
+    )
+    low, high = sorted(rising)
+    # bands take a normal distribution that has the same interval, at a bound half of it
+    reach = high - low if at_bound else (high - low) / 2
+    if not at_bound and not item.low < low < high < item.high:
+        reach = found.quantile * error
+    return FittedParameter(
+        key=item.key,
+        unit=item.unit,
+        start=item.start,
+        value=value,
+        standard_error=error,
+        low=low,
+        high=high,
+        at_bound=at_bound,
+        profiled=profiled,
+        uncertainty=reach / NormalDist().inv_cdf((1 + found.confidence) / 2),
+    )

@@ -1,0 +1,274 @@
+"""The losses that the model gives at measured points, and their weighted deviations."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.case.case import Case
+from epicyclic.case.parameters import Parameter
+from epicyclic.errors import ConvergenceError, InputError
+from epicyclic.losses.pocket_flow import NETWORK_MODELS
+from epicyclic.losses.pocket_tables import FlowFamily, FlowTable, FlowTables
+from epicyclic.study.measured.table import LOAD_DEPENDENT, Measurements, parts_of
+from epicyclic.study.solve import pocket_flow_numbers
+from epicyclic.study.sweeps.plan import PointList
+from epicyclic.study.sweeps.run import AS_TESTED, COMPUTED, LoadDependent, as_tested, with_unloaded
+from epicyclic.study.sweeps.runner import HERE, Rows, Runner
+
+# Flows through pockets for cases next to each other, read between flows at fixed numbers.
+#
+# A fit asks for hundreds of flows that hardly differ. Solved one by one they cost more than all
+# other losses, and their own error of some 1e-3 hides how the loss depends on what is fitted. Read
+# between numbers that do not depend on what was asked before they are a smooth function.
+
+
+Floats = NDArray[np.float64]
+
+PER_OCTAVE = 16
+"""Flows for each doubling of the number: between them the loss is found within 0.3 % to 0.6 % of
+the pockets of an e-axle with voids."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlowLattice:
+    """Scaled figures of flows by family and place, the number being 2^(place / PER_OCTAVE)."""
+
+    _solved: dict[tuple[FlowFamily, int], Floats] = field(default_factory=dict)
+
+    def tables(self, cases: Iterable[Case], threads: int | None = None) -> FlowTables:
+        """Tables that hold the flows of some cases; those of models without similarity are not."""
+        wanted: dict[FlowFamily, set[int]] = defaultdict(set)
+        for case in cases:
+            for family, number in pocket_flow_numbers(case):
+                if family.model in NETWORK_MODELS:
+                    below = math.floor(math.log2(number) * PER_OCTAVE)
+                    wanted[family].update(range(below - 1, below + 3))
+        self._solve([(family, i) for family, places in wanted.items() for i in places], threads)
+        return {family: self._table(family, sorted(places)) for family, places in wanted.items()}
+
+    def _solve(self, places: Sequence[tuple[FlowFamily, int]], threads: int | None) -> None:
+        new = [place for place in places if place not in self._solved]
+        for family in {family for family, _ in new}:
+            _ = family.geometry  # once, before threads ask for it at the same time
+        with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
+            flows = pool.map(lambda place: place[0].scaled(_number(place[1])), new)
+            self._solved.update(zip(new, flows, strict=True))
+
+    def _table(self, family: FlowFamily, places: list[int]) -> FlowTable:
+        scaled = np.array([self._solved[family, place] for place in places])
+        sound = np.isfinite(scaled).all(axis=1)
+        return FlowTable(
+            number=np.array([_number(place) for place in places]),
+            scaled=scaled,
+            readable=(np.diff(places) == 1) & sound[:-1] & sound[1:],
+            error=math.nan,
+        )
+
+
+def _number(place: int) -> float:
+    return float(2.0 ** (place / PER_OCTAVE))
+
+
+@dataclass(frozen=True, slots=True)
+class NearbyPoints(PointList):
+    """Single points whose flows through pockets are read from a lattice."""
+
+    kind: ClassVar[str] = "nearby-points"
+    lattice: FlowLattice = field(default_factory=FlowLattice, kw_only=True, repr=False)
+
+    def prepared(self, indices: Sequence[int], jobs: int | None) -> Self:
+        """With tables of the flows that the points `indices` read."""
+        tables = self.lattice.tables(self._cases(indices), jobs if jobs and jobs > 0 else None)
+        return replace(self, flow_tables=tables, lattice=FlowLattice())
+
+    def _cases(self, indices: Sequence[int]) -> Iterable[Case]:
+        for index in indices:
+            try:
+                yield self.case.updated(self.changes(index))
+            except InputError:
+                continue  # the point reports it
+
+
+# The losses that the model gives at measured points, for any values of some keys.
+
+
+FloatArray = NDArray[np.float64]
+
+_EXACT = {"numerics.pocket_interpolation": 0.0}
+"""Flows through pockets are solved at every point: the derivatives of a fit would show the error of
+tables."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Computed:
+    """Computed losses."""
+
+    loss: FloatArray  # Computed loss where one was measured; NaN where the point failed. [W]
+    messages: tuple[str, ...]  # Why a point failed, and what to know about it.
+    warnings: tuple[str, ...]  # Why a point failed, and what to know about it.
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredPoints:
+    """A case at the points of a table of measurements."""
+
+    case: Case
+    measured: Measurements
+    # With a folder as its journal; its progress starts again with every round.
+    runner: Runner = HERE
+    load_dependent: LoadDependent = COMPUTED  # What load-dependent losses are.
+    # Flows through pockets are read from it. Default: each is solved.
+    lattice: FlowLattice | None = None
+
+    def shared(self) -> MeasuredPoints:
+        """The same points for many values of keys next to each other, as a fit asks for them."""
+        return replace(self, lattice=FlowLattice())
+
+    def compute(self, *settings: Mapping[str, Any]) -> list[Computed]:
+        """The losses for each of several `settings` of keys, all of them in one go."""
+        points, unloaded = self.asked(*settings)
+        plan = (
+            PointList(self.case, points)
+            if self.lattice is None
+            else NearbyPoints(self.case, points, lattice=self.lattice)
+        )
+        return self.losses(self.runner.within(plan).run(plan), unloaded)
+
+    def asked(
+        self, *settings: Mapping[str, Any]
+    ) -> tuple[tuple[dict[str, Any], ...], NDArray[np.intp]]:
+        """The keys that each point changes, and numbers of the points without torque, if asked."""
+        changes = self.measured.changes
+        points = tuple({**_EXACT, **change, **keys} for keys in settings for change in changes)
+        if self.load_dependent == AS_TESTED:
+            return with_unloaded(points)
+        return points, np.arange(len(points))
+
+    def losses(self, rows: Rows, unloaded: NDArray[np.intp]) -> list[Computed]:
+        """The losses for each of the settings, of the rows of all points that were `asked` for."""
+        count = len(self.measured)
+        return [self._computed(rows, unloaded, i) for i in range(0, unloaded.size, count)]
+
+    def _computed(self, rows: Rows, unloaded: NDArray[np.intp], first: int) -> Computed:
+        """The points of one of the settings, from number `first` on."""
+        component = self.measured.component
+        own = slice(first, first + len(component))
+        losses = np.array(
+            [
+                sum(float(self._loss(rows, unloaded, name)[point]) for name in parts_of(names))
+                for point, names in enumerate(component, first)
+            ]
+        )
+        messages = (
+            rows.message[point] or rows.message[unloaded[point]] * math.isnan(loss)
+            for point, loss in enumerate(losses, first)
+        )
+        return Computed(losses, tuple(messages), tuple(rows.warnings[own]))
+
+    def _loss(self, rows: Rows, unloaded: NDArray[np.intp], name: str) -> FloatArray:
+        """A loss of all points."""
+        if name == LOAD_DEPENDENT and self.load_dependent == AS_TESTED:
+            return as_tested(rows, unloaded)
+        return rows.numbers(name)
+
+
+# Deviations of computed from measured losses over weights, for any values of some keys.
+
+
+STEP = 1e-2
+"""Step of the differences that give the derivatives, over the start value: flows through pockets
+are found to 1e-3 of their power, which smaller steps would show. [1]"""
+
+
+@dataclass(slots=True)
+class Residuals:
+    """Deviations over weights at the points of calibration, and their derivatives. Theory (X1)."""
+
+    points: MeasuredPoints
+    # Their values are given as ratios to the start values, "scaled".
+    parameters: Sequence[Parameter]
+    used: NDArray[np.bool_]  # Points of the table that the fit sees.
+    _known: dict[tuple[float, ...], FloatArray] = field(default_factory=dict)
+    _offset: FloatArray | float = 0.0
+
+    def correct(self, exact: Residuals, scaled: FloatArray) -> None:
+        """From now on, agree with others at one place."""
+        self._offset = 0.0
+        offset = exact(scaled) - self(scaled)
+        if np.isfinite(offset).all():
+            self._offset = offset
+
+    @property
+    def evaluations(self) -> int:
+        """Computed points."""
+        return len(self._known) * len(self.points.measured)
+
+    @property
+    def uncertainty(self) -> FloatArray | None:
+        """Uncertainty of the losses at the points used; None if they have none. [W]"""
+        whole = self.points.measured.uncertainty
+        return None if whole is None else whole[self.used]
+
+    @property
+    def bounds(self) -> FloatArray:
+        """Bounds of the scaled parameters, shape (p, 2). [1]"""
+        return np.array([item.ends for item in self.parameters])
+
+    def settings(self, scaled: FloatArray) -> dict[str, Any]:
+        """The values of the keys as a case file has them."""
+        return {
+            item.key: item.value(float(z)) for item, z in zip(self.parameters, scaled, strict=True)
+        }
+
+    def __call__(self, scaled: FloatArray) -> FloatArray:
+        return self.at([scaled])[0]
+
+    def derivatives(self, scaled: FloatArray, *, central: bool = False) -> FloatArray:
+        """d(residual)/d(scaled parameter), all from one batch of points, shape (n, p).
+
+        By differences to one side, or to both, `central`, where bounds leave room for them.
+        """
+        ahead = [
+            -STEP if z + STEP > high else STEP
+            for z, (_, high) in zip(scaled, self.bounds, strict=True)
+        ]
+        behind = [
+            -STEP if central and step > 0 and z - STEP >= low else 0.0
+            for z, step, (low, _) in zip(scaled, ahead, self.bounds, strict=True)
+        ]
+        unit = np.eye(scaled.size)
+        moved = self.at(
+            [
+                scaled + step * one
+                for steps in (ahead, behind)
+                for step, one in zip(steps, unit, strict=True)
+            ]
+        )
+        span = np.subtract(ahead, behind)
+        table = (np.array(moved[: scaled.size]) - moved[scaled.size :]) / span[:, None]
+        if not np.isfinite(table).all():
+            raise ConvergenceError(
+                f"near {self.settings(scaled)} points cannot be computed; fit fewer keys, or "
+                "start from other values."
+            )
+        return table.T
+
+    def at(self, scaled: Sequence[FloatArray]) -> list[FloatArray]:
+        """Deviations for each of several parameter sets; those that are not known in one batch."""
+        sets = [tuple(map(float, one)) for one in scaled]
+        new = [one for one in dict.fromkeys(sets) if one not in self._known]
+        measured = self.points.measured.loss[self.used]
+        weight = 1.0 if self.uncertainty is None else 1 / self.uncertainty
+        settings = [self.settings(np.array(one)) for one in new]
+        for one, computed in zip(new, self.points.compute(*settings) if new else [], strict=True):
+            self._known[one] = (computed.loss[self.used] - measured) * weight
+        return [self._known[one] + self._offset for one in sets]

@@ -1,0 +1,507 @@
+"""Measurements as tables of users state them."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import PydanticCustomError
+
+from epicyclic.builders.build import layout_of
+from epicyclic.case.case import Case
+from epicyclic.case.fields import is_array, is_text, quantity_of
+from epicyclic.case.keys import field_at, known_keys
+from epicyclic.case.nearest import did_you_mean, misspelt
+from epicyclic.case.operating import AXES, OPERATING, STATE, STATE_KEY
+from epicyclic.case.values import parse_value
+from epicyclic.case.wording import one_line, sentence
+from epicyclic.errors import InputError, Problem, first_of, raise_any
+from epicyclic.files import check_archive, csv_rows, decode, read_bytes, refuse
+from epicyclic.units import WATT, Quantity, format_number
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+# Tables as users keep them (CSV, Excel, Parquet) as rows of plain cells.
+
+
+_NOUN = "measurement"
+_LARGEST_FILE = 10_000_000
+"""Largest file, also of what a compressed file holds. [bytes]"""
+MOST_ROWS = 10_000
+"""Every row is a computation; tables of more rows are recordings, to be averaged first."""
+_MOST_COLUMNS = 200
+_SHOWN_LINES = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """Cells of a table."""
+
+    header: tuple[str, ...]
+    # Line in the file, or row of the sheet, and its cells; as many as the header has.
+    rows: tuple[tuple[int, tuple[str, ...]], ...]
+    source: str  # Where it comes from.
+
+
+def read_grid(path: Path) -> Grid:
+    """The cells of a CSV, Excel (first sheet) or Parquet file.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read as such, is empty, or has more than `MOST_ROWS` rows.
+    """
+    readers = {".xlsx": _excel_rows, ".parquet": _parquet_rows}
+    reader = readers.get(path.suffix.lower(), _csv_rows)
+    source = one_line(str(path), 500)
+    try:
+        return _checked(reader(read_bytes(path, _NOUN, _LARGEST_FILE)), source)
+    except InputError as error:
+        raise InputError(error.problems, source) from None
+
+
+def read_frame(table: pd.DataFrame) -> Grid:
+    """The cells of a table in memory; its rows are counted from 1. Errors as for `read_grid`."""
+    return _checked(_frame_rows(table), "the table")
+
+
+def _checked(rows: Iterator[tuple[int, list[str]]], source: str) -> Grid:
+    """The grid of `rows`, the first of which is the header; raises `InputError`."""
+    _, header = next(rows, (0, []))
+    header = _without_end(header, 0)
+    if not header:
+        refuse("has no columns.", "Give a header such as: speed [rpm],torque [N*m],...")
+    if len(header) > _MOST_COLUMNS:
+        refuse(f"has more than {_MOST_COLUMNS} columns.", "Keep those that are compared.")
+    kept = []
+    for line, cells in rows:
+        if any(cells):
+            kept.append((line, tuple(_without_end(cells, len(header)))))
+        if len(kept) > MOST_ROWS:
+            refuse(f"has more than {MOST_ROWS} rows.", "Average what was recorded at one point.")
+    if not kept:
+        refuse("has no rows below its header.", "Give one row for each measurement.")
+    ragged = [(line, len(cells)) for line, cells in kept if len(cells) != len(header)]
+    if ragged:
+        shown = first_of([f"line {line} has {count}" for line, count in ragged], _SHOWN_LINES)
+        allowed = f"has {len(header)} columns, but {shown}."
+        refuse(allowed, "Give every row as many cells; quote cells that contain the separator.")
+    return Grid(tuple(header), tuple(kept), source)
+
+
+def _without_end(cells: list[str], least: int) -> list[str]:
+    """`cells` without the empty ones at the end, as spreadsheets leave them, but `least`."""
+    count = len(cells)
+    while count > least and not cells[count - 1]:
+        count -= 1
+    return cells[:count]
+
+
+def _csv_rows(content: bytes) -> Iterator[tuple[int, list[str]]]:
+    if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        refuse("is UTF-16 text.", "Save it as CSV in UTF-8.")
+    return csv_rows(decode(content, _NOUN))
+
+
+def _excel_rows(content: bytes) -> Iterator[tuple[int, list[str]]]:
+    """Rows of the first sheet, with the values that formulas had when the file was saved."""
+    import openpyxl
+
+    remedy = "Save one small sheet as .xlsx, or as CSV."
+    check_archive(content, "an Excel workbook", _LARGEST_FILE, remedy)
+    try:
+        book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
+        rows = iter(book.worksheets[0].iter_rows(values_only=True))
+        for number, row in enumerate(rows, 1):
+            yield number, [_text(cell) for cell in row]
+    except InputError:
+        raise
+    except Exception as error:  # the reader raises whatever its parsers do
+        refuse(f"is no sound workbook: {one_line(str(error))}.", "Save it again, or as CSV.")
+
+
+def _parquet_rows(content: bytes) -> Iterator[tuple[int, list[str]]]:
+    import pyarrow.parquet as parquet
+
+    try:
+        file = parquet.ParquetFile(io.BytesIO(content))
+        about = file.metadata
+        groups = [about.row_group(number) for number in range(about.num_row_groups)]
+        if about.num_rows > MOST_ROWS or sum(g.total_byte_size for g in groups) > _LARGEST_FILE:
+            refuse(f"has more than {MOST_ROWS} rows or 10 MB.", "Average what was recorded.")
+        table = file.read().to_pandas()
+    except InputError:
+        raise
+    except Exception as error:  # the reader raises whatever its parsers do
+        refuse(f"is no sound Parquet file: {one_line(str(error))}.", "Write it again, or as CSV.")
+    yield from _frame_rows(table)
+
+
+def _frame_rows(table: pd.DataFrame) -> Iterator[tuple[int, list[str]]]:
+    yield 0, [str(name).strip() for name in table.columns]
+    rows: Iterable[tuple[Any, ...]] = table.itertuples(index=False, name=None)
+    for number, row in enumerate(rows, 1):
+        yield number, [_text(cell) for cell in row]
+
+
+def _text(cell: object) -> str:
+    """A cell as text, numbers with all their digits."""
+    return "" if cell is None else str(cell).strip()
+
+
+# Measurements as a table states them: conditions, loss, which loss it is, uncertainty.
+
+
+FloatArray = NDArray[np.float64]
+
+LOAD_DEPENDENT = "load_dependent"
+"""Sum of the losses that depend on the load, as a component."""
+
+_OWN = (*AXES, "loss", "uncertainty", "component")
+_EXAMPLES = {name: part.unit for name, part in OPERATING.items()} | {"loss": WATT.display}
+_HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
+_PERCENT = "%"
+_NUMBER_WITH_UNIT = re.compile(r"[+-]?[\d.,]+(?:[eE][+-]?\d+)?\s*(?![eE][+-]?\d)[^\d\s.,].*")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measurements:
+    """Measured losses, one entry for each row of the table.
+
+    Attributes
+    ----------
+    source : str
+        Where they come from.
+    lines : tuple of int
+        Line of each in its file.
+    changes : tuple of mapping
+        The keys of the case that its row sets, as a case file has them.
+    conditions : mapping of str to ndarray, shape (n,)
+        ``speed`` [rpm], ``torque`` [N m], ``temperature`` [degC] if losses depend on it.
+    component : tuple of str
+        The loss that was measured: a term, a sum of terms joined by ``+``, ``load_dependent``,
+        ``load_independent`` or ``total``.
+    loss : ndarray, shape (n,)
+        [W]
+    uncertainty : ndarray, shape (n,), or None
+        Standard uncertainty of the loss (coverage factor 1). [W]
+    labels : mapping of str to tuple of str
+        The columns by name, as text; units taken off the names, and the conditions as above.
+    """
+
+    source: str
+    lines: tuple[int, ...]
+    changes: tuple[Mapping[str, Any], ...]
+    conditions: Mapping[str, FloatArray]
+    component: tuple[str, ...]
+    loss: FloatArray
+    uncertainty: FloatArray | None
+    labels: Mapping[str, tuple[str, ...]]
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+
+def loss_names(case: Case) -> tuple[str, ...]:
+    """Losses of a case that can be measured."""
+    return (*layout_of(case).losses, LOAD_DEPENDENT, "load_independent", "total")
+
+
+def parts_of(component: str) -> list[str]:
+    """The losses whose sum was measured."""
+    return [part.strip() for part in component.split("+")]
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    header: str
+    name: str
+    unit: str
+    cells: tuple[str, ...]
+
+
+@dataclass(slots=True)
+class _Problems:
+    """Mistakes in cells; the same mistake in many cells of a column is one problem."""
+
+    lines: tuple[int, ...]
+    found: list[Problem] = field(default_factory=list)
+    _cells: dict[tuple[str, str, str], list[str]] = field(default_factory=dict)
+
+    def cell(self, column: _Column, row: int, allowed: str, remedy: str) -> None:
+        given = f'"{one_line(column.cells[row])}" in line {self.lines[row]}'
+        self._cells.setdefault((column.header, allowed, remedy), []).append(given)
+
+    def all(self) -> list[Problem]:
+        """Every problem, those of columns first."""
+        cells = [
+            Problem(one_line(header), first_of(given), allowed, remedy)
+            for (header, allowed, remedy), given in self._cells.items()
+        ]
+        return [*self.found, *cells]
+
+
+def parse_measurements(
+    grid: Grid,
+    case: Case,
+    # The loss that was measured, where the table has no column ``component``.
+    component: str = "total",
+) -> Measurements:
+    """What the cells of a table mean for a case.
+
+    Raises
+    ------
+    InputError
+        With every mistake in the table.
+    """
+    problems = _Problems(tuple(line for line, _ in grid.rows))
+    columns = _columns(grid, case, problems)
+    conditions = {
+        name: _numbers(columns.get(name), quantity_of(*_field(case, key)), problems)
+        for name, key in _conditions(case).items()
+    }
+    loss = _numbers(columns.get("loss"), WATT, problems)
+    uncertainty = _uncertainty(columns.get("uncertainty"), loss, problems)
+    components = _components(columns.get("component"), component, case, grid, problems)
+    own = _conditions(case) | _states(case)
+    keys = {
+        own.get(name, name): column
+        for name, column in columns.items()
+        if name in own or "." in name
+    }
+    values = {key: _values(column, *_field(case, key), problems) for key, column in keys.items()}
+    _check_repeats(grid, problems)
+    changes = tuple(
+        {key: column[row] for key, column in values.items()} for row in range(len(grid.rows))
+    )
+    found = problems.all() or _refused(case, changes, problems.lines)
+    raise_any(found, grid.source)
+    return Measurements(
+        source=grid.source,
+        lines=problems.lines,
+        changes=changes,
+        conditions=conditions,
+        component=components,
+        loss=loss,
+        uncertainty=uncertainty,
+        labels={name: column.cells for name, column in columns.items()}
+        | {name: tuple(map(format_number, values)) for name, values in conditions.items()},
+    )
+
+
+def _conditions(case: Case) -> dict[str, str]:
+    """The conditions that a table of a case must have, and their keys."""
+    return {key: name for key, name in AXES.items() if case.computed or key != "temperature"}
+
+
+def _states(case: Case) -> dict[str, str]:
+    """The column of states and its key, of a train that has any."""
+    return {STATE: STATE_KEY} if case.states else {}
+
+
+def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
+    """The columns by name; the conditions under their short names."""
+    own = _conditions(case) | _states(case)
+    short = {key: name for name, key in own.items()}
+    columns: dict[str, _Column] = {}
+    for number, header in enumerate(grid.header):
+        match = _HEADER.fullmatch(header)
+        if match is None:
+            allowed, remedy = "is not a name with a unit.", "Write it as: speed [rpm]."
+            problems.found.append(
+                Problem(f"column {number + 1}", one_line(header), allowed, remedy)
+            )
+            continue
+        name = match["name"]
+        name = name.lower() if name.lower() in (*_OWN, *own) else short.get(name, name)
+        cells = tuple(row[number] for _, row in grid.rows)
+        column = _Column(header, name, (match["unit"] or "").strip(), cells)
+        if name in columns:
+            allowed, remedy = "is a second column of that name.", "Delete one."
+            problems.found.append(Problem(one_line(header), "", allowed, remedy))
+            continue
+        problem = _name_problem(column, case)
+        if problem is not None:
+            problems.found.append(problem)
+        else:
+            columns[name] = column
+    taken = {problem.key for problem in problems.found}
+    problems.found += [
+        Problem(name, "", "is missing among the columns.", f"Add a column {name} [{unit}].")
+        for name, unit in _EXAMPLES.items()
+        if name not in columns
+        and (name in own or name not in AXES)
+        and not any(misspelt(key, [name]) for key in taken)
+    ]
+    return columns
+
+
+def _name_problem(column: _Column, case: Case) -> Problem | None:
+    """What is wrong with the name of a column; names without dots may be labels of the user."""
+    name, shown = column.name, one_line(column.header)
+    if "." not in name:
+        own = (*_OWN, *_states(case))
+        nearest = "" if name in own else misspelt(name, own)
+        if nearest:
+            return Problem(shown, "", "is not a known column.", f'Did you mean "{nearest}"?')
+        return None
+    known = field_at(case, name)
+    if known is None:
+        remedy = did_you_mean(name, known_keys(case)) or "Remove it, or drop its dots."
+        return Problem(shown, "", "is not a key of the case.", remedy)
+    if is_array(known[0]):
+        return Problem(shown, "", "is a list in the case.", "Compare one table for each list.")
+    return None
+
+
+def _field(case: Case, key: str) -> tuple[Any, tuple[Any, ...]]:
+    found = field_at(case, key)
+    assert found is not None
+    return found
+
+
+def _numbers(column: _Column | None, quantity: Quantity | None, problems: _Problems) -> FloatArray:
+    """The cells in the display unit of `quantity`; NaN where they cannot be read."""
+    if column is None:
+        return np.full(len(problems.lines), np.nan)
+    assert quantity is not None
+    kind: Quantity = quantity
+    return _read(
+        column, problems, lambda cell: kind.to_display(kind.parse(_with_unit(column, cell)))
+    )
+
+
+def _with_unit(column: _Column, cell: str) -> str:
+    return f"{cell} {column.unit}" if column.unit else cell
+
+
+def _read(column: _Column, problems: _Problems, parse: Callable[[str], float]) -> FloatArray:
+    numbers = np.full(len(column.cells), np.nan)
+    for row, cell in enumerate(column.cells):
+        if not cell:
+            problems.cell(column, row, "is empty.", "Fill it, or delete the row.")
+            continue
+        if column.unit and _NUMBER_WITH_UNIT.fullmatch(cell):
+            remedy = "Give units in the header or in every cell."
+            problems.cell(column, row, f"has a unit, and the header has [{column.unit}].", remedy)
+            continue
+        try:
+            numbers[row] = parse(cell)
+        except PydanticCustomError as error:
+            remedy = str((error.context or {}).get("remedy", ""))
+            allowed = sentence(error.message(), capital=False)
+            if not column.unit:
+                remedy += f" in every cell, or put the unit into the header: {column.name} [...]"
+            problems.cell(column, row, allowed, sentence(remedy))
+        except ValueError:
+            problems.cell(column, row, "is not a number.", "Write a number, or delete the row.")
+    return numbers
+
+
+def _finite(cell: str) -> float:
+    number = float(cell)
+    if not math.isfinite(number):
+        raise ValueError(cell)
+    return number
+
+
+def _uncertainty(
+    column: _Column | None, loss: FloatArray, problems: _Problems
+) -> FloatArray | None:
+    """Standard uncertainties in W, from W or from per cent of the loss."""
+    if column is None:
+        return None
+    if column.unit == _PERCENT:
+        values = _read(column, problems, _finite) / 100 * np.abs(loss)
+    else:
+        values = _numbers(column, WATT, problems)
+    for row in np.flatnonzero(values <= 0):
+        remedy = "Give the standard uncertainty of every row, or leave the column out."
+        problems.cell(column, int(row), "must be > 0.", remedy)
+    return values
+
+
+def _components(
+    column: _Column | None, given: str, case: Case, grid: Grid, problems: _Problems
+) -> tuple[str, ...]:
+    names = loss_names(case)
+    remedy = f"Known are {', '.join(names)}; join several with +."
+    if column is None:
+        if not _is_sum_of(names, given):
+            problems.found.append(Problem("component", one_line(given), "is no loss.", remedy))
+        return (given,) * len(grid.rows)
+    for row, cell in enumerate(column.cells):
+        if not _is_sum_of(names, cell):
+            problems.cell(column, row, "is no loss.", remedy)
+    return column.cells
+
+
+def _is_sum_of(names: Iterable[str], text: str) -> bool:
+    parts = parts_of(text)
+    return set(parts) <= set(names) and len(set(parts)) == len(parts)
+
+
+def _values(
+    column: _Column, annotation: Any, metadata: tuple[Any, ...], problems: _Problems
+) -> tuple[Any, ...]:
+    """The cells as a case file has them."""
+    if quantity_of(annotation, metadata) is not None:
+        if column.name not in AXES:
+            _numbers(column, quantity_of(annotation, metadata), problems)
+        return tuple(_with_unit(column, cell) for cell in column.cells)
+    if column.unit not in ("", "1"):
+        allowed, remedy = "has no unit in the case.", f"Name the column {column.name}."
+        problems.found.append(Problem(one_line(column.header), "", allowed, remedy))
+    for row, cell in enumerate(column.cells):
+        if not cell:
+            problems.cell(column, row, "is empty.", "Fill it, or delete the row.")
+    if is_text(annotation):
+        return column.cells
+    return tuple(map(parse_value, column.cells))
+
+
+def _check_repeats(grid: Grid, problems: _Problems) -> None:
+    """The same row twice is a slip; repeated measurements differ in loss or have a label."""
+    seen: dict[tuple[str, ...], int] = {}
+    repeats = []
+    for line, cells in grid.rows:
+        if cells in seen:
+            repeats.append(f"line {line} is line {seen[cells]}")
+        seen.setdefault(cells, line)
+    if repeats:
+        remedy = "Delete them; number repeated measurements in a column of their own, such as run."
+        problems.found.append(Problem("rows", first_of(repeats), "are the same twice.", remedy))
+
+
+def _refused(
+    case: Case, changes: tuple[Mapping[str, Any], ...], lines: tuple[int, ...]
+) -> list[Problem]:
+    """What the case refuses of the keys that rows set, apart from its operating point."""
+    first: dict[str, int] = {}
+    for row, change in enumerate(changes):
+        keys = {key: value for key, value in change.items() if key not in AXES.values()}
+        first.setdefault(repr(keys), row)
+    problems = []
+    for row in first.values():
+        try:
+            case.updated(changes[row])
+        except InputError as error:
+            problems += [
+                Problem(
+                    f"line {lines[row]}: {problem.key}",
+                    problem.value,
+                    problem.allowed,
+                    problem.remedy,
+                )
+                for problem in error.problems
+            ]
+    return problems

@@ -1,0 +1,363 @@
+"""Shapes of the gears of a case and where they stand, as drawings need them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from epicyclic.builders.build import build as build_machine
+from epicyclic.builders.gearing import SetCase
+from epicyclic.builders.train import set_cases
+from epicyclic.case import build
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.listed_set import ListedCase, arrangement_of, directions_of, pins_of
+from epicyclic.gears.cutting import tooth_outline
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.generation import Tool
+from epicyclic.gears.mesh import Mesh
+from epicyclic.machine.element import joined_key
+from epicyclic.machine.gear_mesh import MeshDuty
+from epicyclic.study.meshes import variable
+from epicyclic.units import DEGREE, MILLIMETRE
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# Where the gears of a set stand, and how they must be turned for their teeth to mesh.
+
+
+Point = tuple[float, float]
+"""x and y of a centre. [m]"""
+Place = tuple[float, float, float]
+"""x and y of the centre [m], direction of the first tooth [rad]."""
+UP = math.pi / 2
+HALF = 0.5
+"""Part of a pitch by which a tooth is away from the space beside it."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetPlaces:
+    """What is to be drawn of a set."""
+
+    tables: Mapping[str, GearTable]  # Tables of its gears, by name.
+    # Where each gear stands; several times on the planets. [m]
+    centers: Mapping[str, tuple[Point, ...]]
+    bodies: Mapping[str, str]  # The body of each gear: gears of one body turn together.
+
+    def places(self, meshes: Sequence[Mesh]) -> dict[str, list[Place]]:
+        """Centres with the directions of the first teeth, the first gear with a tooth upwards."""
+        directions = tooth_directions(self.centers, self.bodies, meshes)
+        return {
+            name: [(*center, turn) for center, turn in zip(centers, directions[name], strict=True)]
+            for name, centers in self.centers.items()
+        }
+
+    def relative_speeds(self, meshes: Sequence[Mesh]) -> dict[str, float]:
+        """Speed of each gear over that of the first one, seen from the carrier; 0 if unrelated."""
+        known = {next(iter(self.bodies.values())): 1.0}
+        grows = True
+        while grows:
+            before = len(known)
+            for mesh in meshes:
+                one, two = self.bodies[mesh.gear1.name], self.bodies[mesh.gear2.name]
+                ratio = -mesh.side * mesh.gear1.teeth / mesh.gear2.teeth
+                if one in known:
+                    known.setdefault(two, known[one] * ratio)
+                elif two in known:
+                    known[one] = known[two] / ratio
+            grows = len(known) > before
+        return {name: known.get(body, 0.0) for name, body in self.bodies.items()}
+
+
+def places_of(
+    case: SetCase,
+    meshes: Mapping[str, Mesh],  # By their keys.
+) -> SetPlaces | None:
+    """Gears and centres of a set; None if the case does not tell where all of them stand."""
+    if isinstance(case, PlanetaryCase):
+        return _of_planetary(case)
+    if isinstance(case, GearPairCase):
+        return _of_pair(case, next(iter(meshes.values())))
+    return _of_listed(case, meshes)
+
+
+def _of_planetary(case: PlanetaryCase) -> SetPlaces:
+    tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
+    angles = build.planet_angles(case.sun, case.planet, case.ring)
+    middle = ((0.0, 0.0),)
+    around = tuple(_polar(case.gears.distance, UP + angle) for angle in angles)
+    centers = {"sun": middle, "planet": around, "ring": middle}
+    return SetPlaces(tables, centers, {name: name for name in tables})
+
+
+def _of_pair(case: GearPairCase, mesh: Mesh) -> SetPlaces:
+    """The pinion at the origin, or inside an internal gear there."""
+    tables = {"pinion": case.pinion, "gear": case.gear}
+    ends = ((0.0, 0.0),), ((case.gears.distance, 0.0),)
+    pinion, gear = reversed(ends) if mesh.gear2.internal else ends
+    return SetPlaces(tables, {"pinion": pinion, "gear": gear}, {name: name for name in tables})
+
+
+def _of_listed(case: ListedCase, meshes: Mapping[str, Mesh]) -> SetPlaces | None:
+    shape, table = case.shape, case.table
+    bodies = _on_carrier(case) if shape.planets else _on_fixed_axes(case, meshes)
+    if not set(shape.bodies.values()) <= bodies.keys():
+        return None
+    centers = {name: bodies[body] for name, body in shape.bodies.items()}
+    return SetPlaces(table.members, centers, shape.bodies)
+
+
+def _on_carrier(case: ListedCase) -> dict[str, tuple[Point, ...]]:
+    shape, table = case.shape, case.table
+    arms = arrangement_of(shape, table.planets or 1).angles
+    found: dict[str, tuple[Point, ...]] = {
+        body: ((0.0, 0.0),) for body in shape.bodies.values() if body not in shape.planets
+    }
+    for body, pin in pins_of(table, shape).items():
+        found[body] = tuple(_polar(pin.radius, UP + arm + pin.angle) for arm in arms)
+    return found
+
+
+def _on_fixed_axes(case: ListedCase, meshes: Mapping[str, Mesh]) -> dict[str, tuple[Point, ...]]:
+    """Each body beside the one that it meshes with, from the first at the origin."""
+    shape, directions = case.shape, directions_of(case.table, case.shape)
+    found: dict[str, tuple[Point, ...]] = {shape.bodies[shape.meshes[0].first]: ((0.0, 0.0),)}
+    grows = True
+    while grows:
+        before = len(found)
+        for mesh in shape.meshes:
+            one, two = shape.bodies[mesh.first], shape.bodies[mesh.second]
+            angle, distance = directions[mesh.key], meshes[mesh.key].center_distance
+            for known, other, way in ((one, two, angle), (two, one, angle + math.pi)):
+                if known in found and other not in found:
+                    (x, y), (dx, dy) = found[known][0], _polar(distance, way)
+                    found[other] = ((x + dx, y + dy),)
+        grows = len(found) > before
+    return found
+
+
+def _polar(radius: float, angle: float) -> Point:
+    return radius * math.cos(angle), radius * math.sin(angle)
+
+
+# --- how gears are turned -------------------------------------------------------------------------
+
+
+def tooth_directions(
+    centers: Mapping[str, Sequence[Point]],  # By gear. [m]
+    # By gear: where no mesh decides, the gears of one body point the same way.
+    bodies: Mapping[str, str],
+    meshes: Sequence[Mesh],
+) -> dict[str, list[float]]:
+    """Direction of a tooth of every gear at every place, so that teeth stand in spaces.
+
+    Nothing is checked: whether the set can be assembled so is a matter of the case.
+
+    Returns
+    -------
+    dict of str to list of float
+        By gear; the first one points upwards. [rad]
+    """
+    known: dict[_Stand, float] = {}
+    stands = [(name, number) for name in centers for number in range(len(centers[name]))]
+    while left := [stand for stand in stands if stand not in known]:
+        found = next(_through_meshes(centers, meshes, known), None)
+        if found is None:
+            found = next(_on_known_bodies(left, bodies, known), (left[0], UP))
+        stand, turn = found
+        known[stand] = turn
+    return {name: [known[name, number] for number in range(len(centers[name]))] for name in centers}
+
+
+_Stand = tuple[str, int]
+"""A gear and the number of its place."""
+
+
+def _through_meshes(
+    centers: Mapping[str, Sequence[Point]], meshes: Sequence[Mesh], known: Mapping[_Stand, float]
+) -> Iterator[tuple[_Stand, float]]:
+    """Gears whose mates are known, with their directions."""
+    for mesh in meshes:
+        one, two = mesh.gear1.name, mesh.gear2.name
+        for own, other in ((one, two), (two, one)):
+            for number in range(max(len(centers[own]), len(centers[other]))):
+                ends = [(name, min(number, len(centers[name]) - 1)) for name in (own, other)]
+                if ends[0] in known and ends[1] not in known:
+                    (px, py), (x, y) = (centers[name][place] for name, place in ends)
+                    angle = math.atan2(y - py, x - px)
+                    yield ends[1], _meshing(mesh, own == one, known[ends[0]], angle)
+
+
+def _on_known_bodies(
+    left: Sequence[_Stand], bodies: Mapping[str, str], known: Mapping[_Stand, float]
+) -> Iterator[tuple[_Stand, float]]:
+    """Gears beside which another one of their body is known."""
+    for name, number in left:
+        for (other, place), turn in known.items():
+            if (bodies[other], place) == (bodies[name], number):
+                yield (name, number), turn
+
+
+def _meshing(
+    mesh: Mesh,
+    forward: bool,  # True from gear 1 to gear 2.
+    turn: float,  # [rad]
+    angle: float,  # From the centre of the gear to that of its mate. [rad]
+) -> float:
+    """Direction of a tooth of the mate of a gear with a tooth at `turn`, its centre lies ahead."""
+    one, two = mesh.gear1.teeth, mesh.gear2.teeth
+    own, mate = (one, two) if forward else (two, one)
+    if not mesh.gear2.internal:
+        passed = (angle - turn) * own / (2 * math.pi)
+        return angle + math.pi - (HALF - passed) * 2 * math.pi / mate
+    # the pitch point lies beyond the pinion, seen from the centre of the internal gear
+    outwards = angle + math.pi if forward else angle
+    passed = (outwards - turn) * own / (2 * math.pi)
+    return outwards - (passed + (HALF if forward else -HALF)) * 2 * math.pi / mate
+
+
+# Shapes of the gears of a case and where they stand, as drawings need them.
+#
+# Each gear is one dataset: the outline of one tooth about the axis of the gear, the tooth pointing
+# along y, and the places at which the gear stands, each with the direction of its first tooth.
+
+
+POINTS_PER_SECTION = 12
+"""Points of a drawn outline on each section of half a tooth."""
+
+
+def gear_shapes(case: Case) -> dict[str, xr.Dataset]:
+    """Outline and places of every gear of a case, about the axis of the set or of the wheel.
+
+    Of a train the gears of the sets whose losses are computed.
+
+    Returns
+    -------
+    dict of str to xarray.Dataset
+        By gear, ``"sun"``, of a train ``"P1.sun"``. ``x``, ``y`` over ``point``: one tooth from the
+        middle of a space to the middle of the next; absent if the tooth has no outline.
+        ``center_x``, ``center_y``, ``direction`` over ``place``. Diameters without dimension. Units
+        in ``attrs["units"]``. The attribute ``relative_speed`` is that of the gear over that of the
+        first one of its set, seen from the carrier.
+    """
+    return {
+        joined_key(prefix, name): shape
+        for prefix, found, duties in _drawn_sets(case)
+        for name, shape in _set_shapes(found, duties).items()
+    }
+
+
+def mesh_views(case: Case) -> dict[str, xr.Dataset]:
+    """Each mesh of a case with the teeth touching at the pitch point, which is the origin.
+
+    Member 1 stands below and pushes to the right, whichever flank carries in the case.
+
+    Returns
+    -------
+    dict of str to xarray.Dataset
+        By mesh, ``"sun_mesh"``, of a train ``"P1.sun_mesh"``. ``center_x``, ``center_y``,
+        ``direction``, ``operating_radius`` over ``gear``; ``path_x``, ``path_y`` over ``end``,
+        where contact begins and ends; ``pressure_angle`` of the line of action.
+    """
+    return {
+        joined_key(prefix, duty.key): _view(duty.mesh)
+        for prefix, _, duties in _drawn_sets(case)
+        for duty in duties
+    }
+
+
+def _drawn_sets(case: Case) -> Iterator[tuple[str, SetPlaces, tuple[MeshDuty, ...]]]:
+    """Name, gears and meshes of every set of which it is known where its gears stand."""
+    built = build_machine(case)
+    state = built.state()
+    for name, own in set_cases(case, built.sets):
+        duties = built.sets[name].mean_duties(state)
+        found = places_of(own, {duty.key: duty.mesh for duty in duties})
+        if found is not None:
+            yield name, found, duties
+
+
+def _set_shapes(found: SetPlaces, duties: tuple[MeshDuty, ...]) -> dict[str, xr.Dataset]:
+    gears = {
+        gear.name: (gear, tool)
+        for duty in duties
+        for gear, tool in zip((duty.mesh.gear1, duty.mesh.gear2), duty.tools, strict=True)
+    }
+    meshes = [duty.mesh for duty in duties]
+    places, speeds = found.places(meshes), found.relative_speeds(meshes)
+    return {
+        name: _shape(*gears[name], table, places[name]).assign_attrs(relative_speed=speeds[name])
+        for name, table in found.tables.items()
+    }
+
+
+# --- datasets -------------------------------------------------------------------------------------
+
+
+def _shape(gear: Gear, tool: Tool, table: GearTable, places: list[Place]) -> xr.Dataset:
+    import xarray as xr
+
+    x, y, direction = np.array(places).T
+    variables = {
+        "center_x": variable("place", x, "x of the centre", MILLIMETRE),
+        "center_y": variable("place", y, "y of the centre", MILLIMETRE),
+        "direction": variable("place", direction, "direction of the first tooth", DEGREE),
+        **{
+            f"{name}_diameter": variable((), 2 * radius, f"{name} diameter", MILLIMETRE)
+            for name, radius in {
+                "tip": gear.tip_radius,
+                "root": gear.root_radius,
+                "base": gear.base_radius,
+                "reference": gear.reference_radius,
+                "outside": build.outside_radius(gear, table),
+            }.items()
+        },
+    }
+    try:
+        points = tooth_outline(gear, tool, POINTS_PER_SECTION).points(1)
+    except ValueError:  # drawn as circles
+        pass
+    else:
+        variables["x"] = variable("point", points[:, 0], "x of the outline", MILLIMETRE)
+        variables["y"] = variable("point", points[:, 1], "y of the outline", MILLIMETRE)
+    attributes = {"name": gear.name, "teeth": gear.teeth, "internal": int(gear.internal)}
+    return xr.Dataset(variables, attrs=attributes)
+
+
+def _view(mesh: Mesh) -> xr.Dataset:
+    import xarray as xr
+
+    alpha = mesh.operating_pressure_angle
+    along = np.array([math.cos(alpha), math.sin(alpha)])
+    heights = (-mesh.operating_radius1, mesh.side * mesh.operating_radius2)
+    gears = (mesh.gear1, mesh.gear2)
+    # Both teeth touch at the origin: that of gear 1 lies left of its flank there, of gear 2 right.
+    turns = (1, mesh.side)
+    radii = (mesh.operating_radius1, mesh.operating_radius2)
+    directions = [
+        math.copysign(math.pi / 2, -height) + turn * gear.half_angle_at(radius)
+        for height, turn, gear, radius in zip(heights, turns, gears, radii, strict=True)
+    ]
+    ends = np.array([mesh.path_start, mesh.path_end]) - mesh.pitch_point
+    path = np.outer(ends, along)
+    return xr.Dataset(
+        {
+            "center_x": variable("gear", np.zeros(2), "x of the centre", MILLIMETRE),
+            "center_y": variable("gear", np.array(heights), "y of the centre", MILLIMETRE),
+            "direction": variable("gear", np.array(directions), "direction of a tooth", DEGREE),
+            "operating_radius": variable(
+                ("gear",), np.array(radii), "operating radius", MILLIMETRE
+            ),
+            "path_x": variable("end", path[:, 0], "x of the path of contact", MILLIMETRE),
+            "path_y": variable("end", path[:, 1], "y of the path of contact", MILLIMETRE),
+            "pressure_angle": variable((), alpha, "operating pressure angle", DEGREE),
+        },
+        {"gear": [gear.name for gear in gears]},
+        {"title": mesh.name},
+    )

@@ -1,0 +1,163 @@
+"""`solve`: the losses of a case, and its sets with computed losses."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from epicyclic.builders.assembly import assemble
+from epicyclic.builders.build import build
+from epicyclic.builders.built import Built
+from epicyclic.case.case import Case
+from epicyclic.case.operating import AXES
+from epicyclic.case.train import TrainCase
+from epicyclic.contact.loaded_mesh import LoadedMesh
+from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, scaled_figures, table_around
+from epicyclic.machine.element import OIL
+from epicyclic.machine.gear_mesh import elastic_loads, load_mesh
+from epicyclic.machine.pocket_flow import flow_numbers, flow_requests
+from epicyclic.results.physical import judged
+from epicyclic.results.result import Result
+
+# The sets of a case whose losses are computed.
+
+
+def build_computed(case: Case) -> Built:
+    """The machine of a case with gears.
+
+    Raises
+    ------
+    InputError
+        If it is a train in which every set has a given efficiency: there are no teeth to look at.
+    """
+    built = build(case)
+    if not built.sets or built.known_fluids is None:
+        problem = Problem(
+            "sets",
+            "",
+            "have given efficiencies only: nothing is known of their teeth.",
+            "Give a set its gears (module, face widths, roughness) in place of its efficiency.",
+        )
+        raise InputError([problem], case.source)
+    return built
+
+
+# `solve`: the losses of a case.
+#
+# Parts that do not depend on the operating point (geometry, contact lines, load shape), and parts
+# that depend on some of it only (roller loads on the torque), are cached by what they depend on, so
+# that a sweep does them once.
+
+
+WARMER = (30.0, 60.0)
+"""How much warmer than its inlet the oil is where tables are asked for flows through pockets; they
+are read between two of their flows where one between them was foretold. [K]"""
+
+
+def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
+    """The losses of a case.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+        From `load_case`.
+    flow_tables : mapping, optional
+        Tables of flows through pockets, as `sweep` makes them for its points; flows that they do
+        not hold are solved.
+
+    Returns
+    -------
+    Result
+        Its status is ``unphysical`` if a loss is below zero, energy does not balance, or teeth or
+        rollers carry or resist with more than any can; the first of its warnings says why.
+
+    Raises
+    ------
+    ConvergenceError
+        If an iteration ends without a solution, or a loss is not a finite number.
+    """
+    built = build(case, flow_tables)
+    result = assemble(case, built, built.solve())
+    if case.models.load_dependent == "as-tested":
+        unloaded = solve(without_torque(case), flow_tables=flow_tables)
+        result = replace(result, unloaded=unloaded.total)
+    bad = [term.name for term in result.terms if not math.isfinite(term.watts)]
+    if bad:
+        raise ConvergenceError(
+            f"{', '.join(bad)} came out as no finite number: the case is far outside the range of "
+            "the models; choose others (models.friction, models.rolling, models.bearing)."
+        )
+    return judged(result)
+
+
+def without_torque(case: Case) -> Case:
+    """The case with no torque but that which its losses cause."""
+    changes = {"models.load_dependent": "computed", AXES["torque"]: "0 N*m"}
+    if isinstance(case, TrainCase):
+        changes |= {f"operation.torques.{shaft}": "0 N*m" for shaft in case.operation.torques}
+    return case.updated(changes)
+
+
+def pocket_flow_numbers(case: Case) -> tuple[tuple[FlowFamily, float], ...]:
+    """Family and number of the flow through the pockets of every mesh whose loss is included.
+
+    Where the oil warms up, also the numbers in oil that is warmer by `WARMER`.
+    """
+    built = build(case)
+    if built.known_fluids is None:
+        return ()
+    duties = tuple(built.mean_duties().values())
+    fluids = [built.fluids]
+    if built.thermal is not None and OIL in built.thermal.start:
+        around = built.fluids.oil.temperature
+        fluids += [
+            built.thermal.fluids(dict.fromkeys(built.thermal.start, around + rise))
+            for rise in WARMER
+        ]
+    return tuple(number for each in fluids for number in flow_numbers(duties, each))
+
+
+def flows_around(
+    case: Case,
+    reach: float,  # Difference of the numbers, relative, at most. [1]
+) -> FlowTables:
+    """The flows of a case, for flows of nearly the same number. Theory (Q22)."""
+    built = build(case)
+    if built.known_fluids is None:
+        return {}
+    duties = tuple(built.mean_duties().values())
+    found = {}
+    for family, speed, mixture, pressure in flow_requests(duties, built.fluids):
+        figures = family.figures(speed, mixture, pressure)
+        if figures.periodic:
+            number = family.number(speed, mixture, pressure)
+            scaled = scaled_figures(figures, speed, mixture.density)
+            found[family] = table_around(number, scaled, reach)
+    return found
+
+
+def mesh_contacts(case: Case) -> dict[str, MeshContact]:
+    """Conditions along the contact lines of every mesh of a case; empty without load or motion.
+
+    Of a planetary set both meshes of the most loaded planet.
+    """
+    built = build_computed(case)
+    state = built.loaded_state()
+    contacts = {
+        key: load_mesh(duty, state.fluids.at(key), state.fluids.oil)
+        for key, duty in built.loaded_duties(state).items()
+    }
+    return {key: contact for key, contact in contacts.items() if contact is not None}
+
+
+def loaded_meshes(case: Case) -> dict[str, LoadedMesh]:
+    """Every mesh of a case under load, with elastic teeth whatever ``models.load_distribution`` is.
+
+    Line loads, load of each pair of teeth, contact pattern, transmission error and stiffness over
+    the mesh period; of a planetary set for the most loaded planet. Empty without load.
+    """
+    built = build_computed(case)
+    duties = built.loaded_duties(built.loaded_state())
+    return {key: elastic_loads(duty) for key, duty in duties.items() if duty.torque1 != 0}

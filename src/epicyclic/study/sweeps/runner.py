@@ -1,0 +1,709 @@
+"""Many independent points: run here, in workers or on a cluster; journal, resume and shards."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import sys
+import threading
+import time
+import zlib
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import cache
+from importlib import metadata
+from itertools import groupby
+from pathlib import Path
+from typing import Any, BinaryIO, ClassVar, Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+
+from epicyclic.errors import EpicyclicError, InputError, Problem, Status, is_interrupt, raise_any
+from epicyclic.files import look_seldom, make_folder
+
+# The journal of an unfinished study: one line for each finished point, written as it finishes.
+#
+# A study that is interrupted leaves its journal behind, and the same study goes on from there.
+# Every line names the study it belongs to, one of them says what it is, and nothing is ever
+# overwritten: a file that holds anything else is refused. Lines that cannot be read, such as one
+# cut short, or that have been altered are computed again. The file of a shard is the journal of its
+# points.
+
+
+NOT_COMPUTED = "not computed"
+"""Status of the points of other shards."""
+
+_WITHOUT_NUMBERS = (Status.FAILED, Status.UNPHYSICAL)
+_LONGEST_LINE = 50_000_000
+"""A point takes some kilobytes, what a study is at most all values of a million points. [bytes]"""
+_MOST_STRANGE_LINES, _LONG = 100, 500_000
+"""A file that begins with more lines which are no points of the study is something else; one of
+more bytes counts as several."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One finished point of a study."""
+
+    status: str  # How it ended, why it failed, what to know.
+    message: str = ""  # How it ended, why it failed, what to know.
+    warnings: str = ""  # How it ended, why it failed, what to know.
+    # As `Result.numbers` names them; empty if it failed.
+    numbers: dict[str, float] = field(default_factory=dict)
+
+
+class Rows:
+    """All points of a study, by number: columns, which take a tenth of the memory of rows.
+
+    Attributes
+    ----------
+    status, message, warnings : list of str
+        As of a `Row`; `NOT_COMPUTED` until it is there.
+    """
+
+    def __init__(self, size: int) -> None:
+        self.status = [NOT_COMPUTED] * size
+        self.message = [""] * size
+        self.warnings = [""] * size
+        self._numbers: dict[str, NDArray[np.float64]] = {}
+
+    def __len__(self) -> int:
+        return len(self.status)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the numbers that any point has."""
+        return tuple(self._numbers)
+
+    @property
+    def failures(self) -> list[str]:
+        """Why points failed, one text for each."""
+        pairs = zip(self.status, self.message, strict=True)
+        return [message for status, message in pairs if status in _WITHOUT_NUMBERS]
+
+    def add(self, point: int, row: Row) -> None:
+        self.status[point] = sys.intern(row.status)
+        self.message[point] = sys.intern(row.message)
+        self.warnings[point] = sys.intern(row.warnings)  # neighbours often have the same
+        for name, value in row.numbers.items():
+            if name not in self._numbers:
+                self._numbers[name] = np.full(len(self), np.nan)
+            self._numbers[name][point] = value
+
+    def numbers(self, name: str) -> NDArray[np.float64]:
+        """One number of all points; NaN where there is none."""
+        return self._numbers.get(name, np.full(len(self), np.nan))
+
+
+@dataclass(frozen=True, slots=True)
+class _Record:
+    __pydantic_config__ = ConfigDict(ser_json_inf_nan="constants")
+
+    sweep: str
+    point: int
+    row: Row
+
+
+@dataclass(frozen=True, slots=True)
+class _Heading:
+    sweep: str
+    study: dict[str, Any]
+
+
+_RECORD, _HEADING = TypeAdapter(_Record), TypeAdapter(_Heading)
+
+
+@dataclass(frozen=True, slots=True)
+class Journal:
+    """Finished points on disk."""
+
+    path: Path
+    fingerprint: str  # Fingerprint of the plan; a journal of another plan is not touched.
+
+    def read(self) -> dict[int, Row]:
+        """Finished points by number; none if there is no file.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read or holds something else than points of this study.
+        """
+        return dict(self.points())
+
+    def points(self) -> Iterator[tuple[int, Row]]:
+        """The same one by one, so that they need not all be held."""
+        own = strange = 0
+        try:
+            with _opened(self.path) as file:
+                while line := file.readline(_LONGEST_LINE):
+                    record = _parse(line.rstrip(b"\n"))
+                    if record is not None and record.sweep == self.fingerprint:
+                        own += 1
+                        yield record.point, record.row
+                    if not self._may_be_cut_short(line.rstrip(b"\n")):
+                        strange += 1 + len(line) // _LONG
+                    if not own and strange > _MOST_STRANGE_LINES:
+                        break
+        except FileNotFoundError:
+            return
+        except OSError as error:
+            raise self._error(f"cannot be read: {error.strerror}.") from None
+        if not own and strange:
+            raise self._error("holds something else than points of this sweep.")
+
+    def begin(self, content: Mapping[str, Any]) -> None:
+        """Say in the file what the study is, unless it does."""
+        heading = {"sweep": self.fingerprint, "study": content}
+        line = json.dumps(heading, separators=(",", ":")).encode()
+        try:
+            with _opened(self.path) as file:
+                there = any(file.readline(_LONGEST_LINE).strip() == line for _ in range(2))
+        except FileNotFoundError:
+            there = False
+        if not there:
+            self._write(line)
+
+    def append(self, point: int, row: Row) -> None:
+        """Add a finished point; it outlives this process when this returns.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written; what was written before stays.
+        """
+        self._write(_sealed(_RECORD.dump_json(_Record(self.fingerprint, point, row))))
+
+    def remove(self) -> None:
+        """Delete the journal of a finished study."""
+        self.path.unlink(missing_ok=True)
+
+    def _write(self, line: bytes) -> None:
+        line = b"\n" + line  # first the end of a line that may have been cut short
+        try:
+            with self.path.open("ab", buffering=0) as file:  # one write: workers share the file
+                whole = file.write(line) == len(line)
+            reason = "the disk is full"
+        except OSError as error:
+            whole, reason = False, str(error.strerror)
+        if not whole:
+            problem = Problem(
+                "journal",
+                str(self.path),
+                f"cannot be written: {reason}.",
+                "Finished points are kept; make room, and give the same command again.",
+            )
+            raise InputError([problem], "the sweep")
+
+    def _may_be_cut_short(self, line: bytes) -> bool:
+        """True for the start of a line of this study."""
+        mark = b'{"sweep":"%s"' % self.fingerprint.encode()
+        return line.startswith(mark) or mark.startswith(line)
+
+    def _error(self, allowed: str) -> InputError:
+        return _error(self.path, allowed)
+
+
+def _opened(path: Path) -> BinaryIO:
+    """The file to read, if it is one: a pipe could keep the program waiting for ever."""
+    if path.exists() and not path.is_file():
+        raise _error(path, "is not a regular file.")
+    return path.open("rb")
+
+
+def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
+    """Fingerprint and content of the study of which a file holds points.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or does not say of which study it is.
+    """
+    try:
+        with _opened(path) as file:
+            strange = 0
+            while strange <= _MOST_STRANGE_LINES:
+                line = file.readline(_LONGEST_LINE)
+                heading = _parse_heading(line)
+                if heading is not None:
+                    return heading.sweep, heading.study
+                strange += 1 + len(line) // _LONG
+    except OSError as error:
+        raise _error(path, f"cannot be read: {error.strerror}.") from None
+    raise _error(path, "does not say of which study it holds points.")
+
+
+_CHECK = b',"check":"%08x"}'
+
+
+def _sealed(line: bytes) -> bytes:
+    """A line with the checksum of what comes before it."""
+    return line[:-1] + _CHECK % zlib.crc32(line)
+
+
+def _parse(line: bytes) -> _Record | None:
+    """The record of a line; None if it is none, or has been altered."""
+    record = line[: -len(_CHECK % 0)] + b"}"
+    if line != _sealed(record):
+        return None
+    try:
+        return _RECORD.validate_json(record)
+    except ValidationError:
+        return None
+
+
+def _parse_heading(line: bytes) -> _Heading | None:
+    try:
+        return _HEADING.validate_json(line)
+    except ValidationError:
+        return None
+
+
+def _error(path: Path, allowed: str) -> InputError:
+    remedy = "Move it away or delete it, and give the command again."
+    return InputError([Problem("journal", str(path), allowed, remedy)], "the sweep")
+
+
+# Many independent points: in this process while that is quick, else in workers or on a cluster.
+#
+# Finished points are kept in a journal at once, and rows do not depend on order, workers, shards or
+# interruptions as long as `Plan.solve` is a function of the number of the point.
+
+
+Progress = Callable[..., None]
+Batch = list[tuple[int, Row]]
+
+BATCHES_PER_WORKER = 4
+"""Fewer would leave workers idle at the end."""
+WORKER_START_SECONDS = 4.0
+"""Work left, in seconds on one core, below which starting worker processes does not pay."""
+PARENT_SECONDS = 0.5
+"""Between two looks of a worker at whether its parent is alive."""
+_ABOUT_LOCKS = "ignore:resource_tracker:UserWarning"
+TRIAL_POINTS, TRIAL_SECONDS = 16, 2.0
+"""Points computed, or time spent on them, before the work left is estimated."""
+
+
+class Plan(ABC):
+    """The points of a study, handed to every worker: small, and picklable."""
+
+    kind: ClassVar[str]
+    """Kind of the study: ``"sweep"``, ``"map"``."""
+    may_fail: ClassVar[bool] = False
+    """Whether points without a solution are to be expected."""
+
+    @property
+    def batch(self) -> int:
+        """Largest number of points that a worker is given at once."""
+        return 16
+
+    @property
+    def source(self) -> str:
+        """The file whose folder holds the files that a case names; empty if there is none."""
+        return ""
+
+    @property
+    @abstractmethod
+    def size(self) -> int:
+        """Number of points."""
+
+    @abstractmethod
+    def order(self) -> Sequence[int]:
+        """Numbers of all points, those next to each other that share most."""
+
+    def solve(self, index: int) -> Row:
+        """Row of one point, with the reason if it fails; raises nothing but an interruption."""
+        try:
+            return self._solve(index)
+        except InputError as error:
+            return failed_row(_told(error))
+        except EpicyclicError as error:
+            return failed_row(str(error))
+        except Exception as error:  # whatever it is, the other points do not suffer
+            if is_interrupt(error):
+                raise KeyboardInterrupt from error
+            return failed_row(f"{type(error).__name__}: {error}")
+
+    @abstractmethod
+    def _solve(self, index: int) -> Row:
+        """Row of one point."""
+
+    @abstractmethod
+    def describe(self) -> dict[str, Any]:
+        """All that the rows follow, as JSON holds it."""
+
+    def prepared(self, indices: Sequence[int], jobs: int | None) -> Self:
+        """The plan with what the points `indices` share, made by up to `jobs` threads."""
+        return self
+
+
+def fingerprint(plan: Plan) -> str:
+    """Follows the plan and the version: rows of equal ones are equal."""
+    content = [plan.kind, metadata.version("epicyclic"), plan.describe()]
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
+
+
+@dataclass(frozen=True, slots=True)
+class Runner:
+    """How the points of a plan are computed: all with the same rows."""
+
+    # Worker processes. Default: one for each core if the work is worth it, else none.
+    jobs: int | None = None
+    dask: str | None = None  # Address of the scheduler of a Dask cluster that takes their place.
+    # Which share of the points, and of how many: (2, 8). Default: all.
+    shard: tuple[int, int] | None = None
+    journal: str | Path | None = None  # Keeps finished points.
+    # Called with the number of finished points and of all, or of those of the share.
+    progress: Progress | None = None
+    tell_failures: bool = False  # Whether it is called with the number of failed points too.
+    # How the rows are to be written, kept in the journal.
+    output: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.shard is not None and not 1 <= self.shard[0] <= self.shard[1]:
+            raise _no_shard("/".join(map(str, self.shard)))
+
+    def check(self) -> None:
+        """Raise `InputError` if there is no such cluster: before anything is written."""
+        if self.dask is not None:
+            _client(self.dask, trial=True).close()
+
+    def run(self, plan: Plan) -> Rows:
+        """All points of `plan`; those of other shards are not computed."""
+        rows = Rows(plan.size)
+        total, done, failed = len(share_of(plan, self.shard)), 0, 0
+        for finished in self._finished(plan):
+            for index, row in finished:
+                rows.add(index, row)
+                failed += row.status != Status.CONVERGED
+            done += len(finished)
+            if self.progress is not None:
+                self.progress(done, total, *([failed] if self.tell_failures else []))
+        return rows
+
+    def _finished(self, plan: Plan) -> Iterator[Batch]:
+        """Points with their numbers: those of the journal, then as they finish."""
+        left = share_of(plan, self.shard)
+        journal = None
+        if self.journal is not None:
+            # absolute, because workers may have been started in another folder
+            journal = Journal(Path(self.journal).absolute(), fingerprint(plan))
+            kept = journal.read()
+            yield [(index, kept[index]) for index in left if index in kept]
+            journal.begin(heading(plan, self.shard, self.output))
+            left = [index for index in left if index not in kept]
+        if not left:
+            return
+        plan = plan.prepared(left, self.jobs)
+        if self.dask is not None:
+            yield from _run_on_cluster(plan, left, self.dask, journal)
+        else:
+            yield from _run_here(plan, left, self.jobs, journal)
+
+    def within(self, plan: Plan) -> Runner:
+        """The same with a journal of its own for one of several plans, in the folder `journal`."""
+        if self.journal is None:
+            return self
+        folder = Path(self.journal)
+        make_folder(folder, "journal")
+        return replace(self, journal=folder / f"{fingerprint(plan)}.partial")
+
+
+HERE = Runner()
+"""The points are computed here, or in workers if that pays, and not kept."""
+
+
+def share_of(plan: Plan, shard: tuple[int, int] | None) -> list[int]:
+    """Numbers of the points of a shard, which follow each other in the order of all."""
+    order = list(plan.order())
+    if shard is None:
+        return order
+    number, count = shard
+    return order[len(order) * (number - 1) // count : len(order) * number // count]
+
+
+def parse_shard(text: str | None) -> tuple[int, int] | None:
+    """The option ``--shard 2/8``.
+
+    Raises
+    ------
+    InputError
+        If it is not of that form.
+    """
+    if text is None:
+        return None
+    match = re.fullmatch(r"\s*(\d{1,9})\s*/\s*(\d{1,9})\s*", text)
+    if match is None:
+        raise _no_shard(text)
+    return Runner(shard=(int(match[1]), int(match[2]))).shard
+
+
+def _no_shard(text: str) -> InputError:
+    allowed = "must be I/N, with I from 1 to N."
+    return InputError([Problem("--shard", text, allowed, "For example 2/8.")], "the command")
+
+
+def heading(plan: Plan, shard: tuple[int, int] | None, output: Mapping[str, Any]) -> dict[str, Any]:
+    """What a journal says of its study; the plan can be made of it again."""
+    return {
+        "kind": plan.kind,
+        "version": metadata.version("epicyclic"),
+        "source": plan.source,
+        "shard": shard,
+        "output": dict(output),
+        "plan": plan.describe(),
+    }
+
+
+def _run_here(
+    plan: Plan, indices: list[int], jobs: int | None, journal: Journal | None
+) -> Iterator[Batch]:
+    """Finished points, in any order: here as long as that pays, then in worker processes."""
+    start = time.perf_counter()
+    for done, index in enumerate(indices):
+        if done == 1:  # the first point also pays for compilation
+            start = time.perf_counter()
+        workers_pay = jobs is None and _workers_pay(
+            done - 1, time.perf_counter() - start, len(indices) - done
+        )
+        if workers_pay or jobs not in (None, 1):
+            yield from _run_in_workers(plan, indices[done:], jobs or -1, journal)
+            return
+        yield _solve_batch(plan, [index], journal)
+
+
+def _workers_pay(done: int, seconds: float, left: int) -> bool:
+    """Whether to start workers for the points `left`, `done` having taken `seconds`."""
+    if done < 1 or (done < TRIAL_POINTS and seconds < TRIAL_SECONDS):
+        return False
+    return left * seconds / done > WORKER_START_SECONDS
+
+
+def _run_in_workers(
+    plan: Plan, indices: list[int], jobs: int, journal: Journal | None
+) -> Iterator[Batch]:
+    from joblib import Parallel, delayed, effective_n_jobs
+
+    batches = _batches(plan, indices, effective_n_jobs(jobs))
+    workers = Parallel(n_jobs=jobs, return_as="generator_unordered", inner_max_num_threads=1)
+    calls = (delayed(_solve_in_worker)(os.getpid(), plan, batch, journal) for batch in batches)
+    with _leftovers_removed_quietly():
+        yield from workers(calls)
+
+
+@contextmanager
+def _leftovers_removed_quietly() -> Iterator[None]:
+    """Workers whose parent was killed leave locks; joblib removes them, and need not tell users.
+
+    The process that does so takes over the options for warnings.
+    """
+    sys.warnoptions.append(_ABOUT_LOCKS)
+    try:
+        yield
+    finally:
+        sys.warnoptions.remove(_ABOUT_LOCKS)
+
+
+def _solve_in_worker(
+    parent: int, plan: Plan, indices: Sequence[int], journal: Journal | None
+) -> Batch:
+    _belong_to(parent)
+    return _solve_batch(plan, indices, journal)
+
+
+@cache
+def _belong_to(parent: int) -> None:
+    """Make this process, if it is a child of `parent`, one of the program.
+
+    It ends soon after its parent, even in compiled code.
+    """
+    if os.getppid() != parent:
+        return  # a thread, or a worker of another backend of joblib
+    look_seldom()
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(PARENT_SECONDS)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+def _batches(plan: Plan, indices: list[int], workers: int) -> list[list[int]]:
+    """`indices` cut at multiples of one size in the order of all points, whatever is done."""
+    size = min(plan.batch, max(1, len(indices) // (BATCHES_PER_WORKER * workers)))
+    place = {index: i for i, index in enumerate(plan.order())}
+    return [list(batch) for _, batch in groupby(indices, lambda index: place[index] // size)]
+
+
+def _run_on_cluster(
+    plan: Plan, indices: list[int], address: str, journal: Journal | None
+) -> Iterator[Batch]:
+    """The same on a Dask cluster; this process keeps the journal, workers may not see its disk."""
+    distributed = _distributed()
+    with _client(address) as client:
+        threads = sum(client.nthreads().values())
+        # handed to the cluster once, which may have no workers yet
+        shared = client.submit(_same, plan, pure=False)
+        version = metadata.version("epicyclic")
+        batches = _batches(plan, indices, max(1, threads))
+        futures = client.map(_solve_there, batches, plan=shared, version=version, pure=False)
+        try:
+            for _, finished in distributed.as_completed(futures, with_results=True):
+                for index, row in finished:
+                    if journal is not None:
+                        journal.append(index, row)
+                yield finished
+        except InputError:
+            raise
+        except Exception as error:
+            raise _cluster_error(address, f"does not compute: {error}.") from error
+        finally:  # above all when this is interrupted
+            client.cancel(futures)
+
+
+def _distributed() -> Any:
+    """The package of Dask clusters, which is no requirement."""
+    try:
+        import distributed
+    except ImportError:
+        problem = Problem(
+            "--dask", "", "needs the package distributed.", 'Install "epicyclic[dask]".'
+        )
+        raise InputError([problem], "the command") from None
+    return distributed
+
+
+def _client(address: str, *, trial: bool = False) -> Any:
+    """A connection to the scheduler at `address`.
+
+    One on trial is not the default of Dask: a refused address would remain it for all that follows.
+    """
+    distributed = _distributed()
+    try:
+        distributed.comm.resolve_address(address)  # a client of a malformed one leaves threads
+        return distributed.Client(address, timeout="10s", set_as_default=not trial)
+    except (OSError, ValueError) as error:
+        raise _cluster_error(address, f"cannot be reached: {error}.") from None
+
+
+def _cluster_error(address: str, allowed: str) -> InputError:
+    remedy = "Give the address of a running scheduler, as in tcp://host:8786."
+    return InputError([Problem("--dask", f'"{address}"', allowed, remedy)], "the command")
+
+
+def _same(plan: Plan) -> Plan:
+    return plan
+
+
+def _solve_there(indices: Sequence[int], plan: Plan, version: str) -> Batch:
+    """Points in a worker of a cluster, which must have this version of the package."""
+    own = metadata.version("epicyclic")
+    if own != version:
+        raise RuntimeError(f"its workers have version {own} of epicyclic, this is {version}")
+    return _solve_batch(plan, indices, None)
+
+
+def _solve_batch(plan: Plan, indices: Sequence[int], journal: Journal | None) -> Batch:
+    rows = []
+    for index in indices:
+        row = plan.solve(index)
+        if journal is not None:
+            journal.append(index, row)
+        rows.append((index, row))
+    return rows
+
+
+def _told(error: InputError) -> str:
+    """The first problem of a point; most of the others follow from it."""
+    first, *others = error.problems
+    more = f" And {len(others)} more: 'epicyclic check' with these values shows all."
+    return f"{first}{more if others else ''}"
+
+
+def failed_row(message: str) -> Row:
+    """The row of a point without numbers."""
+    return Row(str(Status.FAILED), message)
+
+
+# Shards put together.
+
+
+class PlanKind(Protocol):
+    """A class of plans."""
+
+    def again(self, content: Mapping[str, Any], source: str) -> Plan:
+        """The plan that `Plan.describe` described."""
+
+
+def gather(
+    files: Sequence[Path],  # Journals of all shards.
+    kinds: Mapping[str, PlanKind],  # Classes of plans by `Plan.kind`.
+) -> tuple[Plan, Rows, dict[str, Any]]:
+    """The plan of which `files` hold shards, all its points, and how they are to be written.
+
+    Raises
+    ------
+    InputError
+        If a file is no journal, the files are of several plans, or points are missing.
+    """
+    (first, *_) = files
+    mark, content = read_heading(first)
+    plan, output = _plan_of(first, mark, content, kinds)
+    rows = Rows(plan.size)
+    shares = {}
+    for file in files:
+        own, said = read_heading(file)
+        if own != mark:
+            allowed = f"holds points of another study than {first}: another case or other values."
+            raise _shard_error(file, allowed, "Name the files of one study.")
+        for point, row in Journal(file, mark).points():
+            if rows.status[point] == NOT_COMPUTED:
+                rows.add(point, row)
+        shares[file] = share_of(plan, said["shard"])
+    _check_whole(rows, shares)
+    return plan, rows, output
+
+
+def _plan_of(
+    file: Path, mark: str, content: Mapping[str, Any], kinds: Mapping[str, PlanKind]
+) -> tuple[Plan, dict[str, Any]]:
+    """The plan in the heading of a file, which must be that of this version."""
+    version = metadata.version("epicyclic")
+    if content.get("version") != version:
+        allowed = f"was made by version {content.get('version')}, this is {version}."
+        raise _shard_error(file, allowed, "Merge it with that version.")
+    try:
+        plan = kinds[content["kind"]].again(content["plan"], content["source"])
+        output = dict(content["output"])
+    except (KeyError, TypeError, ValueError, AttributeError):
+        plan, output = None, {}
+    if plan is None or fingerprint(plan) != mark:
+        allowed = "is damaged, or a file that its case names has changed."
+        raise _shard_error(file, allowed, "Compute the shard again.")
+    return plan, output
+
+
+def _check_whole(rows: Rows, shares: Mapping[Path, Sequence[int]]) -> None:
+    """Raise `InputError` if points are missing."""
+    missing = {point for point, status in enumerate(rows.status) if status == NOT_COMPUTED}
+    problems = []
+    for file, share in shares.items():
+        lacks = len(missing.intersection(share))
+        if lacks:
+            allowed = f"lacks {lacks} of its {len(share)} points."
+            problems.append(Problem("FILE", str(file), allowed, "Give its command again."))
+    without = len(missing.difference(*shares.values()))
+    if without:
+        allowed = f"{without} of {len(rows)} points are of shards that are not named."
+        problems.append(Problem("FILE", "", allowed, "Name the files of all shards."))
+    raise_any(problems, "the command")
+
+
+def _shard_error(file: Path, allowed: str, remedy: str) -> InputError:
+    return InputError([Problem("FILE", str(file), allowed, remedy)], "the command")

@@ -1,0 +1,314 @@
+"""Published against computed: tables for a terminal, pages of a report."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from epicyclic.report.drawings import svg_text
+from epicyclic.report.explore import explorable
+from epicyclic.report.html import page_html
+from epicyclic.report.page import (
+    Cell,
+    Drawing,
+    Gallery,
+    Item,
+    KeyFigure,
+    Listing,
+    Section,
+    Table,
+    aligned,
+    number,
+)
+from epicyclic.report.shown import MISSING, shown
+from epicyclic.report.tables import number_table
+from epicyclic.results.result import versions
+from epicyclic.show.plots.style import styled_figure
+from epicyclic.units import percent, unit_text
+from epicyclic.validation.compare import (
+    CLOSURES,
+    STUDY,
+    ClosureFigure,
+    Comparison,
+    Estimate,
+    MeasuredFigure,
+    SettledFigure,
+    by_topic,
+    summary,
+)
+from epicyclic.validation.plots import Reproduced, deviations_size, plot_deviations
+
+# Published against computed, for a terminal.
+
+
+_STYLES = {"agrees": "green", "differs": "bold red", "calibrated": "dim", "no verdict": "dim"}
+
+
+def validation_table(
+    rows: Sequence[Comparison], closures: Sequence[ClosureFigure] = ()
+) -> RenderableType:
+    """One row for each figure, and a count of the verdicts."""
+    heads = ("figure, source", "published", "computed", "difference")
+    table = number_table("Published against computed", *heads, no_wrap=(False, True))
+    table.add_column("verdict", no_wrap=True)
+    for row in rows:
+        table.add_row(
+            Text.assemble(row.what, ("\n" + "\n".join(remarks(row)), "dim")),
+            f"{published_text(row)} {row.unit}".rstrip(),
+            f"{shown(row.computed)} {row.unit}".rstrip(),
+            percent(row.difference, signed=True),
+            Text(verdict_text(row), style=_STYLES[row.verdict]),
+        )
+    return Group(table, Text(summary(rows, closures)))
+
+
+def closure_table(rows: Sequence[ClosureFigure]) -> Table:
+    """One row for each open figure of the study of pocketing, one column for each closure."""
+    causes = dict.fromkeys(f"{percent(row.tolerance, 0)}: {row.cause}" for row in rows)
+    cells = [
+        (
+            Cell(f"{row.what}, {row.unit}".rstrip(", ")),
+            aligned(
+                shown(row.low) if row.low == row.high else f"{shown(row.low)} to {shown(row.high)}"
+            ),
+            *(
+                aligned(f"{shown(row.computed[name])} {'holds' if row.holds(name) else 'misses'}")
+                for name in CLOSURES
+            ),
+        )
+        for row in rows
+    ]
+    held = (f"{sum(row.holds(name) for row in rows)} of {len(rows)}" for name in CLOSURES)
+    cells.append((Cell("holds"), Cell(""), *map(aligned, held)))
+    return Table(
+        ("", "published", *CLOSURES),
+        tuple(cells),
+        f"Pocketing, open figures of {STUDY}, by models.pocketing",
+        frozenset([len(rows)]),
+        f"Sources: {'; '.join(dict.fromkeys(row.source for row in rows))}. Tolerances beyond the "
+        f"band: {'; '.join(causes)}.",
+    )
+
+
+def settled_table(rows: Sequence[SettledFigure], estimates: Sequence[Estimate]) -> RenderableType:
+    """One row for each figure of the loaded tests, one column for each model of temperatures."""
+    heads = ("figure", "published", "inlet", "flank", "network", "network, range")
+    title = "Loaded tests, load-dependent losses as tested"
+    table = number_table(title, *heads, no_wrap=(False, True))
+    for row in rows:
+        table.add_row(
+            f"{row.what}, {row.unit}",
+            " to ".join(map(shown, row.published)) or MISSING,
+            *map(shown, (row.inlet, row.flank, row.network)),
+            f"{shown(row.low)} to {shown(row.high)}",
+        )
+    note = Text(
+        "By models.temperatures, nothing fitted to these tests, no verdict. As tested: total loss "
+        "less that without torque at the same speed and oil inlet temperature, each at its own "
+        "temperatures. Range of the network:"
+    )
+    ranges = (
+        Text(
+            f"  {item.what}, {item.key}: {item.low} to {item.high}, {item.value} in the column "
+            f"'network' ({item.origin})"
+        )
+        for item in estimates
+    )
+    return Group(table, note, *ranges)
+
+
+def band_rows(rows: Sequence[MeasuredFigure]) -> list[tuple[str, ...]]:
+    """Figure, measured, computed, its 95 % band, and whether the measurement lies inside."""
+    return [
+        (
+            f"{row.what}, {row.unit}",
+            shown(row.measured),
+            shown(row.computed, 3),
+            f"{shown(row.low, 3)} to {shown(row.high, 3)}",
+            "inside" if row.is_inside else "outside",
+        )
+        for row in rows
+    ]
+
+
+def band_markdown(rows: Sequence[MeasuredFigure]) -> str:
+    """`band_rows` as the manual shows them."""
+    head = ("Measured figure", "Measured", "Computed", "95 % band", "")
+    cells = [head, ("---",) * len(head), *band_rows(rows)]
+    return "\n".join(f"| {' | '.join(row)} |".replace("|  |", "| |") for row in cells)
+
+
+def bands_table(rows: Sequence[MeasuredFigure]) -> RenderableType:
+    """One row for each measured figure."""
+    title = "Measured figures, and the 95 % band by the shipped distributions"
+    heads = ("figure", "measured", "computed", "95 % band", "")
+    table = number_table(title, *heads, no_wrap=(False, True))
+    for cells in band_rows(rows):
+        table.add_row(*cells)
+    inside = sum(row.is_inside for row in rows)
+    note = (
+        f"{inside} of {len(rows)} measurements lie inside. Inputs and errors of models as they are "
+        "assumed where [uncertainty] says nothing, off by the same in all tests; the error of the "
+        "measurement is not in the band, and nothing is fitted."
+    )
+    return Group(table, Text(note))
+
+
+def remarks(row: Comparison) -> list[str]:
+    """Where a figure is printed, how it was inferred, why there is no verdict."""
+    found = [row.source]
+    if row.inferred:
+        found.append(f"Inferred: {row.inferred}.")
+    if row.reason:
+        found.append(f"{_REASONS[row.role]}: {row.reason}.")
+    return found
+
+
+_REASONS = {"context": "No verdict", "calibration": "Calibrated"}
+
+
+def verdict_text(row: Comparison) -> str:
+    """The verdict with its tolerance, and a star if that was settled with the figure in view."""
+    if row.role != "validation":
+        return row.verdict
+    seen = "*" if row.settled == "in view" else ""
+    return f"{row.verdict} ({100 * row.tolerance:.2g} %{seen})"
+
+
+def published_text(row: Comparison) -> str:
+    """The published value, or the ends of its range."""
+    low, high = shown(row.low), shown(row.high)
+    return low if low == high else f"{low} to {high}"
+
+
+# The report of the comparison with published figures: one page for all of them.
+
+
+MOST_ROWS = 8
+"""Most rows of one picture."""
+_HEAD = (
+    "figure",
+    "published",
+    "computed",
+    "unit",
+    "difference",
+    "verdict",
+    "cause of the tolerance",
+)
+_WIDTHS = (32, 8, 8, 8, 8, 15, 21)
+
+
+def validation_html(
+    rows: Sequence[Comparison],
+    closures: Sequence[ClosureFigure] = (),  # Open figures of pocketing losses.
+    # Called with the numbers of pictures drawn and to draw.
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> str:
+    """Every published figure, pictured and listed, as one page that needs nothing else."""
+    return page_html(
+        title="Published figures, computed",
+        kind="Validation",
+        operation=summary(rows, closures),
+        source=f"Computed with epicyclic {versions()['epicyclic']}",
+        key_figures=_key_figures(rows),
+        sections=[*comparison_sections(rows, progress), *_closure_section(closures)],
+    )
+
+
+def _key_figures(rows: Sequence[Comparison]) -> list[KeyFigure]:
+    verdicts = [row.verdict for row in rows]
+    return [
+        KeyFigure(verdict, number(verdicts.count(verdict), ""))
+        for verdict in ("agrees", "differs", "calibrated", "no verdict")
+    ]
+
+
+def comparison_sections(
+    rows: Sequence[Comparison], progress: Callable[[int, int], None] = lambda done, total: None
+) -> Iterator[Section]:
+    """The figures of each topic, pictures of them, and what the signs mean."""
+    topics = by_topic(rows)
+    for done, (topic, own) in enumerate(topics.items()):
+        progress(done, len(topics))
+        key = topic.lower().replace(" ", "-").replace(",", "")
+        yield Section(key, topic, tuple(_items(key, own)))
+    text = (
+        "* The tolerance was settled with the computed figure in view. Without a star it is the "
+        "rounding of what is printed.",
+        "Calibrated figures fixed an unknown input; they, and those without a verdict, do not "
+        "count.",
+    )
+    yield Section("signs", "Signs", (Listing(text),))
+
+
+def _closure_section(rows: Sequence[ClosureFigure]) -> Iterator[Section]:
+    if rows:
+        yield Section("closures", "Pocketing by every closure", (closure_table(rows),))
+
+
+def _items(key: str, rows: Sequence[Comparison]) -> Iterator[Item]:
+    """Pictures of like height, each below its table, which breaks and fills a printed page."""
+    count = math.ceil(len(rows) / MOST_ROWS)
+    height = math.ceil(len(rows) / count)
+    for place in range(count):
+        part = rows[place * height : (place + 1) * height]
+        yield _table(part)
+        drawing = _drawing(f"{key}-{place + 1}" if count > 1 else key, part)
+        yield Gallery((drawing,), is_wide=True)
+
+
+def _drawing(key: str, rows: Sequence[Comparison]) -> Drawing:
+    with styled_figure(1, 1, "", panel=deviations_size(rows)) as (figure, axes):
+        ax = plot_deviations(rows, axes[0, 0])
+    return Drawing(key, "Computed over published", svg_text(figure, key), explorable(ax))
+
+
+def _table(rows: Sequence[Comparison]) -> Table:
+    return Table(
+        _HEAD,
+        tuple(
+            (
+                Cell(f"{row.what}. {' '.join(remarks(row))}"),
+                Cell(published_text(row), row.low),
+                number(row.computed, ""),
+                Cell(unit_text(row.unit), about="nowrap"),
+                Cell(percent(row.difference, signed=True), row.difference),
+                Cell(verdict_text(row), about="nowrap"),
+                Cell(row.cause),
+            )
+            for row in rows
+        ),
+        widths=_WIDTHS,
+    )
+
+
+# The report of a chapter of Talbot (2012), computed again: its figures, and what is published.
+
+
+def chapter_html(chapter: str, figures: Sequence[Reproduced], rows: Sequence[Comparison]) -> str:
+    """All figures of a chapter and its published numbers, as one page that needs nothing else."""
+    drawings = tuple(
+        Drawing(f"fig-{item.number}", f"Fig. {item.number}", svg_text(item.picture, key))
+        for item in figures
+        for key in (f"fig-{item.number.replace('.', '-')}",)
+    )
+    return page_html(
+        title=f"Talbot (2012), chapter {chapter}, computed again",
+        kind="Reproduction",
+        operation=summary(rows),
+        source=f"Computed with epicyclic {versions()['epicyclic']}",
+        key_figures=[KeyFigure("figures", number(len(drawings), ""))],
+        sections=[
+            Section("figures", "Figures", (Gallery(drawings, is_wide=True),), _LEAD),
+            *comparison_sections(rows),
+        ],
+    )
+
+
+_LEAD = (
+    "Curves are computed; marked are the numbers that the text of the source prints. Its curves "
+    "were not read off."
+)
