@@ -20,7 +20,7 @@ import epicyclic as ep
 import listed_trains
 from epicyclic import library
 from epicyclic.case.case import Case
-from frozen import make_frozen
+from frozen import drawn_cases
 from property.test_random_trains import random_train
 
 __all__ = ["POINTS", "drawn_case", "drawn_design", "is_whole"]
@@ -48,8 +48,8 @@ ROLLING = (
 )  # fmt: skip
 BEARING = ("auto", "mixed-ehl", "palmgren", "fitted", "fitted-or-palmgren")
 OWN: dict[str, tuple[Any, ...]] = {
-    "planetary": (make_frozen.OF_PLANETARY, make_frozen.draw_planetary, make_frozen.settled),
-    "gear_pair": (make_frozen.OF_PAIRS, make_frozen.draw_pair, dict),
+    "planetary": (drawn_cases.OF_PLANETARY, drawn_cases.draw_planetary, drawn_cases.settled),
+    "gear_pair": (drawn_cases.OF_PAIRS, drawn_cases.draw_pair, dict),
 }
 """Options of sets and of pairs, what draws them, and what takes out options that exclude others."""
 LISTED: tuple[Callable[[], Tables], ...] = (
@@ -106,7 +106,7 @@ def _changes(case: Case, rng: random.Random) -> Iterator[Tables]:
     """What points of a design change, without end: points with one state follow each other."""
     given = case.given()
     operation = given["operation"]
-    torque, speed = (abs(make_frozen.value(operation[key])) for key in ("torque", "speed"))
+    torque, speed = (abs(drawn_cases.value(operation[key])) for key in ("torque", "speed"))
     has_oil = "lubricant" in given
     yield {"operation.torque": "0 N*m"}
     yield {"operation.speed": "0 rpm"}
@@ -135,10 +135,10 @@ def _drawn(rng: random.Random) -> Tables:
         tables["models"] = _models(rng, tables.get("models", {}))
         return tables
     own, draw, settled = OWN[kind]
-    options = {name: rng.choice(each) for name, each in (make_frozen.COMMON | own).items()}
+    options = {name: rng.choice(each) for name, each in (drawn_cases.COMMON | own).items()}
     tables = draw("drawn", settled(options), rng)
     operation = tables["operation"]
-    torque, speed = (abs(make_frozen.value(operation[key])) for key in ("torque", "speed"))
+    torque, speed = (abs(drawn_cases.value(operation[key])) for key in ("torque", "speed"))
     operation |= _point(rng, torque or 50.0, speed or 1500.0)
     operation["oil_inlet_temperature"] = _temperature(rng)
     tables["models"] = _models(rng, tables.get("models", {}), planetary=kind == "planetary")
