@@ -214,31 +214,17 @@ def duty_seconds() -> tuple[float, float]:
 
 
 def clear_caches() -> None:
-    from epicyclic.case import build, flanks
-    from epicyclic.contact import (
-        elastic_teeth as mesh_compliance,
-    )
-    from epicyclic.contact import (
-        elastic_teeth as tooth_plate,
-    )
-    from epicyclic.contact import (
-        loaded_mesh,
-    )
+    from epicyclic.case import flanks, gearing
+    from epicyclic.contact import elastic_teeth as mesh_compliance
+    from epicyclic.contact import elastic_teeth as tooth_plate
+    from epicyclic.contact import loaded_mesh
     from epicyclic.gears import flanks as contact_lines
     from epicyclic.losses import contact as load_distribution
     from epicyclic.losses import planet_bearing
-    from epicyclic.losses import (
-        pocket_flow as fluid,
-    )
-    from epicyclic.losses import (
-        pocket_flow as network,
-    )
-    from epicyclic.losses import (
-        pocket_geometry as cells,
-    )
-    from epicyclic.losses import (
-        pocket_geometry as geometry,
-    )
+    from epicyclic.losses import pocket_flow as fluid
+    from epicyclic.losses import pocket_flow as network
+    from epicyclic.losses import pocket_geometry as cells
+    from epicyclic.losses import pocket_geometry as geometry
 
     for function in (
         fluid.pocket_flow,
@@ -246,9 +232,8 @@ def clear_caches() -> None:
         network.study_flow,
         cells.pocket_cells,
         geometry.pocket_geometry,
-        build.basic_rack,
-        build.gear,
-        build.planetary_meshes,
+        gearing._gear,
+        gearing._mesh,
         flanks.gear_bodies,
         flanks.flank_deviations,
         tooth_plate.tooth_plate,
@@ -271,12 +256,12 @@ def compliance_seconds(segments: int) -> tuple[float, float]:
     loads : float
         Load of both meshes at one operating point. [s]
     """
-    from epicyclic.case import build, flanks
+    from epicyclic.case import flanks
     from epicyclic.contact.elastic_teeth import mesh_compliance
     from epicyclic.contact.loaded_mesh import load_mesh_elastically
 
     case = test_article()
-    meshes = build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)
+    meshes = case.gearings[""].geometries
     tables = ((case.sun, case.planet), (case.planet, case.ring))
     bodies = [flanks.gear_bodies(mesh, pair) for mesh, pair in zip(meshes, tables, strict=True)]
     force = itertools.count(5000.0)
@@ -341,15 +326,9 @@ def pocket_seconds() -> tuple[float, float, float, float]:
         operating point at a new speed, the flow known.
     """
     from epicyclic.builders.build import build
-    from epicyclic.losses import (
-        pocket_flow as network,
-    )
-    from epicyclic.losses import (
-        pocket_geometry as cells,
-    )
-    from epicyclic.losses import (
-        pocket_geometry as geometry,
-    )
+    from epicyclic.losses import pocket_flow as network
+    from epicyclic.losses import pocket_geometry as cells
+    from epicyclic.losses import pocket_geometry as geometry
     from epicyclic.losses.pocket_flow import PocketModel, pocket_flow
     from epicyclic.losses.pocket_geometry import pocket_geometry
 

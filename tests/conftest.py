@@ -8,7 +8,6 @@ import pytest
 from hypothesis import settings
 
 import epicyclic as ep
-from epicyclic.case import build
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_profile_shift
 from epicyclic.gears.mesh import Mesh
 from epicyclic.oil.properties import oil_state
@@ -62,7 +61,7 @@ def pair_map():
 @pytest.fixture(scope="session")
 def talbot_meshes(talbot):
     """Its sun and ring mesh."""
-    return build.planetary_meshes(talbot.gears, talbot.sun, talbot.planet, talbot.ring)
+    return talbot.gearings[""].geometries
 
 
 @pytest.fixture(scope="session")

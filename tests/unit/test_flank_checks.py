@@ -6,7 +6,9 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.builders.notes import load_notes
-from epicyclic.case import build, flanks
+from epicyclic.builders.set_case import set_cases
+from epicyclic.case import flanks
+from epicyclic.case.gearing import outside_radius
 
 TIP = {"tip_relief": "20 um", "tip_relief_roll_length": "2 mm"}
 TABLE = {
@@ -147,7 +149,7 @@ def test_a_relief_of_nothing_may_keep_its_length(talbot):
     """So that a sweep of the amount can start at zero."""
     none = talbot.updated({"sun.micro_geometry": TIP | {"tip_relief": "0 um"}})
     assert ep.load_case(none.inputs()) == none
-    mesh, _ = build.planetary_meshes(none.gears, none.sun, none.planet, none.ring)
+    mesh, _ = none.gearings[""].geometries
     deviations = flanks.flank_deviations(mesh, (none.sun, none.planet), 0.0)
     assert deviations.member1 == flanks.MicroGeometry()
 
@@ -161,7 +163,7 @@ def test_a_bad_flank_hides_no_other_problem(talbot):
 
 
 def test_a_relief_may_be_stated_by_roll_length_or_by_diameter(talbot):
-    mesh, _ = build.planetary_meshes(talbot.gears, talbot.sun, talbot.planet, talbot.ring)
+    mesh, _ = talbot.gearings[""].geometries
     start = 2 * ((mesh.gear1.tip_involute_length - 2e-3) ** 2 + mesh.gear1.base_radius**2) ** 0.5
     by_diameter = {"tip_relief": "20 um", "tip_relief_diameter": f"{start * 1e3} mm"}
     reliefs = []
@@ -178,7 +180,7 @@ def test_the_flanks_of_a_planet_may_differ(talbot):
     sides = both.updated({"planet.micro_geometry_ring_side.lead_crown": "3 um"})
 
     def of_planet(case):
-        sun_mesh, ring_mesh = build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)
+        sun_mesh, ring_mesh = case.gearings[""].geometries
         return (
             flanks.flank_deviations(sun_mesh, (case.sun, case.planet), 0.0).member2,
             flanks.flank_deviations(ring_mesh, (case.planet, case.ring), 0.0).member1,
@@ -224,7 +226,7 @@ def test_a_rim_thinner_than_its_teeth_is_reported(talbot):
 def test_a_rim_is_told_where_planets_are_not_even_or_not_equal(talbot):
     def notes(**changes):
         rim = {"ring.rim_thickness": "30 mm", "models.load_distribution": "uniform"}
-        return " ".join(load_notes(talbot.updated(rim | changes)))
+        return " ".join(load_notes(dict(set_cases(talbot.updated(rim | changes), [""]))[""]))
 
     assert "planets" not in notes(**{"planet.count": 6})
     assert "not evenly spaced" in notes(**{"planet.count": 5})
@@ -268,8 +270,8 @@ def test_the_ring_of_a_pair_may_have_a_rim():
     stiffness = [ep.solve(case).meshes["mesh"].mesh_stiffness for case in (thin, thick, held)]
     assert stiffness == sorted(stiffness)
     assert stiffness[0] < 0.8 * stiffness[2]
-    gear = build.pair_mesh(thin.gears, thin.pinion, thin.gear).gear2
-    assert build.outside_radius(gear, thin.gear) == pytest.approx(gear.root_radius + 12e-3)
+    gear = thin.gearings[""].geometries[0].gear2
+    assert outside_radius(gear, thin.gear) == pytest.approx(gear.root_radius + 12e-3)
     assert ep.load_case(thin.inputs()) == thin
 
 

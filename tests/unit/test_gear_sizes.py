@@ -6,7 +6,7 @@ import pytest
 
 from epicyclic import load_case, solve
 from epicyclic.builders.notes import thin_teeth_notes
-from epicyclic.case import build
+from epicyclic.builders.set_case import set_cases
 from epicyclic.gears.gear import BasicRack
 from epicyclic.gears.mesh import closed_center_distance, profile_shift_sum, recommended_backlash
 from epicyclic.units import MILLIMETRE
@@ -35,6 +35,11 @@ SET = {
 }
 
 
+def set_of(case):
+    """The only set of a case."""
+    return dict(set_cases(case, [""]))[""]
+
+
 def changed(**tables):
     """The set with some keys changed; None leaves one out."""
     case = {key: dict(value) if isinstance(value, dict) else value for key, value in SET.items()}
@@ -46,7 +51,7 @@ def changed(**tables):
 
 
 def meshes(case):
-    return build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)
+    return case.gearings[""].geometries
 
 
 def test_published_sums_of_profile_shifts():
@@ -208,8 +213,8 @@ def test_the_other_sign_of_a_ring_is_proposed_where_it_fits():
 
 
 def test_gross_backlash_is_warned_of_and_usual_backlash_is_not():
-    assert list(thin_teeth_notes(load_case(changed()))) == []
-    sun_mesh, ring_mesh = thin_teeth_notes(load_case(changed(planet={"teeth": 26})))
+    assert list(thin_teeth_notes(set_of(load_case(changed())))) == []
+    sun_mesh, ring_mesh = thin_teeth_notes(set_of(load_case(changed(planet={"teeth": 26}))))
     assert "sun mesh has a normal backlash" in sun_mesh
     proposed = float(ring_mesh.split(f"ring.{X} = ")[1].split(" has")[0].split(" it")[0])
     case = load_case(changed(planet={"teeth": 26}, ring={X: proposed}))

@@ -11,14 +11,6 @@ import pytest
 import epicyclic as ep
 import listed_trains
 from epicyclic.builders.build import build
-from epicyclic.case.listed_set import (
-    arrangement_of,
-    directions_of,
-    hands_of,
-    pins_of,
-    positions_of,
-    terms_of,
-)
 from epicyclic.case.train_tables import ListedGear
 from epicyclic.gears.mesh import closing_number, nearest_places, pin_angle
 from listed_trains import BEARING, CARRIER
@@ -53,9 +45,9 @@ def found(kind, **changes):
     return problems_of(ep.load_case, changed(kind, **changes))
 
 
-def table_and_shape(kind, **changes):
+def gearing_of(kind, **changes):
     case = ep.load_case(changed(kind, **changes))
-    return case.sets["S"], case.shape.sets["S"]
+    return case.gearings["S"]
 
 
 def of_mesh(kind, mesh, **keys):
@@ -66,8 +58,8 @@ def of_mesh(kind, mesh, **keys):
 
 
 def test_losses_have_the_names_of_their_meshes_bodies_and_gears():
-    _, shape = table_and_shape("stepped")
-    assert terms_of(shape) == (
+    shape = gearing_of("stepped")
+    assert shape.terms == (
         "sun_wide_mesh_sliding",
         "sun_wide_mesh_rolling",
         "narrow_ring_mesh_sliding",
@@ -80,14 +72,14 @@ def test_losses_have_the_names_of_their_meshes_bodies_and_gears():
         "ring_drag",
         "carrier_drag",
     )
-    _, fixed = table_and_shape("layshaft")
-    assert terms_of(fixed)[-4:] == (
+    fixed = gearing_of("layshaft")
+    assert fixed.terms[-4:] == (
         "drive_drag",
         "lay_wheel_drag",
         "lay_pinion_drag",
         "driven_drag",
     )
-    assert not any("bearing" in term or "carrier" in term for term in terms_of(fixed))
+    assert not any("bearing" in term or "carrier" in term for term in fixed.terms)
 
 
 def test_a_loss_can_be_left_out_or_scaled():
@@ -167,8 +159,8 @@ def test_mass_of_a_planet_is_the_sum_of_its_gears():
 
 
 def test_hands_follow_from_mates_and_bodies():
-    table, shape = table_and_shape("ravigneaux")
-    assert hands_of(table, shape) == {
+    shape = gearing_of("ravigneaux")
+    assert shape.hands == {
         "small_sun": 1,
         "short": -1,
         "long_front": 1,
@@ -176,45 +168,45 @@ def test_hands_follow_from_mates_and_bodies():
         "large_sun": -1,
         "ring": 1,
     }
-    table, shape = table_and_shape("ravigneaux", gears__ring__hand="left")
-    assert hands_of(table, shape)["small_sun"] == -1
+    shape = gearing_of("ravigneaux", gears__ring__hand="left")
+    assert shape.hands["small_sun"] == -1
     # steps of one body may differ
-    table, shape = table_and_shape("stepped", gears__wide__hand="left", gears__narrow__hand="right")
-    assert hands_of(table, shape) == {"sun": 1, "wide": -1, "narrow": 1, "ring": 1}
+    shape = gearing_of("stepped", gears__wide__hand="left", gears__narrow__hand="right")
+    assert shape.hands == {"sun": 1, "wide": -1, "narrow": 1, "ring": 1}
 
 
 def test_gears_of_a_planet_stand_side_by_side_unless_stated():
-    table, shape = table_and_shape("stepped")
-    places = positions_of(table, shape)
+    shape = gearing_of("stepped")
+    places = shape.positions
     assert places == {"wide": pytest.approx(-13e-3), "narrow": pytest.approx(9.5e-3)}
-    table, shape = table_and_shape("stepped", gears__narrow__axial_position="20 mm")
-    assert positions_of(table, shape)["narrow"] == pytest.approx(20e-3)
+    shape = gearing_of("stepped", gears__narrow__axial_position="20 mm")
+    assert shape.positions["narrow"] == pytest.approx(20e-3)
 
 
 def test_pins_of_planets_that_mesh_stand_at_their_centre_distance():
-    table, shape = table_and_shape("ravigneaux")
-    pins = pins_of(table, shape)
+    shape = gearing_of("ravigneaux")
+    pins = shape.pins
     assert pins["short"].radius == pytest.approx(36e-3)
     assert pins["long"].radius == pytest.approx(42.75e-3)
     assert math.dist(pins["short"].place, pins["long"].place) == pytest.approx(29.25e-3)
     assert pins["long"].angle > pins["short"].angle  # listed after the short planet
     own = listed_trains.ravigneaux()["sets"]["S"]
     meshes = [own["meshes"][0], own["meshes"][1][::-1], *own["meshes"][2:]]
-    table, shape = table_and_shape("ravigneaux", meshes=meshes)
-    turned = pins_of(table, shape)
+    shape = gearing_of("ravigneaux", meshes=meshes)
+    turned = shape.pins
     assert turned["long"].angle - turned["short"].angle == pytest.approx(
         pins["short"].angle - pins["long"].angle
     )
 
 
 def test_directions_of_meshes_for_forces_on_shafts():
-    table, shape = table_and_shape("layshaft")
-    assert directions_of(table, shape) == {
+    shape = gearing_of("layshaft")
+    assert shape.directions == {
         "drive_lay_wheel_mesh": 0.0,
         "lay_pinion_driven_mesh": pytest.approx(math.pi),
     }
-    table, shape = table_and_shape("ravigneaux")
-    pins, directions = pins_of(table, shape), directions_of(table, shape)
+    shape = gearing_of("ravigneaux")
+    pins, directions = shape.pins, shape.directions
     assert directions["large_sun_long_rear_mesh"] == pytest.approx(pins["long"].angle)
     back = directions["long_front_ring_mesh"] - pins["long"].angle
     assert abs(math.remainder(back, 2 * math.pi)) == pytest.approx(math.pi)
@@ -334,13 +326,13 @@ def test_pins_form_a_triangle():
 
 
 def test_alike_planets_are_preferred_to_single_ones_and_these_to_unequal_spacing():
-    _, alike = table_and_shape("stepped")
-    assert arrangement_of(alike, 3).individual is False
-    _, single = table_and_shape("plus")
-    assert arrangement_of(single, 3).individual is True
-    assert arrangement_of(single, 2).individual is False
-    _, double = table_and_shape("double_planet")
-    uneven = arrangement_of(double, 5)
+    alike = gearing_of("stepped")
+    assert alike.arrangement(3).individual is False
+    single = gearing_of("plus")
+    assert single.arrangement(3).individual is True
+    assert single.arrangement(2).individual is False
+    double = gearing_of("double_planet")
+    uneven = double.arrangement(5)
     assert uneven.individual is False
     assert [round(math.degrees(angle), 6) for angle in uneven.angles] == [0, 75, 142.5, 217.5, 285]
 

@@ -8,8 +8,6 @@ import pytest
 
 import epicyclic as ep
 import listed_trains
-from epicyclic.case import build
-from epicyclic.case.listed_set import distances_of, gear_of, gears_table, meshes_of
 from problems import problems_of
 
 X = "profile_shift_coefficient"
@@ -32,8 +30,8 @@ def tables_of(kind, gears=(), distances=False, **own):
 
 
 def meshes(case):
-    table, shape = case.sets["S"], case.shape.sets["S"]
-    return {mesh.key: geometry for mesh, geometry, _ in meshes_of(table, shape)}
+    gearing = case.gearings["S"]
+    return {mesh.key: gearing.geometry(mesh) for mesh in gearing.meshes}
 
 
 @pytest.mark.parametrize(
@@ -63,7 +61,7 @@ def test_profile_shifts_leave_no_backlash(kind, gears):
 def test_distances_of_one_planet_are_found_once():
     case = ep.load_case(tables_of("stepped", distances=True))
     assert [one.key for one in case.found] == ["sets.S.mesh.sun-wide.center_distance"]
-    distances = distances_of(case.sets["S"], case.shape.sets["S"])
+    distances = case.gearings["S"].distances
     assert len(set(distances.values())) == 1
     geometry = meshes(case)
     tight, loose = geometry["sun_wide_mesh"], geometry["narrow_ring_mesh"]
@@ -94,7 +92,7 @@ def test_allowances_thin_what_is_found():
     fits = {"gears__narrow": {"tooth_thickness_fit": "26cd"}}
     case = ep.load_case(tables_of("stepped", ("ring",), **fits))
     mesh = meshes(case)["narrow_ring_mesh"]
-    narrow = gear_of(case.sets["S"], "narrow")
+    narrow = case.gearings["S"].gear("narrow")
     mean = (54 + 54 + 50) / 2 if narrow.reference_radius < 25e-3 else (70 + 70 + 60) / 2
     thinned = mean * 1e-6 / (2 * narrow.rack.normal_module * 0.363970234)
     shift = case.sets["S"].members["narrow"].profile_shift_coefficient
@@ -108,10 +106,10 @@ def test_a_rack_by_name_is_that_of_its_numbers():
     named["sets"]["S"]["gears"]["basic_rack"] = "iso-53-d"
     gears = tables["sets"]["S"]["gears"]
     gears |= {"addendum_coefficient": 1.0, "dedendum_coefficient": 1.4}
-    one, two = (ep.load_case(it).sets["S"] for it in (named, tables))
-    for name, member in one.members.items():
-        assert gear_of(one, name) == gear_of(two, name)
-        module = build.basic_rack(gears_table(one, name)).normal_module
+    one, two = (ep.load_case(it).gearings["S"] for it in (named, tables))
+    for name, member in one.tables.items():
+        assert one.gear(name) == two.gear(name)
+        module = one.rack(name).normal_module
         radius = None if member.internal else pytest.approx(0.39 * module)
         assert member.tool_tip_radius == radius
     both = copy.deepcopy(named)

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 import asymmetric
 import epicyclic as ep
 import listed_trains
-from epicyclic.case import build
+from epicyclic.case.gearing import outside_radius
 from epicyclic.case.uncertain_values import uncertain_values
 from epicyclic.cli.main import cli
 from epicyclic.library import lubrication_methods
@@ -130,7 +130,7 @@ def test_more_oil_in_the_order_of_the_methods():
 def test_oil_fed_into_the_mesh_fills_its_spaces(table, share_added):
     """Flow over the volume of half the rings of teeth that pass; a pair has one mesh."""
     case = pair(table)
-    mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
+    (mesh,) = case.gearings[""].geometries
     passing = 0.0
     for gear, rpm in ((mesh.gear1, 3350), (mesh.gear2, 3350 * 19 / 43)):
         ring = math.pi * (gear.tip_radius**2 - gear.root_radius**2)
@@ -151,7 +151,7 @@ def test_oil_is_fed_to_every_mesh_of_every_planet():
         assert added[1] == pytest.approx(3 * added[0])
     sun = flow.meshes["sun_mesh"] - flow.share
     case = planetary()
-    one, two = build.planetary_meshes(case.gears, case.sun, case.planet, case.ring)[0], 8
+    one, two = case.gearings[""].geometries[0], 8
     members = ep.solve(case).flow.members
     relative = abs(members["sun"].speed - members["carrier"].speed)
     passing = 0.0
@@ -169,9 +169,9 @@ def test_what_dips_churns_and_the_rest_drags(model):
     case = planetary(DIP | {"churning": model})
     result = ep.solve(case)
     torque = {"changenet-velex": changenet_velex, "iso-14179-1": iso_14179_1}[model]
-    sun = build.gear("sun", case.sun, case.gears)
-    ring = build.gear("ring", case.ring, case.gears)
-    outside = build.outside_radius(ring, case.ring)
+    sun = case.gearings[""].gear("sun")
+    ring = case.gearings[""].gear("ring")
+    outside = outside_radius(ring, case.ring)
     module = 2.1e-3
     parts = {
         "sun": Dipped(
@@ -202,7 +202,7 @@ def test_what_dips_churns_and_the_rest_drags(model):
 def test_a_gear_above_the_oil_turns_in_the_mixture():
     case = planetary(DIP | {"oil_level": "-60 mm"})
     result = ep.solve(case)
-    sun = build.gear("sun", case.sun, case.gears)
+    sun = case.gearings[""].gear("sun")
     mixture = mixture_state(oil_of(case), 0.1, case.surroundings.pressure)
     expected = disc_drag(sun.tip_radius, 27.2e-3, 2900 * RPM, mixture).total
     assert result.losses["sun_drag"] == pytest.approx(expected, rel=1e-9)
@@ -219,7 +219,7 @@ def test_a_result_says_if_nothing_dips():
 
 def test_depths_of_single_parts_are_those_of_a_level():
     case = pair({"method": "dip", "oil_level": "-12 mm", "oil_volume": "1.9 l"})
-    mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
+    (mesh,) = case.gearings[""].geometries
     depths = {gear.name: f"{1e3 * gear.tip_radius - 12!r} mm" for gear in (mesh.gear1, mesh.gear2)}
     single = pair({"method": "dip", "immersion": depths, "oil_volume": "1.9 l"})
     assert ep.solve(single).losses == pytest.approx(ep.solve(case).losses, rel=1e-9)
@@ -403,7 +403,7 @@ def test_the_bath_share_of_the_heat_follows_from_the_level():
     heat = {"models__temperatures": "network", "thermal__oil_flow": "3.1 l/min"}
     table = {"method": "dip", "oil_level": "-14 mm", "oil_volume": "1.9 l"}
     case = pair(table, **heat)
-    mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
+    (mesh,) = case.gearings[""].geometries
     angles = [math.acos(14e-3 / gear.tip_radius) for gear in (mesh.gear1, mesh.gear2)]
     share = sum(angles) / 2 / math.pi
     assert 0.2 < share < 0.5

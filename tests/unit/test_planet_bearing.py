@@ -11,7 +11,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.builders.build import build
-from epicyclic.builders.planetary import palmgren_coefficient, roller_bearing
+from epicyclic.builders.gear_sets import palmgren_coefficient, roller_bearing
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss
 from epicyclic.losses.planet_bearing import mixed_ehl_rolling_loss, palmgren_loss, roller_loads

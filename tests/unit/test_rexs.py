@@ -11,7 +11,6 @@ import tomllib
 import pytest
 
 import epicyclic as ep
-from epicyclic.case.build import planetary_meshes
 from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.plugins.rexs.model import id_in, term, versions
 from rexs_files import (
@@ -45,7 +44,7 @@ def read(tmp_path):
 
 
 def meshes(case):
-    return planetary_meshes(case.gears, case.sun, case.planet, case.ring)
+    return case.gearings[""].geometries
 
 
 def problems(excinfo):

@@ -10,7 +10,8 @@ import pytest
 from epicyclic import library
 from epicyclic.case.element_kinds import ELEMENT_KINDS, seal_problems
 from epicyclic.case.element_tables import SealTable
-from epicyclic.machine.element import HOUSING, LOAD_INDEPENDENT, State, figures, fluids_at
+from epicyclic.gears.gear import HOUSING
+from epicyclic.machine.element import LOAD_INDEPENDENT, State, figures, fluids_at
 from epicyclic.machine.shaft_parts import (
     Seal,
     SealFormula,

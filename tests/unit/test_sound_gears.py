@@ -7,7 +7,6 @@ import math
 
 import pytest
 
-from epicyclic.case import build
 from epicyclic.case.case import read_case
 from epicyclic.gears.cutting import form_radius, longest_involute
 from epicyclic.gears.gear import involute
@@ -165,7 +164,7 @@ def test_the_longest_involute_is_as_long_as_that_of_any_tool():
     case = read_case(TALBOT)
     tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
     for name, table in tables.items():
-        gear = build.gear(name, table, case.gears)
+        gear = case.gearings[""].gear(name)
         longest = longest_involute(gear, table.tool_tip_radius)
         for rounding in (0.0, 0.1e-3, 0.3e-3, 0.6e-3):
             tool = ShaperTool(42, rounding) if gear.internal else RackTool(rounding)
@@ -176,7 +175,7 @@ def test_the_longest_involute_is_as_long_as_that_of_any_tool():
 @pytest.mark.parametrize("teeth", [12, 15, 17, 18, 20])
 def test_the_longest_involute_of_gears_that_sharp_tools_undercut(teeth):
     case = read_case(pair(teeth, 40, 0.4 if teeth < 17 else 0.0))
-    gear = build.gear("pinion", case.pinion, case.gears)
+    gear = case.gearings[""].gear("pinion")
     longest = longest_involute(gear, case.pinion.tool_tip_radius)
     assert longest >= gear.base_radius
     roundings = [share * gear.rack.normal_module for share in (0.0, 0.1, 0.2, 0.3, 0.38, 0.45)]

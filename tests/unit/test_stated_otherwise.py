@@ -6,7 +6,6 @@ import pytest
 from test_gear_sizes import X, changed
 
 from epicyclic import load_case
-from epicyclic.case import build
 from problems import only, problems_of
 
 
@@ -59,7 +58,7 @@ def test_profiles_of_iso_53(name, dedendum, rounding):
     assert case.sun.tool_tip_radius == pytest.approx(plain.sun.tool_tip_radius)
     assert case.ring == plain.ring
     assert case.planet == plain.planet
-    roots = [build.gear("sun", one.sun, one.gears).root_radius for one in (case, plain)]
+    roots = [one.gearings[""].gear("sun").root_radius for one in (case, plain)]
     assert roots[0] == pytest.approx(roots[1])
     assert case.found[0].key == "gears.basic_rack"
     assert load_case(case.inputs()) == case

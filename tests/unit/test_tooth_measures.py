@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from epicyclic import load_case
-from epicyclic.case import build
 from epicyclic.gears import measures
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_profile_shift
 from problems import only, problems_of
@@ -102,13 +101,13 @@ def test_printed_allowances(allowance, shift, radial):
         "tooth_thickness_allowance": [f"{allowance} um"] * 2,
     }
     case = load_case(tables | {"gear": own, "pinion": tables["pinion"] | {"teeth": 33, X: None}})
-    made = build.gear("gear", case.gear, case.gears)
+    made = case.gearings[""].gear("gear")
     assert made.profile_shift_coefficient == pytest.approx(shift, abs=5e-5)
     assert 1e3 * measures.dimension_over_pins(made, 1.7e-3) / 2 == pytest.approx(radial, abs=1e-4)
     assert made.tip_radius == pytest.approx(found.tip_radius)  # of the nominal shift
     assert made.root_radius < found.root_radius
     # the nominal pinion fits without backlash; the allowance leaves one
-    mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
+    (mesh,) = case.gearings[""].geometries
     assert mesh.normal_backlash == pytest.approx(
         -allowance * 1e-6 * math.cos(math.radians(20)), rel=1e-9
     )
@@ -119,7 +118,7 @@ def test_printed_allowances(allowance, shift, radial):
 @pytest.mark.parametrize("way", ["span", "pins"])
 def test_a_measured_gear_is_that_of_its_profile_shift(tables, name, way):
     case = load_case(tables)
-    made = build.gear(name, getattr(case, name), case.gears)
+    made = case.gearings[""].gear(name)
     if way == "span":
         if made.internal:
             pytest.skip("helical rings have no span")
@@ -135,7 +134,7 @@ def test_a_measured_gear_is_that_of_its_profile_shift(tables, name, way):
         }
     own = {key: value for key, value in tables[name].items() if key != X} | stated
     again = load_case(tables | {name: own})
-    same = build.gear(name, getattr(again, name), again.gears)
+    same = again.gearings[""].gear(name)
     assert same.profile_shift_coefficient == pytest.approx(made.profile_shift_coefficient, abs=1e-9)
     assert load_case(again.inputs()) == again
 
@@ -146,9 +145,7 @@ def test_a_stated_backlash_contains_the_allowances():
         "mesh": {"normal_backlash": "111 um"},
     }
     case = load_case(tables)
-    assert build.pair_mesh(case.gears, case.pinion, case.gear).normal_backlash == pytest.approx(
-        111e-6
-    )
+    assert case.gearings[""].geometries[0].normal_backlash == pytest.approx(111e-6)
 
 
 @pytest.mark.parametrize(
@@ -175,7 +172,7 @@ def test_measures_that_cannot_be(stated, key, words):
 
 def test_a_span_over_too_many_teeth_is_refused():
     case = load_case(TABLES)
-    measured = measures.span(build.gear("pinion", case.pinion, case.gears), 6)
+    measured = measures.span(case.gearings[""].gear("pinion"), 6)
     own = {k: value for k, value in TABLES["pinion"].items() if k != X}
     own |= {"span_measurement": f"{1e3 * measured:.4f} mm", "teeth_in_span": 6}
     problem = only(problems_of(load_case, TABLES | {"pinion": own}))
@@ -193,7 +190,7 @@ def test_the_span_of_a_helical_ring_is_refused():
 @pytest.mark.parametrize("way", ["span", "pins", "thickness"])
 def test_too_thick_teeth_are_told_in_the_way_they_are_stated(way):
     case = load_case(TABLES | {"pinion": TABLES["pinion"] | {X: 0.62}})
-    made = build.gear("pinion", case.pinion, case.gears)
+    made = case.gearings[""].gear("pinion")
     over_pins = measures.dimension_over_pins(made, 4.3e-3)
     stated = {
         "span": {
@@ -215,5 +212,5 @@ def test_too_thick_teeth_are_told_in_the_way_they_are_stated(way):
     key, value = problem.remedy.removeprefix("Without backlash ").split(" or ")[0].split(" = ")
     fitted = own | {key.removeprefix("pinion."): value.strip('"')}
     case = load_case(TABLES | {"pinion": fitted})
-    mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
+    (mesh,) = case.gearings[""].geometries
     assert 0 <= mesh.normal_backlash < 1.1e-6

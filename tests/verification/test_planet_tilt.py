@@ -12,7 +12,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.builders.build import build
-from epicyclic.builders.planetary import roller_bearing
+from epicyclic.builders.gear_sets import roller_bearing
 from epicyclic.losses.planet_bearing import roller_loads
 from epicyclic.machine.gear_mesh import elastic_loads
 from epicyclic.machine.planets import PlanetContact, _tilt_by_newton, _tilt_one_by_one, planet_load

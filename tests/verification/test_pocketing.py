@@ -13,7 +13,6 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 import epicyclic as ep
-from epicyclic.case import build
 from epicyclic.gears.cutting import fitted_tool, form_radius, tooth_outline
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_profile_shift
 from epicyclic.gears.mesh import Mesh
@@ -44,7 +43,7 @@ def pair():
                 "gear.face_width": f"{width} mm",
             }
         )
-        mesh = build.pair_mesh(case.gears, case.pinion, case.gear)
+        (mesh,) = case.gearings[""].geometries
         tools = (
             fitted_tool(mesh.gear1, None, mesh.radius1_at_start),
             fitted_tool(mesh.gear2, None, mesh.radius2_at_end),

@@ -10,7 +10,6 @@ import pytest
 from scipy.integrate import quad
 
 import epicyclic as ep
-from epicyclic.case import build
 from epicyclic.losses.pocket_flow import pocket_flow
 from epicyclic.losses.pocket_geometry import pocket_geometry
 from epicyclic.oil.properties import MixtureState
@@ -110,10 +109,7 @@ def test_chamfered_pockets_mirror_with_the_driver(make_mesh):
 def test_a_chamfer_reduces_the_contact_of_a_case():
     case = ep.load_case("talbot-2012-pair")
     changes = {"pinion.tip_chamfer": "0.1 mm", "gear.tip_chamfer": "0.1 mm"}
-    meshes = [
-        build.pair_mesh(item.gears, item.pinion, item.gear)
-        for item in (case, case.updated(changes))
-    ]
+    meshes = [item.gearings[""].geometries[0] for item in (case, case.updated(changes))]
     assert meshes[1].transverse_contact_ratio < meshes[0].transverse_contact_ratio
     assert meshes[1].gear1.tip_radius == meshes[0].gear1.tip_radius
 

@@ -6,9 +6,8 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from epicyclic.builders.gearing import SetCase, gearing_of
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
-from epicyclic.case.listed_set import ListedCase
+from epicyclic.builders.set_case import SetCase
+from epicyclic.case.case import Case
 from epicyclic.case.lubrication import oil_share
 from epicyclic.case.oil_laws import oil_laws
 from epicyclic.case.part_tables import PlanetBearing
@@ -50,17 +49,14 @@ def resolve_models(case: SetCase) -> dict[str, str]:
         found["lubrication"] = case.lubrication.method
         if case.lubrication.method == "dip":
             found["churning"] = case.lubrication.churning
-    if isinstance(case, GearPairCase):  # its models have none for bearings
-        return found
-    bearings = gearing_of(case).bearings
-    if bearings:
-        models = dict.fromkeys(bearing_model(case, bearing) for bearing in bearings)
+    if case.bearings:
+        models = dict.fromkeys(bearing_model(case, it) for it in case.bearings.values())
         found["bearing"] = ", ".join(models)
         found["bearing_viscous"] = case.models.bearing_viscous
     return found
 
 
-def bearing_model(case: PlanetaryCase | ListedCase, bearing: PlanetBearing | None) -> str:
+def bearing_model(case: SetCase, bearing: PlanetBearing | None) -> str:
     """The model of the loss of a planet bearing, ``auto`` replaced by what it stands for."""
     if case.models.bearing != "auto":
         return case.models.bearing
@@ -135,7 +131,7 @@ def _direct_settings(case: SetCase) -> DirectSettings:
     carried = None
     if solver.heating != "isothermal":
         given = solver.solid_conductivity, solver.solid_heat_capacity
-        solids = [gear.material.solid_with(*given) for gear in gearing_of(case).tables.values()]
+        solids = [gear.material.solid_with(*given) for gear in case.gearing.tables.values()]
         carried = float(np.mean([solid.effusivity for solid in solids]))
     return DirectSettings(
         laws=oil_laws(solver),
@@ -196,7 +192,7 @@ def fluids_of(case: Case) -> Fluids:
 
 def loss_choices(case: SetCase) -> dict[str, LossChoice]:
     """What becomes of each loss of a case, in the order in which they are shown."""
-    options = gearing_of(case).losses.items()
+    options = case.losses.items()
     return {name: LossChoice(option.include, option.factor) for name, option in options}
 
 
@@ -213,7 +209,7 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
     file = case.models.pocketing_table
     memory = None if case.models.temperatures == "inlet" else FlowMemory()
     meshes = tuple(_before("_pocketing", choices))
-    planets = gearing_of(case).planets
+    planets = case.gearing.count
     fed = _fed(case) / (len(meshes) * (planets or 1))
     return {
         key: MeshModels(

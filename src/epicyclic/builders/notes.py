@@ -7,12 +7,11 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import numpy as np
 
-from epicyclic.builders.gearing import Gearing, SetCase, gearing_of
 from epicyclic.builders.models import fitted_oil_model, friction_of, resolve_models, rolling_of
-from epicyclic.case import build, flanks
-from epicyclic.case.backlash import backlash_notes
-from epicyclic.case.case import PlanetaryCase
-from epicyclic.case.listed_set import ListedCase, arrangement_of
+from epicyclic.builders.set_case import SetCase
+from epicyclic.case import flanks
+from epicyclic.case.gear_rules import backlash_notes
+from epicyclic.case.gearing import DEFAULT_RIM_THICKNESS, Gearing, rim_thickness
 from epicyclic.case.lubrication import SHARE_KEY
 from epicyclic.case.model_tables import LoadSharing
 from epicyclic.contact.fitted_models import changed_properties
@@ -54,24 +53,14 @@ def case_notes(
         *pressure_notes(found.figures),
         *found.notes,
     )
-    gearing = gearing_of(case)
-    sharing = gearing.sharing if found.shares else None
+    sharing = case.sharing if found.shares else None
     return (
         *notes,
-        *_own_notes(case),
+        *case.found,
+        *_arrangement_notes(case),
         *(() if sharing is None else _share_notes(sharing, found.shares)),
-        *_ring_notes(gearing, turning),
+        *_ring_notes(case.gearing, turning),
     )
-
-
-def _own_notes(case: SetCase) -> Iterator[str]:
-    """What only a set of its kind has to tell."""
-    if isinstance(case, ListedCase):
-        yield from _arrangement_notes(case)
-        return
-    yield from map(str, case.found)
-    if isinstance(case, PlanetaryCase):
-        yield from _planet_notes(case)
 
 
 def fluid_notes(case: SetCase) -> tuple[str, ...]:
@@ -116,9 +105,8 @@ def lubrication_notes(case: SetCase) -> Iterator[str]:
             "power that accelerates it, are left out."
         )
     if table.method == "dip":
-        gearing = gearing_of(case)
-        left_out = ["of planets"] if gearing.planets else []
-        left_out += ["inside rings"] if list(gearing.rings()) else []
+        left_out = ["of planets"] if case.gearing.planets else []
+        left_out += ["inside rings"] if list(case.gearing.rings()) else []
         if left_out:
             yield f"Churning {' and '.join(left_out)} is not modelled."
 
@@ -140,9 +128,8 @@ def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:
 
 def thin_teeth_notes(case: SetCase) -> Iterator[str]:
     """A note on every mesh with gross backlash."""
-    gearing = gearing_of(case)
-    for mesh in gearing.meshes():
-        yield from backlash_notes(mesh, gearing.tables)
+    for mesh in case.gearing.geometries:
+        yield from backlash_notes(case.gearing, mesh)
 
 
 def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:
@@ -194,38 +181,41 @@ def _idle_part(bearing: BearingFigures) -> float:
 def load_notes(case: SetCase) -> tuple[str, ...]:
     """Notes on deviations that the load distribution ignores, and on the rim of a ring gear."""
     notes = []
-    model, gearing = case.models.load_distribution, gearing_of(case)
+    model, gearing = case.models.load_distribution, case.gearing
     if _states_deviations(gearing) and not LOAD_DISTRIBUTIONS[model].takes_deviations:
         notes.append(
             f"models.load_distribution = {model} ignores micro-geometry and misalignment; "
             "compliance takes them into account."
         )
-    return (*notes, *_rim_notes(gearing))
+    return (*notes, *_rim_notes(case))
 
 
-def _rim_notes(gearing: Gearing) -> Iterator[str]:
+def _rim_notes(case: SetCase) -> Iterator[str]:
     """Where a rim leaves the assumptions of its formula."""
+    gearing = case.gearing
     for name, table, ring in gearing.rings():
-        thickness = build.rim_thickness(table)
+        thickness, key = rim_thickness(table), gearing.key(name)
         if thickness is None:
             continue
         height = ring.root_radius - ring.tip_radius
         if thickness < height:
             yield (
-                f"{name}.rim_thickness is less than the height of the teeth, "
+                f"{key}.rim_thickness is less than the height of the teeth, "
                 f"{1e3 * height:.4g} mm: the deflection of so thin a rim is outside what the "
                 "compliance is made for."
             )
-        even = are_evenly_spaced(gearing.planet_angles() or (0.0,))
-        if not even or (gearing.sharing is not None and gearing.sharing.method != "equal"):
+        even = are_evenly_spaced(gearing.planet_angles or (0.0,))
+        if not even or (case.sharing is not None and case.sharing.method != "equal"):
             yield (
-                f"{name}.rim_thickness: the rim bends as under evenly spaced and equally loaded "
+                f"{key}.rim_thickness: the rim bends as under evenly spaced and equally loaded "
                 f"planets, but these are {'not equally loaded' if even else 'not evenly spaced'}."
             )
 
 
 def _states_deviations(gearing: Gearing) -> bool:
-    return any(gearing.misalignments) or any(map(flanks.micro_geometries, gearing.tables.values()))
+    return any(mesh.table.misalignment for mesh in gearing.meshes) or any(
+        map(flanks.micro_geometries, gearing.tables.values())
+    )
 
 
 def general_notes(
@@ -247,18 +237,6 @@ def general_notes(
             "No power leaves: the losses take all that enters, and the output must be driven."
         )
     return tuple(notes)
-
-
-def _planet_notes(case: PlanetaryCase) -> tuple[str, ...]:
-    count, teeth = case.planet.count, case.sun.teeth + case.ring.teeth
-    if case.planet.angles is not None or teeth % count == 0:
-        return ()
-    angles = build.planet_angles(case.sun, case.planet, case.ring)
-    placed = ", ".join(f"{math.degrees(angle):.4f}" for angle in angles)
-    return (
-        f"{count} planets cannot be equally spaced, because ({case.sun.teeth} + "
-        f"{case.ring.teeth})/{count} is no integer; they stand at {placed} deg.",
-    )
 
 
 def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, ...]:
@@ -284,17 +262,18 @@ def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, 
     return tuple(notes)
 
 
-def _arrangement_notes(case: ListedCase) -> Iterator[str]:
-    """What has no effect on a listed set, and what its planets need to be assembled."""
-    if case.models.mesh_loads == "without-losses":
+def _arrangement_notes(case: SetCase) -> Iterator[str]:
+    """What has no effect on a listed set, and what planets need to be assembled."""
+    gearing = case.gearing
+    if gearing.listed and case.models.mesh_loads == "without-losses":
         yield "models.mesh_loads = without-losses has no effect on a set whose gears are listed."
-    planets = case.table.planets
-    if planets is None:
+    planets = gearing.count
+    if planets is None or gearing.stated_angles is not None:
         return
-    found = arrangement_of(case.shape, planets)
+    found = gearing.arrangement()
     if found.individual:
-        bodies = list(case.shape.bodies.values())
-        stepped = ", ".join(body for body in case.shape.planets if bodies.count(body) > 1)
+        bodies = list(gearing.bodies.values())
+        stepped = ", ".join(body for body in gearing.planets if bodies.count(body) > 1)
         fitting = [str(n) for n in range(1, planets + 1) if found.number % n == 0]
         yield (
             f"{planets} equally spaced planets cannot be alike: on each {stepped} the gears must "
@@ -302,17 +281,20 @@ def _arrangement_notes(case: ListedCase) -> Iterator[str]:
             f"integer. Alike ones fit equally spaced if there are {' or '.join(fitting)}."
         )
     elif not are_evenly_spaced(found.angles):
+        number = str(found.number)
+        if not gearing.listed:
+            number = f"({gearing.tables['sun'].teeth} + {gearing.tables['ring'].teeth})"
         placed = ", ".join(f"{math.degrees(angle):.4f}" for angle in found.angles)
         yield (
-            f"{planets} planets cannot be equally spaced, because {found.number}/{planets} is no "
+            f"{planets} planets cannot be equally spaced, because {number}/{planets} is no "
             f"integer; they stand at {placed} deg."
         )
 
 
 def _ring_notes(gearing: Gearing, turning: Collection[str]) -> Iterator[str]:
     for name, table, _ in gearing.rings():
-        if name.removeprefix("gears.") in turning and build.rim_thickness(table) is None:
+        if name in turning and rim_thickness(table) is None:
             yield (
-                f"{name}.rim_thickness is not given: the drag of the turning ring is that of a "
-                f"rim of {build.DEFAULT_RIM_THICKNESS:g} normal modules."
+                f"{gearing.key(name)}.rim_thickness is not given: the drag of the turning ring is "
+                f"that of a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
             )

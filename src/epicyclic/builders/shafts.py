@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from epicyclic.case.element_tables import ShaftBearingTable
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_bearings import needs_force
-from epicyclic.machine.element import HOUSING
+from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.machine import GearSeat, ShaftLayout, Support
 
@@ -30,11 +30,11 @@ def _seats(case: TrainCase, shaft: str, sets: Mapping[str, GearSet]) -> Iterator
     """The gears on a shaft, once for each of their meshes."""
     for name, own in sets.items():
         shape = case.shape.sets[name]
-        bodies = case.shape.bodies_of(name)
+        bodies, directions, hands = case.shape.bodies_of(name), shape.directions, shape.hands
         for drawn, mesh in zip(shape.meshes, own.meshes, strict=True):
             internal = mesh.mesh.internal
-            toward = case.directions.get((name, drawn.key), 0.0)
-            hand = case.hands.get((name, drawn.first), 1)
+            toward = directions[drawn.key]
+            hand = hands[drawn.first]
             radii = (mesh.mesh.operating_radius1, mesh.mesh.operating_radius2)
             ratio = drawn.teeth[1] / drawn.teeth[0]
             ends = (

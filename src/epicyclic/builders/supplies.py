@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from epicyclic.builders.train import set_cases
+from epicyclic.builders.set_case import set_cases
 from epicyclic.case.case import Case
 from epicyclic.case.lubrication import oil_share
 from epicyclic.case.train import TrainCase
-from epicyclic.case.train_lubrication import computed_sets
 from epicyclic.machine.disc import churned
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.pocket_flow import oil_in_mesh
@@ -19,7 +18,7 @@ from epicyclic.results.lubrication import OilSupply
 
 def stated_supplies(case: Case) -> Iterator[tuple[str, OilSupply]]:
     """How oil gets to the gears of each set that says so, by the key of the set."""
-    sets = [name for name, _ in computed_sets(case)] if isinstance(case, TrainCase) else [""]
+    sets = dict(case.computed_sets) if isinstance(case, TrainCase) else [""]
     for key, own in set_cases(case, sets):
         if own.lubrication is not None:
             share = oil_share(own)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 from epicyclic.builders.models import fluids_of
-from epicyclic.builders.train import set_cases
+from epicyclic.builders.set_case import set_cases
 from epicyclic.case.case import Case
 from epicyclic.case.lubrication import oil_share, with_lubrication
 from epicyclic.case.lubrication_tables import LubricationTable

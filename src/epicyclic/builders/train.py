@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 from epicyclic.builders.built import Built
-from epicyclic.builders.gearing import SetCase
-from epicyclic.builders.listed_set import listed_element
+from epicyclic.builders.gear_sets import gear_set
 from epicyclic.builders.models import fluids_of
-from epicyclic.builders.pair import PAIR_MEMBERS, pair_element
-from epicyclic.builders.planetary import MEMBERS, planetary_element
+from epicyclic.builders.set_case import set_cases
 from epicyclic.builders.shafts import shaft_layouts
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.element_kinds import ELEMENT_KINDS
-from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.train import TrainCase
-from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet
+from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.pocket_tables import FlowTables
-from epicyclic.machine.element import HOUSING, Element
+from epicyclic.machine.element import Element
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.machine import Operation
 from epicyclic.results.result import Layout
@@ -62,25 +57,12 @@ def _operation(case: TrainCase) -> Operation:
 def _sets(case: TrainCase, flow_tables: FlowTables) -> Iterator[GearSet]:
     """The sets whose losses are computed."""
     distance = _distances(case)
-    for name, table in case.sets.items():
+    for name, own in set_cases(case, dict(case.computed_sets)):
         bodies = case.shape.bodies_of(name)
-        if isinstance(table, PlanetarySet):
-            order = sorted(MEMBERS, key=lambda member: distance.get(bodies[member], len(distance)))
-            own = set_case(case, name)
-            assert isinstance(own, PlanetaryCase)
-            ends = (order[0], order[1], order[2])
-            yield planetary_element(name, own, bodies, ends, flow_tables)
-        elif isinstance(table, PairSet):
-            order = sorted(
-                PAIR_MEMBERS, key=lambda member: distance.get(bodies[member], len(distance))
-            )
-            pair = set_case(case, name)
-            assert isinstance(pair, GearPairCase)
-            yield pair_element(name, pair, bodies, order[0], flow_tables)
-        elif isinstance(table, ListedSet):
-            listed = set_case(case, name)
-            assert isinstance(listed, ListedCase)
-            yield listed_element(name, listed, bodies, flow_tables)
+        members = sorted(
+            own.gearing.members, key=lambda member: distance.get(bodies[member], len(distance))
+        )
+        yield gear_set(name, own, bodies, members, flow_tables)
 
 
 def _distances(case: TrainCase) -> dict[str, int]:
@@ -99,51 +81,6 @@ def _distances(case: TrainCase) -> dict[str, int]:
                     found[other] = found[shaft] + 1
                     left.append(other)
     return found
-
-
-def set_cases(case: Case, sets: Iterable[str]) -> Iterator[tuple[str, SetCase]]:
-    """Name and case of each of `sets`; a single set is its own, without a name."""
-    if not isinstance(case, TrainCase):
-        yield "", case
-        return
-    for name in sets:
-        yield name, set_case(case, name)
-
-
-def set_case(case: TrainCase, name: str) -> SetCase:
-    """A set or pair of a train as a case of its own, with the oil and surroundings of the train."""
-    table = case.sets[name]
-    assert isinstance(table, PlanetarySet | PairSet | ListedSet)
-    temperatures = case.models.temperatures
-    if table.models.temperatures != temperatures:
-        models = table.models.model_copy(update={"temperatures": temperatures})
-        table = table.model_copy(update={"models": models})
-    if isinstance(table, ListedSet):
-        assert case.lubricant is not None
-        return ListedCase(
-            table,
-            case.shape.sets[name],
-            case.lubricant,
-            case.surroundings,
-            case.thermal,
-            case.friction_table,
-            case.contact_solver,
-            case.folder,
-        )
-    kind = PlanetaryCase if isinstance(table, PlanetarySet) else GearPairCase
-    shared: dict[str, Any] = {
-        "kind": "planetary" if kind is PlanetaryCase else "gear_pair",
-        "title": name,
-        "lubricant": case.lubricant,
-        "surroundings": case.surroundings,
-        "thermal": case.thermal,
-        "friction_table": case.friction_table,
-        "contact_solver": case.contact_solver,
-    }
-    own = {key: getattr(table, key) for key in type(table).model_fields if key in kind.model_fields}
-    made = kind.model_construct(**shared, **own)
-    made._source = case.source
-    return made
 
 
 def _parts(case: TrainCase) -> Iterator[Element]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from epicyclic.builders.gearing import SetCase
-from epicyclic.case import build
+from epicyclic.builders.set_case import SetCase
 from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.gearing import outside_radius
 from epicyclic.case.lubrication import oil_share
 from epicyclic.case.lubrication_tables import LubricationTable
 from epicyclic.gears.gear import Gear
@@ -17,7 +17,7 @@ def gear_disc(case: SetCase, body: str, gear: Gear, table: GearTable) -> Disc:
 
     A ring dips as a body without teeth: those of its inside are left out.
     """
-    radius = build.outside_radius(gear, table)
+    radius = outside_radius(gear, table)
     pitch = radius if gear.internal else gear.reference_radius
     part = Dipped(
         radius=pitch,

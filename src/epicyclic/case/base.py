@@ -12,17 +12,19 @@ from pydantic import PrivateAttr
 
 from epicyclic.case.checks import cross_check
 from epicyclic.case.display import case_html, case_line
+from epicyclic.case.expand import gearing_of
 from epicyclic.case.fields import find_field, locate, to_inputs
-from epicyclic.case.gear_sizes import converted_roughness, find_sizes, negative_teeth, told_oil
+from epicyclic.case.gear_tables import Gears, GearTable
 from epicyclic.case.plain import plain, value_at, with_value, without
 from epicyclic.case.schema import Table
-from epicyclic.case.size_solver import Found
+from epicyclic.case.sizing import Found, complete, converted_roughness, negative_teeth, told_oil
 from epicyclic.case.translation import unknown_key
 from epicyclic.case.validation import AnyCase, Validation, tables_of, validate
 from epicyclic.case.wording import key_parts, path_of, written
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
+    from epicyclic.case.gearing import Gearing
     from epicyclic.case.lubrication_tables import LubricationTable
     from epicyclic.case.operation_tables import Surroundings
 
@@ -40,6 +42,10 @@ class CaseTable(Table):
     if TYPE_CHECKING:  # every kind has them, each in its place
         lubrication: LubricationTable | None
         surroundings: Surroundings
+
+        @property
+        def gearings(self) -> Mapping[str, Gearing]: ...
+
     _tables: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: str = PrivateAttr(default="")
     _found: tuple[Found, ...] = PrivateAttr(default=())
@@ -175,19 +181,36 @@ def with_sizes(
 
     Also what was found, and how signs and roughness were understood.
     """
-    sizes = find_sizes(validation.sections, raw)
     told: tuple[Found, ...] = ()
     if validation.case is not None:
         told = (*negative_teeth(raw), *converted_roughness(raw), *told_oil(raw))
     sections = dict(validation.sections)
-    if sizes is None or sizes.problems:
+    gears = sections.get("gears")
+    if not isinstance(gears, Gears):
+        return validation, told
+    gearing = gearing_of(sections)
+    if gearing is None:
+        if _leaves_out(gears, sections):
+            del sections["gears"]
+            return Validation(None, sections, validation.problems), told
+        return validation, told
+    whole, found, problems = complete(gearing, raw)
+    if problems:
         del sections["gears"]
-        problems = [*validation.problems, *(sizes.problems if sizes else ())]
-        return Validation(None, sections, problems), told
+        return Validation(None, sections, [*validation.problems, *problems]), told
+    assert whole.shared is not None
+    now: dict[str, Table] = {"gears": whole.shared, **whole.tables}
+    changed = {key: table for key, table in now.items() if table is not sections[key]}
     case = validation.case
-    if case is not None and sizes.changed:
-        case = case.model_copy(update=sizes.changed)
-    return Validation(case, sections | sizes.changed, validation.problems), told + sizes.found
+    if case is not None and changed:
+        case = case.model_copy(update=changed)
+    return Validation(case, sections | changed, validation.problems), told + found
+
+
+def _leaves_out(gears: Gears, sections: Mapping[str, Table]) -> bool:
+    """Something follows from gears of which some are not valid."""
+    tables = [table for table in sections.values() if isinstance(table, GearTable)]
+    return gears.center_distance is None or not all(table.states_thickness for table in tables)
 
 
 def as_given(problem: Problem, tables: dict[str, Any]) -> Problem:

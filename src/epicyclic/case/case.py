@@ -11,8 +11,10 @@ from pydantic.json_schema import GenerateJsonSchema
 
 from epicyclic import library
 from epicyclic.case.base import CaseTable, with_changes
+from epicyclic.case.expand import expand
 from epicyclic.case.fields import to_inputs
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring, SetMesh
+from epicyclic.case.gearing import Gearing
 from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
 from epicyclic.case.model_tables import (
     ContactSolver,
@@ -55,6 +57,11 @@ class _SetTables(CaseTable):
     def computed(self) -> bool:
         """No loss is given."""
         return True
+
+    @property
+    def gearings(self) -> dict[str, Gearing]:
+        """Its gears and meshes; the only set has no name."""
+        return {"": expand(dict(self))[0]}
 
 
 class PlanetaryCase(_SetTables):

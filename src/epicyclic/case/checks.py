@@ -7,12 +7,13 @@ tables that it needs are valid by themselves.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 
-from epicyclic.case import build
-from epicyclic.case.gear_checks import check_pair, check_planetary
-from epicyclic.case.gear_tables import Gears, GearTable, Planet, Ring
+from epicyclic.case.expand import gearing_of
+from epicyclic.case.gear_rules import gears_by_name
+from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.gearing import Gearing
 from epicyclic.case.lubrication import with_lubrication
 from epicyclic.case.lubrication_checks import (
     check_immersion,
@@ -38,8 +39,10 @@ from epicyclic.case.operation_tables import (
 )
 from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.case.schema import Table
+from epicyclic.case.set_rules import set_problems
 from epicyclic.case.thermal_checks import check_outlet, check_thermal, check_ways_out
 from epicyclic.case.thermal_tables import ThermalTable
+from epicyclic.case.train_tables import ListedSet
 from epicyclic.case.wording import millimetres
 from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
 from epicyclic.errors import InputError, Problem, rising_problems
@@ -75,9 +78,24 @@ def cross_check(
         problems += check_ways_out(whole, models.temperatures)
     if isinstance(models, PlanetaryModels):
         problems += _check_planet_tilt(models, {*given, *sections})
+    gearing = gearing_of(sections)
+    if gearing is not None and gearing.computed:
+        problems += set_problems(gearing)
+        problems += _check_planets(gearing, sections)
     for check, needed in _CHECKS:
         if all(name in sections for name in needed):
             problems += check(*(sections[name] for name in needed))
+    return problems
+
+
+def _check_planets(gearing: Gearing, sections: Mapping[str, Table]) -> list[Problem]:
+    """Problems of planets with their bearing, and with the way in which they share the load."""
+    bearing, sharing = sections.get("planet_bearing"), sections.get("load_sharing")
+    problems = []
+    if isinstance(bearing, PlanetBearing) and gearing.planets:
+        problems += check_bores(gearing, {"planet_bearing": (bearing, gearing.planets)})
+    if isinstance(sharing, LoadSharing) and gearing.count is not None:
+        problems += _check_load_sharing(sharing, gearing)
     return problems
 
 
@@ -113,30 +131,50 @@ def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> list[P
     ]
 
 
-def _check_bearing_room(gears: Gears, planet: Planet, bearing: PlanetBearing) -> list[Problem]:
-    try:
-        root = build.gear("planet", planet, gears).root_radius
-    except ValueError:
-        return []  # reported with the gears
-    return check_bore(bearing, root)
-
-
-def check_bore(
-    bearing: PlanetBearing, root_radius: float, key: str = "planet_bearing"
+def check_bores(
+    gearing: Gearing,
+    # By the key of a bearing: its table, and the planets that it carries.
+    bearings: Mapping[str, tuple[PlanetBearing, Sequence[str]]],
 ) -> list[Problem]:
-    """The bearing at `key` must fit into the root circle of its planet."""
-    bore = bearing.pin_diameter + 2 * bearing.roller_diameter + bearing.diametral_clearance
-    if bore < 2 * root_radius:
-        return []
-    return [
-        Problem(
-            f"{key}.pin_diameter",
-            millimetres(bearing.pin_diameter),
-            f"the planet's bore of {millimetres(bore)} reaches its root circle of "
-            f"{millimetres(2 * root_radius)}.",
-            "Take a thinner pin or thinner rollers.",
+    """Bearings must fit into the root circles of their planets."""
+    sound, _ = gears_by_name(gearing)  # others are reported with the gears
+    problems = []
+    for key, (bearing, planets) in bearings.items():
+        bore = bearing.pin_diameter + 2 * bearing.roller_diameter + bearing.diametral_clearance
+        for body in planets:
+            roots = [sound[it].root_radius for it in gearing.gears_of(body) if it in sound]
+            if not roots or bore < 2 * min(roots):
+                continue
+            problems.append(
+                Problem(
+                    f"{key}.pin_diameter",
+                    millimetres(bearing.pin_diameter),
+                    f"the planet's bore of {millimetres(bore)} reaches its root circle of "
+                    f"{millimetres(2 * min(roots))}.",
+                    "Take a thinner pin or thinner rollers.",
+                )
+            )
+    return problems
+
+
+def check_listed_bearings(table: ListedSet, gearing: Gearing) -> list[Problem]:
+    """Problems of the bearings that a listed set has for each kind of planets."""
+    own = table.planet_bearings
+    problems = [
+        problem
+        for name, bearing in own.items()
+        for problem in (
+            *check_rollers(bearing, f"planet_bearings.{name}"),
+            *check_cage(bearing, table.models),
         )
     ]
+    found = {
+        f"planet_bearings.{body}": (own[body], [body]) for body in gearing.planets if body in own
+    }
+    if table.planet_bearing is not None:
+        others = [body for body in gearing.planets if body not in own]
+        found["planet_bearing"] = table.planet_bearing, others
+    return problems + check_bores(gearing, found)
 
 
 def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]:
@@ -154,31 +192,29 @@ def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]
     ]
 
 
-def _check_load_sharing(
-    sharing: LoadSharing, sun: GearTable, planet: Planet, ring: Ring
-) -> list[Problem]:
-    problems = []
-    if sharing.mesh_load_factor > planet.count:
+def _check_load_sharing(sharing: LoadSharing, gearing: Gearing) -> list[Problem]:
+    problems, count = [], gearing.count or 1
+    if sharing.mesh_load_factor > count:
         problems.append(
             Problem(
                 "load_sharing.mesh_load_factor",
                 f"{sharing.mesh_load_factor:g}",
-                f"must be at most planet.count, {planet.count}: then one planet has all the load.",
+                f"must be at most planet.count, {count}: then one planet has all the load.",
                 "Take a smaller factor.",
             )
         )
-    if len(sharing.position_errors or ()) not in (0, planet.count):
+    if len(sharing.position_errors or ()) not in (0, count):
         problems.append(
             Problem(
                 "load_sharing.position_errors",
                 f"{len(sharing.position_errors or ())} values",
-                f"must have one value for each of the {planet.count} planets.",
+                f"must have one value for each of the {count} planets.",
                 "Give as many values as there are planets.",
             )
         )
     if sharing.method == "closed-form":
-        problems += _check_closed_form(sharing, sun, planet, ring)
-    if sharing.method == "direct" and planet.count == 1 and sharing.floating_member != "none":
+        problems += _check_closed_form(sharing, gearing)
+    if sharing.method == "direct" and count == 1 and sharing.floating_member != "none":
         problems.append(
             Problem(
                 "load_sharing.floating_member",
@@ -190,13 +226,11 @@ def _check_load_sharing(
     return problems
 
 
-def _check_closed_form(
-    sharing: LoadSharing, sun: GearTable, planet: Planet, ring: Ring
-) -> list[Problem]:
+def _check_closed_form(sharing: LoadSharing, gearing: Gearing) -> list[Problem]:
     reasons = []
-    if planet.count < 3:
+    if (gearing.count or 1) < 3:
         reasons.append("three or more planets")
-    if not are_evenly_spaced(build.planet_angles(sun, planet, ring)):
+    if not are_evenly_spaced(gearing.planet_angles):
         reasons.append("equally spaced planets")
     if sharing.floating_member != "none" and sharing.support_stiffness > 0:
         reasons.append("a member that floats freely or none")
@@ -359,12 +393,8 @@ def _check_pair_immersion(table: LubricationTable, pinion: GearTable) -> list[Pr
 
 _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_operation, ("operation",)),
-    (check_planetary, ("gears", "sun", "planet", "ring")),
-    (check_pair, ("gears", "pinion", "gear")),
     (check_rollers, ("planet_bearing",)),
-    (_check_bearing_room, ("gears", "planet", "planet_bearing")),
     (check_cage, ("planet_bearing", "models")),
-    (_check_load_sharing, ("load_sharing", "sun", "planet", "ring")),
     (_check_friction_table, ("friction_table",)),
     (_check_resolution, ("models", "numerics")),
     (_check_void, ("models", "surroundings")),

@@ -17,6 +17,7 @@ from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.schema import Table
 from epicyclic.case.wording import millimetres, written
 from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.loss_table import LossQuantity, LossTable, read_loss_table, table_problems
 from epicyclic.losses.shaft_bearing import (
     DEFAULT_COEFFICIENTS,
@@ -35,7 +36,7 @@ from epicyclic.losses.shaft_bearing import (
     skf_constants,
     skf_series,
 )
-from epicyclic.machine.element import HOUSING, Element
+from epicyclic.machine.element import Element
 from epicyclic.machine.shaft_parts import Seal, SealFormula, ShaftBearing, TableLoss
 from epicyclic.oil.oil import Oil
 from epicyclic.oil.properties import oil_state

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from functools import lru_cache
 
-from epicyclic.case import build
 from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, Planet, TopographyTable
+from epicyclic.case.gearing import rim_thickness
 from epicyclic.contact.elastic_teeth import GearBody, Rim
 from epicyclic.gears.cutting import cutting_tool
 from epicyclic.gears.flanks import (
@@ -30,7 +30,7 @@ def gear_bodies(mesh: Mesh, tables: Tables, planets: int = 1) -> tuple[GearBody,
 
 
 def _body(gear: Gear, table: GearTable, loads: int) -> GearBody:
-    thickness = build.rim_thickness(table)
+    thickness = rim_thickness(table)
     return GearBody(
         table.material.elastic_modulus,
         table.material.poisson_ratio,

@@ -19,16 +19,13 @@ from epicyclic.units import (
     as_stated,
 )
 
+PressureAngle = Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)]
 RackName = Literal["iso-53-a", "iso-53-b", "iso-53-c", "iso-53-d"]
 
 
-class Gears(Table):
-    """What all gears share."""
+class SharedGears(Table):
+    """What all gears of a set share; in a listed set beside the tables of its gears."""
 
-    EXACTLY_ONE = (
-        ("normal_module", "transverse_module"),
-        ("normal_pressure_angle", "transverse_pressure_angle"),
-    )
     AT_MOST_ONE = (
         ("basic_rack", "addendum_coefficient"),
         ("basic_rack", "dedendum_coefficient"),
@@ -36,16 +33,16 @@ class Gears(Table):
 
     normal_module: Length | None = Field(default=None, description="m_n.")
     transverse_module: Length | None = Field(default=None, description="m_t = m_n/cos(beta).")
-    normal_pressure_angle: (
-        Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)] | None
-    ) = Field(default=None, description="alpha_n at the reference circle.")
-    transverse_pressure_angle: (
-        Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=40.0)] | None
-    ) = Field(default=None, description="alpha_t at the reference circle.")
-    helix_angle: HelixAngle = Field(description="beta at the reference circle, magnitude.")
-    center_distance: Length | None = Field(
-        default=None, description="Of every mesh. Default: from the profile shifts, x."
+    normal_pressure_angle: PressureAngle | None = Field(
+        default=None, description="alpha_n at the reference circle."
     )
+    transverse_pressure_angle: PressureAngle | None = Field(
+        default=None, description="alpha_t at the reference circle."
+    )
+    helix_angle: HelixAngle | None = Field(
+        default=None, description="beta at the reference circle, magnitude."
+    )
+    center_distance: Length | None = Field(default=None, description="Of every mesh.")
     addendum_coefficient: Number = Field(
         default=1.0,
         gt=0,
@@ -58,15 +55,31 @@ class Gears(Table):
         le=4,
         description="h_fP/m_n, for gears without root_diameter. ISO 53, profile A.",
     )
-
     basic_rack: RackName | None = Field(
         default=None,
         description="A profile of ISO 53 instead of both coefficients, also for the tool's tip.",
     )
 
+
+class Gears(SharedGears):
+    """What all gears share."""
+
+    EXACTLY_ONE = (
+        ("normal_module", "transverse_module"),
+        ("normal_pressure_angle", "transverse_pressure_angle"),
+    )
+
+    transverse_pressure_angle: (
+        Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=40.0)] | None
+    ) = Field(default=None, description="alpha_t at the reference circle.")
+    helix_angle: HelixAngle = Field(description="beta at the reference circle, magnitude.")
+    center_distance: Length | None = Field(
+        default=None, description="Of every mesh. Default: from the profile shifts, x."
+    )
+
     @property
     def distance(self) -> float:
-        """The centre distance, as given or found; see `epicyclic.case.gear_sizes`. [m]"""
+        """The centre distance, as given or found; see `epicyclic.case.sizing`. [m]"""
         assert self.center_distance is not None
         return self.center_distance
 

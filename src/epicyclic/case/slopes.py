@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from epicyclic.case import build
 from epicyclic.case.base import CaseTable
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.keys import value_of
-from epicyclic.case.listed_set import gears_table
 from epicyclic.case.thickness import tolerances_of
-from epicyclic.case.train_tables import ListedSet
 from epicyclic.case.wording import dotted, key_parts
 
 SLOPES = {"profile_slope": "profile_slope", "lead_slope": "helix_slope"}
@@ -40,6 +37,6 @@ def slope_limit(case: CaseTable, key: str) -> float | None:
         of_set = value_of(case, dotted(owner[:2]))
     if of_set.models.load_distribution != _TAKES_DEVIATIONS:
         return None
-    gears = gears_table(of_set, name) if isinstance(of_set, ListedSet) else of_set.gears
-    tolerances = tolerances_of(build.gear(name, table, gears), table)
+    gearing = case.gearings[owner[1] if owner else ""]
+    tolerances = tolerances_of(gearing.gear(name), table)
     return float(getattr(tolerances, SLOPES[parts[-1]]))

@@ -79,16 +79,16 @@ def allowance_shift(table: GearTable, rack: BasicRack) -> float:
     )
 
 
-def thickness_key(name: str, table: GearTable) -> str:
-    """The key that states how thick the teeth are."""
+def thickness_key(key: str, table: GearTable) -> str:
+    """The key that states how thick the teeth are, of the gear whose table stands at `key`."""
     keys = ("span_measurement", "dimension_over_pins", "tooth_thickness")
     stated = (key for key in keys if getattr(table, key) is not None)
-    return f"{name}.{next(stated, 'profile_shift_coefficient')}"
+    return f"{key}.{next(stated, 'profile_shift_coefficient')}"
 
 
-def fitting(gear: Gear, table: GearTable, over: float) -> str:
+def fitting(gear: Gear, key: str, table: GearTable, over: float) -> str:
     """What a table states of teeth that are thinner by the profile shift `over`, rounded down."""
-    rack, key = gear.rack, thickness_key(gear.name, table)
+    rack, key = gear.rack, thickness_key(key, table)
     arc = 2 * over * rack.normal_module * math.tan(rack.transverse_pressure_angle)
     if table.span_measurement is not None:
         normal = math.sin(rack.normal_pressure_angle)
@@ -123,12 +123,12 @@ def tolerances_of(gear: Gear, table: GearTable) -> FlankTolerances | None:
     )
 
 
-def check_fit(gear: Gear, table: GearTable) -> Problem | None:
+def check_fit(gear: Gear, key: str, table: GearTable) -> Problem | None:
     """DIN 3967 has no allowances for larger gears."""
     if table.tooth_thickness_fit is None or 2 * gear.reference_radius <= LARGEST_FIT:
         return None
     return Problem(
-        f"{gear.name}.tooth_thickness_fit",
+        f"{key}.tooth_thickness_fit",
         f'"{table.tooth_thickness_fit}"',
         f"is for reference diameters up to {millimetres(LARGEST_FIT)}, and this one has "
         f"{millimetres(2 * gear.reference_radius)}.",
@@ -136,12 +136,12 @@ def check_fit(gear: Gear, table: GearTable) -> Problem | None:
     )
 
 
-def check_measure(gear: Gear, table: GearTable) -> Problem | None:
+def check_measure(gear: Gear, key: str, table: GearTable) -> Problem | None:
     """A span or balls must touch the flanks."""
     if table.span_measurement is not None:
         if gear.internal and gear.rack.helix_angle > 0:
             return Problem(
-                f"{gear.name}.span_measurement",
+                f"{key}.span_measurement",
                 millimetres(table.span_measurement),
                 "cannot be measured on a helical ring.",
                 "Give dimension_over_pins with measuring_pin_diameter.",
@@ -161,7 +161,7 @@ def check_measure(gear: Gear, table: GearTable) -> Problem | None:
         return None
     value = getattr(table, what)
     return Problem(
-        f"{gear.name}.{what}",
+        f"{key}.{what}",
         millimetres(value),
         f"touches at diameter {millimetres(2 * radius)}, beyond the flanks, which reach from "
         f"{millimetres(2 * low)} to {millimetres(2 * high)}.",

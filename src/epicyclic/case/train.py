@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Any, Literal, Self, cast
 from pydantic import Field, PrivateAttr, create_model
 
 from epicyclic.case.base import CaseTable, as_given, with_sizes
-from epicyclic.case.checks import cross_check
+from epicyclic.case.checks import check_listed_bearings, cross_check
 from epicyclic.case.element_kinds import ELEMENT_KINDS
-from epicyclic.case.gear_sizes import told_oil
-from epicyclic.case.listed_checks import listed_set_problems
-from epicyclic.case.listed_set import directions_of, hands_of
-from epicyclic.case.listed_sizes import find_listed_sizes
+from epicyclic.case.expand import expand
+from epicyclic.case.gear_tables import SharedGears
+from epicyclic.case.gearing import Gearing
 from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
 from epicyclic.case.model_tables import (
     ContactSolver,
@@ -30,12 +29,14 @@ from epicyclic.case.model_tables import (
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.operation_tables import Lubricant, Surroundings
 from epicyclic.case.schema import Table
-from epicyclic.case.size_solver import Found
+from epicyclic.case.set_rules import listed_problems, rack_problems, set_problems
+from epicyclic.case.sizing import Found, complete, told_oil
 from epicyclic.case.thermal_tables import ThermalTable
 from epicyclic.case.train_bearings import bearing_force_problems
 from epicyclic.case.train_checks import operation_problems
-from epicyclic.case.train_shape import SetShape, TrainShape, shape_of_set, shape_of_train
+from epicyclic.case.train_shape import TrainShape, shape_of_train
 from epicyclic.case.train_tables import (
+    ComputedSet,
     GivenListedSet,
     GivenPair,
     GivenPlanetarySet,
@@ -46,7 +47,6 @@ from epicyclic.case.train_tables import (
     PlanetarySet,
     Position,
     SetTable,
-    SharedGears,
     StateTable,
     TrainOperation,
 )
@@ -88,6 +88,11 @@ class _TrainTables(CaseTable):
         return self._shape
 
     @property
+    def gearings(self) -> Mapping[str, Gearing]:
+        """Gears and meshes of every set, by its name."""
+        return self._shape.sets
+
+    @property
     def state(self) -> StateTable:
         """The state in which it runs: what is braked and joined."""
         name = self.operation.state
@@ -103,42 +108,21 @@ class _TrainTables(CaseTable):
     @property
     def computed(self) -> bool:
         """False if every loss is given."""
-        given = (GivenPlanetarySet, GivenPair, GivenListedSet)
-        sets = any(not isinstance(table, given) for table in self.sets.values())
+        sets = any(gearing.computed for gearing in self.shape.sets.values())
         return sets or any(True for _ in self.elements)
+
+    @property
+    def computed_sets(self) -> Iterator[tuple[str, ComputedSet]]:
+        """Sets whose losses are computed, by name."""
+        for name, table in self.sets.items():
+            if isinstance(table, ComputedSet):
+                yield name, table
 
     def position_of(self, gear: str) -> float | None:
         """Position of a gear along its shaft, by its name or that of its body. [m]"""
         name, _, member = gear.partition(".")
         body = self.shape.sets[name].bodies.get(member, member)
         return self.positions.get(gear, self.positions.get(f"{name}.{body}"))
-
-    @property
-    def directions(self) -> dict[tuple[str, str], float]:
-        """Angle from the axis of the first to that of the second gear of meshes, where known."""
-        directions = {}
-        for name, table in self.sets.items():
-            if isinstance(table, PairSet):
-                directions[name, "mesh"] = table.direction
-            elif isinstance(table, ListedSet):
-                found = directions_of(table, self.shape.sets[name])
-                directions |= {(name, mesh): angle for mesh, angle in found.items()}
-        return directions
-
-    @property
-    def hands(self) -> dict[tuple[str, str], int]:
-        """Hands of the helix of the first gears of meshes, +1 for right."""
-        hands = {}
-        for name, table in self.sets.items():
-            if isinstance(table, PairSet):
-                hands[name, "pinion"] = 1 if table.hand == "right" else -1
-            elif isinstance(table, PlanetarySet):
-                hands[name, "sun"] = 1 if table.hand == "right" else -1
-                hands[name, "planet"] = -hands[name, "sun"]
-            elif isinstance(table, ListedSet):
-                found = hands_of(table, self.shape.sets[name])
-                hands |= {(name, gear): hand for gear, hand in found.items()}
-        return hands
 
     def inputs(self) -> dict[str, Any]:
         """The case as nested tables of text and numbers, defaults included, as a file has them."""
@@ -184,7 +168,7 @@ class _TrainTables(CaseTable):
             found.append(_no_sets(given))
         shared = {key: tables[key] for key in _SHARED if key in tables and key in whole.sections}
         sets: dict[str, SetTable] = {}
-        shapes: dict[str, SetShape] = {}
+        shapes: dict[str, Gearing] = {}
         sizes: list[Found] = []
         complete = True
         joined = _joined_members(tables)
@@ -197,12 +181,12 @@ class _TrainTables(CaseTable):
             sizes += [replace(one, key=f"sets.{name}.{one.key}") for one in read.found]
             if read.table is not None:
                 sets[name] = read.table
-                shape, wrong = shape_of_set(read.table, joined.get(name, ()))
-                shapes[name] = shape
+                shapes[name], wrong = expand(dict(read.table), joined.get(name, ()))
                 complete = complete and not wrong
                 found += [_below(f"sets.{name}", problem) for problem in wrong]
                 if isinstance(read.table, ListedSet) and not wrong:
-                    sets[name], told, lacks = _complete(read.table, shape, raw_sets[name])
+                    made, told, lacks = _complete(read.table, shapes[name], raw_sets[name])
+                    sets[name], shapes[name] = made
                     sizes += [replace(one, key=f"sets.{name}.{one.key}") for one in told]
                     found += [as_given(_below(f"sets.{name}", lack), tables) for lack in lacks]
         case = whole.case
@@ -328,7 +312,7 @@ def _read_set_cached(given: _Given) -> _ReadSet:
     read: Validation[Any]
     read, told = with_sizes(validate(form, raw), raw)
     problems = [_with_gears(problem) for problem in read.problems]
-    if issubclass(form, PlanetarySet | PairSet | ListedSet):
+    if issubclass(form, ComputedSet):
         tables = {*raw, *given.shared}
         checked = {k: v for k, v in read.sections.items() if k != "lubrication" or k in given.raw}
         if "planet_bearings" in raw:
@@ -434,11 +418,23 @@ def _with_gears(problem: Problem) -> Problem:
 
 
 def _complete(
-    table: ListedSet, shape: SetShape, raw: Mapping[str, Any]
-) -> tuple[ListedSet, tuple[Found, ...], list[Problem]]:
+    table: ListedSet, gearing: Gearing, raw: Mapping[str, Any]
+) -> tuple[tuple[ListedSet, Gearing], tuple[Found, ...], list[Problem]]:
     """A listed set with what it leaves out, what was found, and its problems."""
-    whole, told, problems = find_listed_sizes(table, shape, raw)
-    return whole, told, problems or listed_set_problems(whole, shape)
+    whole, told, problems = complete(gearing, raw)
+    own = dict(table.mesh)
+    for mesh in whole.meshes:
+        name = mesh.table_key.removeprefix("mesh.")
+        former = own.get(name, ListedMesh())
+        if mesh.own_distance != former.center_distance:
+            own[name] = former.model_copy(update={"center_distance": mesh.own_distance})
+    changed = {"members": dict(whole.tables), "gears": whole.shared, "mesh": own}
+    table = table.model_copy(update=changed)
+    if not problems:
+        problems = [*listed_problems(table, whole), *set_problems(whole)]
+        if not any(rack_problems(whole)):
+            problems += check_listed_bearings(table, whole)
+    return (table, whole), told, list(dict.fromkeys(problems))
 
 
 # --- bearings, seals, drags -----------------------------------------------------------------------

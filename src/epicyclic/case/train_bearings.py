@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from epicyclic.case.element_tables import ShaftBearingTable
-from epicyclic.case.train_tables import GivenListedSet, GivenPair, GivenPlanetarySet
 from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
-from epicyclic.machine.element import HOUSING
+from epicyclic.gears.gear import HOUSING
 
 if TYPE_CHECKING:
     from epicyclic.case.train import TrainCase
@@ -86,8 +85,8 @@ def _of_gears(train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]) -
                 f"is missing: the forces on the bearings {names} follow from it.",
                 f'Add "{gear}" = "... mm" to [positions]. {GIVE_FORCE}',
             )
-    for name, gears in train.sets.items():
-        if not isinstance(gears, GivenPlanetarySet | GivenPair | GivenListedSet):
+    for name, gearing in train.shape.sets.items():
+        if gearing.computed:
             continue
         if shaft in train.shape.bodies_of(name).values():
             yield Problem(
@@ -100,19 +99,10 @@ def _of_gears(train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]) -
 
 def _gears(train: TrainCase, shaft: str) -> Iterator[str]:
     """The gears on a shaft that push it aside: without planets all around them."""
-    for name, shape in train.shape.sets.items():
-        table = train.sets[name]
-        if isinstance(table, GivenPlanetarySet | GivenPair | GivenListedSet):
-            continue
-        if shape.planets and _count(table) > 1:
+    for name, gearing in train.shape.sets.items():
+        if not gearing.computed or (gearing.planets and (gearing.count or 1) > 1):
             continue
         bodies = train.shape.bodies_of(name)
-        for gear, body in shape.bodies.items():
-            if body not in shape.planets and bodies[body] == shaft and shaft != HOUSING:
+        for gear, body in gearing.bodies.items():
+            if body not in gearing.planets and bodies[body] == shaft and shaft != HOUSING:
                 yield f"{name}.{gear}"
-
-
-def _count(table: object) -> int:
-    """Number of planets of a computed set."""
-    planet = getattr(table, "planet", None)
-    return planet.count if planet is not None else getattr(table, "planets", None) or 1

@@ -15,11 +15,11 @@ from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.thermal_checks import check_outlet
 from epicyclic.case.train_lubrication import lubrication_problems
 from epicyclic.case.train_shape import TrainShape
-from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet, StateTable
+from epicyclic.case.train_tables import StateTable
 from epicyclic.case.wording import written
 from epicyclic.errors import Problem
+from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.balance import freedom, implied, speeds_of
-from epicyclic.machine.element import HOUSING
 from epicyclic.machine.machine import Machine
 
 if TYPE_CHECKING:
@@ -65,9 +65,8 @@ def _temperature_problems(train: TrainCase) -> list[Problem]:
             f"is a choice for the whole train, which has {written(train.models.temperatures)}.",
             "Leave it out here, and give models.temperatures of the train.",
         )
-        for name, table in train.sets.items()
-        if isinstance(table, PlanetarySet | PairSet | ListedSet)
-        and table.models.temperatures not in ("inlet", train.models.temperatures)
+        for name, table in train.computed_sets
+        if table.models.temperatures not in ("inlet", train.models.temperatures)
     ]
     if train.models.temperatures != "inlet" and not train.computed:
         found.append(
@@ -85,8 +84,8 @@ def _oil_model_problems(train: TrainCase) -> list[Problem]:
     """Sets that ask for fitted models of an oil that has none; those with a file have told."""
     return [
         replace(problem, key=f"sets.{name}.{problem.key}")
-        for name, table in train.sets.items()
-        if isinstance(table, PlanetarySet | PairSet | ListedSet) and table.models.oil_model is None
+        for name, table in train.computed_sets
+        if table.models.oil_model is None
         for problem in check_oil_model(table.models, Path(), train.lubricant)
     ]
 

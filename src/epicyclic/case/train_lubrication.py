@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from epicyclic.case.lubrication_checks import check_immersion, check_sump, check_wetting
-from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet
 from epicyclic.errors import Problem
 
 if TYPE_CHECKING:
@@ -19,14 +18,14 @@ def lubrication_problems(train: TrainCase) -> list[Problem]:
     problems: list[Problem] = []
     if train.lubrication is not None:
         problems += _shared_immersion(train)
-    for name, table in computed_sets(train):
+    for name, table in train.computed_sets:
         own = table.lubrication
         if own is None or own == train.lubrication:
             continue
         if train.lubrication is None:
             problems.append(_not_shared(name))
         found = [*check_sump(own, train.thermal), *check_wetting(own, train.thermal)]
-        if isinstance(table, ListedSet):
+        if train.shape.sets[name].listed:
             found += check_immersion(own, train.shape.sets[name].members)
         problems += [replace(problem, key=_key(name, problem.key)) for problem in found]
     return problems
@@ -43,13 +42,6 @@ def _not_shared(name: str) -> Problem:
     """The oil around everything that is in no set follows from the train's own table."""
     allowed = "needs [lubrication] of the train, which it then replaces for this set."
     return Problem(f"sets.{name}.lubrication", "", allowed, "Add it, for all other parts.")
-
-
-def computed_sets(train: TrainCase) -> Iterator[tuple[str, PlanetarySet | PairSet | ListedSet]]:
-    """Sets whose losses are computed."""
-    for name, table in train.sets.items():
-        if isinstance(table, PlanetarySet | PairSet | ListedSet):
-            yield name, table
 
 
 def _key(name: str, keys: str) -> str:

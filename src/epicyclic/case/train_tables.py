@@ -13,9 +13,10 @@ from epicyclic.case.gear_tables import (
     GearTable,
     PairGear,
     Planet,
-    RackName,
+    PressureAngle,
     Ring,
     SetMesh,
+    SharedGears,
     internal_if_negative,
     with_positive_teeth,
 )
@@ -45,7 +46,6 @@ from epicyclic.units import (
 )
 
 Efficiency = Annotated[Number, Field(gt=0, le=1)]
-_Pressure = Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)]
 Position = Annotated[float, Quantity("a position", "m", "mm", low=-1e5, high=1e5)]
 
 
@@ -173,10 +173,10 @@ class ListedGear(PairGear):
     )
     normal_module: Length | None = Field(default=None, description="Default: of [gears].")
     transverse_module: Length | None = Field(default=None, description="Default: of [gears].")
-    normal_pressure_angle: _Pressure | None = Field(
+    normal_pressure_angle: PressureAngle | None = Field(
         default=None, description="Default: of [gears]."
     )
-    transverse_pressure_angle: _Pressure | None = Field(
+    transverse_pressure_angle: PressureAngle | None = Field(
         default=None, description="Default: of [gears]."
     )
     helix_angle: HelixAngle | None = Field(default=None, description="Default: of [gears].")
@@ -195,33 +195,6 @@ class ListedGear(PairGear):
         description="Of the middle of its face from the middle of the planet bearing. Default: "
         "gears of one body side by side, in the order of meshes.",
     )
-
-
-def _of_gears(key: str) -> Any:
-    """A key as the gears of a planetary case have it."""
-    return Gears.model_fields[key]
-
-
-class SharedGears(Table):
-    """What all gears of a listed set share; below it the file has one table for each gear."""
-
-    AT_MOST_ONE = Gears.AT_MOST_ONE
-
-    normal_module: Length | None = Field(default=None, description="m_n.")
-    transverse_module: Length | None = Field(default=None, description="m_t = m_n/cos(beta).")
-    normal_pressure_angle: _Pressure | None = Field(
-        default=None, description="alpha_n at the reference circle."
-    )
-    transverse_pressure_angle: _Pressure | None = Field(
-        default=None, description="alpha_t at the reference circle."
-    )
-    helix_angle: HelixAngle | None = Field(
-        default=None, description="beta at the reference circle, magnitude."
-    )
-    center_distance: Length | None = Field(default=None, description="Of every mesh.")
-    addendum_coefficient: Number = _of_gears("addendum_coefficient")
-    dedendum_coefficient: Number = _of_gears("dedendum_coefficient")
-    basic_rack: RackName | None = _of_gears("basic_rack")
 
 
 class ListedMesh(SetMesh):
@@ -303,6 +276,7 @@ class GivenListedSet(_Listed):
     mesh: dict[str, GivenMesh] = Field(default={})
 
 
+ComputedSet = PlanetarySet | PairSet | ListedSet
 SetTable = PlanetarySet | PairSet | ListedSet | GivenPlanetarySet | GivenPair | GivenListedSet
 
 

@@ -9,9 +9,10 @@ from pydantic.fields import FieldInfo
 
 from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.fields import dict_value, table_of
+from epicyclic.case.gear_tables import SharedGears
 from epicyclic.case.template import COMMENT_COLUMN, TableWriter, toml_key, toml_value
 from epicyclic.case.train import TrainCase, form_of_set
-from epicyclic.case.train_tables import ListedSet, PlanetarySet, SharedGears
+from epicyclic.case.train_tables import ListedSet, PlanetarySet
 from epicyclic.case.wording import dotted, key_parts
 
 _LISTS = {

@@ -10,7 +10,8 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from pydantic_core import from_json
 
 from epicyclic.case.operating import AXES
-from epicyclic.machine.element import HOUSING, OIL
+from epicyclic.gears.gear import HOUSING
+from epicyclic.machine.element import OIL
 from epicyclic.results.heat import HeatBalance, HeatWay
 from epicyclic.results.result import Result
 from epicyclic.units import CELSIUS

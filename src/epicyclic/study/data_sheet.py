@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from epicyclic.case import build
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.case import Case
 from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.listed_set import gear_of, meshes_of
+from epicyclic.case.gearing import Gearing
 from epicyclic.case.thickness import allowance_shift, allowances, tolerances_of
-from epicyclic.case.train import TrainCase
-from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet
 from epicyclic.gears import measures
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.measures import FlankTolerances
@@ -65,55 +61,13 @@ def data_sheets(case: Case) -> dict[str, DataSheet]:
     >>> round(sheet.meshes[0].mesh.transverse_contact_ratio, 2)
     1.38
     """
-    if isinstance(case, TrainCase):
-        return {
-            name: _sheet(gears, meshes)
-            for name, table in case.sets.items()
-            if (gears := dict(_gears(table)))
-            for meshes in [_meshes(case, name, table)]
-        }
-    tables = _tables(case)
-    gears = {name: (build.gear(name, table, case.gears), table) for name, table in tables.items()}
-    return {"": _sheet(gears, _own_meshes(case))}
+    return {name: _sheet(gearing) for name, gearing in case.gearings.items() if gearing.computed}
 
 
-def _tables(table: PlanetaryCase | GearPairCase | PlanetarySet | PairSet) -> dict[str, GearTable]:
-    if isinstance(table, PlanetaryCase | PlanetarySet):
-        return {"sun": table.sun, "planet": table.planet, "ring": table.ring}
-    return {"pinion": table.pinion, "gear": table.gear}
-
-
-def _own_meshes(
-    table: PlanetaryCase | GearPairCase | PlanetarySet | PairSet,
-) -> tuple[Mesh, ...]:
-    if isinstance(table, PlanetaryCase | PlanetarySet):
-        return build.planetary_meshes(table.gears, table.sun, table.planet, table.ring)
-    return (build.pair_mesh(table.gears, table.pinion, table.gear),)
-
-
-def _gears(
-    table: object,
-) -> Iterator[tuple[str, tuple[Gear, GearTable]]]:
-    """Gears of a computed set of a train; none of one of given efficiency."""
-    if isinstance(table, ListedSet):
-        for gear, member in table.members.items():
-            yield gear, (gear_of(table, gear), member)
-    elif isinstance(table, PlanetarySet | PairSet):
-        for gear, own in _tables(table).items():
-            yield gear, (build.gear(gear, own, table.gears), own)
-
-
-def _meshes(case: TrainCase, name: str, table: object) -> tuple[Mesh, ...]:
-    if isinstance(table, ListedSet):
-        return tuple(mesh for _, mesh, _ in meshes_of(table, case.shape.sets[name]))
-    assert isinstance(table, PlanetarySet | PairSet)
-    return _own_meshes(table)
-
-
-def _sheet(gears: Mapping[str, tuple[Gear, GearTable]], meshes: tuple[Mesh, ...]) -> DataSheet:
+def _sheet(gearing: Gearing) -> DataSheet:
     return DataSheet(
-        tuple(_gear_sheet(gear, table) for gear, table in gears.values()),
-        tuple(_mesh_sheet(mesh) for mesh in meshes),
+        tuple(_gear_sheet(gearing.gear(name), table) for name, table in gearing.tables.items()),
+        tuple(map(_mesh_sheet, gearing.geometries)),
     )
 
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from epicyclic.builders.build import build
-from epicyclic.builders.gearing import SetCase
 from epicyclic.builders.models import (
     fitted_oil_model,
     friction_of,
@@ -17,9 +16,8 @@ from epicyclic.builders.models import (
     rolling_of,
     standing_of,
 )
-from epicyclic.builders.train import set_cases
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
-from epicyclic.case.listed_set import ListedCase
+from epicyclic.builders.set_case import SetCase, set_cases
+from epicyclic.case.case import Case
 from epicyclic.case.train import TrainCase
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.drag import DRAG_METHOD, DRAG_SOURCE, VISCOUS_METHOD, VISCOUS_SOURCE
@@ -221,9 +219,7 @@ def methods_of(case: Case) -> dict[str, tuple[str, str]]:
     return methods
 
 
-def _methods_of_set(
-    case: PlanetaryCase | GearPairCase | ListedCase, own: GearSet
-) -> dict[str, tuple[str, str]]:
+def _methods_of_set(case: SetCase, own: GearSet) -> dict[str, tuple[str, str]]:
     friction, rolling = friction_of(case), rolling_of(case)
     methods = {"friction": (friction.title, friction.source)}
     if resolve_models(case)["mesh"] == "loss-factor":

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.builders.notes import load_notes
-from epicyclic.builders.train import set_cases
+from epicyclic.builders.set_case import set_cases
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem
 from epicyclic.gears.mesh import Mesh

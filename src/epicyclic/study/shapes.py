@@ -10,12 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from epicyclic.builders.build import build as build_machine
-from epicyclic.builders.gearing import SetCase
-from epicyclic.builders.train import set_cases
-from epicyclic.case import build
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.case import Case
 from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.listed_set import ListedCase, arrangement_of, directions_of, pins_of
+from epicyclic.case.gearing import Gearing, outside_radius
 from epicyclic.gears.cutting import tooth_outline
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.generation import Tool
@@ -75,65 +72,35 @@ class SetPlaces:
         return {name: known.get(body, 0.0) for name, body in self.bodies.items()}
 
 
-def places_of(
-    case: SetCase,
-    meshes: Mapping[str, Mesh],  # By their keys.
-) -> SetPlaces | None:
+def places_of(gearing: Gearing) -> SetPlaces | None:
     """Gears and centres of a set; None if the case does not tell where all of them stand."""
-    if isinstance(case, PlanetaryCase):
-        return _of_planetary(case)
-    if isinstance(case, GearPairCase):
-        return _of_pair(case, next(iter(meshes.values())))
-    return _of_listed(case, meshes)
-
-
-def _of_planetary(case: PlanetaryCase) -> SetPlaces:
-    tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
-    angles = build.planet_angles(case.sun, case.planet, case.ring)
-    middle = ((0.0, 0.0),)
-    around = tuple(_polar(case.gears.distance, UP + angle) for angle in angles)
-    centers = {"sun": middle, "planet": around, "ring": middle}
-    return SetPlaces(tables, centers, {name: name for name in tables})
-
-
-def _of_pair(case: GearPairCase, mesh: Mesh) -> SetPlaces:
-    """The pinion at the origin, or inside an internal gear there."""
-    tables = {"pinion": case.pinion, "gear": case.gear}
-    ends = ((0.0, 0.0),), ((case.gears.distance, 0.0),)
-    pinion, gear = reversed(ends) if mesh.gear2.internal else ends
-    return SetPlaces(tables, {"pinion": pinion, "gear": gear}, {name: name for name in tables})
-
-
-def _of_listed(case: ListedCase, meshes: Mapping[str, Mesh]) -> SetPlaces | None:
-    shape, table = case.shape, case.table
-    bodies = _on_carrier(case) if shape.planets else _on_fixed_axes(case, meshes)
-    if not set(shape.bodies.values()) <= bodies.keys():
+    bodies = _on_carrier(gearing) if gearing.planets else _on_fixed_axes(gearing)
+    if not set(gearing.bodies.values()) <= bodies.keys():
         return None
-    centers = {name: bodies[body] for name, body in shape.bodies.items()}
-    return SetPlaces(table.members, centers, shape.bodies)
+    centers = {name: bodies[body] for name, body in gearing.bodies.items()}
+    return SetPlaces(gearing.tables, centers, gearing.bodies)
 
 
-def _on_carrier(case: ListedCase) -> dict[str, tuple[Point, ...]]:
-    shape, table = case.shape, case.table
-    arms = arrangement_of(shape, table.planets or 1).angles
+def _on_carrier(gearing: Gearing) -> dict[str, tuple[Point, ...]]:
+    arms = gearing.arrangement().angles
     found: dict[str, tuple[Point, ...]] = {
-        body: ((0.0, 0.0),) for body in shape.bodies.values() if body not in shape.planets
+        body: ((0.0, 0.0),) for body in gearing.bodies.values() if body not in gearing.planets
     }
-    for body, pin in pins_of(table, shape).items():
+    for body, pin in gearing.pins.items():
         found[body] = tuple(_polar(pin.radius, UP + arm + pin.angle) for arm in arms)
     return found
 
 
-def _on_fixed_axes(case: ListedCase, meshes: Mapping[str, Mesh]) -> dict[str, tuple[Point, ...]]:
+def _on_fixed_axes(gearing: Gearing) -> dict[str, tuple[Point, ...]]:
     """Each body beside the one that it meshes with, from the first at the origin."""
-    shape, directions = case.shape, directions_of(case.table, case.shape)
-    found: dict[str, tuple[Point, ...]] = {shape.bodies[shape.meshes[0].first]: ((0.0, 0.0),)}
+    directions = gearing.directions
+    found: dict[str, tuple[Point, ...]] = {gearing.bodies[gearing.meshes[0].first]: ((0.0, 0.0),)}
     grows = True
     while grows:
         before = len(found)
-        for mesh in shape.meshes:
-            one, two = shape.bodies[mesh.first], shape.bodies[mesh.second]
-            angle, distance = directions[mesh.key], meshes[mesh.key].center_distance
+        for mesh, geometry in zip(gearing.meshes, gearing.geometries, strict=True):
+            one, two = gearing.bodies[mesh.first], gearing.bodies[mesh.second]
+            angle, distance = directions[mesh.key], geometry.center_distance
             for known, other, way in ((one, two, angle), (two, one, angle + math.pi)):
                 if known in found and other not in found:
                     (x, y), (dx, dy) = found[known][0], _polar(distance, way)
@@ -276,11 +243,10 @@ def _drawn_sets(case: Case) -> Iterator[tuple[str, SetPlaces, tuple[MeshDuty, ..
     """Name, gears and meshes of every set of which it is known where its gears stand."""
     built = build_machine(case)
     state = built.state()
-    for name, own in set_cases(case, built.sets):
-        duties = built.sets[name].mean_duties(state)
-        found = places_of(own, {duty.key: duty.mesh for duty in duties})
+    for name, own in built.sets.items():
+        found = places_of(case.gearings[name])
         if found is not None:
-            yield name, found, duties
+            yield name, found, own.mean_duties(state)
 
 
 def _set_shapes(found: SetPlaces, duties: tuple[MeshDuty, ...]) -> dict[str, xr.Dataset]:
@@ -315,7 +281,7 @@ def _shape(gear: Gear, tool: Tool, table: GearTable, places: list[Place]) -> xr.
                 "root": gear.root_radius,
                 "base": gear.base_radius,
                 "reference": gear.reference_radius,
-                "outside": build.outside_radius(gear, table),
+                "outside": outside_radius(gear, table),
             }.items()
         },
     }

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.builders.build import build
+from epicyclic.builders.gear_sets import roller_bearing
 from epicyclic.builders.models import fluids_of
-from epicyclic.builders.planetary import roller_bearing
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, read_case
 from epicyclic.contact.loaded_mesh import LoadedMesh
 from epicyclic.contact.temperatures import (

@@ -11,9 +11,9 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from epicyclic.case.build import gear
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, read_case
 from epicyclic.case.element_tables import ShaftBearingTable
+from epicyclic.case.expand import expand
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.case.schema import Material
@@ -23,8 +23,8 @@ from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import whole_file
 from epicyclic.gears.flanks import RA_OVER_RQ
-from epicyclic.gears.gear import Gear
-from epicyclic.machine.element import HOUSING, Figure
+from epicyclic.gears.gear import HOUSING, Gear
+from epicyclic.machine.element import Figure
 from epicyclic.machine.shaft_parts import ShaftBearingFigures
 from epicyclic.oil.oil import Oil
 from epicyclic.oil.properties import oil_state
@@ -246,8 +246,8 @@ def add_pair(
     """Both gears on their shafts, and their stage; `owners` are unit and oil. Returns the gears."""
     unit, oil = owners
     hand = -1 if isinstance(case, PairSet) and case.hand == "left" else 1
-    made = {"pinion": gear("pinion", case.pinion, case.gears)}
-    made["gear"] = gear("gear", case.gear, case.gears)
+    gearing, _ = expand(dict(case))
+    made = {name: gearing.gear(name) for name in gearing.tables}
     hands = {"pinion": hand, "gear": hand if made["gear"].internal else -hand}
     tables = {"pinion": case.pinion, "gear": case.gear}
     numbers = {
@@ -323,7 +323,8 @@ def _planets(
     """Sun, ring, and for each planet its shaft, pin, bearing and two meshes."""
     unit, stage, oil = owners
     tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
-    made = {name: gear(name, table, case.gears) for name, table in tables.items()}
+    gearing, _ = expand(dict(case))
+    made = {name: gearing.gear(name) for name in tables}
     hand = -1 if isinstance(case, PlanetarySet) and case.hand == "left" else 1
     sun = _gear(builder, shafts["sun"], case.sun, made["sun"], hand, "sun")
     ring = _gear(builder, shafts["ring"], case.ring, made["ring"], -hand, "ring")

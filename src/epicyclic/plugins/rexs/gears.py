@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from epicyclic.case.build import pair_mesh, planetary_meshes
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.expand import expand
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import PairSet
 from epicyclic.case.train_tables import PlanetarySet as PlanetaryTable
@@ -594,12 +594,12 @@ def _computed(
 ) -> _Computed:
     """The meshes of a set."""
     if isinstance(case, PlanetaryCase | PlanetaryTable) and isinstance(chosen, PlanetaryParts):
-        sun_mesh, ring_mesh = planetary_meshes(case.gears, case.sun, case.planet, case.ring)
+        sun_mesh, ring_mesh = expand(dict(case))[0].geometries
         planet = chosen.planets[0]
         yield sun_mesh, (chosen.sun, planet), chosen.sun_meshes[0].stage
         yield ring_mesh, (planet, chosen.ring), chosen.ring_meshes[0].stage
     elif isinstance(case, GearPairCase | PairSet) and isinstance(chosen, Pair):
-        mesh = pair_mesh(case.gears, case.pinion, case.gear)
+        (mesh,) = expand(dict(case))[0].geometries
         yield mesh, (chosen.pinion, chosen.gear), chosen.mesh.stage
 
 

@@ -19,7 +19,7 @@ from epicyclic.case.operating import AXES, OPERATING, STATE, STATE_KEY, axis_nam
 from epicyclic.case.train import TrainCase
 from epicyclic.case.wording import written
 from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
-from epicyclic.machine.element import HOUSING
+from epicyclic.gears.gear import HOUSING
 from epicyclic.results.result import Layout, number_fields
 from epicyclic.study.maps.tables import Lookup, check_map, map_case
 from epicyclic.study.solve import solve

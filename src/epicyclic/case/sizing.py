@@ -1,7 +1,8 @@
-"""Finds centre distances and profile shifts that a case leaves out of meshes.
+"""What a set leaves out of its gears: centre distances, profile shifts, a named basic rack.
 
-What was found, and what was adjusted because the printed digits contradict each other, is told in
-`Found`.
+A mesh joins its centre distance, two profile shifts and its backlash: any one of them follows from
+the others. What was found, and what was adjusted because the printed digits contradict each other,
+stands in `Found`.
 """
 
 from __future__ import annotations
@@ -9,11 +10,18 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import Any
 
+import numpy as np
+
+from epicyclic.case.gear_rules import gears_by_name
 from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.gearing import Gearing, GearPairing, is_internal
 from epicyclic.case.plain import value_at
+from epicyclic.case.schema import roughness_told
+from epicyclic.case.set_rules import rack_problems
+from epicyclic.case.short_oil import short_oil_told
 from epicyclic.case.thickness import allowance_shift, thickness_key
 from epicyclic.case.wording import micrometres, millimetres
 from epicyclic.errors import InputError, Problem
@@ -26,6 +34,13 @@ from epicyclic.gears.mesh import (
 )
 from epicyclic.units import MILLIMETRE
 
+BASIC_RACKS = {
+    "iso-53-a": (1.25, 0.38),
+    "iso-53-b": (1.25, 0.30),
+    "iso-53-c": (1.25, 0.25),
+    "iso-53-d": (1.40, 0.39),
+}
+"""h_fP and the rounding rho_fP of the tool's tip, in normal modules; ISO 53:1998 (second hand)."""
 FINEST_SHIFT = 0.5e-3
 """Half a unit of the last digit of a profile shift counts at most as this: 0.3 means 0.300. [1]"""
 FINEST_LENGTH = 0.5e-6
@@ -34,6 +49,8 @@ AGREES = 0.5e-6
 """A stated backlash that differs less from that of the teeth is that of the teeth. [m]"""
 ROUNDING = 0.5e-9
 """Teeth that are too thick by less than this pass as they are; see `backlash.ROUNDING`. [m]"""
+_ALIKE = 1e-9
+"""Modules and angles that differ by less are equal, relatively."""
 LEAST_SHIFT, LARGEST_SHIFT = -3.0, 5.0
 """What a case may state."""
 
@@ -60,48 +77,168 @@ class Found:
 
 
 @dataclass(frozen=True, slots=True)
-class SizedMesh:
+class _Sized:
     """A mesh whose centre distance or profile shifts may have to be found."""
 
-    name: str
-    backlash_key: str  # Where its backlash is stated.
-    gears: tuple[str, str]  # A ring is the second.
+    drawn: GearPairing
     teeth: int  # z1 + z2, those of a ring negative.
-    backlash: float | None  # j_bn. [m]
     rack: BasicRack  # Rack of both gears.
     place: tuple[str, ...]  # Path of its centre distance.
     stated_distance: float | None  # [m]
     gives_way: str  # The gear that is thinned where digits contradict each other.
-    group: str = ""  # Meshes of one group have one centre distance.
-    prefix: str = ""  # Before the names of gears in keys.
+    group: str  # Meshes of one group have one centre distance.
 
-    def shift_key(self, name: str) -> str:
-        """The key of the profile shift of a gear."""
-        return f"{self.prefix}{name}.profile_shift_coefficient"
+    @property
+    def gears(self) -> tuple[str, str]:
+        """Names of its gears; a ring is the second."""
+        return self.drawn.first, self.drawn.second
+
+    @property
+    def backlash_key(self) -> str:
+        """Where its backlash is stated."""
+        return f"{self.drawn.table_key}.normal_backlash"
+
+    @property
+    def backlash(self) -> float | None:
+        """j_bn. [m]"""
+        return self.drawn.table.normal_backlash
 
 
-class Solver:
-    """The gears of meshes that have something in common.
+def negative_teeth(raw: Mapping[str, Any]) -> Iterator[Found]:
+    """How negative numbers of teeth are understood."""
+    tables = dict(raw)
+    members = tables.pop("members", {})
+    tables |= {f"gears.{name}": table for name, table in members.items()}
+    for name, table in tables.items():
+        teeth = table.get("teeth") if isinstance(table, dict) else None
+        if isinstance(teeth, int) and teeth < 0:
+            yield Found(
+                f"{name}.teeth",
+                str(-teeth),
+                "a ring, because the number is negative; its profile shift is that of ISO 21771 "
+                "and DIN 3960, positive where it thickens the teeth.",
+            )
 
-    Parameters
-    ----------
-    made : mapping of str to Gear
-        Those that say how thick their teeth are.
-    tables : mapping of str to GearTable
-        Tables of all gears.
-    meshes : sequence of SizedMesh
-    raw : mapping
-        The tables as the user wrote them, for the digits that are printed.
-    """
+
+def converted_roughness(raw: Mapping[str, Any], place: str = "") -> Iterator[Found]:
+    """How roughness that is stated as Ra or Rz is converted."""
+    for key, value in raw.items():
+        name = f"{place}{key}"
+        if isinstance(value, dict):
+            yield from converted_roughness(value, f"{name}.")
+        elif key.endswith("roughness") and (told := roughness_told(value)) is not None:
+            yield Found(name, f"{1e6 * told[0]:.4g} um", told[1])
+
+
+def told_oil(raw: Mapping[str, Any]) -> Iterator[Found]:
+    """What an oil stands for that is stated by its grade or two viscosities."""
+    told = short_oil_told(value_at(dict(raw), ("lubricant", "oil")))
+    if told is not None:
+        yield Found("lubricant.oil", *told)
+
+
+def complete(
+    gearing: Gearing, raw: Mapping[str, Any]
+) -> tuple[Gearing, tuple[Found, ...], list[Problem]]:
+    """A set with what it leaves out, what was found, and why something cannot be found."""
+    if any(rack_problems(gearing)):  # reported with the gears
+        return gearing, (), []
+    incomplete = None in gearing.distances.values() or not all(
+        table.states_thickness for table in gearing.tables.values()
+    )
+    gearing, named = _with_named_rack(gearing)
+    made, problems = gears_by_name(gearing)
+    if problems:  # of gears that are sound but for their rules all is reported later
+        return gearing, named, problems if incomplete else []
+    solver = _Solver(gearing, made, raw)
+    try:
+        solver.solve()
+    except InputError as error:
+        return gearing, named, list(error.problems)
+    except ValueError:  # gears that cannot mesh: reported with the meshes
+        return gearing, named, []
+    unknown = [name for name, table in solver.tables.items() if not table.states_thickness]
+    if unknown:
+        keys = ", ".join(f"{gearing.key(it)}.profile_shift_coefficient" for it in unknown)
+        allowed = "is missing, and no mesh with a gear of the same basic rack tells it."
+        return gearing, named, [Problem(keys, "", allowed, "Add it.")]
+    return _completed(gearing, solver), (*named, *solver.found), []
+
+
+def _with_named_rack(gearing: Gearing) -> tuple[Gearing, tuple[Found, ...]]:
+    """What a profile says that is given by its name. ISO 53:1998, Table 2."""
+    shared = gearing.shared
+    if shared is None or shared.basic_rack is None:
+        return gearing, ()
+    name = shared.basic_rack
+    dedendum, rounding = BASIC_RACKS[name]
+    tables = {}
+    for gear, table in gearing.tables.items():
+        keeps = table.tool_tip_radius is not None or is_internal(table)
+        radius = rounding * gearing.rack(gear).normal_module
+        tables[gear] = table if keeps else table.model_copy(update={"tool_tip_radius": radius})
+    coefficients = {
+        "addendum_coefficient": 1.0,
+        "dedendum_coefficient": dedendum,
+        "basic_rack": None,
+    }
+    found = f"h_aP = 1, h_fP = {dedendum:g}, rounding {rounding:g}"
+    return (
+        gearing.changed(tables, shared.model_copy(update=coefficients), {}),
+        (Found("gears.basic_rack", found, f"{name}, in normal modules."),),
+    )
+
+
+def _sized(gearing: Gearing) -> Iterator[_Sized]:
+    """The meshes whose gears have one basic rack: profile shifts of others tell no distance."""
+    distances = gearing.distances
+    for mesh in gearing.meshes:
+        one, two = (gearing.rack(gear) for gear in (mesh.first, mesh.second))
+        if not np.allclose(
+            astuple(one), astuple(two), rtol=_ALIKE, atol=_ALIKE * one.normal_module
+        ):
+            continue
+        teeth = [gearing.tables[gear].teeth for gear in (mesh.first, mesh.second)]
+        central = gearing.central_gear(mesh)
+        yield _Sized(
+            mesh,
+            teeth[0] + (-1 if mesh.internal else 1) * teeth[1],
+            one,
+            tuple(gearing.distance_key(mesh).split(".")),
+            distances[mesh.key],
+            gives_way=mesh.second if mesh.internal else central or mesh.first,
+            group=gearing.planet_of(mesh) or mesh.key,
+        )
+
+
+def _completed(gearing: Gearing, solver: _Solver) -> Gearing:
+    """The set with what the solver found."""
+    stated, shared = gearing.distances, gearing.shared
+    found = {
+        mesh.key: distance
+        for mesh in gearing.meshes
+        if stated[mesh.key] is None
+        and (distance := solver.distances.get(gearing.planet_of(mesh) or mesh.key)) is not None
+    }
+    if found and shared is not None and not gearing.listed:  # one distance for all meshes
+        shared = shared.model_copy(update={"center_distance": next(iter(found.values()))})
+        found = {}
+    assert shared is not None
+    return gearing.changed(solver.tables, shared, found)
+
+
+class _Solver:
+    """The gears of meshes that have something in common."""
 
     def __init__(
         self,
-        made: Mapping[str, Gear],
-        tables: Mapping[str, GearTable],
-        meshes: Sequence[SizedMesh],
-        raw: Mapping[str, Any],
+        gearing: Gearing,
+        made: Mapping[str, Gear],  # Those that say how thick their teeth are.
+        raw: Mapping[str, Any],  # The set as the user wrote it, for the digits that are printed.
     ) -> None:
-        self.tables, self.meshes, self.raw = dict(tables), meshes, raw
+        self.gearing, self.raw = gearing, raw
+        self.tables = dict(gearing.tables)
+        self.meshes = meshes = list(_sized(gearing))
         self.found: list[Found] = []
         self.distances: dict[str, float] = {
             mesh.group: mesh.stated_distance
@@ -111,7 +248,7 @@ class Solver:
         racks = {name: mesh.rack for mesh in meshes for name in mesh.gears}
         self.thinned = {
             name: allowance_shift(table, racks[name])
-            for name, table in tables.items()
+            for name, table in self.tables.items()
             if name in racks
         }
         self.shifts = {  # nominal, without allowances
@@ -119,6 +256,9 @@ class Solver:
             for name, gear in made.items()
             if name in racks
         }
+
+    def _shift_key(self, name: str) -> str:
+        return f"{self.gearing.key(name)}.profile_shift_coefficient"
 
     def solve(self) -> None:
         """Find what is left out; raise `InputError` if that cannot be."""
@@ -137,7 +277,7 @@ class Solver:
 
     # --- centre distances ---
 
-    def _find_distance(self) -> SizedMesh | None:
+    def _find_distance(self) -> _Sized | None:
         """From the first mesh without one both of whose gears state their thickness."""
         for mesh in self.meshes:
             if mesh.group not in self.distances and self.shifts.keys() >= set(mesh.gears):
@@ -147,13 +287,13 @@ class Solver:
                 return mesh
         return None
 
-    def _closed(self, mesh: SizedMesh) -> float:
+    def _closed(self, mesh: _Sized) -> float:
         total = sum(self.shifts[name] for name in mesh.gears) + self._allowances(mesh)
         try:
             return closed_center_distance(mesh.rack, mesh.teeth, total, mesh.backlash or 0.0)
         except ValueError as error:
             raise _refused(
-                ", ".join(map(mesh.shift_key, mesh.gears)),
+                ", ".join(map(self._shift_key, mesh.gears)),
                 "",
                 f"leave no centre distance: {error}.",
                 f"Correct the profile shifts, or give {'.'.join(mesh.place)}.",
@@ -171,11 +311,11 @@ class Solver:
                     key=lambda item: item[0],
                 )
                 self._set(name, shift, mesh)
-                self._tell(mesh.shift_key(name), f"{shift:z.4f}", mesh)
+                self._tell(self._shift_key(name), f"{shift:z.4f}", mesh)
                 return True
         return False
 
-    def _known_mates(self, name: str) -> Iterator[tuple[SizedMesh, str]]:
+    def _known_mates(self, name: str) -> Iterator[tuple[_Sized, str]]:
         for mesh in self.meshes:
             if name in mesh.gears and mesh.group in self.distances:
                 mate = mesh.gears[1 - mesh.gears.index(name)]
@@ -183,16 +323,15 @@ class Solver:
                     yield mesh, mate
 
     def _no_shift(self, free: list[str]) -> InputError:
-        mesh = {name: mesh for mesh in self.meshes for name in mesh.gears}
         return _refused(
-            ", ".join(mesh[name].shift_key(name) for name in free),
+            ", ".join(self._shift_key(name) for name in free),
             "",
             "is missing, and so is that of every mate.",
             "Add one of them, or tooth_thickness with thickness_diameter: the others "
             "follow from the centre distance.",
         )
 
-    def _sum(self, mesh: SizedMesh) -> float:
+    def _sum(self, mesh: _Sized) -> float:
         """Nominal x1 + x2 of a mesh; 0 if its gears cannot mesh, which is told with the meshes."""
         distance = self.distances[mesh.group]
         try:
@@ -201,17 +340,17 @@ class Solver:
             return 0.0
         return total - self._allowances(mesh)
 
-    def _allowances(self, mesh: SizedMesh) -> float:
+    def _allowances(self, mesh: _Sized) -> float:
         """What allowances take from x1 + x2 before the stated backlash is left.
 
         Where none is stated, the nominal teeth have none.
         """
         return 0.0 if mesh.backlash is None else sum(self.thinned[name] for name in mesh.gears)
 
-    def _set(self, name: str, shift: float, mesh: SizedMesh) -> None:
+    def _set(self, name: str, shift: float, mesh: _Sized) -> None:
         if not LEAST_SHIFT <= shift <= LARGEST_SHIFT:
             raise _refused(
-                mesh.shift_key(name),
+                self._shift_key(name),
                 "",
                 f"would have to be {shift:.3g} at the centre distance of "
                 f"{millimetres(self.distances[mesh.group])}, and must be >= {LEAST_SHIFT:g} and <= "
@@ -224,7 +363,7 @@ class Solver:
             update=keys | {"profile_shift_coefficient": shift}
         )
 
-    def _tell(self, key: str, value: str, mesh: SizedMesh) -> None:
+    def _tell(self, key: str, value: str, mesh: _Sized) -> None:
         """Note what was found from a mesh."""
         if mesh.backlash is None:
             distance = self.distances[mesh.group]
@@ -234,11 +373,11 @@ class Solver:
             )
         else:
             with_what = f"with a normal backlash of {micrometres(mesh.backlash)}"
-        self.found.append(Found(key, value, f"found from the {mesh.name}, {with_what}."))
+        self.found.append(Found(key, value, f"found from the {mesh.drawn.title}, {with_what}."))
 
     # --- what is stated twice ---
 
-    def _adjust(self, mesh: SizedMesh) -> None:
+    def _adjust(self, mesh: _Sized) -> None:
         """Thin a gear whose teeth are too thick by less than the printed digits."""
         over = sum(self.shifts[name] for name in mesh.gears) - self._sum(mesh)
         if mesh.backlash is None:
@@ -259,14 +398,15 @@ class Solver:
         self._set(name, shift, mesh)
         self.found.append(
             Found(
-                mesh.shift_key(name),
+                self._shift_key(name),
                 f"{shift:.6f}",
-                f"adjusted, because the teeth of the {mesh.name} are {-1e9 * backlash:.3g} nm too "
-                "thick for the centre distance, less than the printed digits tell.",
+                f"adjusted, because the teeth of the {mesh.drawn.title} are "
+                f"{-1e9 * backlash:.3g} nm too thick for the centre distance, less than the "
+                "printed digits tell.",
             )
         )
 
-    def _printed(self, mesh: SizedMesh) -> float:
+    def _printed(self, mesh: _Sized) -> float:
         """How far x1 + x2 may be from the centre distance by the digits of both. [1]"""
         distance = self.distances[mesh.group]
         step = self._half_digit(mesh.place, FINEST_LENGTH)
@@ -274,9 +414,8 @@ class Solver:
         near = profile_shift_sum(mesh.rack, mesh.teeth, distance)
         return abs(away - near) + sum(self._printed_shift(mesh, name) for name in mesh.gears)
 
-    def _printed_shift(self, mesh: SizedMesh, name: str) -> float:
-        key = thickness_key(name, self.tables[name]).rpartition(".")[2]
-        path = (*filter(None, mesh.prefix.split(".")), name, key)
+    def _printed_shift(self, mesh: _Sized, name: str) -> float:
+        path = tuple(thickness_key(self.gearing.key(name), self.tables[name]).split("."))
         if self.tables[name].profile_shift_coefficient is not None:
             return self._half_digit(path, FINEST_SHIFT)
         return thinning(mesh.rack, self._half_digit(path, FINEST_LENGTH))
@@ -292,7 +431,7 @@ class Solver:
         return min(most, MILLIMETRE.parse(f"{half!r} {match[3]}") if match[3] else half)
 
 
-def _no_distance(meshes: Sequence[SizedMesh]) -> InputError:
+def _no_distance(meshes: Sequence[_Sized]) -> InputError:
     place = ".".join(meshes[0].place)
     pairs = " or ".join(" and ".join(mesh.gears) for mesh in meshes)
     table, _, key = place.rpartition(".")

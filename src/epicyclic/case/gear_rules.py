@@ -1,0 +1,677 @@
+"""Can these gears be cut and meshed, with these modifications on their flanks?
+
+Every function returns the problems it finds; none stops at the first. A mesh is looked at only if
+both of its gears are sound, so that one mistake is told once.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from epicyclic.case.flanks import roll_length_at, working_flank
+from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, TopographyTable
+from epicyclic.case.gearing import Gearing, rim_thickness
+from epicyclic.case.thickness import DIGITS, check_fit, check_measure, fitting, thickness_key
+from epicyclic.case.wording import micrometres, millimetres
+from epicyclic.errors import Problem, rising_problems
+from epicyclic.gears.cutting import longest_involute
+from epicyclic.gears.flanks import active_profile
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.mesh import (
+    Mesh,
+    closed_center_distance,
+    profile_shift_sum,
+    recommended_backlash,
+    thinning,
+)
+
+THINNEST_RIM = 0.25
+"""A thinner rim is foil, and its teeth find no balance. [normal modules]"""
+
+LARGEST_RIM_RATIO = 1000.0
+"""Root radius over thickness of a rim, for the same reason. [1]"""
+
+
+def gears_by_name(gearing: Gearing) -> tuple[dict[str, Gear], list[Problem]]:
+    """The gears that state their thickness where they have an involute, and problems of others."""
+    made: dict[str, Gear] = {}
+    problems = []
+    for name, table in gearing.tables.items():
+        if table.states_thickness:
+            try:
+                made[name] = gearing.gear(name)
+            except ValueError:
+                problems.append(_no_involute_for_thickness(gearing, name))
+    return made, problems
+
+
+def sound_gears(gearing: Gearing) -> tuple[dict[str, Gear], list[Problem]]:
+    """The gears that can be cut, by name, and the problems of the others."""
+    made, problems = gears_by_name(gearing)
+    sound = {}
+    for name, gear in made.items():
+        table, key = gearing.tables[name], gearing.key(name)
+        found = (
+            _check_tooth(gear, key, table)
+            or check_measure(gear, key, table)
+            or check_fit(gear, key, table)
+        )
+        if found is None:
+            sound[name] = gear
+        else:
+            problems.append(found)
+        problems += _check_rim(gear, key, table)
+    return sound, problems
+
+
+def _check_rim(gear: Gear, owner: str, table: GearTable) -> list[Problem]:
+    thickness, key = rim_thickness(table), f"{owner}.rim_thickness"
+    if thickness is None:
+        return []
+    if not gear.internal:
+        return [
+            Problem(
+                key,
+                millimetres(thickness),
+                "belongs to a ring gear, and this gear is external.",
+                f"Leave it out, or write {owner}.internal = true.",
+            )
+        ]
+    least = max(THINNEST_RIM * gear.rack.normal_module, gear.root_radius / LARGEST_RIM_RATIO)
+    if thickness >= least:
+        return []
+    return [
+        Problem(
+            key,
+            millimetres(thickness),
+            f"must be at least {millimetres(least)}: a quarter of the normal module, and a "
+            "thousandth of the root radius.",
+            "Correct it, or leave it out for a rim that does not bend.",
+        )
+    ]
+
+
+def _no_involute_for_thickness(gearing: Gearing, name: str) -> Problem:
+    rack, table, key = gearing.rack(name), gearing.tables[name], gearing.key(name)
+    base = table.teeth * rack.transverse_module * math.cos(rack.transverse_pressure_angle)
+    if table.dimension_over_pins is not None:
+        return Problem(
+            f"{key}.dimension_over_pins",
+            millimetres(table.dimension_over_pins),
+            f"puts the middle of the balls inside the base circle of {millimetres(base)}.",
+            "Check it, measuring_pin_diameter, tooth number and module.",
+        )
+    return Problem(
+        f"{key}.thickness_diameter",
+        millimetres(table.thickness_diameter or 0.0),
+        f"lies inside the base circle of {millimetres(base)}, where there is no involute.",
+        "Give the tooth thickness at a larger diameter.",
+    )
+
+
+def _check_tooth(gear: Gear, key: str, table: GearTable) -> Problem | None:
+    """The first reason why this tooth cannot be: each one makes the next meaningless."""
+    tip, root = (f"{key}.{which}_diameter" for which in ("tip", "root"))
+    tip_shown = _diameter(gear.tip_radius, table.tip_diameter)
+    root_shown = _diameter(gear.root_radius, table.root_diameter)
+    if gear.root_radius <= 0:
+        return Problem(
+            root,
+            root_shown,
+            "must exceed zero.",
+            f"Reduce gears.dedendum_coefficient, or give {root}.",
+        )
+    height = gear.tip_radius - gear.root_radius
+    if (-height if gear.internal else height) <= 0:
+        larger, smaller = (root, tip) if gear.internal else (tip, root)
+        return Problem(
+            f"{tip}, {root}",
+            f"{tip_shown}, {root_shown}",
+            f"leave no tooth: {larger} must exceed {smaller} on "
+            f"{'a ring' if gear.internal else 'an external gear'}.",
+            "Correct one of the two.",
+        )
+    thickness = thickness_key(key, table)
+    if gear.tip_radius <= gear.base_radius:
+        return Problem(
+            tip,
+            tip_shown,
+            f"lies inside the base circle of {millimetres(2 * gear.base_radius)}, so that the "
+            "tooth has no involute at its tip.",
+            f"Increase it beyond {millimetres(2 * gear.base_radius)}, or take more teeth.",
+        )
+    if gear.thickness_at(gear.tip_radius) <= 0:
+        return Problem(
+            tip,
+            tip_shown,
+            "the teeth are pointed before they reach the tip circle.",
+            f"Shorten the teeth, or make them thicker with {thickness}.",
+        )
+    if gear.tip_form_radius <= gear.base_radius or gear.tip_half_angle <= 0:
+        return _too_large_chamfer(gear, key)
+    if gear.half_angle_at(max(gear.root_radius, gear.base_radius)) >= math.pi / gear.teeth:
+        return Problem(
+            root,
+            root_shown,
+            "there is no space left between the teeth at the root.",
+            f"Make the teeth less deep, or thinner with {thickness}.",
+        )
+    return None
+
+
+def _too_large_chamfer(gear: Gear, key: str) -> Problem:
+    return Problem(
+        f"{key}.tip_chamfer",
+        millimetres(gear.tip_chamfer),
+        "leaves no tip land or no involute: the tooth is "
+        f"{millimetres(gear.thickness_at(gear.tip_radius))} thick at the tip circle, and each of "
+        "its two chamfers takes about its height of that.",
+        "Reduce it.",
+    )
+
+
+def _diameter(radius: float, given: float | None) -> str:
+    return f"{millimetres(2 * radius)}{' (the default)' if given is None else ''}"
+
+
+def check_mesh(
+    gearing: Gearing,
+    mesh: Mesh,
+    distance_key: str,  # Where its centre distance is stated.
+) -> list[Problem]:
+    """Problems of a mesh of two sound gears."""
+    one, two = mesh.gear1, mesh.gear2
+    if mesh.internal and two.teeth <= one.teeth:
+        return [
+            Problem(
+                f"{gearing.key(two.name)}.teeth",
+                str(two.teeth),
+                f"must exceed the {one.teeth} teeth of the {one.name}, which turns inside it.",
+                "Check both tooth numbers.",
+            )
+        ]
+    bases = two.base_radius + mesh.side * one.base_radius
+    if bases >= mesh.center_distance:
+        return [
+            Problem(
+                distance_key,
+                millimetres(mesh.center_distance),
+                f"must exceed {millimetres(bases)}, the {'difference' if mesh.internal else 'sum'} "
+                f"of the base radii of {one.name} and {two.name}.",
+                f"{_reference_distance(mesh)} Check tooth numbers and module too.",
+            )
+        ]
+    problems = _check_backlash(gearing, mesh, distance_key)
+    ends: list[Problem] = []
+    for tip, root, clearance in (
+        (two, one, mesh.tip_clearance2),
+        (one, two, mesh.tip_clearance1),
+    ):
+        if clearance < -ROUNDING:
+            ends.append(_negative_clearance(gearing, mesh, tip, root))
+            continue
+        try:
+            ends += _check_end_of_contact(gearing, mesh, root, tip)
+        except ValueError as error:
+            # rings whose tips reach too far for the planet are out of reach of cutters too
+            if not (root.internal and ends):
+                ends.append(_no_tool(gearing, root, str(error)))
+    problems += [
+        *ends,
+        *_check_contact_ratio(gearing, mesh, distance_key),
+        *_check_tip_passage(gearing, mesh),
+    ]
+    # where the teeth do not mesh the limits of the active profile mean nothing
+    return problems or _check_flanks(gearing, mesh)
+
+
+def _reference_distance(mesh: Mesh) -> str:
+    distance = mesh.gear2.reference_radius + mesh.side * mesh.gear1.reference_radius
+    return f"Without profile shift it is {millimetres(distance)}."
+
+
+def _negative_clearance(gearing: Gearing, mesh: Mesh, tip: Gear, root: Gear) -> Problem:
+    """The tip of one gear reaches into the root of the other."""
+    clearance = mesh.tip_clearance1 if tip is mesh.gear1 else mesh.tip_clearance2
+    limit = tip.tip_radius + (-clearance if tip.internal else clearance)
+    try:
+        end = longest_involute(root, gearing.tables[root.name].tool_tip_radius)
+    except ValueError:
+        pass
+    else:
+        stricter = max if tip.internal else min
+        limit = stricter(limit, _tip_radius_for(mesh, tip, end))
+    return Problem(
+        f"{gearing.key(tip.name)}.tip_diameter",
+        _diameter(tip.tip_radius, gearing.tables[tip.name].tip_diameter),
+        f"the tip of the {tip.name} reaches {millimetres(-clearance)} into the root of the "
+        f"{root.name} (negative tip clearance).",
+        f"{_tip_limit(gearing, tip, limit)}or cut the {root.name} deeper.",
+    )
+
+
+def _tip_limit(gearing: Gearing, gear: Gear, limit: float) -> str:
+    """Beginning of a remedy: how long the teeth may be."""
+    if limit <= 0:
+        return "Shorten the teeth, "
+    step, bound = (math.ceil, "at least") if gear.internal else (math.floor, "at most")
+    return f"Make {gearing.key(gear.name)}.tip_diameter {bound} {step(2e6 * limit) / 1e3:.3f} mm, "
+
+
+def _check_contact_ratio(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Problem]:
+    one, two = mesh.gear1, mesh.gear2
+    transverse, overlap = mesh.transverse_contact_ratio, mesh.overlap_ratio
+    if transverse <= 0:
+        fault = f"the teeth of the {mesh.name} do not reach each other"
+    elif transverse + overlap < 1:
+        fault = (
+            f"the contact ratio of the {mesh.name} is {transverse + overlap:.3f}, below 1 "
+            f"(transverse {transverse:.3f}, overlap {overlap:.3f})"
+        )
+    else:
+        return []
+    chamfers = ", reduce tip_chamfer" if one.tip_chamfer > 0 or two.tip_chamfer > 0 else ""
+    return [
+        Problem(
+            f"{gearing.key(one.name)}.tip_diameter, {gearing.key(two.name)}.tip_diameter",
+            _tip_diameters(gearing, mesh),
+            f"{fault}: motion is not passed on.",
+            f"Lengthen the teeth{chamfers} or correct {distance_key}. {_reference_distance(mesh)}",
+        )
+    ]
+
+
+def _tip_diameters(gearing: Gearing, mesh: Mesh) -> str:
+    gears = (mesh.gear1, mesh.gear2)
+    return ", ".join(
+        _diameter(gear.tip_radius, gearing.tables[gear.name].tip_diameter) for gear in gears
+    )
+
+
+def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) -> list[Problem]:
+    """Contact must stay on the involute of `gear` up to where the tip of `mate` leaves it.
+
+    Raises
+    ------
+    ValueError
+        If no tool generates `gear`.
+    """
+    if gear is mesh.gear1:
+        curvature, radius = mesh.path_start, mesh.radius1_at_start
+    else:
+        curvature, radius = mesh.curvature2(mesh.path_end), mesh.radius2_at_end
+    change = "change tooth numbers or profile shifts"
+    if curvature < 0:
+        end = gear.base_radius
+        fault = (
+            f"reaches inside the base circle of the {gear.name}, where there is no involute (tip "
+            "interference)"
+        )
+    else:
+        end = longest_involute(gear, gearing.tables[gear.name].tool_tip_radius)
+        if (radius <= end + ROUNDING) if gear.internal else (radius >= end - ROUNDING):
+            return []
+        fault = (
+            f"touches the {gear.name} at diameter {millimetres(2 * radius)}, "
+            f"{'outside' if gear.internal else 'below'} its involute, which ends at "
+            f"{millimetres(2 * end)} (fillet interference)"
+        )
+        if gearing.tables[gear.name].tool_tip_radius is not None:
+            change = f"reduce {gearing.key(gear.name)}.tool_tip_radius"
+    return [
+        Problem(
+            f"{gearing.key(mate.name)}.tip_diameter",
+            _diameter(mate.tip_radius, gearing.tables[mate.name].tip_diameter),
+            f"the tip of the {mate.name} {fault}.",
+            f"{_tip_limit(gearing, mate, _tip_radius_for(mesh, mate, end))}or {change}.",
+        )
+    ]
+
+
+def _tip_radius_for(mesh: Mesh, mate: Gear, radius: float) -> float:
+    """Tip radius of `mate` whose contact with the other gear ends at `radius` there."""
+    gear = mesh.gear2 if mate is mesh.gear1 else mesh.gear1
+    curvature = math.sqrt(max(0.0, radius**2 - gear.base_radius**2))
+    length = mesh.line_of_action - mesh.side * curvature
+    if mate is mesh.gear1:
+        length = mesh.side * (mesh.line_of_action - curvature)
+    if length <= 0:
+        return 0.0
+    form = math.hypot(mate.base_radius, length)
+    return form + (-mate.tip_chamfer if mate.internal else mate.tip_chamfer)
+
+
+def _no_tool(gearing: Gearing, gear: Gear, reason: str) -> Problem:
+    table, key = gearing.tables[gear.name], gearing.key(gear.name)
+    tip, root = (f"{key}.{which}_diameter" for which in ("tip", "root"))
+    return Problem(
+        f"{tip}, {root}",
+        f"{_diameter(gear.tip_radius, table.tip_diameter)}, "
+        f"{_diameter(gear.root_radius, table.root_diameter)}",
+        f"no tool cuts such a tooth: {reason}.",
+        f"Change the tip or root diameter, or {thickness_key(key, table)}.",
+    )
+
+
+def _check_tip_passage(gearing: Gearing, mesh: Mesh) -> list[Problem]:
+    """The tips of an internal mesh must pass each other beside it."""
+    one, two = mesh.gear1, mesh.gear2
+    if not mesh.internal or mesh.tip_clearance2 < -ROUNDING or mesh.tip_passage >= 0:
+        return []
+    return [
+        Problem(
+            f"{gearing.key(one.name)}.tip_diameter, {gearing.key(two.name)}.tip_diameter",
+            _tip_diameters(gearing, mesh),
+            f"the tips of {one.name} and {two.name} collide beside the mesh, by "
+            f"{-math.degrees(mesh.tip_passage):.3g} deg of the {two.name} (tip interference).",
+            f"Shorten the teeth or choose more teeth for the {two.name}.",
+        )
+    ]
+
+
+# --- backlash ---
+
+ROUNDING = 1e-9
+"""Clearances count as negative beyond this: drawings may state exactly zero. [m]"""
+
+GROSS = 5.0
+"""Backlash over the recommended one from which a result says so; an estimate. [1]"""
+
+TOO_THIN = "its teeth are too thin for their centre distance"
+"""By which a warning of that is known."""
+
+
+def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Problem]:
+    """Teeth that are too thick, with the thickness and the centre distance that fit."""
+    if mesh.backlash >= -ROUNDING:
+        return []
+    gears = (mesh.gear1, mesh.gear2)
+    keys = [thickness_key(gearing.key(gear.name), gearing.tables[gear.name]) for gear in gears]
+    fits = " or ".join(_fitting(gearing, mesh, gear) for gear in gears)
+    usual = micrometres(_recommended(mesh))
+    return [
+        Problem(
+            ", ".join(keys),
+            "",
+            f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
+            f"centre distance of {millimetres(mesh.center_distance)} (negative backlash).",
+            f"Without backlash {fits} fits{_distance(mesh, distance_key)}; "
+            f"{_recommended_shift(mesh):.4f} less of one x leaves {usual}, recommended by "
+            f"ISO/TR 10064-2.{_other_sign(gearing, mesh)}",
+        )
+    ]
+
+
+def backlash_notes(gearing: Gearing, mesh: Mesh) -> Iterator[str]:
+    """A note on teeth that are far too thin for their mesh."""
+    backlash, usual = mesh.normal_backlash, _recommended(mesh)
+    if backlash <= GROSS * usual:
+        return
+    gears = (mesh.gear1, mesh.gear2)
+    fits = " or ".join(_fitting(gearing, mesh, gear, usual) for gear in gears)
+    yield (
+        f"The {mesh.name} has a normal backlash of {millimetres(backlash)}, "
+        f"{backlash / usual:.2g} times the {micrometres(usual)} that ISO/TR 10064-2 recommends: "
+        f"{TOO_THIN}. With {fits} it has that."
+        f"{_other_sign(gearing, mesh)}"
+    )
+
+
+def _recommended(mesh: Mesh) -> float:
+    return recommended_backlash(mesh.gear1.rack, mesh.center_distance)
+
+
+def _recommended_shift(mesh: Mesh) -> float:
+    return thinning(mesh.gear1.rack, _recommended(mesh))
+
+
+def _teeth(mesh: Mesh) -> int:
+    """z1 + z2 with the sign of ISO 21771."""
+    return mesh.gear1.teeth + mesh.side * mesh.gear2.teeth
+
+
+def _over(mesh: Mesh, backlash: float = 0.0) -> float:
+    """x1 + x2 less what leaves this normal backlash. [1]"""
+    wanted = profile_shift_sum(mesh.gear1.rack, _teeth(mesh), mesh.center_distance, backlash)
+    gears = (mesh.gear1, mesh.gear2)
+    return sum(gear.profile_shift_coefficient for gear in gears) - wanted
+
+
+def _fitting(gearing: Gearing, mesh: Mesh, gear: Gear, backlash: float = 0.0) -> str:
+    """The thickness of a gear that leaves this backlash, as the case states it."""
+    table, key = gearing.tables[gear.name], gearing.key(gear.name)
+    return fitting(gear, key, table, _over(mesh, backlash))
+
+
+def _distance(mesh: Mesh, key: str) -> str:
+    """What centre distance the teeth fit, rounded to the loose side."""
+    total = mesh.gear1.profile_shift_coefficient + mesh.gear2.profile_shift_coefficient
+    try:
+        distance = closed_center_distance(mesh.gear1.rack, _teeth(mesh), total)
+    except ValueError:
+        return ""
+    loose = math.floor if mesh.internal else math.ceil
+    return f', or {key} = "{loose(distance * 1e6) / 1e3:.3f} mm"'
+
+
+def _other_sign(gearing: Gearing, mesh: Mesh) -> str:
+    """A hint if the profile shift of a ring fits with the other sign."""
+    ring = mesh.gear2
+    shift = gearing.tables[ring.name].profile_shift_coefficient
+    if not mesh.internal or not shift:
+        return ""
+    over = _over(mesh) - 2 * shift
+    if not -GROSS * _recommended_shift(mesh) <= over <= 10.0**-DIGITS:
+        return ""
+    return (
+        f" With the other sign, {-shift:g}, x of the {ring.name} fits: in ISO 21771 positive x "
+        "thickens the teeth."
+    )
+
+
+# --- flanks ---
+
+
+@dataclass(frozen=True, slots=True)
+class _Flank:
+    """A flank that works in a mesh, and the key of its table."""
+
+    key: str
+    gear: Gear
+    mesh: Mesh
+    member: int
+    table: MicroGeometryTable
+
+    @property
+    def active(self) -> tuple[float, float]:
+        """Roll lengths of the active profile at the root and at the tip. [m]"""
+        return active_profile(self.mesh, self.member)
+
+    @property
+    def active_length(self) -> float:
+        """[m]"""
+        root, tip = self.active
+        return abs(tip - root)
+
+
+def _check_flanks(gearing: Gearing, mesh: Mesh) -> list[Problem]:
+    """Problems of the micro-geometry of both working flanks of a mesh."""
+    problems = []
+    for member, gear in ((1, mesh.gear1), (2, mesh.gear2)):
+        gear_table = gearing.tables[gear.name]
+        table = working_flank(member, gear_table)
+        if table is not None:
+            name = "micro_geometry"
+            if table is not gear_table.micro_geometry:
+                name = "micro_geometry_ring_side"
+            problems += _check_flank(
+                _Flank(f"{gearing.key(gear.name)}.{name}", gear, mesh, member, table)
+            )
+    return problems
+
+
+def _check_flank(flank: _Flank) -> list[Problem]:
+    lengths = {end: _relief_length(flank, end) for end in ("tip", "root")}
+    problems = [found for found in lengths.values() if isinstance(found, Problem)]
+    tip, root = lengths["tip"], lengths["root"]
+    if not problems and isinstance(tip, float) and isinstance(root, float):
+        problems += _check_overlap(flank, tip, root)
+    problems += _check_end_relief(flank)
+    problems += _without_amount(flank)
+    if flank.table.topography is not None:
+        problems += _check_topography(flank, flank.table.topography)
+    return problems
+
+
+def _relief_length(flank: _Flank, end: str) -> float | Problem:
+    """Roll length of the tip or root relief, 0 without one, or what is wrong with it."""
+    key = f"{flank.key}.{end}_relief"
+    amount: float = getattr(flank.table, f"{end}_relief")
+    roll_length: float | None = getattr(flank.table, f"{end}_relief_roll_length")
+    diameter: float | None = getattr(flank.table, f"{end}_relief_diameter")
+    given = [
+        name
+        for name, value in (("roll_length", roll_length), ("diameter", diameter))
+        if value is not None
+    ]
+    if amount == 0 and not given:
+        return 0.0
+    if len(given) != 1:
+        return Problem(
+            key,
+            f"{amount * 1e6:.5g} um",
+            f"needs the start of the relief, {'given once' if given else 'which is missing'}.",
+            f"Give {end}_relief_roll_length or {end}_relief_diameter.",
+        )
+    near, far = flank.active[::-1] if end == "tip" else flank.active
+    inside = f"the active profile of the {flank.mesh.name}"
+    if diameter is not None:
+        length = (roll_length_at(flank.gear, diameter / 2) - near) / (far - near)
+        if 0 < length <= 1:
+            return length * flank.active_length
+        ends = sorted(_diameter_at(flank.gear, roll) for roll in (near, far))
+        allowed = f"between {millimetres(ends[0])} and {millimetres(ends[1])}"
+        shown = millimetres(diameter)
+    else:
+        assert roll_length is not None
+        if roll_length <= flank.active_length:
+            return roll_length
+        allowed = f"within {millimetres(flank.active_length)} of roll"
+        shown = millimetres(roll_length)
+    return Problem(
+        f"{key}_{given[0]}",
+        shown,
+        f"the relief must start in {inside}, {allowed}.",
+        "Correct where it starts.",
+    )
+
+
+def _without_amount(flank: _Flank) -> list[Problem]:
+    """Length, diameter or shape of a relief whose amount is not given."""
+    given = flank.table.model_fields_set
+    return [
+        Problem(
+            f"{flank.key}.{key}",
+            "",
+            f"belongs to {relief}, which is not given.",
+            f"Give {relief}, or leave out {key}.",
+        )
+        for relief in ("tip_relief", "root_relief", "end_relief")
+        if relief not in given
+        for key in sorted(given)
+        if key.startswith(f"{relief}_")
+    ]
+
+
+def _diameter_at(gear: Gear, roll_length: float) -> float:
+    return float(2 * (gear.base_radius**2 + roll_length**2) ** 0.5)
+
+
+def _check_overlap(flank: _Flank, tip: float, root: float) -> list[Problem]:
+    if tip + root <= flank.active_length:
+        return []
+    return [
+        Problem(
+            f"{flank.key}.tip_relief",
+            "",
+            f"tip relief over {millimetres(tip)} and root relief over {millimetres(root)} of roll "
+            f"overlap: the active profile of the {flank.mesh.name} has "
+            f"{millimetres(flank.active_length)}.",
+            "Shorten one of the two.",
+        )
+    ]
+
+
+def _check_end_relief(flank: _Flank) -> list[Problem]:
+    length, width = flank.table.end_relief_length, flank.gear.face_width
+    key = f"{flank.key}.end_relief_length"
+    if length is None:
+        if flank.table.end_relief == 0:
+            return []
+        return [Problem(key, "", "is missing; it belongs to end_relief.", "Add end_relief_length.")]
+    if 2 * length <= width:
+        return []
+    return [
+        Problem(
+            key,
+            millimetres(length),
+            f"both end reliefs must fit into the face width of {millimetres(width)}.",
+            f"Reduce it to {millimetres(width / 2)} or less.",
+        )
+    ]
+
+
+def _check_topography(flank: _Flank, table: TopographyTable) -> list[Problem]:
+    key = f"{flank.key}.topography"
+    axes = {"diameter": table.diameter, "face_position": table.face_position}
+    problems = rising_problems(axes, f"{key}.")
+    wanted = (len(table.diameter), len(table.face_position))
+    if len(table.deviation) != wanted[0] or any(len(row) != wanted[1] for row in table.deviation):
+        problems.append(
+            Problem(
+                f"{key}.deviation",
+                f"{len(table.deviation)} rows",
+                f"must be {wanted[0]} rows of {wanted[1]} values, for the points of diameter and "
+                "face_position.",
+                "Give one row for each diameter, with one value for each face position.",
+            )
+        )
+    base = 2 * flank.gear.base_radius
+    if table.diameter and table.diameter[0] < base:
+        problems.append(
+            Problem(
+                f"{key}.diameter",
+                millimetres(table.diameter[0]),
+                f"lies inside the base circle of {millimetres(base)}, where there is no involute.",
+                "Leave out these rows.",
+            )
+        )
+    return problems or _check_place(flank, table)
+
+
+def _check_place(flank: _Flank, table: TopographyTable) -> list[Problem]:
+    """The points of a sound topography must lie where the flank works."""
+    ends = sorted(_diameter_at(flank.gear, roll) for roll in flank.active)
+    places = (
+        ("diameter", table.diameter, f"active profile of the {flank.mesh.name}", ends),
+        ("face_position", table.face_position, "face", [0.0, flank.gear.face_width]),
+    )
+    return [
+        Problem(
+            f"{flank.key}.topography.{name}",
+            f"{millimetres(points[0])} to {millimetres(points[-1])}",
+            f"must overlap the {where}, {millimetres(low)} to {millimetres(high)}, by at least "
+            "half of the longer of the two.",
+            "Give the deviations where the flank works.",
+        )
+        for name, points, where, (low, high) in places
+        if not _shares_half((points[0], points[-1]), (low, high))
+    ]
+
+
+def _shares_half(one: tuple[float, float], two: tuple[float, float]) -> bool:
+    """Two ranges have at least half of the longer one in common."""
+    common = min(one[1], two[1]) - max(one[0], two[0])
+    return common >= max(one[1] - one[0], two[1] - two[0]) / 2

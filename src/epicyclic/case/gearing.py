@@ -1,0 +1,462 @@
+"""One gear set: its gears, meshes and planets, however its tables are written.
+
+`case.expand` makes a `Gearing` from every form that a case has for a set. Gears stand on bodies;
+those in `Gearing.planets` turn on pins of the carrier.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+
+from epicyclic.case.gear_tables import GearTable, PairGear, Ring, SetMesh, SharedGears
+from epicyclic.case.thickness import allowance_shift, half_angle
+from epicyclic.gears.gear import CARRIER, BasicRack, Gear
+from epicyclic.gears.mesh import Mesh, closing_number, nearest_places, pin_angle
+
+DEFAULT_RIM_THICKNESS = 3.0
+"""Rim of a ring gear from root to outside if the case states none (estimate). [normal modules]"""
+RACK_KEYS = (
+    ("normal_module", "transverse_module"),
+    ("normal_pressure_angle", "transverse_pressure_angle"),
+    ("helix_angle",),
+)
+"""Keys that a gear takes from what all gears share if it has none of them itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class GearPairing:
+    """Two gears of a set in mesh."""
+
+    key: str  # Of its results, ``"sun_mesh"``.
+    first: str  # The ring gear of an internal mesh is the second.
+    second: str
+    teeth: tuple[float, float]  # [1]
+    internal: bool
+    efficiency: float = 1.0  # As given; 1 if losses are computed. [1]
+    pair: tuple[str, str] = ("", "")  # Both gears in the order in which the case lists them.
+    title: str = ""  # In sentences: ``"sun mesh"``.
+    table_key: str = ""  # Key of its table: ``"sun_mesh"``, ``"mesh.a-b"``.
+    table: SetMesh = field(default_factory=SetMesh)
+    own_distance: float | None = None  # Centre distance that its own table states. [m]
+    direction: float = 0.0  # From the axis of `pair[0]` to that of `pair[1]`, fixed axes. [rad]
+
+
+@dataclass(frozen=True, slots=True)
+class Pin:
+    """Where the pin of a planet stands on its arm of the carrier."""
+
+    radius: float  # From the axis of the set. [m]
+    angle: float  # From the middle of the arm, positive in the sense of positive speeds. [rad]
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """x and y; the arm lies along x. [m]"""
+        return self.radius * math.cos(self.angle), self.radius * math.sin(self.angle)
+
+
+@dataclass(frozen=True, slots=True)
+class Arrangement:
+    """How the planets stand around the axis."""
+
+    angles: tuple[float, ...]  # Angles of the arms of the carrier. [rad]
+    number: int  # Alike planets fit at multiples of a turn over this number; 0: anywhere. [1]
+    # True if the gears on one body must be turned against each other from planet to planet.
+    individual: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Gearing:
+    """The gears of a set, the bodies on which they stand, and their meshes."""
+
+    bodies: Mapping[str, str]  # The body of each gear.
+    planets: tuple[str, ...]  # Bodies that stand on the carrier; empty for fixed axes.
+    meshes: tuple[GearPairing, ...]
+    # The rest is known of sets with computed losses only.
+    tables: Mapping[str, GearTable] = field(default_factory=dict)
+    shared: SharedGears | None = None  # What all gears share.
+    listed: bool = False  # Gears have names of the user, their tables stand below ``gears``.
+    count: int | None = None  # Planets of each kind; None if the case does not say.
+    stated_angles: tuple[float, ...] | None = None  # Of the planets, as stated. [rad]
+    hand: int = 1  # Of the helix of the first gear, +1 right, where its table does not state it.
+    # By the loss that drag is counted as: the central gears that turn in oil and air.
+    drags: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    # Torque at the first gear of each mesh over that of a member; empty if it is not determined.
+    levers: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """Bodies that shafts can join, the carrier among them."""
+        central = [body for body in dict.fromkeys(self.bodies.values()) if body not in self.planets]
+        return (*central, CARRIER) if self.planets else tuple(central)
+
+    @property
+    def computed(self) -> bool:
+        """Losses are computed; else its efficiency is given."""
+        return bool(self.tables)
+
+    def key(self, gear: str) -> str:
+        """The key of the table of a gear."""
+        return f"gears.{gear}" if self.listed else gear
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """Names of the losses of a listed set, in the order in which they are shown."""
+        keys = [mesh.key for mesh in self.meshes]
+        return (
+            *(f"{key}_{kind}" for key in keys for kind in ("sliding", "rolling")),
+            *(f"{body}_bearing_{k}" for body in self.planets for k in ("mechanical", "viscous")),
+            *(f"{key}_pocketing" for key in keys),
+            *self.drags,
+            *(("carrier_drag",) if self.planets else ()),
+        )
+
+    @property
+    def count_key(self) -> str:
+        """The key of the number of planets."""
+        return "planets" if self.listed else "planet.count"
+
+    # --- gears ------------------------------------------------------------------------------------
+
+    def rack_keys(self, gear: str) -> dict[str, float]:
+        """What is given of the basic rack of a gear: its own keys, else those that gears share."""
+        found: dict[str, float] = {}
+        for group in RACK_KEYS:
+            for owner in (self.tables[gear], self.shared):
+                own = {
+                    key: value for key in group if (value := getattr(owner, key, None)) is not None
+                }
+                if own:
+                    found |= own
+                    break
+        return found
+
+    def rack(self, gear: str) -> BasicRack:
+        """Transverse module and pressure angle from whichever form the case gives."""
+        return basic_rack(**self.rack_keys(gear))
+
+    def gear(self, name: str) -> Gear:
+        """A gear by its name.
+
+        Raises
+        ------
+        ValueError
+            If its thickness is given, or the middle of measuring balls lies, in the base circle.
+        """
+        assert self.shared is not None
+        table, shared = self.tables[name], self.shared
+        heights = (shared.addendum_coefficient, shared.dedendum_coefficient)
+        return _gear(name, table, self.rack(name), *heights)
+
+    def rings(self) -> Iterator[tuple[str, GearTable, Gear]]:
+        """Name, table and geometry of every internal gear."""
+        for name, table in self.tables.items():
+            if is_internal(table):
+                yield name, table, self.gear(name)
+
+    def gears_of(self, body: str) -> list[str]:
+        """The gears on a body, in the order of the tables."""
+        return [gear for gear, own in self.bodies.items() if own == body]
+
+    @property
+    def in_order(self) -> list[str]:
+        """All gears in the order of the meshes; the order of tables in a file has no meaning."""
+        return list(dict.fromkeys(gear for mesh in self.meshes for gear in mesh.pair))
+
+    # --- meshes -----------------------------------------------------------------------------------
+
+    def distance_key(self, mesh: GearPairing) -> str:
+        """The key that states the centre distance of a mesh."""
+        assert self.shared is not None
+        shared = mesh.own_distance is None and self.shared.center_distance is not None
+        return (
+            "gears.center_distance"
+            if shared or not self.listed
+            else (f"{mesh.table_key}.center_distance")
+        )
+
+    @property
+    def distances(self) -> dict[str, float | None]:
+        """Centre distance of each mesh by its key; None if nothing states it. [m]
+
+        The central gears of a planet share its pin radius: one of its meshes tells it for all.
+        """
+        assert self.shared is not None
+        stated = {it.key: it.own_distance or self.shared.center_distance for it in self.meshes}
+        radii: dict[str, float] = {}
+        for mesh in self.meshes:
+            distance, planet = stated[mesh.key], self.planet_of(mesh)
+            if planet is not None and distance is not None:
+                radii.setdefault(planet, distance)
+        return {
+            mesh.key: stated[mesh.key] or radii.get(self.planet_of(mesh) or "")
+            for mesh in self.meshes
+        }
+
+    def central_gear(self, mesh: GearPairing) -> str | None:
+        """The gear of a mesh with a planet that turns about the axis of the set, if it has one."""
+        central = [it for it in (mesh.first, mesh.second) if self.bodies[it] not in self.planets]
+        return central[0] if len(central) == 1 else None
+
+    def planet_of(self, mesh: GearPairing) -> str | None:
+        """The planet of a mesh with a central gear; None for other meshes."""
+        if self.central_gear(mesh) is None:
+            return None
+        bodies = (self.bodies[mesh.first], self.bodies[mesh.second])
+        return next(body for body in bodies if body in self.planets)
+
+    def planet_pair(self, mesh: GearPairing) -> tuple[str, str] | None:
+        """The bodies of two planets that mesh with each other; None for other meshes."""
+        one, two = self.bodies[mesh.first], self.bodies[mesh.second]
+        return (one, two) if one in self.planets and two in self.planets else None
+
+    def geometry(self, mesh: GearPairing) -> Mesh:
+        """The geometry of a mesh whose centre distance is known."""
+        distance = self.distances[mesh.key]
+        assert distance is not None
+        return _mesh(mesh.title, self.gear(mesh.first), self.gear(mesh.second), distance)
+
+    @property
+    def geometries(self) -> tuple[Mesh, ...]:
+        """The geometry of every mesh."""
+        return tuple(map(self.geometry, self.meshes))
+
+    @property
+    def hands(self) -> dict[str, int]:
+        """Hand of the helix of each gear, +1 right.
+
+        As stated; mates demand the other of an external and the same of an internal mesh. What
+        they leave open is as on the rest of the body, and of the first gear as the set has it.
+        """
+        gears = self.in_order
+        hands = {
+            gear: 1 if hand == "right" else -1
+            for gear in gears
+            if (hand := getattr(self.tables[gear], "hand", None)) is not None
+        }
+        while len(hands) < len(gears):
+            before = len(hands)
+            for mesh in self.meshes:
+                for known, other in ((mesh.first, mesh.second), (mesh.second, mesh.first)):
+                    if known in hands and other not in hands:
+                        hands[other] = hands[known] if mesh.internal else -hands[known]
+            if len(hands) > before:
+                continue
+            of_body = {self.bodies[gear]: hand for gear, hand in reversed(hands.items())}
+            left = [gear for gear in gears if gear not in hands]
+            nearest = next((gear for gear in left if self.bodies[gear] in of_body), left[0])
+            hands[nearest] = of_body.get(self.bodies[nearest], self.hand)
+        return hands
+
+    @property
+    def directions(self) -> dict[str, float]:
+        """Angle from the axis of the first to that of the second gear of each mesh. [rad]
+
+        Of fixed axes as stated; of listed planets by the pins on the first arm.
+        """
+        pins = self.pins if self.listed and self.planets else {}
+        directions = {}
+        for mesh in self.meshes:
+            angle = mesh.direction
+            if pins:
+                (x, y), (ahead_x, ahead_y) = (
+                    pins[body].place if body in pins else (0.0, 0.0)
+                    for body in map(self.bodies.__getitem__, mesh.pair)
+                )
+                angle = math.atan2(ahead_y - y, ahead_x - x)
+            directions[mesh.key] = angle if mesh.first == mesh.pair[0] else angle + math.pi
+        return directions
+
+    # --- planets ----------------------------------------------------------------------------------
+
+    @property
+    def positions(self) -> dict[str, float]:
+        """Middle of the face of each gear on a planet from the middle of its bearing. [m]
+
+        As stated; else the gears of a body stand side by side in the order of the meshes, the
+        bearing in the middle of all.
+        """
+        positions = {}
+        for body in self.planets:
+            gears = [gear for gear in self.in_order if self.bodies[gear] == body]
+            start = -sum(self.tables[gear].face_width for gear in gears) / 2
+            for gear in gears:
+                width = self.tables[gear].face_width
+                stated = getattr(self.tables[gear], "axial_position", None)
+                positions[gear] = start + width / 2 if stated is None else stated
+                start += width
+        return positions
+
+    @property
+    def pins(self) -> dict[str, Pin]:
+        """Where the pins stand on an arm of the carrier, by the bodies of planets. Theory (A4).
+
+        The central gears of a planet give the radius of its pin; two planets that mesh with each
+        other the angle between their pins: the second of a listed pair stands ahead of the first in
+        the sense of positive speeds. A planet without a central gear has no place that this would
+        determine, and is left out.
+
+        Raises
+        ------
+        ValueError
+            If two pins cannot stand at the distance of their planets.
+        """
+        distances = self.distances
+        radii: dict[str, float] = {}
+        for mesh in self.meshes:
+            planet, distance = self.planet_of(mesh), distances[mesh.key]
+            if planet is not None and distance is not None:
+                radii.setdefault(planet, distance)
+        between: dict[tuple[str, str], float] = {}
+        for mesh in self.meshes:
+            one, two = (self.bodies[gear] for gear in mesh.pair)
+            distance = distances[mesh.key]
+            if one in radii and two in radii and distance is not None:
+                angle = pin_angle(radii[one], radii[two], distance)
+                between[one, two], between[two, one] = angle, -angle
+        pins: dict[str, Pin] = {}
+        for start in radii:
+            found = [start] if start not in pins else []
+            pins.setdefault(start, Pin(radii[start], 0.0))
+            while found:
+                known = found.pop(0)
+                for (one, two), angle in between.items():
+                    if one == known and two not in pins:
+                        pins[two] = Pin(radii[two], pins[known].angle + angle)
+                        found.append(two)
+        return pins
+
+    def arrangement(self, count: int | None = None) -> Arrangement:
+        """The arms of the carrier: as stated, else equally spaced if possible. Theory (A7).
+
+        Planets whose gears stand alike on their bodies are preferred to such that are made one by
+        one, and these to unequal spacing.
+        """
+        planets = count or self.count or 1
+        number = self._closing_number(self.bodies)
+        if self.stated_angles is not None:
+            return Arrangement(self.stated_angles, number, individual=False)
+        if number % planets == 0:
+            return Arrangement(nearest_places(planets, number), number, individual=False)
+        single = self._closing_number({gear: gear for gear in self.bodies})
+        individual = single % planets == 0
+        places = nearest_places(planets, single if individual else number)
+        return Arrangement(places, number, individual)
+
+    @property
+    def planet_angles(self) -> tuple[float, ...]:
+        """Where the planets stand around the axis; empty without planets. [rad]"""
+        return self.arrangement().angles if self.planets and self.count else ()
+
+    def _closing_number(self, owners: Mapping[str, str]) -> int:
+        """Teeth on planets by `owners` of gears, and of the central gear, for `closing_number`."""
+        closures = []
+        for mesh in self.meshes:
+            central = self.central_gear(mesh)
+            teeth = dict(zip((mesh.first, mesh.second), map(int, mesh.teeth), strict=True))
+            turned = 0 if central is None else teeth.pop(central)
+            owned = {owners[gear]: count for gear, count in teeth.items()}
+            closures.append((owned, -turned if mesh.internal else turned))
+        return closing_number(closures)
+
+    def changed(
+        self,
+        tables: Mapping[str, GearTable],
+        shared: SharedGears,
+        distances: Mapping[str, float],  # By the keys of meshes that have one of their own. [m]
+    ) -> Gearing:
+        """The gearing with other tables and centre distances."""
+        meshes = tuple(
+            replace(mesh, own_distance=distances.get(mesh.key, mesh.own_distance))
+            for mesh in self.meshes
+        )
+        return replace(self, tables=tables, shared=shared, meshes=meshes)
+
+
+def outward_of(
+    pins: Mapping[str, Pin],
+    planet: str,
+    mate: str | None,  # The body of another planet; None for a central gear.
+) -> tuple[float, float]:
+    """Unit vector along t and r from the pitch point with an external mate to a planet's axis.
+
+    Theory (A5). For t and r see `epicyclic.machine.planets`.
+    """
+    if mate is None:
+        return 0.0, 1.0
+    own = pins[planet]
+    x, y = (a - b for a, b in zip(own.place, pins[mate].place, strict=True))
+    length = math.hypot(x, y)
+    sine, cosine = math.sin(own.angle), math.cos(own.angle)
+    return (x * sine - y * cosine) / length, (x * cosine + y * sine) / length
+
+
+# --- gears from their tables ----------------------------------------------------------------------
+
+
+def basic_rack(
+    helix_angle: float,  # [rad]
+    normal_module: float = 0.0,  # One of both modules. [m]
+    transverse_module: float | None = None,
+    normal_pressure_angle: float = 0.0,  # One of both angles. [rad]
+    transverse_pressure_angle: float | None = None,
+) -> BasicRack:
+    """The basic rack in its transverse section. ISO 21771."""
+    cosine = math.cos(helix_angle)
+    if transverse_module is None:
+        transverse_module = normal_module / cosine
+    if transverse_pressure_angle is None:
+        transverse_pressure_angle = math.atan(math.tan(normal_pressure_angle) / cosine)
+    return BasicRack(transverse_module, transverse_pressure_angle, helix_angle)
+
+
+def is_internal(table: GearTable) -> bool:
+    """True for a ring gear."""
+    return isinstance(table, Ring) or (isinstance(table, PairGear) and table.internal)
+
+
+@lru_cache(maxsize=512)
+def _gear(name: str, table: GearTable, rack: BasicRack, addendum: float, dedendum: float) -> Gear:
+    internal = is_internal(table)
+    half = half_angle(table, rack, internal=internal)
+    # tip and root that the basic rack of ISO 53 would give (ISO 21771, Eq. 38 and 41)
+    probe = Gear(name, rack, table.teeth, internal, half, 0.0, 0.0, table.face_width)
+    outward = -1 if internal else 1
+    shift = probe.profile_shift_coefficient
+    nominal = shift - allowance_shift(table, rack)
+    tip = probe.reference_radius + outward * rack.normal_module * (nominal + addendum)
+    root = probe.reference_radius + outward * rack.normal_module * (shift - dedendum)
+    return Gear(
+        name=name,
+        rack=rack,
+        teeth=table.teeth,
+        internal=internal,
+        thickness_half_angle=half,
+        tip_radius=tip if table.tip_diameter is None else table.tip_diameter / 2,
+        root_radius=root if table.root_diameter is None else table.root_diameter / 2,
+        face_width=table.face_width,
+        tip_chamfer=table.tip_chamfer,
+    )
+
+
+@lru_cache(maxsize=512)
+def _mesh(name: str, one: Gear, two: Gear, distance: float) -> Mesh:
+    """One object for each mesh, which keeps what it has computed of itself."""
+    return Mesh(name, one, two, distance)
+
+
+def rim_thickness(table: GearTable) -> float | None:
+    """Rim of a ring gear from root to outside; None if the case states none. [m]"""
+    return table.rim_thickness if isinstance(table, Ring | PairGear) else None
+
+
+def outside_radius(gear: Gear, table: GearTable) -> float:
+    """Radius of the outside of a gear as a rotating body: tip circle, or back of the rim. [m]"""
+    if not gear.internal:
+        return gear.tip_radius
+    rim = rim_thickness(table)
+    return gear.root_radius + (
+        DEFAULT_RIM_THICKNESS * gear.rack.normal_module if rim is None else rim
+    )
