@@ -7,9 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from epicyclic.case.base import CaseTable
 from epicyclic.case.fields import all_keys, dict_value, find_field
-from epicyclic.case.train import TrainCase
 from epicyclic.case.wording import dotted, key_parts
 
 _UNCERTAINTY = "uncertainty."
@@ -17,22 +15,23 @@ _GEARS, _MEMBERS = "gears", "members"
 """Key of the gears of a listed set in a file, and in its table, which has the shared keys apart."""
 
 
-def field_at(case: CaseTable, key: str) -> tuple[Any, tuple[Any, ...]] | None:
+def field_at(case: BaseModel, key: str) -> tuple[Any, tuple[Any, ...]] | None:
     """Annotation and metadata of the field at dotted `key`; None if there is no such key.
 
     A key of a set of a train is one of the form that the set has: with computed losses or given
     ones, and with gears as they are.
     """
     parts = key_parts(key)
-    if not isinstance(case, TrainCase) or parts[0] != "sets" or len(parts) < 3:
+    sets = getattr(case, "sets", None)  # a train has them
+    if sets is None or parts[0] != "sets" or len(parts) < 3:
         return find_field(type(case), key)
-    table = case.sets.get(parts[1])
+    table = sets.get(parts[1])
     if table is None:
         return None
     return find_field(type(table), ".".join(_in_table(table, parts[2:])))
 
 
-def known_keys(case: CaseTable) -> list[str]:
+def known_keys(case: BaseModel) -> list[str]:
     """Every dotted key that may hold a value of the case, to suggest one for a key that is none.
 
     Not those of [uncertainty], whose names are such keys themselves.
@@ -40,7 +39,7 @@ def known_keys(case: CaseTable) -> list[str]:
     return [key for key in _keys(case, "") if not key.startswith(_UNCERTAINTY)]
 
 
-def value_of(case: CaseTable, key: str) -> Any:
+def value_of(case: BaseModel, key: str) -> Any:
     """The value at dotted `key`; None if there is none."""
     value: Any = case
     parts = key_parts(key)
