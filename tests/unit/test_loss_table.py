@@ -9,7 +9,7 @@ import pytest
 
 from epicyclic import library
 from epicyclic.case.element_kinds import ELEMENT_KINDS, drag_problems
-from epicyclic.case.element_tables import DragTable
+from epicyclic.case.tables.elements import DragTable
 from epicyclic.losses.loss_table import LossTable, read_loss_table, table_problems
 from epicyclic.losses.ranges import ModelUse
 from epicyclic.machine.element import HOUSING, LOAD_INDEPENDENT, State, fluids_at

@@ -9,7 +9,7 @@ import pytest
 
 from epicyclic import library
 from epicyclic.case.element_kinds import ELEMENT_KINDS, seal_problems
-from epicyclic.case.element_tables import SealTable
+from epicyclic.case.tables.elements import SealTable
 from epicyclic.machine.element import HOUSING, LOAD_INDEPENDENT, State, figures, fluids_at
 from epicyclic.machine.shaft_parts import (
     Seal,

@@ -12,7 +12,7 @@ import pytest
 
 from epicyclic import library
 from epicyclic.case.element_kinds import ELEMENT_KINDS, bearing_problems
-from epicyclic.case.element_tables import ShaftBearingTable
+from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.losses.drag import bearing_viscous_loss
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.shaft_bearing import (

@@ -13,8 +13,8 @@ from epicyclic.case import build
 from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.listed_set import ListedCase, arrangement_of, gear_of, meshes_of
-from epicyclic.case.model_tables import LoadSharing, LossOption
-from epicyclic.case.part_tables import PlanetBearing
+from epicyclic.case.tables.elements import PlanetBearing
+from epicyclic.case.tables.models import LoadSharing, LossOption
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.mesh import Mesh
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from epicyclic.case import flanks
 from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.part_tables import PlanetBearing
+from epicyclic.case.tables.elements import PlanetBearing
 from epicyclic.contact.line_contact import Flanks
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.generation import Tool

@@ -10,8 +10,8 @@ from epicyclic.builders.gearing import SetCase, gearing_of
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.lubrication import oil_share
-from epicyclic.case.oil_laws import oil_laws
-from epicyclic.case.part_tables import PlanetBearing
+from epicyclic.case.tables.elements import PlanetBearing
+from epicyclic.case.tables.models import oil_laws
 from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
 from epicyclic.losses.fitted import FittedFriction, FittedOrGoksem, FittedOrSchlenk, FittedRolling
 from epicyclic.losses.friction import (

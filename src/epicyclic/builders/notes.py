@@ -14,7 +14,7 @@ from epicyclic.case.backlash import backlash_notes
 from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.listed_set import ListedCase, arrangement_of
 from epicyclic.case.lubrication import SHARE_KEY
-from epicyclic.case.model_tables import LoadSharing
+from epicyclic.case.tables.models import LoadSharing
 from epicyclic.contact.fitted_models import changed_properties
 from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS

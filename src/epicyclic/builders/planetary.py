@@ -17,8 +17,8 @@ from epicyclic.builders.wetting import carrier_disc, gear_disc
 from epicyclic.case import build
 from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.listed_set import ListedCase
-from epicyclic.case.model_tables import Numerics
-from epicyclic.case.part_tables import PlanetBearing as BearingTable
+from epicyclic.case.tables.elements import PlanetBearing as BearingTable
+from epicyclic.case.tables.models import Numerics
 from epicyclic.gears.cutting import fitted_tool
 from epicyclic.gears.generation import Tool
 from epicyclic.gears.mesh import Mesh

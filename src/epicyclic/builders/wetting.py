@@ -6,7 +6,7 @@ from epicyclic.builders.gearing import SetCase
 from epicyclic.case import build
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.lubrication import oil_share
-from epicyclic.case.lubrication_tables import LubricationTable
+from epicyclic.case.tables.lubrication import LubricationTable
 from epicyclic.gears.gear import Gear
 from epicyclic.losses.drag import Dipped
 from epicyclic.machine.disc import Disc, Jets, Sump

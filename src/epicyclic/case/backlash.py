@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator, Mapping
 
 from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.messages import micrometres, millimetres
 from epicyclic.case.thickness import DIGITS, fitting, thickness_key
-from epicyclic.case.wording import micrometres, millimetres
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.mesh import (

@@ -20,27 +20,26 @@ from epicyclic.case.lubrication_checks import (
     check_sump,
     check_wetting,
 )
-from epicyclic.case.lubrication_tables import LubricationTable
-from epicyclic.case.model_tables import (
+from epicyclic.case.messages import millimetres
+from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.elements import PlanetBearing
+from epicyclic.case.tables.lubrication import LubricationTable
+from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
     GearPairModels,
     LoadSharing,
     Numerics,
     PlanetaryModels,
+    law_problems,
 )
-from epicyclic.case.oil_laws import law_problems
-from epicyclic.case.operation_tables import (
+from epicyclic.case.tables.operation import (
     GearPairOperation,
     Lubricant,
     PlanetaryOperation,
     Surroundings,
 )
-from epicyclic.case.part_tables import PlanetBearing
-from epicyclic.case.schema import Table
-from epicyclic.case.thermal_checks import check_outlet, check_thermal, check_ways_out
-from epicyclic.case.thermal_tables import ThermalTable
-from epicyclic.case.wording import millimetres
+from epicyclic.case.tables.thermal import ThermalTable, check_outlet, check_thermal, check_ways_out
 from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
 from epicyclic.errors import InputError, Problem, rising_problems
 from epicyclic.gears.mesh import are_evenly_spaced

@@ -12,10 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from epicyclic.case.element_tables import DragTable, LossTableTable, SealTable, ShaftBearingTable
-from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.schema import Table
-from epicyclic.case.wording import millimetres, written
+from epicyclic.case.messages import did_you_mean, millimetres, written
+from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.elements import DragTable, LossTableTable, SealTable, ShaftBearingTable
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.losses.loss_table import LossQuantity, LossTable, read_loss_table, table_problems
 from epicyclic.losses.shaft_bearing import (

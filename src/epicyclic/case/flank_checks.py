@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from epicyclic.case.flanks import roll_length_at, working_flank
 from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, TopographyTable
-from epicyclic.case.wording import millimetres
+from epicyclic.case.messages import millimetres
 from epicyclic.errors import Problem, rising_problems
 from epicyclic.gears.flanks import active_profile
 from epicyclic.gears.gear import Gear

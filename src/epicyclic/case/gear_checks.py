@@ -12,8 +12,8 @@ from epicyclic.case import build
 from epicyclic.case.backlash import ROUNDING, Tables, check_backlash
 from epicyclic.case.flank_checks import check_flanks
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring
+from epicyclic.case.messages import millimetres
 from epicyclic.case.thickness import check_fit, check_measure, thickness_key
-from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 from epicyclic.gears.cutting import longest_involute
 from epicyclic.gears.gear import Gear

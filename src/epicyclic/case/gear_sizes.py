@@ -12,10 +12,9 @@ from typing import Any
 
 from epicyclic.case import build
 from epicyclic.case.gear_tables import Gears, GearTable, SetMesh
-from epicyclic.case.plain import value_at
-from epicyclic.case.schema import Table, roughness_told
-from epicyclic.case.short_oil import short_oil_told
+from epicyclic.case.read import value_at
 from epicyclic.case.size_solver import Found, SizedMesh, Solver
+from epicyclic.case.tables.base import Table, roughness_told, short_oil_told
 from epicyclic.errors import InputError, Problem
 
 MESHES = {"planetary": ("sun-planet", "planet-ring"), "gear_pair": ("pinion-gear",)}

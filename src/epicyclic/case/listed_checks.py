@@ -33,10 +33,9 @@ from epicyclic.case.listed_set import (
     rack_keys,
     terms_of,
 )
-from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.messages import did_you_mean, millimetres
 from epicyclic.case.train_shape import CARRIER, SetShape, ShapeMesh
 from epicyclic.case.train_tables import ListedSet
-from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import Gear, involute
 from epicyclic.gears.mesh import Mesh, nearest_places

@@ -13,17 +13,17 @@ from typing import Any
 
 from epicyclic.case import build
 from epicyclic.case.gear_tables import Gears
-from epicyclic.case.lubrication_tables import LubricationTable
-from epicyclic.case.model_tables import (
+from epicyclic.case.tables.elements import PlanetBearing
+from epicyclic.case.tables.lubrication import LubricationTable
+from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
     LossOption,
     Numerics,
     PlanetaryModels,
 )
-from epicyclic.case.operation_tables import Lubricant, Surroundings
-from epicyclic.case.part_tables import PlanetBearing
-from epicyclic.case.thermal_tables import ThermalTable
+from epicyclic.case.tables.operation import Lubricant, Surroundings
+from epicyclic.case.tables.thermal import ThermalTable
 from epicyclic.case.train_shape import SetShape, ShapeMesh
 from epicyclic.case.train_tables import ListedMesh, ListedSet
 from epicyclic.gears.gear import Gear

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from epicyclic import library
-from epicyclic.case.lubrication_tables import LubricationTable, Method
-from epicyclic.case.operation_tables import Surroundings
-from epicyclic.case.thermal_tables import ThermalTable
+from epicyclic.case.tables.lubrication import LubricationTable, Method
+from epicyclic.case.tables.operation import Surroundings
+from epicyclic.case.tables.thermal import ThermalTable
 
 SHARE_KEY = "surroundings.oil_air_ratio"
 OWN_SHARE_KEY = "lubrication.oil_share"

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 
 from epicyclic.case.lubrication import WETTING
-from epicyclic.case.lubrication_tables import LubricationTable, Method
-from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.thermal_tables import ThermalTable
+from epicyclic.case.messages import did_you_mean
+from epicyclic.case.tables.lubrication import LubricationTable, Method
+from epicyclic.case.tables.thermal import ThermalTable
 from epicyclic.errors import Problem
 from epicyclic.units import LITRE
 

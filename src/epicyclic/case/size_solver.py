@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.plain import value_at
+from epicyclic.case.messages import micrometres, millimetres
+from epicyclic.case.read import value_at
 from epicyclic.case.thickness import allowance_shift, thickness_key
-from epicyclic.case.wording import micrometres, millimetres
 from epicyclic.errors import InputError, Problem
 from epicyclic.gears.gear import BasicRack, Gear
 from epicyclic.gears.mesh import (

@@ -19,19 +19,20 @@ from epicyclic.case.gear_sizes import told_oil
 from epicyclic.case.listed_checks import listed_set_problems
 from epicyclic.case.listed_set import directions_of, hands_of
 from epicyclic.case.listed_sizes import find_listed_sizes
-from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
-from epicyclic.case.model_tables import (
+from epicyclic.case.messages import did_you_mean, written
+from epicyclic.case.size_solver import Found
+from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.lubrication import LUBRICATION, LubricationTable
+from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
     GearPairModels,
     Numerics,
     PlanetaryModels,
 )
-from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.operation_tables import Lubricant, Surroundings
-from epicyclic.case.schema import Table
-from epicyclic.case.size_solver import Found
-from epicyclic.case.thermal_tables import ThermalTable
+from epicyclic.case.tables.operation import Lubricant, Surroundings
+from epicyclic.case.tables.thermal import ThermalTable
+from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable
 from epicyclic.case.train_bearings import bearing_force_problems
 from epicyclic.case.train_checks import operation_problems
 from epicyclic.case.train_shape import SetShape, TrainShape, shape_of_set, shape_of_train
@@ -50,9 +51,7 @@ from epicyclic.case.train_tables import (
     StateTable,
     TrainOperation,
 )
-from epicyclic.case.uncertainty_tables import UNCERTAINTY, DistributionTable
 from epicyclic.case.validation import Validation, validate
-from epicyclic.case.wording import written
 from epicyclic.errors import InputError, Problem
 
 _SHARED = ("models", "numerics", "friction_table", "lubrication")

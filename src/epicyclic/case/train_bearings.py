@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from epicyclic.case.element_tables import ShaftBearingTable
+from epicyclic.case.messages import millimetres
+from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.case.train_tables import GivenListedSet, GivenPair, GivenPlanetarySet
-from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 from epicyclic.machine.element import HOUSING
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.messages import did_you_mean, written
 from epicyclic.case.train_tables import (
     GivenListedSet,
     GivenPair,
@@ -19,7 +19,6 @@ from epicyclic.case.train_tables import (
     SetTable,
     StateTable,
 )
-from epicyclic.case.wording import written
 from epicyclic.errors import Problem
 from epicyclic.machine.element import HOUSING
 from epicyclic.machine.machine import Coupling, Machine, MeshRow

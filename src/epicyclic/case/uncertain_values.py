@@ -13,15 +13,13 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic import library
 from epicyclic.case.base import CaseTable, owner_without_keys
-from epicyclic.case.fields import quantity_of
-from epicyclic.case.keys import field_at, known_keys, value_of
+from epicyclic.case.fields import field_at, known_keys, quantity_of, value_of
 from epicyclic.case.lubrication import FACTOR_KEY, SHARE_KEY, assumed_factor
-from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.messages import did_you_mean, dotted, path_of, refused, written
 from epicyclic.case.parameters import Parameter, parameter_of
-from epicyclic.case.plain import value_at
+from epicyclic.case.read import value_at
 from epicyclic.case.slopes import slope_limit
-from epicyclic.case.uncertainty_tables import DistributionTable
-from epicyclic.case.wording import dotted, path_of, refused, written
+from epicyclic.case.tables.uncertainty import DistributionTable
 from epicyclic.errors import Problem
 from epicyclic.units import CELSIUS, MICROMETRE, Quantity, format_number
 

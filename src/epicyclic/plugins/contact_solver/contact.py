@@ -13,7 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from epicyclic.case.oil_laws import (
+from epicyclic.case.messages import key_parts
+from epicyclic.case.read import plain, read_file, value_at, with_value
+from epicyclic.case.tables.base import NamedMaterial, NamedOil, Roughness, Table
+from epicyclic.case.tables.models import (
     HEATING,
     PRESET,
     USUAL,
@@ -26,11 +29,7 @@ from epicyclic.case.oil_laws import (
     law_problems,
     oil_laws,
 )
-from epicyclic.case.plain import plain, value_at, with_value
-from epicyclic.case.reading import read_file
-from epicyclic.case.schema import NamedMaterial, NamedOil, Roughness, Table
 from epicyclic.case.validation import validate
-from epicyclic.case.wording import key_parts
 from epicyclic.errors import InputError, Problem, Status
 from epicyclic.kernels.ehl_steady import shear_stresses
 from epicyclic.kernels.line_contact import line_load_at_pressure

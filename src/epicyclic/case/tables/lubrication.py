@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from epicyclic.case.schema import Table
+from epicyclic.case.tables.base import Table
 from epicyclic.losses.drag import ChurningModel, NozzleSide
 from epicyclic.units import Length, Number, Quantity, Speed, VolumeFlow, as_stated
 
