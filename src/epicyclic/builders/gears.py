@@ -7,11 +7,14 @@ from collections.abc import Iterable
 
 from epicyclic.case import flanks
 from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.tables.base import Material
 from epicyclic.case.tables.elements import PlanetBearing
 from epicyclic.contact.line_contact import Flanks
+from epicyclic.contact.temperatures import Solid
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.generation import Tool
 from epicyclic.gears.mesh import Mesh
+from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.machine.gear_mesh import GearMesh, MeshModels
 
 
@@ -38,7 +41,7 @@ def gear_mesh(
         solids=flanks.gear_bodies(mesh, tables, planets),
         deviations=flanks.flank_deviations(mesh, tables, misalignment),
         models=models,
-        materials=(tables[0].material.solid, tables[1].material.solid),
+        materials=(solid_of(tables[0].material), solid_of(tables[1].material)),
         nodes=nodes,
     )
 
@@ -65,4 +68,25 @@ def planet_mass(gears: Iterable[tuple[Gear, GearTable]], bearing: PlanetBearing 
 def _flanks(tables: tuple[GearTable, GearTable]) -> Flanks[float]:
     """Roughness of both flanks and their equivalent modulus."""
     one, two = tables
-    return Flanks(one.material.modulus_against(two.material), one.roughness, two.roughness)
+    modulus = contact_modulus(one.material, two.material)
+    return Flanks(modulus, one.roughness, two.roughness)
+
+
+def contact_modulus(one: Material, other: Material) -> float:
+    """Equivalent modulus E_eq of a contact of two materials. [Pa]"""
+    return equivalent_modulus(
+        one.elastic_modulus, one.poisson_ratio, other.elastic_modulus, other.poisson_ratio
+    )
+
+
+def solid_of(
+    material: Material,
+    conductivity: float | None = None,  # Instead of its own. [W/(m K)]
+    heat_capacity: float | None = None,  # Instead of its own. [J/(kg K)]
+) -> Solid:
+    """What heat sees of a material."""
+    return Solid(
+        material.thermal_conductivity if conductivity is None else conductivity,
+        material.heat_capacity if heat_capacity is None else heat_capacity,
+        material.density,
+    )

@@ -7,9 +7,10 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from epicyclic.builders.gearing import SetCase, gearing_of
+from epicyclic.builders.gears import solid_of
+from epicyclic.builders.lubrication import oil_share
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.listed_set import ListedCase
-from epicyclic.case.lubrication import oil_share
 from epicyclic.case.tables.elements import PlanetBearing
 from epicyclic.case.tables.models import oil_laws
 from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
@@ -135,7 +136,7 @@ def _direct_settings(case: SetCase) -> DirectSettings:
     carried = None
     if solver.heating != "isothermal":
         given = solver.solid_conductivity, solver.solid_heat_capacity
-        solids = [gear.material.solid_with(*given) for gear in gearing_of(case).tables.values()]
+        solids = [solid_of(gear.material, *given) for gear in gearing_of(case).tables.values()]
         carried = float(np.mean([solid.effusivity for solid in solids]))
     return DirectSettings(
         laws=oil_laws(solver),

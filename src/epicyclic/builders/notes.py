@@ -13,7 +13,7 @@ from epicyclic.case import build, flanks
 from epicyclic.case.backlash import backlash_notes
 from epicyclic.case.case import PlanetaryCase
 from epicyclic.case.listed_set import ListedCase, arrangement_of
-from epicyclic.case.lubrication import SHARE_KEY
+from epicyclic.case.tables.lubrication import SHARE_KEY
 from epicyclic.case.tables.models import LoadSharing
 from epicyclic.contact.fitted_models import changed_properties
 from epicyclic.gears.mesh import are_evenly_spaced

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from epicyclic.builders.built import Built
-from epicyclic.builders.gears import gear_mesh, planet_mass
+from epicyclic.builders.gears import contact_modulus, gear_mesh, planet_mass
 from epicyclic.builders.models import (
     bearing_model,
     fitted_rolling,
@@ -236,7 +236,7 @@ def roller_bearing(table: BearingTable, numerics: Numerics) -> RollerBearing:
         row_gap=table.row_gap,
         roller_roughness=table.roller_roughness,
         race_roughness=table.race_roughness,
-        equivalent_modulus=table.material.modulus_against(table.material),
+        equivalent_modulus=contact_modulus(table.material, table.material),
         slices=numerics.bearing_slices,
     )
 

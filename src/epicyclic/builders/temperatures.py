@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
+from epicyclic.builders.lubrication import oil_share, with_lubrication
 from epicyclic.builders.models import fluids_of
 from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case
-from epicyclic.case.lubrication import oil_share, with_lubrication
 from epicyclic.case.tables.lubrication import LubricationTable
 from epicyclic.case.tables.thermal import HousingTable, ThermalTable
 from epicyclic.contact.temperatures import LUBRICATION_FACTORS

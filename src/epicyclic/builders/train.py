@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from epicyclic.builders.built import Built
+from epicyclic.builders.elements import build_element
 from epicyclic.builders.gearing import SetCase
 from epicyclic.builders.listed_set import listed_element
 from epicyclic.builders.models import fluids_of
@@ -15,7 +16,6 @@ from epicyclic.builders.pair import PAIR_MEMBERS, pair_element
 from epicyclic.builders.planetary import MEMBERS, planetary_element
 from epicyclic.builders.shafts import shaft_layouts
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
-from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet
@@ -150,8 +150,8 @@ def _parts(case: TrainCase) -> Iterator[Element]:
     """Bearings, seals and other drags."""
     for kind, name, table in case.elements:
         assert case.lubricant is not None
-        yield ELEMENT_KINDS[kind].build(
-            name, table, shafts=case.shape.names, oil=case.lubricant.oil, folder=case.folder
+        yield build_element(
+            kind, name, table, shafts=case.shape.names, oil=case.lubricant.oil, folder=case.folder
         )
 
 

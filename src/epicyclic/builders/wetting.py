@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from epicyclic.builders.gearing import SetCase
+from epicyclic.builders.lubrication import oil_share
 from epicyclic.case import build
 from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.lubrication import oil_share
 from epicyclic.case.tables.lubrication import LubricationTable
 from epicyclic.gears.gear import Gear
 from epicyclic.losses.drag import Dipped

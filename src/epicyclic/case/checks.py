@@ -13,17 +13,16 @@ from pathlib import Path
 from epicyclic.case import build
 from epicyclic.case.gear_checks import check_pair, check_planetary
 from epicyclic.case.gear_tables import Gears, GearTable, Planet, Ring
-from epicyclic.case.lubrication import with_lubrication
-from epicyclic.case.lubrication_checks import (
+from epicyclic.case.messages import millimetres
+from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.elements import PlanetBearing
+from epicyclic.case.tables.lubrication import (
+    LubricationTable,
     check_immersion,
     check_lubrication,
     check_sump,
     check_wetting,
 )
-from epicyclic.case.messages import millimetres
-from epicyclic.case.tables.base import Table
-from epicyclic.case.tables.elements import PlanetBearing
-from epicyclic.case.tables.lubrication import LubricationTable
 from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
@@ -69,9 +68,8 @@ def cross_check(
         problems += law_problems("contact_solver", solver)
     thermal, oil = sections.get("thermal"), sections.get("lubrication")
     if isinstance(models, GearPairModels) and isinstance(thermal, ThermalTable):
-        table = oil if isinstance(oil, LubricationTable) else None
-        whole = with_lubrication(thermal, table, None if table is None else table.oil_flow)
-        problems += check_ways_out(whole, models.temperatures)
+        flow = oil.oil_flow if isinstance(oil, LubricationTable) else None
+        problems += check_ways_out(thermal, models.temperatures, flow)
     if isinstance(models, PlanetaryModels):
         problems += _check_planet_tilt(models, {*given, *sections})
     for check, needed in _CHECKS:

@@ -14,9 +14,9 @@ from pydantic_core import PydanticUndefined
 
 from epicyclic import library
 from epicyclic.case.case import GearPairCase, PlanetaryCase, read_case
-from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.fields import choices_of, dict_value, entry_of, quantity_of, table_of
 from epicyclic.case.messages import dotted, key_parts
+from epicyclic.case.tables.elements import ELEMENT_KINDS
 from epicyclic.case.train import TrainCase, form_of_set
 from epicyclic.case.train_tables import ListedSet, PlanetarySet, SharedGears
 

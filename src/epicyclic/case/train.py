@@ -14,7 +14,6 @@ from pydantic import Field, PrivateAttr, create_model
 
 from epicyclic.case.base import CaseTable, as_given, with_sizes
 from epicyclic.case.checks import cross_check
-from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.gear_sizes import told_oil
 from epicyclic.case.listed_checks import listed_set_problems
 from epicyclic.case.listed_set import directions_of, hands_of
@@ -22,6 +21,7 @@ from epicyclic.case.listed_sizes import find_listed_sizes
 from epicyclic.case.messages import did_you_mean, written
 from epicyclic.case.size_solver import Found
 from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.elements import ELEMENT_KINDS, placing_problems
 from epicyclic.case.tables.lubrication import LUBRICATION, LubricationTable
 from epicyclic.case.tables.models import (
     ContactSolver,
@@ -52,7 +52,7 @@ from epicyclic.case.train_tables import (
     TrainOperation,
 )
 from epicyclic.case.validation import Validation, validate
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem
 
 _SHARED = ("models", "numerics", "friction_table", "lubrication")
 """Tables of a train that its computed sets take over where they have none of their own."""
@@ -443,23 +443,6 @@ def _complete(
 # --- bearings, seals, drags -----------------------------------------------------------------------
 
 
-def _unbuilt(train: TrainCase, kind: str, name: str, table: Table) -> Sequence[Problem]:
-    """Why a part that is sound by itself cannot be in this train: unknown shafts, bad files."""
-    if train.lubricant is None:
-        return ()
-    try:
-        ELEMENT_KINDS[kind].build(
-            name,
-            table,
-            shafts=train.shape.names,
-            oil=train.lubricant.oil,
-            folder=train.folder,
-        )
-    except InputError as error:
-        return error.problems
-    return ()
-
-
 def _element_problems(train: TrainCase) -> list[Problem]:
     problems = []
     taken = dict.fromkeys(train.sets, "sets")
@@ -473,9 +456,9 @@ def _element_problems(train: TrainCase) -> list[Problem]:
             problems.append(Problem(key, "", allowed, "Choose another name: losses carry it."))
         taken[name] = kind
         found = ELEMENT_KINDS[kind].check(table)
-        problems += [
-            _below(key, problem) for problem in found or _unbuilt(train, kind, name, table)
-        ]
+        if not found and train.lubricant is not None:
+            found = placing_problems(table, train.shape.names, train.folder)
+        problems += [_below(key, problem) for problem in found]
     if not train.computed:
         return problems
     if train.lubricant is None:

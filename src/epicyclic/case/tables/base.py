@@ -7,9 +7,9 @@ and the commented template. Values are SI after validation.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import (
     BaseModel,
@@ -25,10 +25,9 @@ from epicyclic import library
 from epicyclic.case.fields import Named, to_inputs
 from epicyclic.case.messages import did_you_mean
 from epicyclic.case.read import plain
-from epicyclic.contact.temperatures import Solid
+from epicyclic.errors import Problem
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
 from epicyclic.gears.measures import named_fit
-from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.oil.oil import Conductivity, HeatCapacity, Oil, OilDensity
 from epicyclic.units import (
     MILLIMETRE,
@@ -224,6 +223,22 @@ class PointsTable(Table):
         return {name: points for name, points in given.items() if points is not None}
 
 
+class Condition(NamedTuple):
+    """What a table, or several, must not state: a row of a list of checks."""
+
+    key: str  # The keys that it is about, whole, joined by ``", "``.
+    broken: Callable[..., bool]  # Whether the tables break it.
+    allowed: str
+    remedy: str
+
+
+def broken_conditions(conditions: Iterable[Condition], *tables: Table) -> list[Problem]:
+    """The problems of the conditions that `tables` break."""
+    return [
+        Problem(one.key, "", one.allowed, one.remedy) for one in conditions if one.broken(*tables)
+    ]
+
+
 def _values_or_rows(value: object) -> str:
     """Which of its two forms a list of numbers has."""
     rows = isinstance(value, list | tuple) and any(isinstance(row, list | tuple) for row in value)
@@ -331,25 +346,6 @@ class Material(Table):
     thermal_conductivity: Conductivity = Field(default=as_stated("46 W/(m*K)"))
     heat_capacity: HeatCapacity = Field(default=as_stated("460 J/(kg*K)"))
     source: str = ""
-
-    @property
-    def solid(self) -> Solid:
-        """What heat sees of it."""
-        return self.solid_with(None, None)
-
-    def solid_with(self, conductivity: float | None, heat_capacity: float | None) -> Solid:
-        """The same with other constants where they are given."""
-        return Solid(
-            self.thermal_conductivity if conductivity is None else conductivity,
-            self.heat_capacity if heat_capacity is None else heat_capacity,
-            self.density,
-        )
-
-    def modulus_against(self, other: Material) -> float:
-        """Equivalent modulus E_eq of a contact with another. [Pa]"""
-        return equivalent_modulus(
-            self.elastic_modulus, self.poisson_ratio, other.elastic_modulus, other.poisson_ratio
-        )
 
 
 @cache

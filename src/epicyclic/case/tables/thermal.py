@@ -213,10 +213,14 @@ def check_outlet(thermal: ThermalTable, inlet: float | None) -> list[Problem]:
     ]
 
 
-def check_ways_out(thermal: ThermalTable, temperatures: str) -> list[Problem]:
+def check_ways_out(
+    thermal: ThermalTable,
+    temperatures: str,
+    flow: float | None,  # Oil that [lubrication] brings to the gears. [m^3/s]
+) -> list[Problem]:
     """A network needs a way for the heat to leave."""
     ways = (
-        thermal.oil_flow,
+        flow if thermal.oil_flow is None else thermal.oil_flow,
         thermal.oil_outlet_temperature,
         thermal.housing,
         thermal.cooler_conductance,

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from epicyclic.builders.gears import contact_modulus, solid_of
 from epicyclic.case.messages import key_parts
 from epicyclic.case.read import plain, read_file, value_at, with_value
 from epicyclic.case.tables.base import NamedMaterial, NamedOil, Roughness, Table
@@ -319,7 +320,7 @@ def _check_surface(name: str, surface: Surface) -> list[Problem]:
 
 def contact_model(case: ContactCase) -> ContactModel:
     """Contact, profiles and asperities of a case."""
-    modulus = case.surface1.material.modulus_against(case.surface2.material)
+    modulus = contact_modulus(case.surface1.material, case.surface2.material)
     table = case.contact
     load = table.line_load
     if load is None:
@@ -348,7 +349,7 @@ def _heating(case: ContactCase) -> Heating | None:
     if table.model == "isothermal":
         return None
     solids = (
-        surface.material.solid_with(table.solid_conductivity, table.solid_heat_capacity)
+        solid_of(surface.material, table.solid_conductivity, table.solid_heat_capacity)
         for surface in (case.surface1, case.surface2)
     )
     return heating_of(_oil_state(case), *(solid.effusivity for solid in solids))
