@@ -7,8 +7,9 @@ import math
 
 import pytest
 
+from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.balance import balance, speeds_of
-from epicyclic.machine.element import HOUSING, LOAD_INDEPENDENT, ElementResult, Loss
+from epicyclic.machine.element import LOAD_INDEPENDENT, ElementResult, Loss
 from epicyclic.machine.machine import Machine, MeshRow, Operation
 from epicyclic.machine.solve import solve_machine
 from epicyclic.results.result import MemberState, PowerFlow

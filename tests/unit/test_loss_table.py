@@ -10,9 +10,10 @@ import pytest
 from epicyclic import library
 from epicyclic.builders.elements import build_element
 from epicyclic.case.tables.elements import DragTable, drag_problems
+from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.loss_table import LossTable, read_loss_table, table_problems
 from epicyclic.losses.ranges import ModelUse
-from epicyclic.machine.element import HOUSING, LOAD_INDEPENDENT, State, fluids_at
+from epicyclic.machine.element import LOAD_INDEPENDENT, State, fluids_at
 from epicyclic.machine.shaft_parts import TableLoss
 from epicyclic.oil.oil import Oil
 from problems import only, problems_of

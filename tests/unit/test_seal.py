@@ -10,7 +10,8 @@ import pytest
 from epicyclic import library
 from epicyclic.builders.elements import build_element
 from epicyclic.case.tables.elements import SealTable, seal_problems
-from epicyclic.machine.element import HOUSING, LOAD_INDEPENDENT, State, figures, fluids_at
+from epicyclic.gears.gear import HOUSING
+from epicyclic.machine.element import LOAD_INDEPENDENT, State, figures, fluids_at
 from epicyclic.machine.shaft_parts import (
     Seal,
     SealFormula,

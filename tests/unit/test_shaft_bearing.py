@@ -13,6 +13,7 @@ import pytest
 from epicyclic import library
 from epicyclic.builders.elements import build_element
 from epicyclic.case.tables.elements import ShaftBearingTable, bearing_problems
+from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import bearing_viscous_loss
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.shaft_bearing import (
@@ -38,14 +39,7 @@ from epicyclic.losses.shaft_bearing import (
     skf_series,
     static_load,
 )
-from epicyclic.machine.element import (
-    HOUSING,
-    LOAD_DEPENDENT,
-    LOAD_INDEPENDENT,
-    State,
-    figures,
-    fluids_at,
-)
+from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, State, figures, fluids_at
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.oil.oil import Oil
 from problems import only, problems_of

@@ -14,9 +14,10 @@ from epicyclic.builders.supplies import solved_supplies
 from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case
 from epicyclic.case.train import TrainCase
+from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.ranges import SomeFlags, ValidityFlag, standing
-from epicyclic.machine.element import HOUSING, OIL, BearingFigures, Loss, MeshFigures, joined_key
+from epicyclic.machine.element import OIL, BearingFigures, Loss, MeshFigures, joined_key
 from epicyclic.machine.gear_set import GearSetResult
 from epicyclic.machine.heat import AGREEMENT, Answer, Settled, heat_of
 from epicyclic.machine.planets import SHARING_METHODS

@@ -21,11 +21,12 @@ from epicyclic.case.listed_set import (
 )
 from epicyclic.case.train_shape import CARRIER
 from epicyclic.gears.cutting import fitted_tool
+from epicyclic.gears.gear import HOUSING
 from epicyclic.gears.generation import Tool
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.disc import Disc
-from epicyclic.machine.element import HOUSING, joined_key
+from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import GearMesh
 from epicyclic.machine.gear_set import GearSet, Planet, PlanetMesh
 from epicyclic.machine.planets import LoadSharing

@@ -11,8 +11,9 @@ from epicyclic.builders.wetting import gear_disc
 from epicyclic.case import build
 from epicyclic.case.case import GearPairCase
 from epicyclic.gears.cutting import mated_tools
+from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.pocket_tables import FlowTables
-from epicyclic.machine.element import HOUSING, joined_key
+from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_set import GearSet, Reference
 from epicyclic.machine.machine import Machine, MeshRow, Operation
 from epicyclic.results.result import Layout

@@ -20,13 +20,14 @@ from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.tables.elements import PlanetBearing as BearingTable
 from epicyclic.case.tables.models import Numerics
 from epicyclic.gears.cutting import fitted_tool
+from epicyclic.gears.gear import HOUSING
 from epicyclic.gears.generation import Tool
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN, RollerBearing
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.disc import Disc, ThrustBearing
-from epicyclic.machine.element import HOUSING, joined_key
+from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import GearMesh
 from epicyclic.machine.gear_set import GearSet, Planet, PlanetMesh, Reference
 from epicyclic.machine.machine import Machine, MeshRow, Operation

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_bearings import needs_force
-from epicyclic.machine.element import HOUSING
+from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.machine import GearSeat, ShaftLayout, Support
 

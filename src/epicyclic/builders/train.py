@@ -19,8 +19,9 @@ from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet
+from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.pocket_tables import FlowTables
-from epicyclic.machine.element import HOUSING, Element
+from epicyclic.machine.element import Element
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.machine import Operation
 from epicyclic.results.result import Layout

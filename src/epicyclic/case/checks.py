@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from epicyclic.case import build
 from epicyclic.case.gear_checks import check_pair, check_planetary
@@ -39,12 +40,12 @@ from epicyclic.case.tables.operation import (
     Surroundings,
 )
 from epicyclic.case.tables.thermal import ThermalTable, check_outlet, check_thermal, check_ways_out
-from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
 from epicyclic.errors import InputError, Problem, rising_problems
 from epicyclic.gears.mesh import are_evenly_spaced
-from epicyclic.losses.pocket_tables import read_stored
-from epicyclic.losses.ranges import FITTED
 from epicyclic.units import BAR
+
+if TYPE_CHECKING:
+    from epicyclic.contact.fitted_models import OilModel
 
 MOST_COEFFICIENTS = 5_000_000
 """Largest number of influence coefficients for each contact line: 40 MB, for three lines 120 MB."""
@@ -263,6 +264,11 @@ def _check_friction_model(models: GearPairModels, given: Collection[str]) -> lis
 
 def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> list[Problem]:
     """A fitted model needs its file or one built in for the oil, and in it what is asked of it."""
+    chosen = (models.friction, models.rolling, getattr(models, "bearing", ""))
+    if models.oil_model is None and not any(name.startswith("fitted") for name in chosen):
+        return []
+    from epicyclic.losses.ranges import FITTED  # few cases need it
+
     asked = {
         key: quantity
         for key, quantity in FITTED.items()
@@ -292,6 +298,8 @@ def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | Non
 
 
 def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> OilModel | None:
+    from epicyclic.contact.fitted_models import builtin_model, read_oil_model
+
     if models.oil_model is not None:
         return read_oil_model(folder / models.oil_model)
     if not isinstance(lubricant, Lubricant):
@@ -302,6 +310,8 @@ def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) ->
 def _check_pocketing_table(models: GearPairModels, folder: Path) -> list[Problem]:
     """That the file is one; whether it is for these pockets shows when they are known."""
     if models.pocketing_table is not None:
+        from epicyclic.losses.pocket_tables import read_stored
+
         try:
             read_stored(folder / models.pocketing_table)
         except InputError as error:

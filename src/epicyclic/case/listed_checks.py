@@ -37,9 +37,8 @@ from epicyclic.case.messages import did_you_mean, millimetres
 from epicyclic.case.train_shape import CARRIER, SetShape, ShapeMesh
 from epicyclic.case.train_tables import ListedSet
 from epicyclic.errors import Problem
-from epicyclic.gears.gear import Gear, involute
+from epicyclic.gears.gear import HOUSING, Gear, involute
 from epicyclic.gears.mesh import Mesh, nearest_places
-from epicyclic.machine.element import HOUSING
 
 SAME_PITCH = 1e-6
 """Base pitches and helix angles that differ by less, relatively and in radians, are equal. [1]"""

@@ -9,7 +9,7 @@ from epicyclic.case.messages import millimetres
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.case.train_tables import GivenListedSet, GivenPair, GivenPlanetarySet
 from epicyclic.errors import Problem
-from epicyclic.machine.element import HOUSING
+from epicyclic.gears.gear import HOUSING
 
 if TYPE_CHECKING:
     from epicyclic.case.train import TrainCase

@@ -17,8 +17,8 @@ from epicyclic.case.train_lubrication import lubrication_problems
 from epicyclic.case.train_shape import TrainShape
 from epicyclic.case.train_tables import ListedSet, PairSet, PlanetarySet, StateTable
 from epicyclic.errors import Problem
+from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.balance import freedom, implied, speeds_of
-from epicyclic.machine.element import HOUSING
 from epicyclic.machine.machine import Machine
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from epicyclic.case.train_tables import (
     StateTable,
 )
 from epicyclic.errors import Problem
-from epicyclic.machine.element import HOUSING
+from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.machine import Coupling, Machine, MeshRow
 
 CARRIER = "carrier"

@@ -32,6 +32,10 @@ def inverse_involute(value: float) -> float:
     return angle
 
 
+CARRIER, HOUSING = "carrier", "housing"
+"""Bodies that gear sets and machines have beside those of gears and shafts."""
+
+
 @dataclass(frozen=True)
 class BasicRack:
     """What gears that mesh have in common. ISO 21771."""

@@ -10,7 +10,7 @@ from itertools import combinations, islice
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.machine.element import HOUSING
+from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.machine import Machine, MeshRow, Operation, Terms
 
 # Systems of as many linear equations as unknowns.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import (
     CHURNING_MODELS,
     DRAG_METHOD,
@@ -25,7 +26,7 @@ from epicyclic.losses.drag import (
     viscous_flags,
 )
 from epicyclic.losses.ranges import ValidityFlag
-from epicyclic.machine.element import HOUSING, LOAD_INDEPENDENT, Loss, State
+from epicyclic.machine.element import LOAD_INDEPENDENT, Loss, State
 
 Outcome = tuple[Loss, tuple[ValidityFlag, ...]]
 

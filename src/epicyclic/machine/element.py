@@ -278,8 +278,6 @@ class FluidFigures:
 
 LOAD_DEPENDENT = "load-dependent"
 LOAD_INDEPENDENT = "load-independent"
-HOUSING = "housing"
-"""The body that stands still."""
 OIL = "oil"
 """The thermal node of the oil around the gears."""
 

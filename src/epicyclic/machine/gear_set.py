@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.losses.ranges import Flags, ModelUse, SomeFlags, ValidityFlag
 from epicyclic.machine.disc import Disc, ThrustBearing, disc_loss, thrust_loss
 from epicyclic.machine.element import (
-    HOUSING,
     LOAD_INDEPENDENT,
     OIL,
     BearingFigures,

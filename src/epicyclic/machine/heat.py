@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from epicyclic.contact.temperatures import bulk_rise_of_flash, bulk_rise_of_loss
 from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
+from epicyclic.gears.gear import HOUSING
 from epicyclic.machine import convection as shell
 from epicyclic.machine.convection import Fluid
-from epicyclic.machine.element import HOUSING, OIL, Fluids, Loss, MeshFigures
+from epicyclic.machine.element import OIL, Fluids, Loss, MeshFigures
 from epicyclic.machine.gear_mesh import GearMesh
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.heat_flow import Link, Network

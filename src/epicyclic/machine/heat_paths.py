@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from epicyclic.contact.temperatures import Solid
-from epicyclic.gears.gear import Gear
+from epicyclic.gears.gear import HOUSING, Gear
 from epicyclic.machine.convection import SPLASHED_WALL, Fluid, dipped_disc, disc_coefficient
-from epicyclic.machine.element import HOUSING, OIL, BearingFigures, ElementResult, State, joined_key
+from epicyclic.machine.element import OIL, BearingFigures, ElementResult, State, joined_key
 from epicyclic.machine.gear_set import GearSet, Planet
 from epicyclic.machine.heat_flow import Link
 from epicyclic.machine.shaft_parts import ShaftBearing

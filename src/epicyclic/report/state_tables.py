@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Group, RenderableType
 
 from epicyclic.case.train import TrainCase
-from epicyclic.machine.element import HOUSING
+from epicyclic.gears.gear import HOUSING
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import plain_table
 from epicyclic.study.trains import StateKinematics, train_states

@@ -9,8 +9,8 @@ from typing import Any
 
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import StateTable
+from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.balance import freedom, speeds_of
-from epicyclic.machine.element import HOUSING
 
 # Losses of a train summed by what loses and how.
 

@@ -19,13 +19,11 @@ from epicyclic.case.tables.base import (
     Table,
 )
 from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.gears.gear import HOUSING
 from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature, as_stated
 
 if TYPE_CHECKING:
     from epicyclic.losses.loss_table import LossTable
-
-HOUSING = "housing"
-"""What holds a part that stands still."""
 
 
 class PlanetBearing(Table):

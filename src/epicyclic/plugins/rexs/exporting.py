@@ -22,8 +22,8 @@ from epicyclic.case.train_tables import PairSet, PlanetarySet
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import whole_file
 from epicyclic.gears.flanks import RA_OVER_RQ
-from epicyclic.gears.gear import Gear
-from epicyclic.machine.element import HOUSING, Figure
+from epicyclic.gears.gear import HOUSING, Gear
+from epicyclic.machine.element import Figure
 from epicyclic.machine.shaft_parts import ShaftBearingFigures
 from epicyclic.oil.oil import Oil
 from epicyclic.oil.properties import oil_state

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from epicyclic.errors import InputError, Problem, raise_any
-from epicyclic.machine.element import HOUSING
+from epicyclic.gears.gear import HOUSING
 from epicyclic.plugins.rexs.model import Component, Model, types_of
 
 # Which gear sets a REXS file holds, and the components that each consists of.

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.messages import one_line
-from epicyclic.machine.element import HOUSING
+from epicyclic.gears.gear import HOUSING
 from epicyclic.plugins.rexs import gears as checks
 from epicyclic.plugins.rexs.draft import (
     Amount,

@@ -13,7 +13,8 @@ from matplotlib.colors import Colormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
-from epicyclic.machine.element import HOUSING, OIL
+from epicyclic.gears.gear import HOUSING
+from epicyclic.machine.element import OIL
 from epicyclic.results.heat import HeatBalance
 from epicyclic.results.result import in_words
 from epicyclic.show.plots.power_flow import INK, SLIDE, SOFT, Arrow, draw_box, fit
