@@ -30,7 +30,7 @@ import numpy as np
 import pandas as pd
 
 import epicyclic as ep
-from epicyclic.case.train_text import train_text
+from epicyclic.case.template import train_text
 from epicyclic.plugins.contact_solver.contact import load_contact_case, solve_contact
 from epicyclic.study.sweeps.runner import Runner
 

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from epicyclic.case.values import parse_value
+from epicyclic.case.read import parse_value
 from epicyclic.contact.fitted_models import regression_groups
 from epicyclic.contact.line_contact import LineContacts, contacts_at
 from epicyclic.kernels.mixed_ehl import sliding_friction

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import epicyclic
 from epicyclic.case.case import read_case
-from epicyclic.case.plain import changed_at, plain, value_at
+from epicyclic.case.read import changed_at, plain, value_at
 from epicyclic.errors import InputError
 from limits import is_soon
 

@@ -16,7 +16,6 @@ from nicegui import ui
 import app_tasks
 from epicyclic.case.case import build_case
 from epicyclic.case.fields import all_keys
-from epicyclic.case.operating import OPERATING
 from epicyclic.errors import InputError
 from epicyclic.library import minimal_case
 from epicyclic.plugins.app import worker as tasks
@@ -25,6 +24,7 @@ from epicyclic.plugins.app.guard import LARGEST_BODY, Guard
 from epicyclic.plugins.app.serve import names_of
 from epicyclic.plugins.app.views import _values
 from epicyclic.plugins.app.worker import Ended, Latest, Worker, WorkError
+from epicyclic.study.operating import OPERATING
 from listed_trains import ravigneaux
 
 TOKEN, HOST = "the-token", "127.0.0.1:4711"

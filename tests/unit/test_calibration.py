@@ -525,7 +525,7 @@ def test_a_fit_of_an_e_axle_ends_in_time(tmp_path, count, keys, seconds):
 
 
 def test_case_files_of_trains_keep_what_is_known_of_values():
-    from epicyclic.case.train_text import train_text
+    from epicyclic.case.template import train_text
 
     case = ep.load_case("train-eaxle").updated(
         {

@@ -21,9 +21,8 @@ from epicyclic.case.fields import (
     tables_in,
     to_inputs,
 )
-from epicyclic.case.nearest import did_you_mean, misspelt
-from epicyclic.case.values import parse_value
-from epicyclic.case.wording import dotted, path_of, written
+from epicyclic.case.messages import did_you_mean, dotted, misspelt, path_of, written
+from epicyclic.case.read import parse_value
 from epicyclic.library import builtin_case
 from epicyclic.oil.oil import DensitySlope, GoldLaw, RoelandsLaw
 from epicyclic.units import Number, Quantity

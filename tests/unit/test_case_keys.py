@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 import epicyclic as ep
-from epicyclic.case.fields import is_text
-from epicyclic.case.keys import field_at, known_keys, value_of
+from epicyclic.case.fields import field_at, is_text, known_keys, value_of
 from problems import only, problems_of
 from trains import stepped
 

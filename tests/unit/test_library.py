@@ -8,7 +8,7 @@ import pytest
 
 from epicyclic import library
 from epicyclic.case.case import read_case
-from epicyclic.case.schema import Material
+from epicyclic.case.tables.base import Material
 from epicyclic.oil.oil import Oil
 
 TALBOT_WORDS = [[*group["words"]] for group in library.case_variants()["talbot-2012"]]

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from epicyclic import library
-from epicyclic.case.element_kinds import ELEMENT_KINDS, drag_problems
-from epicyclic.case.element_tables import DragTable
+from epicyclic.builders.elements import build_element
+from epicyclic.case.tables.elements import DragTable, drag_problems
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.loss_table import LossTable, read_loss_table, table_problems
 from epicyclic.losses.ranges import ModelUse
@@ -244,14 +244,13 @@ def drag_table(**keys):
 
 
 def test_keys_reach_the_element(oil, tmp_path, state):
-    kind = ELEMENT_KINDS["drags"]
     table = drag_table(
         speed=["0 rpm", "1000 rpm"],
         temperature=["40 degC", "90 degC"],
         torque=[["1 N*m", "0.5 N*m"], ["3 N*m", "1.5 N*m"]],
     )
-    assert kind.check(table) == []
-    drag = kind.build("brake_a", table, shafts={"a": "a"}, oil=oil, folder=tmp_path)
+    assert drag_problems(table) == []
+    drag = build_element("drags", "brake_a", table, shafts={"a": "a"}, oil=oil, folder=tmp_path)
     assert drag.key == "brake_a"
     assert drag.between == ("a", HOUSING)
     result = drag.evaluate(state(500 * RPM, 0.0, 363.15))
@@ -259,10 +258,9 @@ def test_keys_reach_the_element(oil, tmp_path, state):
 
 
 def test_a_pump_over_its_speed(oil, tmp_path, state):
-    kind = ELEMENT_KINDS["drags"]
     table = drag_table(speed=["0 rpm", "2000 rpm"], power=["0 W", "400 W"])
-    assert kind.check(table) == []
-    pump = kind.build("pump", table, shafts={"a": "a"}, oil=oil, folder=tmp_path)
+    assert drag_problems(table) == []
+    pump = build_element("drags", "pump", table, shafts={"a": "a"}, oil=oil, folder=tmp_path)
     assert pump.evaluate(state(-1000 * RPM, 0.0)).losses["drag"].watts == pytest.approx(200.0)
 
 
@@ -284,10 +282,11 @@ def test_contradictions_are_found(keys, key):
 
 def test_files_with_a_load_are_refused(oil, tmp_path):
     (tmp_path / "a.csv").write_text("radial_force [N],torque [N*m]\n0,1\n1,2\n")
-    kind = ELEMENT_KINDS["drags"]
 
     def action(file):
-        kind.build("drag", drag_table(file=file), shafts={"a": "a"}, oil=oil, folder=tmp_path)
+        build_element(
+            "drags", "drag", drag_table(file=file), shafts={"a": "a"}, oil=oil, folder=tmp_path
+        )
 
     assert only(problems_of(action, "a.csv")).key == "file"
     (tmp_path / "b.csv").write_text("speed [rpm],torque [N*m]\n0,1\n1,x\n2,-1 N*m\n")

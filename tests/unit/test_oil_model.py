@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from epicyclic.case.plain import plain
+from epicyclic.case.read import plain
 from epicyclic.contact import fitted_models as regressions
 from epicyclic.contact import fitted_models as structured
 from epicyclic.contact.fitted_models import FORMAT, FORMS, OilModel, read_oil_model

@@ -12,7 +12,6 @@ from matplotlib.text import Text
 
 import epicyclic as ep
 import listed_trains
-from epicyclic.case.operating import operating_line
 from epicyclic.cli.common import parse_size
 from epicyclic.records.record import sets_of
 from epicyclic.report.drawings import draw
@@ -34,6 +33,7 @@ from epicyclic.show.plots.mesh import (
 from epicyclic.show.plots.pockets import plot_power, pocket_figure
 from epicyclic.show.plots.power_flow import SLIDE
 from epicyclic.show.plots.style import styled_figure
+from epicyclic.study.operating import operating_line
 from epicyclic.study.shapes import gear_shapes
 from epicyclic.units import decimals_of, format_number, known_text, power_unit
 from epicyclic.validation.compare import compare_published

@@ -8,8 +8,8 @@ from typing import get_args
 import pytest
 
 from epicyclic import library
-from epicyclic.case.element_kinds import ELEMENT_KINDS, seal_problems
-from epicyclic.case.element_tables import SealTable
+from epicyclic.builders.elements import build_element
+from epicyclic.case.tables.elements import SealTable, seal_problems
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.element import LOAD_INDEPENDENT, State, figures, fluids_at
 from epicyclic.machine.shaft_parts import (
@@ -135,10 +135,11 @@ def test_only_the_speed_difference_counts(state):
 
 
 def build(oil, folder, **keys):
-    kind = ELEMENT_KINDS["seals"]
     table = SealTable.model_validate({"shaft": "input", "diameter": "40 mm"} | keys)
-    assert kind.check(table) == []
-    return kind.build("input.seal", table, shafts={"input": "input"}, oil=oil, folder=folder)
+    assert seal_problems(table) == []
+    return build_element(
+        "seals", "input.seal", table, shafts={"input": "input"}, oil=oil, folder=folder
+    )
 
 
 def test_defaults_of_the_keys(oil, tmp_path):

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from epicyclic import library
-from epicyclic.case.element_kinds import ELEMENT_KINDS, bearing_problems
-from epicyclic.case.element_tables import ShaftBearingTable
+from epicyclic.builders.elements import build_element
+from epicyclic.case.tables.elements import ShaftBearingTable, bearing_problems
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import bearing_viscous_loss
 from epicyclic.losses.loss_table import LossTable
@@ -464,9 +464,8 @@ SHAFTS = {"input": "input", "output": "output"}
 
 
 def build(table, oil, tmp_path, shafts=SHAFTS):
-    kind = ELEMENT_KINDS["bearings"]
-    assert kind.check(table) == []
-    return kind.build("input.front", table, shafts=shafts, oil=oil, folder=tmp_path)
+    assert bearing_problems(table) == []
+    return build_element("bearings", "input.front", table, shafts=shafts, oil=oil, folder=tmp_path)
 
 
 def test_defaults_of_the_keys(oil, tmp_path):
@@ -591,11 +590,10 @@ def test_full_complement_rollers_need_no_series():
 
 
 def test_unknown_shafts_are_found(oil, tmp_path):
-    kind = ELEMENT_KINDS["bearings"]
     table = bearing_table(shaft="inptu", against="somewhere else")
 
     def action():
-        kind.build("b", table, shafts=SHAFTS, oil=oil, folder=tmp_path)
+        build_element("bearings", "b", table, shafts=SHAFTS, oil=oil, folder=tmp_path)
 
     first, second = problems_of(action)
     assert first.key == "shaft"

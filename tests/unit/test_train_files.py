@@ -12,7 +12,7 @@ import epicyclic as ep
 import listed_trains
 from epicyclic.case.case import build_case, case_schema
 from epicyclic.case.fields import find_field, quantity_of
-from epicyclic.case.train_text import train_text
+from epicyclic.case.template import train_text
 from trains import published, wolfrom
 
 SAME = 1e-12

@@ -11,7 +11,7 @@ from epicyclic.builders.set_case import set_cases
 from epicyclic.builders.temperatures import thermal_model
 from epicyclic.builders.train import build_train, train_layout
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
-from epicyclic.case.operation_tables import PlanetaryOperation
+from epicyclic.case.tables.operation import PlanetaryOperation
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_shape import mesh_rows
 from epicyclic.gears.gear import CARRIER

@@ -5,14 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from epicyclic.builders.models import bearing_model, fitted_rolling, loss_choices, mesh_models
+from epicyclic.builders.models import (
+    bearing_model,
+    contact_modulus,
+    fitted_rolling,
+    loss_choices,
+    mesh_models,
+    solid_of,
+)
 from epicyclic.builders.set_case import SetCase
 from epicyclic.builders.wetting import carrier_disc, gear_disc
 from epicyclic.case import flanks
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.gearing import Gearing, outward_of
-from epicyclic.case.model_tables import Numerics
-from epicyclic.case.part_tables import PlanetBearing as BearingTable
+from epicyclic.case.tables.elements import PlanetBearing as BearingTable
+from epicyclic.case.tables.models import Numerics
 from epicyclic.contact.line_contact import Flanks
 from epicyclic.gears.cutting import fitted_tool
 from epicyclic.gears.gear import CARRIER, HOUSING, Gear
@@ -89,11 +96,13 @@ def _meshes(
             bodies=(bodies[own[0]], bodies[own[1]]),
             tools=(tools[drawn.first], tools[drawn.second]),
             roundings=(one.tool_tip_radius, two.tool_tip_radius),
-            flanks=Flanks(one.material.modulus_against(two.material), one.roughness, two.roughness),
+            flanks=Flanks(
+                contact_modulus(one.material, two.material), one.roughness, two.roughness
+            ),
             solids=flanks.gear_bodies(mesh, tables, gearing.count or 1),
             deviations=flanks.flank_deviations(mesh, tables, drawn.table.misalignment),
             models=models[drawn.key],
-            materials=(one.material.solid, two.material.solid),
+            materials=(solid_of(one.material), solid_of(two.material)),
             nodes=(joined_key(key, own[0]), joined_key(key, own[1])),
         )
 
@@ -231,7 +240,7 @@ def roller_bearing(table: BearingTable, numerics: Numerics) -> RollerBearing:
         row_gap=table.row_gap,
         roller_roughness=table.roller_roughness,
         race_roughness=table.race_roughness,
-        equivalent_modulus=table.material.modulus_against(table.material),
+        equivalent_modulus=contact_modulus(table.material, table.material),
         slices=numerics.bearing_slices,
     )
 

@@ -6,12 +6,15 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from epicyclic.builders.lubrication import oil_share
 from epicyclic.builders.set_case import SetCase
 from epicyclic.case.case import Case
-from epicyclic.case.lubrication import oil_share
-from epicyclic.case.oil_laws import oil_laws
-from epicyclic.case.part_tables import PlanetBearing
+from epicyclic.case.tables.base import Material
+from epicyclic.case.tables.elements import PlanetBearing
+from epicyclic.case.tables.models import oil_laws
 from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
+from epicyclic.contact.temperatures import Solid
+from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.fitted import FittedFriction, FittedOrGoksem, FittedOrSchlenk, FittedRolling
 from epicyclic.losses.friction import (
     DRY_FRICTION,
@@ -131,7 +134,7 @@ def _direct_settings(case: SetCase) -> DirectSettings:
     carried = None
     if solver.heating != "isothermal":
         given = solver.solid_conductivity, solver.solid_heat_capacity
-        solids = [gear.material.solid_with(*given) for gear in case.gearing.tables.values()]
+        solids = [solid_of(gear.material, *given) for gear in case.gearing.tables.values()]
         carried = float(np.mean([solid.effusivity for solid in solids]))
     return DirectSettings(
         laws=oil_laws(solver),
@@ -143,6 +146,26 @@ def _direct_settings(case: SetCase) -> DirectSettings:
         seed=solver.seed,
         error=solver.error,
         most_contacts=solver.most_contacts,
+    )
+
+
+def contact_modulus(one: Material, other: Material) -> float:
+    """Equivalent modulus E_eq of a contact of two materials. [Pa]"""
+    return equivalent_modulus(
+        one.elastic_modulus, one.poisson_ratio, other.elastic_modulus, other.poisson_ratio
+    )
+
+
+def solid_of(
+    material: Material,
+    conductivity: float | None = None,  # Instead of its own. [W/(m K)]
+    heat_capacity: float | None = None,  # Instead of its own. [J/(kg K)]
+) -> Solid:
+    """What heat sees of a material."""
+    return Solid(
+        material.thermal_conductivity if conductivity is None else conductivity,
+        material.heat_capacity if heat_capacity is None else heat_capacity,
+        material.density,
     )
 
 

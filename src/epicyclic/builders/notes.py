@@ -12,8 +12,8 @@ from epicyclic.builders.set_case import SetCase
 from epicyclic.case import flanks
 from epicyclic.case.gear_rules import backlash_notes
 from epicyclic.case.gearing import DEFAULT_RIM_THICKNESS, Gearing, rim_thickness
-from epicyclic.case.lubrication import SHARE_KEY
-from epicyclic.case.model_tables import LoadSharing
+from epicyclic.case.tables.lubrication import SHARE_KEY
+from epicyclic.case.tables.models import LoadSharing
 from epicyclic.contact.fitted_models import changed_properties
 from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS

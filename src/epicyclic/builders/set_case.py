@@ -8,8 +8,9 @@ from pathlib import Path
 
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.gearing import Gearing
-from epicyclic.case.lubrication_tables import LubricationTable
-from epicyclic.case.model_tables import (
+from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
+from epicyclic.case.tables.lubrication import LubricationTable
+from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
     LoadSharing,
@@ -17,9 +18,8 @@ from epicyclic.case.model_tables import (
     Numerics,
     PlanetaryModels,
 )
-from epicyclic.case.operation_tables import Lubricant, Surroundings
-from epicyclic.case.part_tables import Carrier, PlanetBearing, ThrustBearing
-from epicyclic.case.thermal_tables import ThermalTable
+from epicyclic.case.tables.operation import Lubricant, Surroundings
+from epicyclic.case.tables.thermal import ThermalTable
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import ComputedSet, ListedSet
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from epicyclic.case.element_tables import ShaftBearingTable
+from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_bearings import needs_force
 from epicyclic.gears.gear import HOUSING

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from epicyclic.builders.lubrication import oil_share
 from epicyclic.builders.set_case import set_cases
 from epicyclic.case.case import Case
-from epicyclic.case.lubrication import oil_share
 from epicyclic.case.train import TrainCase
 from epicyclic.machine.disc import churned
 from epicyclic.machine.gear_set import GearSet

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from epicyclic.builders.built import Built
+from epicyclic.builders.elements import build_element
 from epicyclic.builders.gear_sets import gear_set
 from epicyclic.builders.models import fluids_of
 from epicyclic.builders.set_case import set_cases
 from epicyclic.builders.shafts import shaft_layouts
-from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.train import TrainCase
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.pocket_tables import FlowTables
@@ -87,8 +87,8 @@ def _parts(case: TrainCase) -> Iterator[Element]:
     """Bearings, seals and other drags."""
     for kind, name, table in case.elements:
         assert case.lubricant is not None
-        yield ELEMENT_KINDS[kind].build(
-            name, table, shafts=case.shape.names, oil=case.lubricant.oil, folder=case.folder
+        yield build_element(
+            kind, name, table, shafts=case.shape.names, oil=case.lubricant.oil, folder=case.folder
         )
 
 

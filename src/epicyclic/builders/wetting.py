@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from epicyclic.builders.lubrication import oil_share
 from epicyclic.builders.set_case import SetCase
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.gearing import outside_radius
-from epicyclic.case.lubrication import oil_share
-from epicyclic.case.lubrication_tables import LubricationTable
+from epicyclic.case.tables.lubrication import LubricationTable
 from epicyclic.gears.gear import Gear
 from epicyclic.losses.drag import Dipped
 from epicyclic.machine.disc import Disc, Jets, Sump

@@ -11,22 +11,20 @@ from typing import TYPE_CHECKING, Any, Self
 from pydantic import PrivateAttr
 
 from epicyclic.case.checks import cross_check
-from epicyclic.case.display import case_html, case_line
 from epicyclic.case.expand import gearing_of
 from epicyclic.case.fields import find_field, locate, to_inputs
 from epicyclic.case.gear_tables import Gears, GearTable
-from epicyclic.case.plain import plain, value_at, with_value, without
-from epicyclic.case.schema import Table
+from epicyclic.case.messages import key_parts, path_of, written
+from epicyclic.case.read import case_html, case_line, plain, value_at, with_value, without
 from epicyclic.case.sizing import Found, complete, converted_roughness, negative_teeth, told_oil
-from epicyclic.case.translation import unknown_key
-from epicyclic.case.validation import AnyCase, Validation, tables_of, validate
-from epicyclic.case.wording import key_parts, path_of, written
+from epicyclic.case.tables.base import Table
+from epicyclic.case.validation import AnyCase, Validation, tables_of, unknown_key, validate
 from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from epicyclic.case.gearing import Gearing
-    from epicyclic.case.lubrication_tables import LubricationTable
-    from epicyclic.case.operation_tables import Surroundings
+    from epicyclic.case.tables.lubrication import LubricationTable
+    from epicyclic.case.tables.operation import Surroundings
 
 FILE_KEYS = ("oil_model", "pocketing_table", "file")
 """Keys that name files, wherever they stand."""

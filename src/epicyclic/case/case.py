@@ -15,8 +15,11 @@ from epicyclic.case.expand import expand
 from epicyclic.case.fields import to_inputs
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring, SetMesh
 from epicyclic.case.gearing import Gearing
-from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
-from epicyclic.case.model_tables import (
+from epicyclic.case.messages import did_you_mean, misspelt, one_line, written
+from epicyclic.case.read import plain, read_file
+from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
+from epicyclic.case.tables.lubrication import LUBRICATION, LubricationTable
+from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
     GearPairLosses,
@@ -26,22 +29,17 @@ from epicyclic.case.model_tables import (
     PlanetaryLosses,
     PlanetaryModels,
 )
-from epicyclic.case.nearest import did_you_mean, misspelt
-from epicyclic.case.operation_tables import (
+from epicyclic.case.tables.operation import (
     GearPairOperation,
     Lubricant,
     PlanetaryOperation,
     Surroundings,
 )
-from epicyclic.case.part_tables import Carrier, PlanetBearing, ThrustBearing
-from epicyclic.case.plain import plain
-from epicyclic.case.reading import read_file
-from epicyclic.case.thermal_tables import ThermalTable
+from epicyclic.case.tables.thermal import ThermalTable
+from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import StateTable
-from epicyclic.case.uncertainty_tables import UNCERTAINTY, DistributionTable
 from epicyclic.case.validation import tables_of
-from epicyclic.case.wording import one_line, written
 from epicyclic.errors import InputError, Problem
 
 

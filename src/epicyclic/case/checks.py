@@ -9,47 +9,47 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from epicyclic.case.expand import gearing_of
 from epicyclic.case.gear_rules import gears_by_name
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.gearing import Gearing
-from epicyclic.case.lubrication import with_lubrication
-from epicyclic.case.lubrication_checks import (
+from epicyclic.case.messages import millimetres
+from epicyclic.case.set_rules import set_problems
+from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.elements import PlanetBearing
+from epicyclic.case.tables.lubrication import (
+    LubricationTable,
     check_immersion,
     check_lubrication,
     check_sump,
     check_wetting,
 )
-from epicyclic.case.lubrication_tables import LubricationTable
-from epicyclic.case.model_tables import (
+from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
     GearPairModels,
     LoadSharing,
     Numerics,
     PlanetaryModels,
+    law_problems,
 )
-from epicyclic.case.oil_laws import law_problems
-from epicyclic.case.operation_tables import (
+from epicyclic.case.tables.operation import (
     GearPairOperation,
     Lubricant,
     PlanetaryOperation,
     Surroundings,
 )
-from epicyclic.case.part_tables import PlanetBearing
-from epicyclic.case.schema import Table
-from epicyclic.case.set_rules import set_problems
-from epicyclic.case.thermal_checks import check_outlet, check_thermal, check_ways_out
-from epicyclic.case.thermal_tables import ThermalTable
+from epicyclic.case.tables.thermal import ThermalTable, check_outlet, check_thermal, check_ways_out
 from epicyclic.case.train_tables import ListedSet
-from epicyclic.case.wording import millimetres
-from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
+from epicyclic.contact.fitted_models import OilModel
 from epicyclic.errors import InputError, Problem, rising_problems
 from epicyclic.gears.mesh import are_evenly_spaced
-from epicyclic.losses.pocket_tables import read_stored
-from epicyclic.losses.ranges import FITTED
 from epicyclic.units import BAR
+
+if TYPE_CHECKING:
+    from epicyclic.contact.fitted_models import OilModel
 
 MOST_COEFFICIENTS = 5_000_000
 """Largest number of influence coefficients for each contact line: 40 MB, for three lines 120 MB."""
@@ -73,9 +73,8 @@ def cross_check(
         problems += law_problems("contact_solver", solver)
     thermal, oil = sections.get("thermal"), sections.get("lubrication")
     if isinstance(models, GearPairModels) and isinstance(thermal, ThermalTable):
-        table = oil if isinstance(oil, LubricationTable) else None
-        whole = with_lubrication(thermal, table, None if table is None else table.oil_flow)
-        problems += check_ways_out(whole, models.temperatures)
+        flow = oil.oil_flow if isinstance(oil, LubricationTable) else None
+        problems += check_ways_out(thermal, models.temperatures, flow)
     if isinstance(models, PlanetaryModels):
         problems += _check_planet_tilt(models, {*given, *sections})
     gearing = gearing_of(sections)
@@ -300,6 +299,11 @@ def _check_friction_model(models: GearPairModels, given: Collection[str]) -> lis
 
 def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> list[Problem]:
     """A fitted model needs its file or one built in for the oil, and in it what is asked of it."""
+    chosen = (models.friction, models.rolling, getattr(models, "bearing", ""))
+    if models.oil_model is None and not any(name.startswith("fitted") for name in chosen):
+        return []
+    from epicyclic.losses.ranges import FITTED  # few cases need it
+
     asked = {
         key: quantity
         for key, quantity in FITTED.items()
@@ -329,6 +333,8 @@ def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | Non
 
 
 def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> OilModel | None:
+    from epicyclic.contact.fitted_models import builtin_model, read_oil_model
+
     if models.oil_model is not None:
         return read_oil_model(folder / models.oil_model)
     if not isinstance(lubricant, Lubricant):
@@ -339,6 +345,8 @@ def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) ->
 def _check_pocketing_table(models: GearPairModels, folder: Path) -> list[Problem]:
     """That the file is one; whether it is for these pockets shows when they are known."""
     if models.pocketing_table is not None:
+        from epicyclic.losses.pocket_tables import read_stored
+
         try:
             read_stored(folder / models.pocketing_table)
         except InputError as error:

@@ -9,9 +9,8 @@ from typing import Any
 
 from epicyclic.case.gear_tables import SetMesh
 from epicyclic.case.gearing import Gearing, GearPairing
-from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.messages import did_you_mean, written
 from epicyclic.case.train_tables import ListedMesh
-from epicyclic.case.wording import written
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from epicyclic.case.schema import NamedMaterial, Roughness, ShortLength, Table, ThicknessFit
+from epicyclic.case.tables.base import NamedMaterial, Roughness, ShortLength, Table, ThicknessFit
 from epicyclic.units import (
     Angle,
     Deviation,

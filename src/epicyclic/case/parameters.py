@@ -10,9 +10,17 @@ from typing import Any
 from annotated_types import Gt
 
 from epicyclic.case.base import CaseTable
-from epicyclic.case.fields import bounds_of, is_array, is_whole_number, quantity_of, table_of
-from epicyclic.case.keys import field_at, known_keys, value_of
-from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.fields import (
+    bounds_of,
+    field_at,
+    is_array,
+    is_whole_number,
+    known_keys,
+    quantity_of,
+    table_of,
+    value_of,
+)
+from epicyclic.case.messages import did_you_mean
 from epicyclic.errors import Problem, raise_any
 from epicyclic.units import Quantity
 

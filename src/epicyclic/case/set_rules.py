@@ -12,9 +12,8 @@ from itertools import combinations, combinations_with_replacement, product
 
 from epicyclic.case.gear_rules import check_mesh, sound_gears
 from epicyclic.case.gearing import RACK_KEYS, Gearing, GearPairing, Pin
-from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.messages import did_you_mean, millimetres
 from epicyclic.case.train_tables import ListedSet
-from epicyclic.case.wording import millimetres
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER, HOUSING, Gear, involute
 from epicyclic.gears.mesh import Mesh, nearest_admissible_angle, nearest_places

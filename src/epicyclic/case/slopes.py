@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from epicyclic.case.base import CaseTable
+from epicyclic.case.fields import value_of
 from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.keys import value_of
+from epicyclic.case.messages import dotted, key_parts
 from epicyclic.case.thickness import tolerances_of
-from epicyclic.case.wording import dotted, key_parts
 
 SLOPES = {"profile_slope": "profile_slope", "lead_slope": "helix_slope"}
 """Keys of ``micro_geometry``, and what ISO 1328-1 calls their tolerance."""

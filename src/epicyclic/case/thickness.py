@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.wording import millimetres
+from epicyclic.case.messages import millimetres
 from epicyclic.errors import Problem
 from epicyclic.gears import measures
 from epicyclic.gears.gear import (

@@ -14,24 +14,25 @@ from pydantic import Field, PrivateAttr, create_model
 
 from epicyclic.case.base import CaseTable, as_given, with_sizes
 from epicyclic.case.checks import check_listed_bearings, cross_check
-from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.expand import expand
 from epicyclic.case.gear_tables import SharedGears
 from epicyclic.case.gearing import Gearing
-from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
-from epicyclic.case.model_tables import (
+from epicyclic.case.messages import did_you_mean, written
+from epicyclic.case.set_rules import listed_problems, rack_problems, set_problems
+from epicyclic.case.sizing import Found, complete, told_oil
+from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.elements import ELEMENT_KINDS, placing_problems
+from epicyclic.case.tables.lubrication import LUBRICATION, LubricationTable
+from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
     GearPairModels,
     Numerics,
     PlanetaryModels,
 )
-from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.operation_tables import Lubricant, Surroundings
-from epicyclic.case.schema import Table
-from epicyclic.case.set_rules import listed_problems, rack_problems, set_problems
-from epicyclic.case.sizing import Found, complete, told_oil
-from epicyclic.case.thermal_tables import ThermalTable
+from epicyclic.case.tables.operation import Lubricant, Surroundings
+from epicyclic.case.tables.thermal import ThermalTable
+from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable
 from epicyclic.case.train_bearings import bearing_force_problems
 from epicyclic.case.train_checks import operation_problems
 from epicyclic.case.train_shape import TrainShape, shape_of_train
@@ -50,10 +51,8 @@ from epicyclic.case.train_tables import (
     StateTable,
     TrainOperation,
 )
-from epicyclic.case.uncertainty_tables import UNCERTAINTY, DistributionTable
 from epicyclic.case.validation import Validation, validate
-from epicyclic.case.wording import written
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem
 
 _SHARED = ("models", "numerics", "friction_table", "lubrication")
 """Tables of a train that its computed sets take over where they have none of their own."""
@@ -440,23 +439,6 @@ def _complete(
 # --- bearings, seals, drags -----------------------------------------------------------------------
 
 
-def _unbuilt(train: TrainCase, kind: str, name: str, table: Table) -> Sequence[Problem]:
-    """Why a part that is sound by itself cannot be in this train: unknown shafts, bad files."""
-    if train.lubricant is None:
-        return ()
-    try:
-        ELEMENT_KINDS[kind].build(
-            name,
-            table,
-            shafts=train.shape.names,
-            oil=train.lubricant.oil,
-            folder=train.folder,
-        )
-    except InputError as error:
-        return error.problems
-    return ()
-
-
 def _element_problems(train: TrainCase) -> list[Problem]:
     problems = []
     taken = dict.fromkeys(train.sets, "sets")
@@ -470,9 +452,9 @@ def _element_problems(train: TrainCase) -> list[Problem]:
             problems.append(Problem(key, "", allowed, "Choose another name: losses carry it."))
         taken[name] = kind
         found = ELEMENT_KINDS[kind].check(table)
-        problems += [
-            _below(key, problem) for problem in found or _unbuilt(train, kind, name, table)
-        ]
+        if not found and train.lubricant is not None:
+            found = placing_problems(table, train.shape.names, train.folder)
+        problems += [_below(key, problem) for problem in found]
     if not train.computed:
         return problems
     if train.lubricant is None:

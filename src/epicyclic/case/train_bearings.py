@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from epicyclic.case.element_tables import ShaftBearingTable
-from epicyclic.case.wording import millimetres
+from epicyclic.case.messages import millimetres
+from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import HOUSING
 

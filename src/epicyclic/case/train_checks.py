@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epicyclic.case.checks import check_oil_model
-from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.thermal_checks import check_outlet
+from epicyclic.case.messages import did_you_mean, written
+from epicyclic.case.tables.thermal import check_outlet
 from epicyclic.case.train_lubrication import lubrication_problems
 from epicyclic.case.train_shape import TrainShape
 from epicyclic.case.train_tables import StateTable
-from epicyclic.case.wording import written
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.balance import freedom, implied, speeds_of

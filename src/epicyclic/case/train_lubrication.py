@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from epicyclic.case.lubrication_checks import check_immersion, check_sump, check_wetting
+from epicyclic.case.tables.lubrication import check_immersion, check_sump, check_wetting
 from epicyclic.errors import Problem
 
 if TYPE_CHECKING:

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from epicyclic.case.gearing import Gearing
-from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.train_tables import StateTable
-from epicyclic.case.wording import written
+from epicyclic.case.messages import did_you_mean, written
+from epicyclic.case.train_tables import (
+    StateTable,
+)
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.machine.machine import Coupling, Machine, MeshRow

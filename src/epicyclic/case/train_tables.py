@@ -20,8 +20,10 @@ from epicyclic.case.gear_tables import (
     internal_if_negative,
     with_positive_teeth,
 )
-from epicyclic.case.lubrication_tables import LUBRICATION, LubricationTable
-from epicyclic.case.model_tables import (
+from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
+from epicyclic.case.tables.lubrication import LUBRICATION, LubricationTable
+from epicyclic.case.tables.models import (
     GearPairLosses,
     GearPairModels,
     LoadSharing,
@@ -30,8 +32,6 @@ from epicyclic.case.model_tables import (
     PlanetaryLosses,
     PlanetaryModels,
 )
-from epicyclic.case.part_tables import Carrier, PlanetBearing, ThrustBearing
-from epicyclic.case.schema import Table
 from epicyclic.units import (
     Angle,
     HelixAngle,

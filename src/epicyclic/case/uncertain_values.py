@@ -13,15 +13,13 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic import library
 from epicyclic.case.base import CaseTable, owner_without_keys
-from epicyclic.case.fields import quantity_of
-from epicyclic.case.keys import field_at, known_keys, value_of
-from epicyclic.case.lubrication import FACTOR_KEY, SHARE_KEY, assumed_factor
-from epicyclic.case.nearest import did_you_mean
+from epicyclic.case.fields import field_at, known_keys, quantity_of, value_of
+from epicyclic.case.messages import did_you_mean, dotted, path_of, refused, written
 from epicyclic.case.parameters import Parameter, parameter_of
-from epicyclic.case.plain import value_at
+from epicyclic.case.read import value_at
 from epicyclic.case.slopes import slope_limit
-from epicyclic.case.uncertainty_tables import DistributionTable
-from epicyclic.case.wording import dotted, path_of, refused, written
+from epicyclic.case.tables.lubrication import FACTOR_KEY, SHARE_KEY
+from epicyclic.case.tables.uncertainty import DistributionTable
 from epicyclic.errors import Problem
 from epicyclic.units import CELSIUS, MICROMETRE, Quantity, format_number
 
@@ -221,7 +219,8 @@ def _assumed_slope(case: CaseTable, key: str, limit: float) -> UncertainValue:
 
 def _assumed_factor(case: CaseTable, key: str) -> UncertainValue | None:
     """How well the share of oil is known that follows from a method."""
-    factor, source = assumed_factor(value_of(case, key.rpartition(".")[0]))
+    method = library.lubrication_methods()[value_of(case, key.rpartition(".")[0]).method]
+    factor, source = method["lognormal_factor"], method["source"]
     parameter = parameter_of(case, key)
     assert isinstance(parameter, Parameter)
     made = _made(case, parameter, DistributionTable(lognormal_factor=factor), source)

@@ -363,7 +363,7 @@ picture_option = click.option(
 
 def point_of(case: Any) -> str:
     """The operating point of a case, for the captions of its pictures."""
-    from epicyclic.case.operating import operating_line
+    from epicyclic.study.operating import operating_line
 
     return operating_line(case.inputs()["operation"])
 
@@ -390,7 +390,7 @@ def from_rexs(file: str, changes: dict[str, Any], component: int | None = None) 
 
 
 def parse_changes(options: Sequence[str]) -> dict[str, Any]:
-    from epicyclic.case.values import parse_value
+    from epicyclic.case.read import parse_value
 
     changes: dict[str, Any] = {}
     problems = []

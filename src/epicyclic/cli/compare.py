@@ -195,9 +195,8 @@ def _check_output(output: Path | None, keys: list[str]) -> None:
 
 def _calibrated_text(comparison: MeasuredComparison) -> str:
     """The calibrated case as a case file that says which values are fitted, and to what."""
-    from epicyclic.case.template import case_text
+    from epicyclic.case.template import case_text, train_text
     from epicyclic.case.train import TrainCase
-    from epicyclic.case.train_text import train_text
     from epicyclic.report.measured_table import fitted_comment
     from epicyclic.study.measured.comparison import CALIBRATED
 

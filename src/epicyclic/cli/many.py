@@ -294,7 +294,7 @@ def check_values(values: Mapping[str, str | None]) -> None:
 
 def parse_axes(case: Case, values: Mapping[str, str | None]) -> dict[str, list[Any]]:
     """The values of speed, torque and temperature, as far as they are given."""
-    from epicyclic.case.operating import AXES
+    from epicyclic.study.operating import AXES
     from epicyclic.study.sweeps.plan import parse_vary
 
     texts = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]

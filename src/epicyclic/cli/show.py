@@ -43,7 +43,7 @@ def cases() -> None:
 def oils(name: str | None) -> None:
     """List the built-in oils, or show one with the source of every value."""
     from epicyclic import library
-    from epicyclic.case.nearest import did_you_mean
+    from epicyclic.case.messages import did_you_mean
     from epicyclic.report.library_tables import oil_sheet, oil_table
     from epicyclic.report.tables import terminal
 

@@ -6,13 +6,15 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.contact.fitted_models import OilModel
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent
+
+if TYPE_CHECKING:
+    from epicyclic.contact.fitted_models import OilModel
 
 # Ranges in which models were made: values held in them, and flags for what leaves them.
 

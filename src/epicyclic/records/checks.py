@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from epicyclic.case.operating import AXES
 from epicyclic.errors import Problem
+from epicyclic.study.operating import AXES
 
 if TYPE_CHECKING:
     import xarray as xr

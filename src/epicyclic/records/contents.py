@@ -9,11 +9,11 @@ from typing import Annotated, Any, Literal, Self, get_args
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 from pydantic_core import from_json
 
-from epicyclic.case.operating import AXES
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.element import OIL
 from epicyclic.results.heat import HeatBalance, HeatWay
 from epicyclic.results.result import Result
+from epicyclic.study.operating import AXES
 from epicyclic.units import CELSIUS
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from epicyclic.case.case import Case
-from epicyclic.case.wording import one_line
+from epicyclic.case.messages import one_line
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import check_place, whole_file
 from epicyclic.netcdf_file import read_groups

@@ -11,7 +11,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from epicyclic.case.wording import one_line
+from epicyclic.case.messages import one_line
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import number_table
 from epicyclic.units import percent

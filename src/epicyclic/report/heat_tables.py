@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 
 from epicyclic.case.case import Case
-from epicyclic.case.wording import sentence
+from epicyclic.case.messages import sentence
 from epicyclic.errors import ConvergenceError
 from epicyclic.report.page import Cell, Listing, Table, number, tenths
 from epicyclic.results.heat import HeatBalance, HeatWay

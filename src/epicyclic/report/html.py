@@ -14,7 +14,6 @@ import jinja2
 import xarray as xr
 from markupsafe import Markup
 
-from epicyclic.case.operating import operating_line
 from epicyclic.records.files import is_sweep
 from epicyclic.records.record import ResultRecord
 from epicyclic.report.drawings import draw
@@ -29,6 +28,7 @@ from epicyclic.show.plots.catalogue import Stored, available
 from epicyclic.show.plots.loss_map import map_line
 from epicyclic.show.plots.sweep import sweep_line, thinned
 from epicyclic.study.maps.tables import map_inputs
+from epicyclic.study.operating import operating_line
 
 KINDS = {
     "planetary": "Power losses of a planetary gear set",

@@ -10,8 +10,8 @@ from types import MappingProxyType
 from typing import Any
 
 from epicyclic.case.case import KINDS
-from epicyclic.case.element_kinds import ELEMENT_KINDS
 from epicyclic.case.fields import Place, dict_value, locate, quantity_of
+from epicyclic.case.tables.elements import ELEMENT_KINDS
 from epicyclic.case.train import form_of_set
 from epicyclic.report.page import Cell, Table
 from epicyclic.units import format_number, unit_text

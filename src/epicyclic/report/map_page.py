@@ -9,7 +9,6 @@ from collections import Counter
 import numpy as np
 import xarray as xr
 
-from epicyclic.case.operating import AXES
 from epicyclic.errors import Status
 from epicyclic.report.explorer import EXPLORER_LEAD, explorer_items
 from epicyclic.report.grids import grid_table
@@ -31,6 +30,7 @@ from epicyclic.report.uncertainty_tables import uncertainty_items
 from epicyclic.show.plots.loss_map import at_temperatures, left_out_line, map_at
 from epicyclic.study.friction import methods_of
 from epicyclic.study.maps.tables import map_case, map_inputs, statements
+from epicyclic.study.operating import AXES
 from epicyclic.units import unit_text
 
 _WHITE = "White: no power is passed on, or the point failed."

@@ -8,11 +8,11 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from epicyclic.case.operating import OPERATING
 from epicyclic.report.shown import MISSING, shown
 from epicyclic.report.tables import number_table, plain_table
 from epicyclic.study.measured.comparison import CALIBRATED, ErrorFigures, MeasuredComparison
 from epicyclic.study.measured.intervals import Fit, FittedParameter
+from epicyclic.study.operating import OPERATING
 from epicyclic.study.sweeps.run import AS_TESTED
 from epicyclic.units import unit_text
 

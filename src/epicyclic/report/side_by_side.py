@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from epicyclic.case.plain import flattened
+from epicyclic.case.read import flattened
 from epicyclic.case.template import toml_value
 from epicyclic.records.contents import ResultContents
 from epicyclic.report.page import Cell, KeyFigure, Table, aligned, number, tenths

@@ -11,8 +11,7 @@ from rich.console import Console, Group, JustifyMethod, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from epicyclic.case.operating import operating_line
-from epicyclic.case.wording import sentence
+from epicyclic.case.messages import sentence
 from epicyclic.losses.ranges import share_text
 from epicyclic.records.contents import ResultContents, contents_of
 from epicyclic.report import page
@@ -41,6 +40,7 @@ from epicyclic.report.train_tables import (
 )
 from epicyclic.results.result import Result, number_fields
 from epicyclic.study.friction import FrictionComparison, recommended
+from epicyclic.study.operating import operating_line
 
 PIPE_WIDTH = 100
 """Width of tables that do not go to a terminal. [characters]"""

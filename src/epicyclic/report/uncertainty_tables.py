@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rich.console import RenderableType
 
-from epicyclic.case.wording import one_line
+from epicyclic.case.messages import one_line
 from epicyclic.report.advice import LIMITS, advice_texts, driver_name
 from epicyclic.report.map_band_tables import map_band_tables
 from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number, tenths

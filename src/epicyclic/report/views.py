@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from epicyclic.case.case import Case
-from epicyclic.case.operating import operating_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import check_place, whole_file
 from epicyclic.records.contents import contents_of
@@ -21,6 +20,7 @@ from epicyclic.report.result_tables import key_figures, losses_table
 from epicyclic.report.train_tables import sums_table
 from epicyclic.results.result import Result
 from epicyclic.show.plots.catalogue import figure_of
+from epicyclic.study.operating import operating_line
 
 if TYPE_CHECKING:
     import pandas as pd

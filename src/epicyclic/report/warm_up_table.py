@@ -9,7 +9,7 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from epicyclic.case.wording import one_line
+from epicyclic.case.messages import one_line
 from epicyclic.report.shown import shown
 from epicyclic.report.tables import number_table
 from epicyclic.results.result import in_words

@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.builders.temperatures import oil_medium
 from epicyclic.case.case import Case
 from epicyclic.case.fields import quantity_of
-from epicyclic.case.wording import refused, written
+from epicyclic.case.messages import refused, written
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.machine.element import LOAD_DEPENDENT
 from epicyclic.machine.heat import COLDEST, HOTTEST

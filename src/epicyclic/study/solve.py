@@ -9,7 +9,6 @@ from epicyclic.builders.assembly import assemble
 from epicyclic.builders.build import build
 from epicyclic.builders.built import Built
 from epicyclic.case.case import Case
-from epicyclic.case.operating import AXES
 from epicyclic.case.train import TrainCase
 from epicyclic.contact.loaded_mesh import LoadedMesh
 from epicyclic.errors import ConvergenceError, InputError, Problem
@@ -20,6 +19,7 @@ from epicyclic.machine.gear_mesh import elastic_loads, load_mesh
 from epicyclic.machine.pocket_flow import flow_numbers, flow_requests
 from epicyclic.results.physical import judged
 from epicyclic.results.result import Result
+from epicyclic.study.operating import AXES
 
 # The sets of a case whose losses are computed.
 

@@ -15,9 +15,8 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.builders.models import fluids_of
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, build_case, read_case
-from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.plain import plain
-from epicyclic.case.wording import refused, written
+from epicyclic.case.messages import did_you_mean, refused, written
+from epicyclic.case.read import plain
 from epicyclic.errors import InputError, Problem, Status, raise_any
 from epicyclic.gears.cutting import mated_tools
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_thickness

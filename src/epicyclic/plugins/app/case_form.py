@@ -29,14 +29,11 @@ from epicyclic.case.fields import (
     quantity_of,
     tables_in,
 )
-from epicyclic.case.plain import value_at
-from epicyclic.case.reading import read_file
-from epicyclic.case.template import case_text, toml_key, toml_value
+from epicyclic.case.messages import dotted, key_parts, written
+from epicyclic.case.read import parse_value, read_file, value_at
+from epicyclic.case.template import case_text, toml_key, toml_value, train_text
 from epicyclic.case.train import form_of_set
 from epicyclic.case.train_tables import PlanetarySet
-from epicyclic.case.train_text import train_text
-from epicyclic.case.values import parse_value
-from epicyclic.case.wording import dotted, key_parts, written
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.plugins.app.worker import Worker
 from epicyclic.plugins.rexs.files import is_rexs

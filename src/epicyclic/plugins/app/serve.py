@@ -16,7 +16,7 @@ from fastapi import FastAPI
 from nicegui import app as nicegui_app
 from nicegui import ui
 
-from epicyclic.case.wording import one_line
+from epicyclic.case.messages import one_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.plugins.app.case_form import Desk, Shelves
 from epicyclic.plugins.app.guard import Guard

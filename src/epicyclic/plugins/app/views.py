@@ -13,13 +13,13 @@ from typing import Any, Protocol, cast
 from nicegui import background_tasks, events, ui
 from nicegui.element import Element
 
-from epicyclic.case.operating import OPERATING, OperatingValue
 from epicyclic.errors import EpicyclicError
 from epicyclic.plugins.app import worker as tasks
 from epicyclic.plugins.app.case_form import Desk, Shelf, number_in
 from epicyclic.plugins.app.worker import IN_PAGE, MESH, Answer, Doing, Ended, Latest, Study, Worker
 from epicyclic.report.html import items_html
 from epicyclic.report.page import Drawing, Gallery, Item, KeyFigure, Listing, Row, Section, Table
+from epicyclic.study.operating import OPERATING, OperatingValue
 
 # Chapters of a report on the page: tables at once, figures as they are drawn, each to save.
 

@@ -19,7 +19,6 @@ from typing import Any
 from nicegui import ui
 
 from epicyclic.case.case import Case
-from epicyclic.case.operating import AXES, operating_line
 from epicyclic.errors import EpicyclicError
 from epicyclic.kernels.compiling import listeners
 from epicyclic.plugins.contact_solver.direct import contacts_told
@@ -38,6 +37,7 @@ from epicyclic.show.plots.catalogue import PLOTS, Stored, figure_of
 from epicyclic.show.plots.drawing import POSITION, Turning, turning_mesh, turning_set
 from epicyclic.show.plots.style import figure_bytes
 from epicyclic.study.maps.compute import loss_map
+from epicyclic.study.operating import AXES, operating_line
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.plan import parse_vary
 

@@ -19,10 +19,8 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic import library
 from epicyclic.case.fields import find_field, quantity_of
-from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.plain import flattened, plain, without
-from epicyclic.case.reading import read_file
-from epicyclic.case.wording import one_line
+from epicyclic.case.messages import did_you_mean, one_line
+from epicyclic.case.read import flattened, plain, read_file, without
 from epicyclic.contact.elastic_teeth import one_thread
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import make_folder, read_bytes, read_text, write_file

@@ -13,7 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from epicyclic.case.oil_laws import (
+from epicyclic.builders.models import contact_modulus, solid_of
+from epicyclic.case.messages import key_parts
+from epicyclic.case.read import plain, read_file, value_at, with_value
+from epicyclic.case.tables.base import NamedMaterial, NamedOil, Roughness, Table
+from epicyclic.case.tables.models import (
     HEATING,
     PRESET,
     USUAL,
@@ -26,11 +30,7 @@ from epicyclic.case.oil_laws import (
     law_problems,
     oil_laws,
 )
-from epicyclic.case.plain import plain, value_at, with_value
-from epicyclic.case.reading import read_file
-from epicyclic.case.schema import NamedMaterial, NamedOil, Roughness, Table
 from epicyclic.case.validation import validate
-from epicyclic.case.wording import key_parts
 from epicyclic.errors import InputError, Problem, Status
 from epicyclic.kernels.ehl_steady import shear_stresses
 from epicyclic.kernels.line_contact import line_load_at_pressure
@@ -320,7 +320,7 @@ def _check_surface(name: str, surface: Surface) -> list[Problem]:
 
 def contact_model(case: ContactCase) -> ContactModel:
     """Contact, profiles and asperities of a case."""
-    modulus = case.surface1.material.modulus_against(case.surface2.material)
+    modulus = contact_modulus(case.surface1.material, case.surface2.material)
     table = case.contact
     load = table.line_load
     if load is None:
@@ -349,7 +349,7 @@ def _heating(case: ContactCase) -> Heating | None:
     if table.model == "isothermal":
         return None
     solids = (
-        surface.material.solid_with(table.solid_conductivity, table.solid_heat_capacity)
+        solid_of(surface.material, table.solid_conductivity, table.solid_heat_capacity)
         for surface in (case.surface1, case.surface2)
     )
     return heating_of(_oil_state(case), *(solid.effusivity for solid in solids))

@@ -16,7 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from epicyclic.case.fields import to_inputs
-from epicyclic.case.plain import value_at
+from epicyclic.case.read import value_at
 from epicyclic.contact.fitted_models import FORMS, REGIMES, OilModel, QuantityFit
 from epicyclic.contact.line_contact import LineContacts, contacts_at
 from epicyclic.errors import Status

@@ -12,14 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, read_case
-from epicyclic.case.element_tables import ShaftBearingTable
 from epicyclic.case.expand import expand
 from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.part_tables import PlanetBearing
-from epicyclic.case.schema import Material
+from epicyclic.case.messages import one_line
+from epicyclic.case.tables.base import Material
+from epicyclic.case.tables.elements import PlanetBearing, ShaftBearingTable
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import PairSet, PlanetarySet
-from epicyclic.case.wording import one_line
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import whole_file
 from epicyclic.gears.flanks import RA_OVER_RQ

@@ -24,11 +24,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from epicyclic.case.operating import PLANE, STATE
-from epicyclic.case.wording import one_line
+from epicyclic.case.messages import one_line
 from epicyclic.errors import EpicyclicError, Problem
 from epicyclic.study.maps.lumped import CAPACITY, CONDUCTANCE, SURROUNDINGS
 from epicyclic.study.maps.tables import Lookup, make_lookup, slack, stated
+from epicyclic.study.operating import PLANE, STATE
 from epicyclic.units import CELSIUS, RPM, format_number
 
 if TYPE_CHECKING:

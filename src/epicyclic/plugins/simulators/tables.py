@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from epicyclic.case.operating import STATE
 from epicyclic.errors import Problem
 from epicyclic.study.maps.tables import stated
+from epicyclic.study.operating import STATE
 from epicyclic.units import CELSIUS, RPM, format_number
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from epicyclic.case.operating import STATE
-from epicyclic.case.plain import flattened
+from epicyclic.case.read import flattened
 from epicyclic.errors import Problem, Status
 from epicyclic.study.maps.tables import statements
+from epicyclic.study.operating import STATE
 
 if TYPE_CHECKING:
     import xarray as xr

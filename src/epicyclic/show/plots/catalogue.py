@@ -12,7 +12,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from epicyclic.case.operating import operating_line
 from epicyclic.errors import InputError, Problem
 from epicyclic.records.contents import set_of
 from epicyclic.records.files import is_sweep
@@ -64,6 +63,7 @@ from epicyclic.show.plots.sweep import (
     varied,
 )
 from epicyclic.study.maps.tables import map_case, map_inputs
+from epicyclic.study.operating import operating_line
 from epicyclic.study.shapes import gear_shapes
 
 Stored = ResultRecord | xr.Dataset

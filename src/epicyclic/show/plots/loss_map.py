@@ -14,7 +14,6 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import MaxNLocator, NullLocator
 from numpy.typing import NDArray
 
-from epicyclic.case.operating import AXES, PLANE, STATE
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
     COLOURS,
@@ -24,6 +23,7 @@ from epicyclic.show.plots.style import (
     legend_below,
     title_of,
 )
+from epicyclic.study.operating import AXES, PLANE, STATE
 from epicyclic.units import format_number, unit_text
 
 FloatArray = NDArray[np.float64]

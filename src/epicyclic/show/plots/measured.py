@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from epicyclic.case.operating import OPERATING
 from epicyclic.show.plots.style import COLOURS, styled_figure
 from epicyclic.study.measured.comparison import AS_GIVEN, CALIBRATED, MeasuredComparison
+from epicyclic.study.operating import OPERATING
 from epicyclic.units import format_number, percent, unit_text
 
 FloatArray = NDArray[np.float64]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
-from epicyclic.case.plain import plain
+from epicyclic.case.read import plain
 from epicyclic.case.uncertain_values import UncertainValue
 from epicyclic.errors import InputError, Problem, Status, raise_any
 from epicyclic.results.result import Result

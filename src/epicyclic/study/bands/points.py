@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
-from epicyclic.case.operating import AXES, axis_name
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.study.bands.nearby import Nearby, Outputs, outputs_of
 from epicyclic.study.bands.plan import (
@@ -37,6 +36,7 @@ from epicyclic.study.maps.compute import MapPlan, changes_at, further_values, st
 from epicyclic.study.maps.cycle import Cycle
 from epicyclic.study.maps.duty import Sums, add_up
 from epicyclic.study.maps.tables import loss_power, map_case
+from epicyclic.study.operating import AXES, axis_name
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.runner import HERE, Rows, Runner
 from epicyclic.units import KILOJOULE, NEWTON_METRE, RPM

@@ -14,14 +14,13 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.builders.build import layout_of
 from epicyclic.case.case import Case, PlanetaryCase
-from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
+from epicyclic.case.messages import did_you_mean, written
 from epicyclic.case.train import TrainCase
-from epicyclic.case.wording import written
 from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.results.result import Layout, number_fields
 from epicyclic.study.maps.tables import Lookup, check_map, map_case
+from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import Axis
 from epicyclic.study.sweeps.plan import PointList, SweepPlan, make_plan

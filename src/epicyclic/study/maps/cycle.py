@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.case.operating import OPERATING, STATE
-from epicyclic.case.wording import one_line, sentence
+from epicyclic.case.messages import one_line, sentence
 from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.study.operating import OPERATING, STATE
 from epicyclic.units import SECOND, Quantity
 
 if TYPE_CHECKING:

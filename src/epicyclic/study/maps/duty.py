@@ -13,9 +13,7 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case
-from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.operating import STATE
-from epicyclic.case.wording import refused, written
+from epicyclic.case.messages import did_you_mean, refused, written
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.study.maps.compute import (
     Deviation,
@@ -30,6 +28,7 @@ from epicyclic.study.maps.compute import (
 )
 from epicyclic.study.maps.cycle import Cycle, Piece, open_cycle
 from epicyclic.study.maps.tables import Lookup, loss_power, make_lookup, map_case
+from epicyclic.study.operating import STATE
 from epicyclic.study.sweeps.runner import HERE, Progress, Runner
 from epicyclic.units import CELSIUS, KILOJOULE, NEWTON_METRE, RPM, SECOND, Quantity, format_number
 

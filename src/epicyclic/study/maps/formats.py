@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from epicyclic.case.operating import AXES, PLANE, STATE
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import check_place, whole_file
 from epicyclic.plugins.simulators import fmu, workbook
 from epicyclic.plugins.simulators import tables as simscape
 from epicyclic.plugins.simulators import tables as simulation
 from epicyclic.study.maps import tables
+from epicyclic.study.operating import AXES, PLANE, STATE
 from epicyclic.study.sweeps.run import write_netcdf
 
 if TYPE_CHECKING:

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case, read_case
-from epicyclic.case.operating import AXES, OPERATING, PLANE, STATE
-from epicyclic.case.wording import one_line
+from epicyclic.case.messages import one_line
 from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.study.operating import AXES, OPERATING, PLANE, STATE
 from epicyclic.study.sweeps.run import csv_safe, to_table
 from epicyclic.units import NEWTON_METRE, RPM, WATT
 

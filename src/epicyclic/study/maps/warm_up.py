@@ -17,8 +17,7 @@ from epicyclic.builders.build import build
 from epicyclic.builders.temperatures import term_nodes
 from epicyclic.case.case import Case
 from epicyclic.case.fields import quantity_of
-from epicyclic.case.operating import AXES, STATE, axis_name
-from epicyclic.case.wording import refused, written
+from epicyclic.case.messages import refused, written
 from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import OIL, joined_key
@@ -32,6 +31,7 @@ from epicyclic.study.maps.compute import MapPlan, held_shaft, map_plan, resolvin
 from epicyclic.study.maps.cycle import TIME, Cycle, open_cycle
 from epicyclic.study.maps.duty import check_states, crowded, point_of, texts_of
 from epicyclic.study.maps.tables import Lookup, driven_problem, loss_power
+from epicyclic.study.operating import AXES, STATE, axis_name
 from epicyclic.study.sweeps.plan import SweepPlan, make_plan
 from epicyclic.study.sweeps.runner import Progress
 from epicyclic.units import (

@@ -16,14 +16,12 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.builders.build import layout_of
 from epicyclic.case.case import Case
-from epicyclic.case.fields import is_array, is_text, quantity_of
-from epicyclic.case.keys import field_at, known_keys
-from epicyclic.case.nearest import did_you_mean, misspelt
-from epicyclic.case.operating import AXES, OPERATING, STATE, STATE_KEY
-from epicyclic.case.values import parse_value
-from epicyclic.case.wording import one_line, sentence
+from epicyclic.case.fields import field_at, is_array, is_text, known_keys, quantity_of
+from epicyclic.case.messages import did_you_mean, misspelt, one_line, sentence
+from epicyclic.case.read import parse_value
 from epicyclic.errors import InputError, Problem, first_of, raise_any
 from epicyclic.files import check_archive, csv_rows, decode, read_bytes, refuse
+from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY
 from epicyclic.units import WATT, Quantity, format_number
 
 if TYPE_CHECKING:

@@ -15,12 +15,18 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case
-from epicyclic.case.fields import all_keys, is_array, is_named, is_text, quantity_of, table_of
-from epicyclic.case.keys import field_at, known_keys
-from epicyclic.case.nearest import did_you_mean
-from epicyclic.case.plain import plain
-from epicyclic.case.values import parse_value
-from epicyclic.case.wording import one_line, refused, written
+from epicyclic.case.fields import (
+    all_keys,
+    field_at,
+    is_array,
+    is_named,
+    is_text,
+    known_keys,
+    quantity_of,
+    table_of,
+)
+from epicyclic.case.messages import did_you_mean, one_line, refused, written
+from epicyclic.case.read import parse_value, plain
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import read_text, refuse
 from epicyclic.units import Quantity

@@ -14,11 +14,10 @@ from typing import Any
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case
-from epicyclic.case.fields import is_whole_number, quantity_of
-from epicyclic.case.keys import field_at, value_of
+from epicyclic.case.fields import field_at, is_whole_number, quantity_of, value_of
+from epicyclic.case.messages import one_line, path_of, sentence
 from epicyclic.case.parameters import is_continuous
-from epicyclic.case.plain import value_at
-from epicyclic.case.wording import one_line, path_of, sentence
+from epicyclic.case.read import value_at
 from epicyclic.errors import InputError, Problem
 from epicyclic.study.sweeps.axes import coordinate_of, field_problem
 from epicyclic.units import format_number, in_unit, one_of, pure_number, with_unit

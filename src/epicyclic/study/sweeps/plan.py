@@ -17,14 +17,12 @@ import numpy as np
 
 from epicyclic.case.base import FILE_KEYS
 from epicyclic.case.case import Case, build_case
-from epicyclic.case.fields import is_whole_number
-from epicyclic.case.keys import field_at
-from epicyclic.case.operating import AXES, STATE_KEY
-from epicyclic.case.plain import plain
+from epicyclic.case.fields import field_at, is_whole_number
+from epicyclic.case.read import parse_value, plain
 from epicyclic.case.train import TrainCase
-from epicyclic.case.values import parse_value
 from epicyclic.errors import InputError, Problem, Status, raise_any
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
+from epicyclic.study.operating import AXES, STATE_KEY
 from epicyclic.study.solve import pocket_flow_numbers, solve
 from epicyclic.study.sweeps.axes import (
     MOST_POINTS,

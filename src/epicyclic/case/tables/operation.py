@@ -6,7 +6,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from epicyclic.case.schema import NamedOil, Table
+from epicyclic.case.tables.base import NamedOil, Table
 from epicyclic.units import Number, Pressure, RotationalSpeed, Temperature, Torque, as_stated
 
 Member = Literal["sun", "ring", "carrier"]

@@ -1,4 +1,4 @@
-"""Tables of a case file on heat: how gears are wetted, where heat leaves, what stores it."""
+"""Tables of a case file on heat, and their checks."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ from typing import Literal
 
 from pydantic import Field
 
-from epicyclic.case.schema import Table
+from epicyclic.case.tables.base import Table
+from epicyclic.errors import Problem
 from epicyclic.units import (
+    CELSIUS,
     Area,
     BodyCapacity,
     Conductance,
@@ -22,6 +24,8 @@ from epicyclic.units import (
     VolumeFlow,
     as_stated,
 )
+
+# Tables of a case file on heat: how gears are wetted, where heat leaves, what stores it.
 
 
 class HousingTable(Table):
@@ -149,3 +153,86 @@ class ThermalTable(Table):
 
     def __hash__(self) -> int:  # the tables of names cannot be hashed
         return hash((self.lubrication, self.oil_flow, self.ambient_temperature, self.housing))
+
+
+# Checks of what a case states about heat.
+
+
+ROUNDING = 1e-9
+"""Rounding of shares that add up to 1. [1]"""
+
+
+def check_thermal(thermal: ThermalTable) -> list[Problem]:
+    """What [thermal] states twice, or more of than there is."""
+    problems = []
+    if thermal.oil_flow is not None and thermal.oil_outlet_temperature is not None:
+        problems.append(
+            Problem(
+                "thermal.oil_flow, thermal.oil_outlet_temperature",
+                "",
+                "determine each other, by the heat that the oil takes along.",
+                "Give one of them.",
+            )
+        )
+    for name, share in thermal.jet_shares.items():
+        if not 0 <= share <= 1:
+            problems.append(
+                Problem(
+                    f"thermal.jet_shares.{name}",
+                    f"{share:g}",
+                    "must be a number >= 0 and <= 1.",
+                    "Give the part of the oil flow that meets it.",
+                )
+            )
+    whole = sum(thermal.jet_shares.values())
+    if not problems and whole > 1 + ROUNDING:
+        problems.append(
+            Problem(
+                "thermal.jet_shares",
+                "",
+                f"add up to {whole:g}, more than all of the oil.",
+                f"Divide each by {whole:g}, or leave some out.",
+            )
+        )
+    return problems
+
+
+def check_outlet(thermal: ThermalTable, inlet: float | None) -> list[Problem]:
+    """The oil must leave warmer than it comes."""
+    outlet = thermal.oil_outlet_temperature
+    if outlet is None or inlet is None or outlet > inlet:
+        return []
+    return [
+        Problem(
+            "thermal.oil_outlet_temperature",
+            CELSIUS.text(outlet),
+            f"must be above operation.oil_inlet_temperature, {CELSIUS.text(inlet)}: the oil takes "
+            "the heat of the losses along.",
+            "Correct one of them, or give thermal.oil_flow.",
+        )
+    ]
+
+
+def check_ways_out(
+    thermal: ThermalTable,
+    temperatures: str,
+    flow: float | None,  # Oil that [lubrication] brings to the gears. [m^3/s]
+) -> list[Problem]:
+    """A network needs a way for the heat to leave."""
+    ways = (
+        flow if thermal.oil_flow is None else thermal.oil_flow,
+        thermal.oil_outlet_temperature,
+        thermal.housing,
+        thermal.cooler_conductance,
+    )
+    if temperatures != "network" or any(ways):
+        return []
+    return [
+        Problem(
+            "thermal",
+            "",
+            'leaves no way out for the heat, which models.temperatures = "network" follows.',
+            "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] with its "
+            "area, or thermal.cooler_conductance.",
+        )
+    ]

@@ -2,30 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
 from epicyclic import library
-from epicyclic.case.lubrication_tables import LubricationTable, Method
-from epicyclic.case.operation_tables import Surroundings
-from epicyclic.case.thermal_tables import ThermalTable
+from epicyclic.case.tables.lubrication import OWN_SHARE_KEY, SHARE_KEY, WETTING, LubricationTable
+from epicyclic.case.tables.operation import Surroundings
+from epicyclic.case.tables.thermal import ThermalTable
 
-SHARE_KEY = "surroundings.oil_air_ratio"
-OWN_SHARE_KEY = "lubrication.oil_share"
-FACTOR_KEY = "lubrication.oil_share_factor"
-"""The keys that carry how well the share of oil is known: given, or as the method has it."""
-BAND = 1.96
+_BAND = 1.96
 """Half the width of a band of 95 %, in standard deviations of a normal distribution. [1]"""
-WETTING: Mapping[Method, tuple[str, ...]] = {
-    "jet": ("spray", "spray-and-dip"),
-    "spray": ("spray", "spray-and-dip"),
-    "flow": ("spray", "spray-and-dip"),
-    "drained": ("spray",),
-    "dip": ("dip", "spray-and-dip"),
-    "submerged": ("submerged",),
-}
-"""What thermal.lubrication is with each method if it is not given, and what else it may be."""
 
 
 class Lubricated(Protocol):
@@ -53,7 +39,7 @@ class OilShare:
     @property
     def band(self) -> tuple[float, float]:
         """95 % of all gearboxes."""
-        width = self.factor**BAND
+        width = self.factor**_BAND
         return self.share / width, min(1.0, self.share * width)
 
 
@@ -67,12 +53,6 @@ def oil_share(case: Lubricated) -> OilShare:
     known = library.lubrication_methods()[table.method]
     share = min(1.0, table.oil_share_factor * known["oil_share"])
     return OilShare(share, known["source"], known["grade"], known["lognormal_factor"])
-
-
-def assumed_factor(table: LubricationTable) -> tuple[float, str]:
-    """How well the share of oil of a method is known, as of `OilShare`, and the source of that."""
-    known = library.lubrication_methods()[table.method]
-    return known["lognormal_factor"], known["source"]
 
 
 def with_lubrication(

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from pydantic import Field
 
-from epicyclic.case.schema import Table
+from epicyclic.case.tables.base import Table
 from epicyclic.units import Number
 
 Stated = str | Number

@@ -1,0 +1,350 @@
+"""Plain tables of a case: read from a file or from given values, changed, and shown."""
+
+from __future__ import annotations
+
+import json
+import numbers
+import re
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from html import escape
+from pathlib import Path
+from typing import Any, NamedTuple
+from unicodedata import category
+
+import numpy as np
+from pydantic import BaseModel
+
+from epicyclic.case.fields import to_inputs
+from epicyclic.case.messages import dotted, one_line, written
+from epicyclic.errors import InputError, Problem
+from epicyclic.files import read_text, refuse
+from epicyclic.units import format_number, from_pint, unit_text
+
+# The tables of a case as plain values, such as TOML can hold.
+
+
+_DEEPEST = 20
+"""Tables of a case are nested a few levels deep; deeper ones are something else."""
+
+_CONTROLS = ("Cc", "Cs")
+"""Unicode categories of control characters and of halves of characters."""
+_LAYOUT = "\t\r\n"
+"""What texts of several lines may have."""
+
+_MOST_VALUES = 20_000
+"""A case has a hundred values, a large friction table some thousand."""
+
+
+def plain(value: Any) -> Any:
+    """A copy of `value` with plain dicts, numbers and text, tuples for arrays, nothing for None.
+
+    Raises
+    ------
+    InputError
+        If it is too large or nested too deep to be part of a case.
+    """
+    budget = iter(range(_MOST_VALUES))
+    return _plain(value, _DEEPEST, budget)
+
+
+def control_problems(tables: Any, path: tuple[str | int, ...] = ()) -> Iterator[Problem]:
+    """Texts in plain values with signs that control a terminal, or are no characters."""
+    if isinstance(tables, str) and not tables.isprintable():
+        if any(category(char) in _CONTROLS and char not in _LAYOUT for char in tables):
+            allowed = "has control characters."
+            yield Problem(dotted(path), written(tables), allowed, "Leave them out.")
+    elif isinstance(tables, Mapping):
+        for key, item in tables.items():
+            yield from control_problems(item, (*path, key))
+    elif isinstance(tables, tuple):
+        for number, item in enumerate(tables):
+            yield from control_problems(item, (*path, number))
+
+
+def _plain(value: Any, depth: int, budget: Iterator[int]) -> Any:
+    if next(budget, None) is None:
+        raise _not_a_case(f"there are more than {_MOST_VALUES} values, too many for a case.")
+    if depth == 0:
+        raise _not_a_case(f"the tables are nested more than {_DEEPEST} levels deep.")
+    if isinstance(value, BaseModel):
+        value = to_inputs(value)
+    elif isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    elif (quantity := from_pint(value)) is not None:
+        number, unit = quantity
+        value = number if unit == "dimensionless" else f"{number!r} {unit}"
+    if isinstance(value, Mapping):
+        return {
+            str(key): _plain(item, depth - 1, budget)
+            for key, item in value.items()
+            if item is not None
+        }
+    if isinstance(value, list | tuple):
+        return tuple(_plain(item, depth - 1, budget) for item in value)
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, numbers.Integral):
+        return int(value)
+    return float(value) if isinstance(value, numbers.Real) else value
+
+
+def _not_a_case(allowed: str) -> InputError:
+    return InputError([Problem("", "", allowed, "Give the tables of a case.")])
+
+
+def flattened(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values of nested tables."""
+    for key, value in tables.items():
+        if isinstance(value, Mapping):
+            yield from flattened(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value
+
+
+def value_at(tables: Any, path: Sequence[str | int]) -> Any:
+    """The value at `path` below `tables`; None if there is none."""
+    for part in path:
+        if isinstance(tables, Mapping):
+            tables = tables.get(part)
+        elif isinstance(tables, tuple) and isinstance(part, int) and part < len(tables):
+            tables = tables[part]
+        else:
+            return None
+    return tables
+
+
+def changed_at(tables: Any, path: Sequence[str | int], change: Callable[[Any], Any]) -> Any:
+    """A copy of `tables` with the value at `path` replaced by what `change` makes of it.
+
+    Only what lies on the path is copied.
+    """
+    if not path:
+        return change(tables)
+    head, *rest = path
+    if isinstance(head, int):
+        entry = changed_at(tables[head], rest, change)
+        return (*tables[:head], entry, *tables[head + 1 :])
+    return tables | {head: changed_at(tables[head], rest, change)}
+
+
+def with_value(tables: dict[str, Any], path: Sequence[str], value: Any) -> dict[str, Any]:
+    """A copy of `tables` with `value` at `path`, in new tables where there are none."""
+    name, *rest = path
+    return tables | {name: with_value(tables.get(name, {}), rest, value) if rest else value}
+
+
+def without(tables: dict[str, Any], path: Sequence[str]) -> dict[str, Any]:
+    """A copy of `tables` without the key at `path`, which is there."""
+    name, *rest = path
+    if rest:
+        return tables | {name: without(tables[name], rest)}
+    return {key: value for key, value in tables.items() if key != name}
+
+
+# From a case file to plain tables, with every line that is not TOML reported.
+
+
+_LARGEST_FILE = 1_000_000
+"""A case file is a page of text; anything larger than this is something else. [bytes]"""
+
+_LONGEST_PATH = 500
+"""Paths in messages are cut to this many characters."""
+
+_MOST_BAD_LINES = 50
+"""A file with more lines that are not TOML is something else."""
+
+_DEEPEST_KEY = 50
+"""Dots of one key; the TOML reader would need memory as the square of their number."""
+
+_BETWEEN_KEYS = re.compile(r"[,={}\[\]\n]")
+_KEY_DOT = re.compile(r"[\w\"'-]\s*\.")
+_PLACE = re.compile(r" \(at line (?P<line>\d+), column \d+\)")
+_KEY_LINE = re.compile(r"(?P<key>[\w.\"'-]+)\s*=(?P<value>[^#\[{]*)(#.*)?")
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
+
+_MARK = "\ue000"
+"""Encloses the number of the line before a mended value; a character of no script."""
+
+
+class _BadLine(NamedTuple):
+    """A line that is not TOML, and why."""
+
+    number: int
+    text: str
+    reason: str
+
+
+def read_file(path: Path) -> tuple[dict[str, Any], list[Problem]]:
+    """The tables of a TOML file, and the problems of its lines.
+
+    A value that only lacks its quotes is read as if it had them, so that the rest of the file can
+    be checked too.
+
+    Raises
+    ------
+    InputError
+        If it is not a file, not text, or not TOML that can be read around its mistakes.
+    """
+    try:
+        tables, bad_lines = _parse(read_text(path, "case", _LARGEST_FILE))
+        if not tables and not bad_lines:
+            refuse("is empty.", "Fill it; 'epicyclic init' writes one to start from.")
+        return _take_marks(plain(tables), bad_lines)
+    except InputError as error:
+        raise InputError(error.problems, one_line(str(path), _LONGEST_PATH)) from None
+
+
+def _parse(text: str) -> tuple[dict[str, Any], list[_BadLine]]:
+    """The tables of a text, its bad lines mended where that is possible."""
+    if any(len(_KEY_DOT.findall(part)) > _DEEPEST_KEY for part in _BETWEEN_KEYS.split(text)):
+        refuse("has too deeply nested tables.", "Name a case file.")
+    lines = text.replace("\r\n", "\n").split("\n")
+    bad_lines: list[_BadLine] = []
+    while True:
+        try:
+            # with an empty line at the end every mistake lies in a line
+            return tomllib.loads("\n".join([*lines, "", ""])), bad_lines
+        except RecursionError:
+            refuse("has too deeply nested tables.", "Name a case file.")
+        except ValueError as error:
+            line = _bad_line(error, lines)
+        mended = None
+        if all(line.number != other.number for other in bad_lines):
+            bad_lines.append(line)
+            mended = _mended(line)
+        if mended is None or len(bad_lines) > _MOST_BAD_LINES:
+            raise InputError([_problem(bad, "") for bad in bad_lines])
+        lines[line.number - 1] = mended
+
+
+def _bad_line(error: ValueError, lines: list[str]) -> _BadLine:
+    place = _PLACE.search(str(error))
+    if place is None:  # a whole number of thousands of digits
+        refuse(f"is not TOML: {error}.", "Shorten that number.")
+    number = min(int(place["line"]), len(lines))
+    reason = str(error)[: place.start()]
+    if reason == r"Illegal character '\n'":
+        reason = "the quotes are not closed"
+    return _BadLine(number, lines[number - 1].strip(), reason)
+
+
+def _mended(line: _BadLine) -> str | None:
+    """What to read in place of a bad line; None if nothing can be."""
+    match = _KEY_LINE.fullmatch(line.text)
+    if match is None:
+        return None
+    if _gives_again(line):
+        return ""
+    value = f"{_MARK}{line.number}{_MARK}{_value(match)}"
+    return f"{match['key']} = {json.dumps(value)}"
+
+
+def _gives_again(line: _BadLine) -> bool:
+    return line.reason.startswith("Cannot overwrite")
+
+
+def _value(match: re.Match[str]) -> str:
+    """The value of a key line, without the quotes that it may have on one side."""
+    return match["value"].strip().strip("\"'")
+
+
+def _take_marks(
+    tables: dict[str, Any], bad_lines: list[_BadLine]
+) -> tuple[dict[str, Any], list[Problem]]:
+    """The tables with mended values as plain text, and the problems of the bad lines."""
+    keys: dict[int, str] = {}
+    for number, path in list(_marked(tables, ())):
+        tables = changed_at(tables, path, lambda text: text.rpartition(_MARK)[2])
+        keys[number] = dotted(path)
+    return tables, [_problem(line, keys.get(line.number, "")) for line in bad_lines]
+
+
+def _marked(tables: Any, path: tuple[str, ...]) -> Iterator[tuple[int, tuple[str, ...]]]:
+    """Line number and path of each mended value."""
+    if isinstance(tables, dict):
+        for key, value in tables.items():
+            yield from _marked(value, (*path, key))
+    elif isinstance(tables, str) and tables.startswith(_MARK):
+        yield int(tables.split(_MARK)[1]), path
+
+
+def _problem(line: _BadLine, key: str) -> Problem:
+    match = _KEY_LINE.fullmatch(line.text)
+    if match is None or not key:
+        given = f"line {line.number}: {one_line(line.text)}"
+    else:
+        given = one_line(match["value"].strip())
+    if _gives_again(line):
+        return Problem(key, given, "gives a key that is given before.", "Keep one of the two.")
+    if line.reason.startswith("Cannot declare"):
+        return Problem(
+            key,
+            given,
+            f"declares a table twice (line {line.number}).",
+            "Put all its keys under one header; a dotted key, such as micro_geometry.tip_relief "
+            "under [sun], declares its table too.",
+        )
+    remedy = "Mend this line." if match is None else _remedy(match["key"], _value(match))
+    return Problem(key, given, f"is not TOML (line {line.number}): {line.reason}.", remedy)
+
+
+def _remedy(key: str, value: str) -> str:
+    if not value:
+        return "Give a value."
+    if value.casefold() in ("true", "false"):
+        return f"Write {value.casefold()}."
+    if _DECIMAL_COMMA.fullmatch(value):
+        return f"Write {value.replace(',', '.')}."
+    try:
+        return f"Write {format_number(float(value), 12)}."
+    except ValueError:
+        return f'Put the value in quotes: {key} = "{one_line(value)}".'
+
+
+# Values typed on a command line.
+
+
+def parse_value(text: str) -> Any:
+    """`text` as TOML would read it (numbers, true, lists), else as plain text."""
+    try:
+        tables = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):  # no TOML, numbers or lists beyond all measure
+        return text
+    return tables["value"] if len(tables) == 1 else text
+
+
+# How a case shows itself: in one line, and as a page of a notebook, in the units of case files.
+
+
+def case_line(
+    name: str,  # Name of its class.
+    given: Mapping[str, Any],  # Its tables, without defaults.
+) -> str:
+    """A case in one line: its title and operating point."""
+    words = [f"title={given['title']!r}"] if given.get("title") else []
+    words += [f"{key}={value!r}" for key, value in given.get("operation", {}).items()]
+    return f"{name}({', '.join(words)})"
+
+
+def case_html(name: str, given: Mapping[str, Any]) -> str:
+    """The keys of a case that were given, table by table; parameters as for `case_line`."""
+    alone = {key: value for key, value in given.items() if not isinstance(value, Mapping)}
+    tables = {"": alone} | {key: it for key, it in given.items() if isinstance(it, Mapping)}
+    rows = "".join(
+        _row(key if number == 0 else "", name, value)
+        for key, table in tables.items()
+        for number, (name, value) in enumerate(flattened(table))
+    )
+    title = escape(str(given.get("title") or name))
+    return f"<table><caption><strong>{title}</strong></caption><tbody>{rows}</tbody></table>"
+
+
+def _row(table: str, key: str, value: object) -> str:
+    text = unit_text(value) if isinstance(value, str) else str(value)
+    cells = (f"<strong>{escape(table)}</strong>", escape(key), escape(text))
+    return f"<tr>{''.join(map(_cell, cells))}</tr>"
+
+
+def _cell(content: str) -> str:
+    return f'<td style="text-align: left">{content}</td>'
