@@ -214,6 +214,7 @@ def duty_seconds() -> tuple[float, float]:
 
 
 def clear_caches() -> None:
+    from epicyclic.builders import gear_sets
     from epicyclic.case import flanks, gearing
     from epicyclic.contact import elastic_teeth as mesh_compliance
     from epicyclic.contact import elastic_teeth as tooth_plate
@@ -234,7 +235,7 @@ def clear_caches() -> None:
         geometry.pocket_geometry,
         gearing._gear,
         gearing._mesh,
-        flanks.gear_bodies,
+        gear_sets.gear_bodies,
         flanks.flank_deviations,
         tooth_plate.tooth_plate,
         mesh_compliance.mesh_compliance,
@@ -256,14 +257,14 @@ def compliance_seconds(segments: int) -> tuple[float, float]:
     loads : float
         Load of both meshes at one operating point. [s]
     """
-    from epicyclic.case import flanks
+    from epicyclic.builders import gear_sets
     from epicyclic.contact.elastic_teeth import mesh_compliance
     from epicyclic.contact.loaded_mesh import load_mesh_elastically
 
     case = test_article()
     meshes = case.gearings[""].geometries
     tables = ((case.sun, case.planet), (case.planet, case.ring))
-    bodies = [flanks.gear_bodies(mesh, pair) for mesh, pair in zip(meshes, tables, strict=True)]
+    bodies = [gear_sets.gear_bodies(mesh, pair) for mesh, pair in zip(meshes, tables, strict=True)]
     force = itertools.count(5000.0)
 
     def coefficients() -> None:

@@ -1,6 +1,6 @@
 """The elements that a train adds by tables of their own: bearings, seals, other drags.
 
-A new kind is one module in `epicyclic.machine`, one table of keys with its line in `ELEMENT_KINDS`
+A new kind is one module in `epicyclic.machine`, one table of keys with its line in `ELEMENT_CHECKS`
 of `epicyclic.case.tables.elements`, and one function here with its line in `_BUILDERS`.
 """
 

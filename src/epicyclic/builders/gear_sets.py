@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 
 from epicyclic.builders.models import (
     bearing_model,
@@ -17,13 +18,15 @@ from epicyclic.builders.set_case import SetCase
 from epicyclic.builders.wetting import carrier_disc, gear_disc
 from epicyclic.case import flanks
 from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.gearing import Gearing, outward_of
+from epicyclic.case.gearing import Gearing, outward_of, rim_thickness
 from epicyclic.case.tables.elements import PlanetBearing as BearingTable
 from epicyclic.case.tables.models import Numerics
+from epicyclic.contact.elastic_teeth import GearBody, Rim
 from epicyclic.contact.line_contact import Flanks
-from epicyclic.gears.cutting import fitted_tool
+from epicyclic.gears.cutting import cutting_tool, fitted_tool
 from epicyclic.gears.gear import CARRIER, HOUSING, Gear
 from epicyclic.gears.generation import Tool
+from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN, RollerBearing
 from epicyclic.losses.pocket_tables import FlowTables
@@ -99,12 +102,31 @@ def _meshes(
             flanks=Flanks(
                 contact_modulus(one.material, two.material), one.roughness, two.roughness
             ),
-            solids=flanks.gear_bodies(mesh, tables, gearing.count or 1),
+            solids=gear_bodies(mesh, tables, gearing.count or 1),
             deviations=flanks.flank_deviations(mesh, tables, drawn.table.misalignment),
             models=models[drawn.key],
             materials=(solid_of(one.material), solid_of(two.material)),
             nodes=(joined_key(key, own[0]), joined_key(key, own[1])),
         )
+
+
+@lru_cache(maxsize=256)
+def gear_bodies(
+    mesh: Mesh, tables: tuple[GearTable, GearTable], planets: int = 1
+) -> tuple[GearBody, GearBody]:
+    """Materials, root fillets and rims of both members of a mesh, `planets` of which are alike."""
+    one, two = tables
+    return _body(mesh.gear1, one, 1), _body(mesh.gear2, two, planets)
+
+
+def _body(gear: Gear, table: GearTable, loads: int) -> GearBody:
+    thickness = rim_thickness(table)
+    return GearBody(
+        table.material.elastic_modulus,
+        table.material.poisson_ratio,
+        cutting_tool(gear, table.tool_tip_radius),
+        None if thickness is None else Rim(thickness, loads),
+    )
 
 
 def _tools(gearing: Gearing) -> dict[str, Tool]:

@@ -1,4 +1,4 @@
-"""From the tables of a case to the elastic bodies of its gears and the deviations of its flanks."""
+"""From the tables of a case to the deviations of its flanks."""
 
 from __future__ import annotations
 
@@ -6,9 +6,6 @@ import math
 from functools import lru_cache
 
 from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, Planet, TopographyTable
-from epicyclic.case.gearing import rim_thickness
-from epicyclic.contact.elastic_teeth import GearBody, Rim
-from epicyclic.gears.cutting import cutting_tool
 from epicyclic.gears.flanks import (
     FlankDeviations,
     MicroGeometry,
@@ -20,23 +17,6 @@ from epicyclic.gears.gear import Gear
 from epicyclic.gears.mesh import Mesh
 
 Tables = tuple[GearTable, GearTable]
-
-
-@lru_cache(maxsize=256)
-def gear_bodies(mesh: Mesh, tables: Tables, planets: int = 1) -> tuple[GearBody, GearBody]:
-    """Materials, root fillets and rims of both members of a mesh, `planets` of which are alike."""
-    one, two = tables
-    return _body(mesh.gear1, one, 1), _body(mesh.gear2, two, planets)
-
-
-def _body(gear: Gear, table: GearTable, loads: int) -> GearBody:
-    thickness = rim_thickness(table)
-    return GearBody(
-        table.material.elastic_modulus,
-        table.material.poisson_ratio,
-        cutting_tool(gear, table.tool_tip_radius),
-        None if thickness is None else Rim(thickness, loads),
-    )
 
 
 def micro_geometries(table: GearTable) -> tuple[MicroGeometryTable, ...]:

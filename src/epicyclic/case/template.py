@@ -17,7 +17,7 @@ from epicyclic.case.case import GearPairCase, PlanetaryCase, read_case
 from epicyclic.case.fields import choices_of, dict_value, entry_of, quantity_of, table_of
 from epicyclic.case.gear_tables import SharedGears
 from epicyclic.case.messages import dotted, key_parts
-from epicyclic.case.tables.elements import ELEMENT_KINDS
+from epicyclic.case.tables.elements import ELEMENT_CHECKS
 from epicyclic.case.train import TrainCase, form_of_set
 from epicyclic.case.train_tables import ListedSet, PlanetarySet
 
@@ -266,7 +266,7 @@ def train_text(tables: Mapping[str, Any], head: list[str], about: Mapping[str, s
     lines += writer.table("lubricant")
     lines += [line for key in _DEFAULTS if writer.is_known(key) for line in writer.table(key)]
     lines += [line for name in tables.get("sets", {}) for line in writer.one_set(name)]
-    lines += [line for kind in ELEMENT_KINDS for line in writer.parts(kind)]
+    lines += [line for kind in ELEMENT_CHECKS for line in writer.parts(kind)]
     left_out = [f"[{key}]" for key in _DEFAULTS if not writer.is_known(key)]
     lines += ["", f"# Defaults hold for the tables {', '.join(left_out)},", f"# {writer.left_out}"]
     return "\n".join(lines) + "\n"

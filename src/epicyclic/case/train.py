@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from types import GenericAlias, MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, Self, cast
+from types import MappingProxyType
+from typing import Any, Literal, Self, cast
 
-from pydantic import Field, PrivateAttr, create_model
+from pydantic import Field, PrivateAttr
 
 from epicyclic.case.base import CaseTable, as_given, with_sizes
 from epicyclic.case.checks import check_listed_bearings, cross_check
@@ -21,7 +20,7 @@ from epicyclic.case.messages import did_you_mean, written
 from epicyclic.case.set_rules import listed_problems, rack_problems, set_problems
 from epicyclic.case.sizing import Found, complete, told_oil
 from epicyclic.case.tables.base import Table
-from epicyclic.case.tables.elements import ELEMENT_KINDS, placing_problems
+from epicyclic.case.tables.elements import ELEMENT_CHECKS, ElementTables, placing_problems
 from epicyclic.case.tables.lubrication import LUBRICATION, LubricationTable
 from epicyclic.case.tables.models import (
     ContactSolver,
@@ -60,12 +59,12 @@ _GIVEN = ("efficiency", "mesh_efficiency")
 
 
 class _TrainTables(CaseTable):
-    """Gear sets joined by shafts."""
+    """What a train states beside its elements; its sets are read one by one."""
 
     kind: Literal["train"]
     title: str = ""
     operation: TrainOperation
-    sets: dict[str, SetTable]
+    sets: Any = None
     shafts: dict[str, tuple[str, ...]] = Field(default={})
     states: dict[str, StateTable] = Field(default={})
     positions: dict[str, Position] = Field(default={})
@@ -78,6 +77,16 @@ class _TrainTables(CaseTable):
     contact_solver: ContactSolver = ContactSolver()
     numerics: Numerics = Numerics()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+
+
+class _TrainHead(ElementTables, _TrainTables):
+    """A train without its sets."""
+
+
+class TrainCase(_TrainHead):
+    """A train: gear sets joined by shafts."""
+
+    sets: dict[str, SetTable]
 
     _shape: TrainShape = PrivateAttr()
 
@@ -100,7 +109,7 @@ class _TrainTables(CaseTable):
     @property
     def elements(self) -> Iterator[tuple[str, str, Table]]:
         """Kind, name and table of every bearing, seal and other drag."""
-        for kind in ELEMENT_KINDS:
+        for kind in ELEMENT_CHECKS:
             for name, table in getattr(self, kind).items():
                 yield kind, name, table
 
@@ -151,7 +160,7 @@ class _TrainTables(CaseTable):
         given = tables.get("sets")
         raw_sets: dict[str, Any] = given if isinstance(given, dict) else {}
         named = tuple(raw_sets)
-        whole = validate(_top(cls), {k: v for k, v in tables.items() if k != "sets"}, sound)
+        whole = validate(_TrainHead, {k: v for k, v in tables.items() if k != "sets"}, sound)
         found = [*problems]
         known = {problem.key for problem in problems}
         found += [problem for problem in whole.problems if problem.key not in known]
@@ -192,7 +201,7 @@ class _TrainTables(CaseTable):
         if case is None or len(sets) < len(named) or not named:
             return cls._made(None, tables, source, found)
         values = {key: getattr(case, key) for key in type(case).model_fields}
-        train = cls.model_construct(**values, sets=sets)
+        train = cls.model_construct(**values | {"sets": sets})
         train._source, train._found = source, (*sizes, *told_oil(tables))
         train._sound = whole.sections
         train._shape, wrong = shape_of_train(shapes, train.shafts)
@@ -204,30 +213,8 @@ class _TrainTables(CaseTable):
         return cls._made(cast(Self, train), tables, source, found)
 
 
-_ELEMENTS: dict[str, Any] = {
-    name: (GenericAlias(dict, (str, kind.table)), {}) for name, kind in ELEMENT_KINDS.items()
-}
-if TYPE_CHECKING:
-    TrainCase = _TrainTables
-else:
-    TrainCase = create_model(
-        "TrainCase", __base__=_TrainTables, __module__=__name__, __doc__="A train.", **_ELEMENTS
-    )
-
-
 def _read(tables: dict[str, Any], source: str) -> TrainCase:
     return TrainCase.from_tables(tables, source)
-
-
-@lru_cache(maxsize=1)
-def _top(kind: type[Table]) -> type[Table]:
-    """The tables of a train without its sets, which are read one by one."""
-    fields: dict[str, Any] = {
-        name: (field.annotation, field)
-        for name, field in kind.model_fields.items()
-        if name != "sets"
-    }
-    return create_model("Train", __base__=Table, **fields)
 
 
 def _no_sets(given: Any) -> Problem:
@@ -281,21 +268,30 @@ def _read_set(raw: Any, shared: Mapping[str, Any], folder: Path) -> _ReadSet:
     if not isinstance(raw, dict):
         remedy = "Write [sets.NAME] and its keys below it."
         return _ReadSet(None, [Problem("", written(raw), "must be a table of keys.", remedy)])
-    text = json.dumps([raw, dict(shared), str(folder)], sort_keys=True, default=repr)
-    return _read_set_cached(_Given(raw, shared, folder, text))
+    return _read_set_cached(_Given(raw, dict(shared), folder))
 
 
 class _Given:
-    """What a set is read from, compared by its text."""
+    """What a set is read from: equal if every value is the same and of the same type."""
 
-    def __init__(self, raw: Any, shared: Mapping[str, Any], folder: Path, text: str) -> None:
-        self.raw, self.shared, self.folder, self.text = raw, shared, folder, text
+    def __init__(self, raw: dict[str, Any], shared: dict[str, Any], folder: Path) -> None:
+        self.raw, self.shared, self.folder = raw, shared, folder
+        self.key = (_frozen(raw), _frozen(shared), folder)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Given) and self.text == other.text
+        return isinstance(other, _Given) and self.key == other.key
 
     def __hash__(self) -> int:
-        return hash(self.text)
+        return hash(self.key)
+
+
+def _frozen(value: Any) -> Hashable:
+    """Plain values as something to be compared; 1, 1.0 and true are different."""
+    if isinstance(value, dict):
+        return frozenset((key, _frozen(item)) for key, item in value.items())
+    if isinstance(value, list | tuple):
+        return (type(value), *map(_frozen, value))
+    return type(value), value
 
 
 @lru_cache(maxsize=64)
@@ -451,7 +447,7 @@ def _element_problems(train: TrainCase) -> list[Problem]:
             allowed = f"has the name of another part, {taken[name]}.{name}."
             problems.append(Problem(key, "", allowed, "Choose another name: losses carry it."))
         taken[name] = kind
-        found = ELEMENT_KINDS[kind].check(table)
+        found = ELEMENT_CHECKS[kind](table)
         if not found and train.lubricant is not None:
             found = placing_problems(table, train.shape.names, train.folder)
         problems += [_below(key, problem) for problem in found]

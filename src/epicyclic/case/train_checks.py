@@ -18,11 +18,10 @@ from epicyclic.case.train_shape import TrainShape
 from epicyclic.case.train_tables import StateTable
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import HOUSING
-from epicyclic.machine.balance import freedom, implied, speeds_of
-from epicyclic.machine.machine import Machine
 
 if TYPE_CHECKING:
     from epicyclic.case.train import TrainCase
+    from epicyclic.machine.machine import Machine
 
 
 def operation_problems(train: TrainCase, shape: TrainShape, complete: bool) -> list[Problem]:
@@ -214,6 +213,8 @@ def _given_problems(
 
 def _freedom_problems(train: TrainCase, shape: TrainShape, complete: bool) -> list[Problem]:
     """The given speeds must determine all others, and the input must be able to turn."""
+    from epicyclic.machine.balance import freedom, implied  # only trains need a machine
+
     machine = shape.machine(train.state)
     driven = shape.shaft_of(train.operation.input) or ""
     held = shape.held(train.state)
@@ -272,6 +273,8 @@ def _standing_output(
     others: Sequence[str],
 ) -> list[Problem]:
     """An output that the input does not turn can balance no torque of it."""
+    from epicyclic.machine.balance import speeds_of
+
     output = train.operation.output
     speeds = speeds_of(machine, dict.fromkeys(others, 0.0) | {driven: 1.0})
     if speeds[shape.shaft_of(output) or ""] != 0:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from epicyclic.case.gearing import Gearing
 from epicyclic.case.messages import did_you_mean, written
@@ -13,7 +14,9 @@ from epicyclic.case.train_tables import (
 )
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER, HOUSING
-from epicyclic.machine.machine import Coupling, Machine, MeshRow
+
+if TYPE_CHECKING:  # only trains need a machine
+    from epicyclic.machine.machine import Coupling, Machine, MeshRow
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +55,8 @@ class TrainShape:
 
     def machine(self, state: StateTable) -> Machine:
         """The constraints of all meshes and closed clutches, without anything that loses power."""
+        from epicyclic.machine.machine import Machine
+
         rows = tuple(row for name in self.sets for row in self.rows(name))
         planets = [f"{name}.{body}" for name, shape in self.sets.items() for body in shape.planets]
         couplings = tuple(self._couplings(state))
@@ -86,6 +91,8 @@ class TrainShape:
         return tuple(dict.fromkeys(shaft for shaft in shafts if shaft in turning))
 
     def _couplings(self, state: StateTable) -> Iterator[Coupling]:
+        from epicyclic.machine.machine import Coupling
+
         for group in state.joined:
             shafts = [self.shaft_of(name) or "" for name in group]
             if HOUSING in shafts:
@@ -96,6 +103,8 @@ class TrainShape:
 
 def mesh_rows(key: str, gearing: Gearing, bodies: Mapping[str, str]) -> Iterator[MeshRow]:
     """The constraints of the meshes of a set. Theory (K1), (K2), (K6)."""
+    from epicyclic.machine.machine import MeshRow
+
     for mesh in gearing.meshes:
         yield MeshRow(
             f"{key}.{mesh.key}",

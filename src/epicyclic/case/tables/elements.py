@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, Tag
@@ -465,19 +465,20 @@ def loss_table_problems(table: LossTableTable, axes: Collection[str]) -> list[Pr
     return problems or table_problems(table.quantity, given_axes, values)
 
 
-class ElementKind(NamedTuple):
-    """A kind of element that a train adds by tables of its own."""
+class ElementTables(Table):
+    """Elements that a train adds, each kind by the names of its tables: ``[bearings.NAME]``."""
 
-    table: type[Table]  # The class of its keys.
-    check: Callable[[Any], list[Problem]]  # The problems of a table that need no other table.
+    bearings: dict[str, ShaftBearingTable] = Field(default={})
+    seals: dict[str, SealTable] = Field(default={})
+    drags: dict[str, DragTable] = Field(default={})
 
 
-ELEMENT_KINDS: Mapping[str, ElementKind] = {
-    "bearings": ElementKind(ShaftBearingTable, bearing_problems),
-    "seals": ElementKind(SealTable, seal_problems),
-    "drags": ElementKind(DragTable, drag_problems),
+ELEMENT_CHECKS: Mapping[str, Callable[[Any], list[Problem]]] = {
+    "bearings": bearing_problems,
+    "seals": seal_problems,
+    "drags": drag_problems,
 }
-"""By the name of the tables in a case: ``[bearings.NAME]``, ``[seals.NAME]``, ``[drags.NAME]``."""
+"""By kind: the problems of a table that need no other table."""
 
 
 # How they stand in a train.
