@@ -24,7 +24,7 @@ from epicyclic.losses.friction import (
 from epicyclic.losses.mixed_ehl import TALBOT_FLUID
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN
 from epicyclic.losses.pocket_flow import PocketModel, automatic_pocketing
-from epicyclic.losses.pocket_tables import FlowMemory, FlowTables
+from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.ranges import STANDING, standing
 from epicyclic.losses.rolling import ROLLING_MODELS, MixedEhlRolling, PairedRolling, RollingModel
 from epicyclic.machine.element import Fluids, fluids_at
@@ -211,7 +211,6 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
     choices, friction, rolling = loss_choices(case), friction_of(case), rolling_of(case)
     pocketing = pocketing_of(case)
     file = case.models.pocketing_table
-    memory = None if case.models.temperatures == "inlet" else FlowMemory()
     meshes = tuple(_before("_pocketing", choices))
     planets = gearing_of(case).planets
     fed = _fed(case) / (len(meshes) * (planets or 1))
@@ -233,7 +232,6 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
                 end_length=case.models.pocket_end_length,
                 file=None if file is None else case.folder / file,
                 tables=flow_tables,
-                memory=memory,
                 fed=fed,
                 any_order=not planets,
             ),

@@ -304,8 +304,9 @@ class State:
     # For each mesh, True if its first gear drives it; where losses turn a small load round, not
     # before they are found.
     drives: Mapping[str, bool] = field(default_factory=dict[str, bool])
-    # What each element has found out about itself from the speeds alone, by its key.
-    idle: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    # Results at another temperature, by the key of the element. What it solved then and what hardly
+    # depends on the temperature need not be solved again: flows through pockets.
+    earlier: Mapping[str, ElementResult] = field(default_factory=dict[str, Any])
 
 
 class Loss(NamedTuple):
@@ -354,11 +355,11 @@ class Element(Protocol):
     def figure_types(self) -> tuple[tuple[str, type[DataclassInstance]], ...]:
         """Names and types of its figures."""
 
-    def idle(self, state: State) -> object:
-        """What follows from the speeds alone; `State.idle` has it from then on."""
-
-    def loads(self, state: State) -> Mapping[str, float]:
+    def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
         """What of a state it depends on beside the speeds: loads in one unit, by their names."""
 
-    def evaluate(self, state: State) -> ElementResult:
-        """Losses, figures and flags in a state."""
+    def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
+        """Losses, figures and flags in a state.
+
+        `last`, its own result at the same speeds and temperatures, saves work.
+        """

@@ -127,7 +127,8 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     def change(values: FloatArray) -> FloatArray:
         at = dict(zip(nodes, map(float, np.clip(values, COLDEST, HOTTEST)), strict=True))
         with np.errstate(invalid="warn"):
-            solution = solve_machine(machine, operation, model.fluids(at), unheated)
+            earlier = found[-1][0] if found else None
+            solution = solve_machine(machine, operation, model.fluids(at), unheated, earlier)
             answer = model.answer(at, solution)
         found.append((solution, answer))
         step: FloatArray = np.array([answer.temperatures[node] for node in nodes]) - values
