@@ -19,7 +19,7 @@ from epicyclic.losses.friction import (
 )
 from epicyclic.losses.mesh import local_loss, loss_factor_loss, mean_friction, ohlendorf_loss_factor
 from epicyclic.losses.rolling import ROLLING_MODELS
-from epicyclic.reference.gear_loss import equal_sharing_loss_factor, uniform_load_loss_factor
+from reference.gear_loss import equal_sharing_loss_factor, uniform_load_loss_factor
 
 SETTINGS = FrictionSettings(
     0.04, 0.10, 0.02, FrictionMap((("film_ratio", (0.1, 3.0)),), (0.09, 0.03))

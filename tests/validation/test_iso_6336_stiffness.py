@@ -13,7 +13,7 @@ import pytest
 
 from epicyclic.contact.elastic_teeth import GearBody
 from epicyclic.contact.loaded_mesh import load_mesh_elastically
-from epicyclic.reference.mesh_stiffness import (
+from reference.mesh_stiffness import (
     STIFFNESS_CORRECTION,
     mesh_stiffness,
     theoretical_single_stiffness,

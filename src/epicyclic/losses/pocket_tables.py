@@ -438,8 +438,10 @@ class KnownFlows:
         figures: FlowFigures,
     ) -> KnownFlows:
         """These flows and another one."""
-        place = math.log(FlowFamily.number(speed, mixture, pressure))
-        scaled = scaled_figures(figures, speed, mixture.density)
+        number = FlowFamily.number(speed, mixture, pressure)
+        if number == LEAST_NUMBER:  # it is scaled, and its speed may be too small to divide by
+            return self
+        place, scaled = math.log(number), scaled_figures(figures, speed, mixture.density)
         return KnownFlows({**self.flows, (family, place): (scaled, figures)})
 
 
