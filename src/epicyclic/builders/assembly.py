@@ -15,7 +15,8 @@ from epicyclic.builders.train import set_cases
 from epicyclic.case.case import Case
 from epicyclic.case.train import TrainCase
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
-from epicyclic.losses.ranges import SomeFlags, ValidityFlag, standing
+from epicyclic.losses.ranges import SomeFlags, ValidityFlag
+from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
 from epicyclic.machine.element import HOUSING, OIL, BearingFigures, Loss, MeshFigures, joined_key
 from epicyclic.machine.gear_set import GearSetResult
 from epicyclic.machine.heat import AGREEMENT, Answer, Settled, heat_of
@@ -189,7 +190,7 @@ def _standing(
     for element in built.machine.elements:
         if isinstance(element, ShaftBearing):
             name = element.model.name
-            phrase = f"{name}: {standing('shaft_bearing', name)}"
+            phrase = f"{name}: {SHAFT_BEARING_RELIABILITY[name]}"
             yield joined_key(element.key, "shaft_bearing"), phrase
 
 

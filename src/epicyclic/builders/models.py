@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -25,8 +26,8 @@ from epicyclic.losses.mixed_ehl import TALBOT_FLUID
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN
 from epicyclic.losses.pocket_flow import PocketModel, automatic_pocketing
 from epicyclic.losses.pocket_tables import FlowTables
-from epicyclic.losses.ranges import STANDING, standing
-from epicyclic.losses.rolling import ROLLING_MODELS, MixedEhlRolling, PairedRolling, RollingModel
+from epicyclic.losses.reliability import RELIABILITY, reliability
+from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
 from epicyclic.machine.element import Fluids, fluids_at
 from epicyclic.machine.gear_mesh import MeshModels
 from epicyclic.machine.gear_set import LossChoice
@@ -98,9 +99,9 @@ def standing_of(case: SetCase) -> dict[str, str]:
         del models["rolling"]
     return {
         role: "; ".join(
-            f"{name}: {standing(role, name, fitted, form)}" for name in models[role].split(", ")
+            f"{name}: {reliability(role, name, fitted, form)}" for name in models[role].split(", ")
         )
-        for role in STANDING
+        for role in RELIABILITY
         if role in models
     }
 
@@ -156,10 +157,7 @@ def rolling_of(case: SetCase) -> RollingModel:
     if name in (FittedRolling.name, FittedOrGoksem.name):
         fitted = fitted_rolling(case, "rolling_loss")
         return fitted if name == FittedRolling.name else FittedOrGoksem(fitted)
-    for model in (MixedEhlRolling, PairedRolling):
-        if name == model.name:
-            return model(case.models.oil_beyond_range == "held")
-    return ROLLING_MODELS[name]
+    return replace(ROLLING_MODELS[name], oil_held=case.models.oil_beyond_range == "held")
 
 
 def fitted_rolling(case: SetCase, quantity: str) -> FittedRolling:

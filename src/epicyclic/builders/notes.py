@@ -19,7 +19,7 @@ from epicyclic.contact.fitted_models import changed_properties
 from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.mixed_ehl import TALBOT_FLUID
-from epicyclic.losses.ranges import STANDING
+from epicyclic.losses.reliability import RELIABILITY
 from epicyclic.machine.element import BearingFigures, MeshFigures
 from epicyclic.machine.gear_set import GearSetResult
 from epicyclic.results.result import LossTerm
@@ -130,7 +130,7 @@ def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:
     if uses_fit and case.models.oil_model is not None and model is not None and model.oil != oil:
         yield f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}."
     changed = changed_properties(oil)
-    asked = any(getattr(case.models, key, "") == "auto" for key in STANDING)
+    asked = any(getattr(case.models, key, "") == "auto" for key in RELIABILITY)
     if model is None and changed and asked:
         yield (
             f"The models built in for {oil.name} are not used, because this oil differs from it in "

@@ -45,7 +45,7 @@ from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_mo
 from epicyclic.errors import InputError, Problem, rising_problems
 from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.losses.pocket_tables import read_stored
-from epicyclic.losses.ranges import FITTED
+from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.units import BAR
 
 MOST_COEFFICIENTS = 5_000_000
@@ -268,7 +268,7 @@ def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | Non
     """A fitted model needs its file or one built in for the oil, and in it what is asked of it."""
     asked = {
         key: quantity
-        for key, quantity in FITTED.items()
+        for key, quantity in FITTED_QUANTITIES.items()
         if getattr(models, key, "").startswith("fitted")
     }
     try:

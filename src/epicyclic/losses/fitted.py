@@ -16,7 +16,7 @@ from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.interpolation import along_path, over_pressure
 from epicyclic.kernels.line_contact import line_load_at_pressure
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.friction import FrictionModel, Schlenk
+from epicyclic.losses.friction import FRICTION_MODELS, FrictionModel
 from epicyclic.losses.mixed_ehl import beyond_data
 from epicyclic.losses.ranges import ModelUse, Range, RegressionFluid, ValidityFlag, check_contacts
 from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
@@ -369,7 +369,7 @@ class FittedOrSchlenk(_FittedOrFormula[FittedFriction]):
 
     name: ClassVar = "fitted-or-schlenk"
     takes_oil_temperature: ClassVar[bool] = False
-    beyond: ClassVar = Schlenk()
+    beyond: ClassVar[FrictionModel] = FRICTION_MODELS["schlenk"]
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
@@ -389,7 +389,7 @@ class FittedOrGoksem(_FittedOrFormula[FittedRolling]):
     """
 
     name: ClassVar = "fitted-or-goksem-hargreaves"
-    beyond: ClassVar = ROLLING_MODELS["goksem-hargreaves"]
+    beyond: ClassVar[RollingModel] = ROLLING_MODELS["goksem-hargreaves"]
 
     def loss_density(self, contact: MeshContact) -> FloatArray:
         """See the class. [W/m]"""
