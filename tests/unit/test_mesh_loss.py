@@ -10,12 +10,7 @@ import pytest
 
 import epicyclic as ep
 from contacts import loaded_contact, with_overlap_ratio
-from epicyclic.losses.friction import (
-    FRICTION_MODELS,
-    FrictionMap,
-    FrictionSettings,
-    friction_model,
-)
+from epicyclic.losses.friction import FRICTION_MODELS, FrictionMap, FrictionSettings, friction_model
 from epicyclic.losses.mesh import local_loss, loss_factor_loss, mean_friction, ohlendorf_loss_factor
 from epicyclic.losses.rolling import ROLLING_MODELS
 from reference.gear_loss import equal_sharing_loss_factor, uniform_load_loss_factor
@@ -253,6 +248,9 @@ def test_mean_friction_is_weighted_with_the_sliding_power(make_mesh, atf):
         """Friction on the recess side only."""
 
         name, title, source, made_for, ranges = "half", "half", "test", None, ()
+
+        def flags(self, role, contact, loss):
+            return ()
 
         def coefficient(self, contact):
             return np.where(contact.path > 0, 0.1, 0.0)

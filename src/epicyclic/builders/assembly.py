@@ -17,10 +17,11 @@ from epicyclic.case.train import TrainCase
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.ranges import SomeFlags, ValidityFlag
 from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
-from epicyclic.machine.element import HOUSING, OIL, BearingFigures, Loss, MeshFigures, joined_key
+from epicyclic.machine.element import HOUSING, OIL, Loss, joined_key
+from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.gear_set import GearSetResult
 from epicyclic.machine.heat import AGREEMENT, Answer, Settled, heat_of
-from epicyclic.machine.planets import SHARING_METHODS
+from epicyclic.machine.planets import SHARING_METHODS, BearingFigures
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, stage_torques
 from epicyclic.results.heat import HeatBalance, HeatWay

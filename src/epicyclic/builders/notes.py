@@ -20,8 +20,9 @@ from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.mixed_ehl import TALBOT_FLUID
 from epicyclic.losses.reliability import RELIABILITY
-from epicyclic.machine.element import BearingFigures, MeshFigures
+from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.gear_set import GearSetResult
+from epicyclic.machine.planets import BearingFigures
 from epicyclic.results.result import LossTerm
 from epicyclic.units import GIGAPASCAL, NEWTON, format_number, percent
 

@@ -23,7 +23,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import ClassVar, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,9 +83,27 @@ class FrictionModel(LossModel, Protocol):
         of the flanks is contained in it; False if it takes the oil as it enters the contact.
         """
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What to know about what was solved."""
+
+    def solved_for(self, contact: MeshContact) -> FrictionModel:
+        """The model with what it has to solve for a mesh, so that it need not do so again."""
+
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """Coefficient of friction at each point of `contact`, shape (n,). [1]"""
-        ...
+
+
+class NothingToSolve:
+    """What friction models have in common that solve nothing."""
+
+    __slots__ = ()
+
+    remarks: ClassVar[tuple[str, ...]] = ()
+
+    def solved_for(self, contact: MeshContact) -> Self:
+        """Itself."""
+        return self
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +120,7 @@ class FrictionSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FrictionFormula(Formula):
+class FrictionFormula(NothingToSolve, Formula):
     """A formula for the coefficient of friction."""
 
     function: Callable[[MeshContact, FrictionSettings], FloatArray]

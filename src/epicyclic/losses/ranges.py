@@ -93,9 +93,27 @@ class LossModel(Protocol):
     def ranges(self) -> tuple[Range, ...]:
         """Where the model was made; leaving it is flagged."""
 
+    def flags(self, role: str, contact: Any, loss: FloatArray) -> tuple[ValidityFlag, ...]:
+        """What leaves the ranges in a mesh with some loss at each point, for a role as `ModelUse`
+        has it.
+        """
+
+
+class RangeFlags:
+    """The flags of a model that is used wherever it is asked, also beyond its ranges."""
+
+    __slots__ = ()
+
+    def flags(
+        self: LossModel, role: str, contact: Any, loss: FloatArray
+    ) -> tuple[ValidityFlag, ...]:
+        """See `LossModel`."""
+        use = ModelUse(role, self.name, contact.mesh.name)
+        return check_contacts(use, self.ranges, contact, loss)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Formula:
+class Formula(RangeFlags):
     """A `LossModel` that is a formula: its entry in the table of its kind."""
 
     name: str

@@ -15,16 +15,15 @@ from epicyclic.machine.element import (
     HOUSING,
     LOAD_INDEPENDENT,
     OIL,
-    BearingFigures,
     ElementResult,
     Figures,
     Loss,
-    MeshFigures,
     State,
     joined_key,
 )
-from epicyclic.machine.gear_mesh import GearMesh, MeshDuty, MeshOutcome, solve_mesh
+from epicyclic.machine.gear_mesh import GearMesh, MeshDuty, MeshFigures, MeshOutcome, solve_mesh
 from epicyclic.machine.planets import (
+    BearingFigures,
     LoadSharing,
     PlanetBearing,
     PlanetContact,

@@ -15,8 +15,8 @@ from epicyclic.contact.temperatures import bulk_rise_of_flash, bulk_rise_of_loss
 from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.machine import convection as shell
 from epicyclic.machine.convection import Fluid
-from epicyclic.machine.element import HOUSING, OIL, Fluids, Loss, MeshFigures
-from epicyclic.machine.gear_mesh import GearMesh
+from epicyclic.machine.element import HOUSING, OIL, Fluids, Loss
+from epicyclic.machine.gear_mesh import GearMesh, MeshFigures
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.heat_flow import Link, Network
 from epicyclic.machine.heat_paths import (

@@ -5,14 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from epicyclic.contact.temperatures import Solid
 from epicyclic.gears.gear import Gear
 from epicyclic.machine.convection import SPLASHED_WALL, Fluid, dipped_disc, disc_coefficient
-from epicyclic.machine.element import HOUSING, OIL, BearingFigures, ElementResult, State, joined_key
-from epicyclic.machine.gear_set import GearSet, Planet
+from epicyclic.machine.element import HOUSING, OIL, ElementResult, State, joined_key
 from epicyclic.machine.heat_flow import Link
+from epicyclic.machine.planets import BearingFigures
 from epicyclic.machine.shaft_parts import ShaftBearing
+
+if TYPE_CHECKING:
+    from epicyclic.machine.gear_set import GearSet, Planet
 
 # Ways of the heat of gears, planets, pins, carriers and bearings: to the oil, to each other.
 

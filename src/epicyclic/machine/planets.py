@@ -41,9 +41,19 @@ from epicyclic.losses.planet_bearing import (
 )
 from epicyclic.losses.ranges import Flags, SomeFlags
 from epicyclic.machine.convection import roller_conductance
-from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, BearingFigures, Loss
+from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, Loss, figure
 from epicyclic.machine.gear_mesh import MeshDuty, elastic_loads
 from epicyclic.oil.properties import OilState
+from epicyclic.units import (
+    CELSIUS,
+    DEGREE,
+    GIGAPASCAL,
+    NEWTON,
+    NEWTON_METRE,
+    NUMBER,
+    RPM,
+    WATT_PER_KELVIN,
+)
 
 # The share of the load that each planet of a set carries.
 
@@ -503,6 +513,27 @@ class PlanetBearing:
         if self.model == "mixed-ehl":
             return BEARING_METHOD, BEARING_SOURCE
         return PALMGREN_METHOD, PALMGREN_SOURCE
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BearingFigures:
+    """What an engineer checks by eye on the planet bearing.
+
+    `flattening` and `resistance` as of `MeshFigures`, the latter at the speed of the pitch circle.
+    """
+
+    loads: RollerLoads | None
+    flattening: float
+    resistance: float
+    radial_force: float = figure("radial force", NEWTON)
+    moment: float = figure("tilting moment", NEWTON_METRE)
+    speed: float = figure("speed relative to carrier", RPM)
+    rollers_loaded: float = figure("loaded rollers, all rows", NUMBER)
+    roller_load_max: float = figure("most loaded roller", NEWTON)
+    roller_azimuth: float = figure("azimuth of that roller from the load", DEGREE)
+    hertz_pressure_max: float = figure("largest Hertz pressure, inner race", GIGAPASCAL)
+    contact_temperature: float = figure("oil where it enters the contacts", CELSIUS)
+    heat_conductance: float = figure("heat from race to race through the rollers", WATT_PER_KELVIN)
 
 
 @dataclass(frozen=True, slots=True)

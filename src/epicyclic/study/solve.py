@@ -11,7 +11,7 @@ from epicyclic.builders.built import Built
 from epicyclic.case.case import Case
 from epicyclic.case.operating import AXES
 from epicyclic.case.train import TrainCase
-from epicyclic.contact.loaded_mesh import LoadedMesh
+from epicyclic.contact.elastic_teeth import LoadedMesh
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, scaled_figures, table_around
