@@ -26,6 +26,7 @@ from epicyclic.losses.mixed_ehl import TALBOT_FLUID
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN
 from epicyclic.losses.pocket_flow import PocketModel, automatic_pocketing
 from epicyclic.losses.pocket_tables import FlowTables
+from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.losses.reliability import RELIABILITY, reliability
 from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
 from epicyclic.machine.element import Fluids, fluids_at
@@ -94,9 +95,11 @@ def _automatic(case: SetCase, quantity: str, fitted: str, formula: str) -> str:
 
 def standing_of(case: SetCase) -> dict[str, str]:
     """The models of friction, rolling loss and bearings, and how well each is known to be right."""
-    models, fitted, form = resolve_models(case), fitted_oil_model(case), case.models.fitted_form
+    models, form = resolve_models(case), case.models.fitted_form
     if models["mesh"] == "loss-factor":
         del models["rolling"]
+    uses_fits = any("fitted" in models.get(role, "") for role in FITTED_QUANTITIES)
+    fitted = fitted_oil_model(case) if uses_fits else None
     return {
         role: "; ".join(
             f"{name}: {reliability(role, name, fitted, form)}" for name in models[role].split(", ")

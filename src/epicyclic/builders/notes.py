@@ -126,13 +126,14 @@ def lubrication_notes(case: SetCase) -> Iterator[str]:
 
 def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:
     """On fitted models of another oil, and on those of this name that are not used."""
-    oil, model = case.lubricant.oil, fitted_oil_model(case)
-    uses_fit = any("fitted" in name for name in models.values())
-    if uses_fit and case.models.oil_model is not None and model is not None and model.oil != oil:
-        yield f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}."
+    oil, given = case.lubricant.oil, case.models.oil_model is not None
+    if given and any("fitted" in name for name in models.values()):
+        model = fitted_oil_model(case)
+        if model is not None and model.oil != oil:
+            yield f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}."
     changed = changed_properties(oil)
     asked = any(getattr(case.models, key, "") == "auto" for key in RELIABILITY)
-    if model is None and changed and asked:
+    if not given and changed and asked:
         yield (
             f"The models built in for {oil.name} are not used, because this oil differs from it in "
             f"{', '.join(changed)}; 'epicyclic oil characterise' fits models for it."

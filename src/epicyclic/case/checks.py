@@ -271,6 +271,8 @@ def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | Non
         for key, quantity in FITTED_QUANTITIES.items()
         if getattr(models, key, "").startswith("fitted")
     }
+    if not asked and models.oil_model is None:
+        return []
     try:
         model = _oil_model(models, folder, lubricant)
     except InputError as error:
