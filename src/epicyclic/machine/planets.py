@@ -151,19 +151,15 @@ def _branches(
     pin_compliance = 0.0 if bearing is None else 1 / radial_stiffness(bearing, pin_force)
     if sharing.pin_stiffness is not None:
         pin_compliance += 1 / sharing.pin_stiffness
-    compliance = sum(_mesh_compliance(duty) for duty in duties)
+    # slope of the transmission error over the force, mean of the mesh period [m/N]
+    loaded = [elastic_loads(duty) for duty in duties]
+    compliance = sum(one.mean(1 / one.tangent_stiffness) for one in loaded)
     errors = np.array(sharing.position_errors or np.zeros(sharing.count))
     return Branches(
         np.array(sharing.angles),
         compliance + through_pin**2 * pin_compliance,
         math.copysign(through_pin, sun_mesh.torque1) * errors,
     )
-
-
-def _mesh_compliance(duty: MeshDuty) -> float:
-    """Slope of the transmission error over the force, mean of the mesh period. [m/N]"""
-    loaded = elastic_loads(duty)
-    return loaded.mean(1 / loaded.tangent_stiffness)
 
 
 # The load of a planet on its bearing, and how the planet tilts under it.

@@ -279,7 +279,8 @@ def start_of(machine: Machine, operation: Operation) -> Start:
     lossless = _lossless(machine, operation, speeds)
     efficiencies = {row.key: row.efficiency for row in machine.rows}
     directions = find_directions(machine, operation, speeds, lossless, efficiencies)
-    ratio = _ratio(operation, speeds)
+    output = speeds[operation.output]
+    ratio = speeds[operation.input] / output if output else None
     if directions.jammed:  # it stands still, whatever the speeds were meant to be
         speeds = dict.fromkeys(speeds, 0.0)
     return Start(speeds, lossless, directions, ratio)
@@ -448,7 +449,10 @@ class _Branch:
             drives=self.drives,
             earlier=self.earlier,
         )
-        allowed = _allowed(distance(self.unlost.meshes, found.meshes))
+        # an error of the losses changes the loads about as much as the losses do of which it is
+        # that share: it may change them by less than they have to agree
+        moved = distance(self.unlost.meshes, found.meshes)
+        allowed = min(AGREEMENT / moved, LOSS_AGREEMENT) if moved else LOSS_AGREEMENT
         with np.errstate(over="ignore"):  # a loss may be too large for a number
             self.known = {
                 element.key: _answered(element, state, self.known.get(element.key), allowed)
@@ -567,19 +571,6 @@ def _by_secants(branch: _Branch, found: Balance | _Pass) -> Balance | _Pass:
             return first
         raise
     return last
-
-
-def _allowed(moved: float) -> float:
-    """Error of all losses that changes loads by less than they may, if the losses moved them so.
-
-    An error changes the loads about as much as the losses do of which it is that share.
-    """
-    return min(AGREEMENT / moved, LOSS_AGREEMENT) if moved else LOSS_AGREEMENT
-
-
-def _ratio(operation: Operation, speeds: Mapping[str, float]) -> float | None:
-    output = speeds[operation.output]
-    return speeds[operation.input] / output if output else None
 
 
 def _agrees(old: Mapping[str, float], new: Mapping[str, float]) -> bool:
