@@ -199,7 +199,7 @@ def from_scaled(
 # Tables of flows through pockets over the one number that they depend on.
 #
 # A table is made for the numbers that are asked of it. It starts from few of them and adds the one
-# nearest to the middle of every interval until the flow there was foretold by the others well
+# nearest to the middle of every interval until the flow there was predicted by the others well
 # enough; where that does not come to pass, all numbers asked for are solved.
 
 

@@ -18,7 +18,7 @@ from epicyclic.machine.shaft_parts import ShaftBearing
 if TYPE_CHECKING:
     from epicyclic.machine.gear_set import GearSet, Planet
 
-# Ways of the heat of gears, planets, pins, carriers and bearings: to the oil, to each other.
+# Paths of the heat of gears, planets, pins, carriers and bearings: to the oil, to each other.
 
 
 INLET = "oil_inlet"
@@ -63,7 +63,7 @@ class OneGear:
 def gear_set_links(
     own: GearSet, state: State, result: ElementResult, wetting: Wetting
 ) -> Iterator[Link]:
-    """Ways of the heat of a set. Theory (W29), (W30), (W31)."""
+    """Paths of the heat of a set. Theory (W29), (W30), (W31)."""
     planets = {planet.nodes[0]: planet for planet in own.planets}
     for one in gears_of(own):
         planet = planets.get(one.node)
