@@ -216,9 +216,7 @@ def duty_seconds() -> tuple[float, float]:
 def clear_caches() -> None:
     from epicyclic.builders import gear_sets
     from epicyclic.case import flanks, gearing
-    from epicyclic.contact import elastic_teeth as mesh_compliance
-    from epicyclic.contact import elastic_teeth as tooth_plate
-    from epicyclic.contact import loaded_mesh
+    from epicyclic.contact import elastic_teeth
     from epicyclic.gears import flanks as contact_lines
     from epicyclic.losses import contact as load_distribution
     from epicyclic.losses import planet_bearing
@@ -237,9 +235,9 @@ def clear_caches() -> None:
         gearing._mesh,
         gear_sets.gear_bodies,
         flanks.flank_deviations,
-        tooth_plate.tooth_plate,
-        mesh_compliance.mesh_compliance,
-        loaded_mesh.load_mesh_elastically,
+        elastic_teeth.tooth_plate,
+        elastic_teeth.mesh_compliance,
+        elastic_teeth.load_mesh_elastically,
         contact_lines.contact_lines,
         load_distribution.load_shape,
         planet_bearing.roller_loads,
@@ -258,8 +256,7 @@ def compliance_seconds(segments: int) -> tuple[float, float]:
         Load of both meshes at one operating point. [s]
     """
     from epicyclic.builders import gear_sets
-    from epicyclic.contact.elastic_teeth import mesh_compliance
-    from epicyclic.contact.loaded_mesh import load_mesh_elastically
+    from epicyclic.contact.elastic_teeth import load_mesh_elastically, mesh_compliance
 
     case = test_article()
     meshes = case.gearings[""].geometries

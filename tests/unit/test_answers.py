@@ -27,23 +27,23 @@ def answers(*loads):
 
 
 def test_one_answer_foretells_nothing():
-    assert answers(100.0).foretold({"mesh": 100.0001}, 1e9) is None
+    assert answers(100.0).predicted({"mesh": 100.0001}, 1e9) is None
 
 
-def test_what_is_foretold_is_as_near_as_was_allowed():
+def test_what_is_predicted_is_as_near_as_was_allowed():
     answer = answers(100.0, 99.0, 99.01)
-    told = answer.foretold({"mesh": 99.0101}, 1e-6)
+    told = answer.predicted({"mesh": 99.0101}, 1e-6)
     assert told is not None
     wanted = losses(99.0101).losses["sliding"].watts
     assert told.losses["sliding"].watts == pytest.approx(wanted, rel=1e-7)
-    assert answer.foretold({"mesh": 99.0101}, 1e-12) is None
-    assert answer.foretold({"mesh": 80.0}, 1e-6) is None
+    assert answer.predicted({"mesh": 99.0101}, 1e-12) is None
+    assert answer.predicted({"mesh": 80.0}, 1e-6) is None
 
 
 def test_a_kink_is_not_foretold():
     """Where the line did not foretell the last answer, it is not trusted with the next."""
     answer = answers(100.0, 99.0).followed_by({"mesh": 98.9}, result(5.0))
-    assert answer.foretold({"mesh": 98.8999}, 1e-6) is None
+    assert answer.predicted({"mesh": 98.8999}, 1e-6) is None
 
 
 def test_what_scatters_is_foretold_within_its_scatter():
@@ -51,8 +51,8 @@ def test_what_scatters_is_foretold_within_its_scatter():
     answer = answers(100.0, 99.0).followed_by({"mesh": 99.0 * (1 + 1e-11)}, result(2.48 + 1.24e-9))
     answer = answer.followed_by({"mesh": 99.0 * (1 + 2e-11)}, result(2.48))
     load = {"mesh": 99.0 * (1 + 3e-11)}
-    assert answer.foretold(load, 0.4e-9) is None  # less than the scatter of 5e-10, doubled
-    told = answer.foretold(load, 1.2e-9)
+    assert answer.predicted(load, 0.4e-9) is None  # less than the scatter of 5e-10, doubled
+    told = answer.predicted(load, 1.2e-9)
     assert told.losses["sliding"].watts == pytest.approx(2.48, rel=1.2e-9)
 
 
@@ -62,15 +62,15 @@ def test_what_scatters_is_foretold_within_its_scatter():
 def test_another_direction_or_place_starts_anew(load, mesh):
     answer = answers(100.0, 99.0).followed_by({"mesh": load}, result(1.0, mesh))
     assert answer.before is None
-    assert answer.foretold({"mesh": load * 1.0001}, 1e9) is None
+    assert answer.predicted({"mesh": load * 1.0001}, 1e9) is None
 
 
 def test_loads_beside_the_line_are_not_foretold():
     answer = Answer({"one": 100.0, "two": 50.0}, result(1.0))
     answer = answer.followed_by({"one": 99.0, "two": 49.5}, result(0.99))
     answer = answer.followed_by({"one": 98.9, "two": 49.45}, result(0.989))
-    assert answer.foretold({"one": 98.898, "two": 49.449}, 1e-6) is not None
-    assert answer.foretold({"one": 98.898, "two": 49.4505}, 1e-6) is None
+    assert answer.predicted({"one": 98.898, "two": 49.449}, 1e-6) is not None
+    assert answer.predicted({"one": 98.898, "two": 49.4505}, 1e-6) is None
 
 
 def own(name, load):
@@ -86,24 +86,24 @@ def both(one, two):
 def test_a_loss_that_follows_one_load_is_foretold_beside_the_line_of_all():
     answer = Answer(*both(100.0, 50.0)).followed_by(*both(99.9, 49.8))
     loads, wanted = both(99.9001, 49.8007)
-    told = answer.foretold(loads, 1e-6)
+    told = answer.predicted(loads, 1e-6)
     assert told is not None
     for name, loss in wanted.losses.items():
         assert told.losses[name].watts == pytest.approx(loss.watts, rel=5e-9)
     joint = Answer(loads, losses(1.0)).followed_by(both(99.9, 49.8)[0], losses(1.001))
-    assert joint.foretold(both(99.9001, 49.7993)[0], 1e-6) is None
+    assert joint.predicted(both(99.9001, 49.7993)[0], 1e-6) is None
 
 
 def test_figures_serve_for_loads_next_to_theirs_only():
     answer = answers(100.0, 99.9)
-    assert answer.foretold({"mesh": 99.9 * (1 + 0.9 * NEAR)}, 1.0) is not None
-    assert answer.foretold({"mesh": 99.9 * (1 + 1.1 * NEAR)}, 1.0) is None
+    assert answer.predicted({"mesh": 99.9 * (1 + 0.9 * NEAR)}, 1.0) is not None
+    assert answer.predicted({"mesh": 99.9 * (1 + 1.1 * NEAR)}, 1.0) is None
 
 
 def test_a_load_that_did_not_move_before_foretells_little():
     answer = Answer(*both(100.0, 50.0)).followed_by(*both(99.9, 50.0))
-    assert answer.foretold(both(99.9, 50.0001)[0], 1e-6) is None
-    assert answer.foretold(both(99.9001, 50.0)[0], 1e-6) is not None
+    assert answer.predicted(both(99.9, 50.0001)[0], 1e-6) is None
+    assert answer.predicted(both(99.9001, 50.0)[0], 1e-6) is not None
 
 
 def test_distance_is_relative_to_the_largest_load():

@@ -21,7 +21,7 @@ from epicyclic.contact.line_contact import contacts_at
 from epicyclic.losses.fitted import REACH, weight_of_fit
 from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.losses.mixed_ehl import SIMULATED
-from epicyclic.losses.ranges import STANDING, standing
+from epicyclic.losses.reliability import RELIABILITY, reliability
 from epicyclic.losses.rolling import ROLLING_MODELS
 from epicyclic.plugins.contact_solver.fit import fit_quantity
 from epicyclic.records.contents import contents_of
@@ -268,10 +268,10 @@ def test_models_of_a_train_are_named_once_for_all_sets():
 
 
 def test_every_model_has_a_standing():
-    assert set(STANDING["friction"]) == {*FRICTION_MODELS, "ehl-direct"}
-    assert set(STANDING["rolling"]) == set(ROLLING_MODELS)
-    for role, models in STANDING.items():
-        assert [standing(role, name) for name in models] == list(models.values())
+    assert set(RELIABILITY["friction"]) == {*FRICTION_MODELS, "ehl-direct"}
+    assert set(RELIABILITY["rolling"]) == set(ROLLING_MODELS)
+    for role, models in RELIABILITY.items():
+        assert [reliability(role, name) for name in models] == list(models.values())
 
 
 def test_comparison_gives_reasons_and_a_recommendation(case):
@@ -308,7 +308,7 @@ def test_shaft_bearings_have_a_standing():
     known = ep.solve(ep.load_case("train-eaxle")).standing
     bearings = {key: text for key, text in known.items() if key.endswith(".shaft_bearing")}
     assert bearings
-    assert all(text.split(":")[0] in STANDING["shaft_bearing"] for text in bearings.values())
+    assert all(text.split(":")[0] in RELIABILITY["shaft_bearing"] for text in bearings.values())
 
 
 def test_recommendation_for_the_fluid_of_the_regression_and_for_an_unknown_oil():

@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 import epicyclic as ep
 from epicyclic.builders.build import build
 from epicyclic.errors import InputError
-from epicyclic.losses.friction import MixedEhl
+from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.records.contents import Heat
 from epicyclic.report.heat_tables import heat_items, remarks
 from epicyclic.show.plots.catalogue import available, figure_of
@@ -43,7 +43,7 @@ def test_heat_of_sliding_is_shared_where_it_arises():
     case = pair({})
     losses = build(case).solve().solution.results[""].losses
     (contact,) = mesh_contacts(case).values()
-    friction = MixedEhl().coefficient(contact)
+    friction = FRICTION_MODELS["mixed-ehl"].coefficient(contact)
     speed1, speed2 = (np.sqrt(np.abs(speed)) for speed in contact.surface_speeds)
     share = speed1 / (speed1 + speed2)  # both of steel: Blok
     heat = friction * contact.line_load * np.abs(contact.sliding_speed) * contact.weight

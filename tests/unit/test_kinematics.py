@@ -30,13 +30,10 @@ class Brake:
     def __init__(self, *losses):
         self.losses = losses
 
-    def idle(self, state):
-        return None
-
-    def loads(self, state):
+    def loads(self, state, last=None):
         return {}
 
-    def evaluate(self, state):
+    def evaluate(self, state, last=None):
         found = {
             f"loss {number}": Loss(LOAD_INDEPENDENT, watts, brakes=((*between, 1.0),))
             for number, (between, watts) in enumerate(self.losses)
@@ -207,10 +204,10 @@ def test_power_balance_closes_with_one_member_held(driver, held, torque, speed):
 class SteepDrag(Brake):
     """Drag of the pinion that rises steeply from no load of the mesh."""
 
-    def loads(self, state):
+    def loads(self, state, last=None):
         return {"mesh": state.torques["mesh"]}
 
-    def evaluate(self, state):
+    def evaluate(self, state, last=None):
         watts = 120.0 * abs(state.torques["mesh"]) ** 0.05
         return ElementResult(
             {"drag": Loss(LOAD_INDEPENDENT, watts, brakes=(("pinion", HOUSING, 1.0),))}

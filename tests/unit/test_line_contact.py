@@ -16,7 +16,7 @@ from epicyclic.kernels.line_contact import (
     pan_hamrock_central_film,
     pan_hamrock_minimum_film,
 )
-from epicyclic.reference.line_contact import contact_modulus, hertz_line_contact
+from reference.line_contact import contact_modulus, hertz_line_contact
 
 ROUNDING = 1e-12  # relative; a few roundings of doubles
 

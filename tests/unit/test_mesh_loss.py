@@ -10,20 +10,20 @@ import pytest
 
 import epicyclic as ep
 from contacts import loaded_contact, with_overlap_ratio
-from epicyclic.losses.friction import (
-    FRICTION_MODELS,
-    Constant,
-    FrictionMap,
-    FrictionSettings,
-    friction_model,
-)
+from epicyclic.losses.friction import FRICTION_MODELS, FrictionMap, FrictionSettings, friction_model
 from epicyclic.losses.mesh import local_loss, loss_factor_loss, mean_friction, ohlendorf_loss_factor
 from epicyclic.losses.rolling import ROLLING_MODELS
-from epicyclic.reference.gear_loss import equal_sharing_loss_factor, uniform_load_loss_factor
+from reference.gear_loss import equal_sharing_loss_factor, uniform_load_loss_factor
 
 SETTINGS = FrictionSettings(
     0.04, 0.10, 0.02, FrictionMap((("film_ratio", (0.1, 3.0)),), (0.09, 0.03))
 )
+
+
+def constant(value):
+    return friction_model("constant", FrictionSettings(constant=value))
+
+
 NO_ROLLING = ROLLING_MODELS["goksem-hargreaves"]
 
 # FZG type C and gears of other shape; every tip ratio below 1 and both together above 1
@@ -42,7 +42,7 @@ SPUR = [
 def loss_factor(mesh, oil, **kwargs):
     """Sliding loss of the local method over friction and power passed on."""
     contact = loaded_contact(mesh, oil, **kwargs)
-    loss = local_loss(contact, Constant(0.05), NO_ROLLING)
+    loss = local_loss(contact, constant(0.05), NO_ROLLING)
     return loss.sliding / (0.05 * kwargs.get("torque", 200.0) * kwargs.get("speed", 200.0))
 
 
@@ -189,12 +189,12 @@ def test_minimum_energy_load_lowers_the_loss_of_spur_gears(make_mesh, atf):
 
 def test_loss_is_linear_in_constant_friction(make_mesh, atf):
     contact = loaded_contact(make_mesh(30, 50, beta=15.0), atf(60))
-    one = local_loss(contact, Constant(0.01), NO_ROLLING)
-    seven = local_loss(contact, Constant(0.07), NO_ROLLING)
+    one = local_loss(contact, constant(0.01), NO_ROLLING)
+    seven = local_loss(contact, constant(0.07), NO_ROLLING)
     assert seven.sliding == pytest.approx(7 * one.sliding, rel=1e-12)
     assert seven.rolling == one.rolling
     assert mean_friction(contact, seven.friction) == pytest.approx(0.07, rel=1e-12)
-    none = local_loss(contact, Constant(0.0), NO_ROLLING)
+    none = local_loss(contact, constant(0.0), NO_ROLLING)
     assert none.sliding == 0.0
 
 
@@ -248,6 +248,9 @@ def test_mean_friction_is_weighted_with_the_sliding_power(make_mesh, atf):
         """Friction on the recess side only."""
 
         name, title, source, made_for, ranges = "half", "half", "test", None, ()
+
+        def flags(self, role, contact, loss):
+            return ()
 
         def coefficient(self, contact):
             return np.where(contact.path > 0, 0.1, 0.0)

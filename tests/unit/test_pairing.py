@@ -7,9 +7,9 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.contact.line_contact import contacts_at
-from epicyclic.losses.friction import MixedEhl, PairedFriction
+from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.losses.mixed_ehl import equally_rough, pairing_ratio
-from epicyclic.losses.rolling import MixedEhlRolling, PairedRolling
+from epicyclic.losses.rolling import ROLLING_MODELS
 
 STEEL = 227.47e9
 
@@ -32,11 +32,11 @@ def gear_contacts(roughness1, roughness2, slip=1.0):
 
 def test_equally_rough_flanks_have_the_published_values():
     contacts = gear_contacts(0.37e-6, 0.37e-6)
-    assert PairedFriction().coefficient(contacts) == pytest.approx(
-        MixedEhl().coefficient(contacts), rel=1e-12
+    assert FRICTION_MODELS["mixed-ehl+pairing"].coefficient(contacts) == pytest.approx(
+        FRICTION_MODELS["mixed-ehl"].coefficient(contacts), rel=1e-12
     )
-    assert PairedRolling().loss_density(contacts) == pytest.approx(
-        MixedEhlRolling().loss_density(contacts), rel=1e-12
+    assert ROLLING_MODELS["mixed-ehl+pairing"].loss_density(contacts) == pytest.approx(
+        ROLLING_MODELS["mixed-ehl"].loss_density(contacts), rel=1e-12
     )
 
 
@@ -45,8 +45,8 @@ def test_the_pair_is_compared_with_two_of_the_rougher_flank():
     both = equally_rough(contacts)
     assert np.all(both.roughness1 == 0.43e-6)
     assert np.all(both.roughness2 == 0.43e-6)
-    expected = MixedEhl().coefficient(both) * pairing_ratio("friction", contacts)
-    assert PairedFriction().coefficient(contacts) == pytest.approx(expected)
+    expected = FRICTION_MODELS["mixed-ehl"].coefficient(both) * pairing_ratio("friction", contacts)
+    assert FRICTION_MODELS["mixed-ehl+pairing"].coefficient(contacts) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("quantity", ["friction", "rolling_loss"])

@@ -13,7 +13,7 @@ from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.roller_bearing import solve_roller_loads
 from epicyclic.losses import planet_bearing
 from epicyclic.losses.planet_bearing import RollerBearing, roller_loads
-from epicyclic.reference.roller_bearing import aligned_roller_loads, radial_load_integral
+from reference.roller_bearing import aligned_roller_loads, radial_load_integral
 
 STEEL = 227.47e9
 SOLVER = 1e-9  # residual force over load at which the iteration stops

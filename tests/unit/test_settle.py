@@ -35,7 +35,7 @@ class Model:
 @pytest.fixture
 def settled(monkeypatch):
     monkeypatch.setattr(settling, "start_of", lambda *_: None)
-    monkeypatch.setattr(settling, "solve_machine", lambda _machine, _operation, at, _start: at)
+    monkeypatch.setattr(settling, "solve_machine", lambda _machine, _operation, at, *_: at)
     machine = SimpleNamespace()
     return lambda scatter: settle(machine, machine, Model(scatter))
 

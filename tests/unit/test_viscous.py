@@ -15,7 +15,7 @@ from epicyclic.losses.drag import (
     viscous_flags,
 )
 from epicyclic.oil.properties import MixtureState, mixture_state
-from epicyclic.reference.rotating_body import (
+from reference.rotating_body import (
     cylinder_power,
     laminar_disc_power,
     turbulent_disc_power,

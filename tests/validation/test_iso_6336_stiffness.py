@@ -11,9 +11,8 @@ import math
 
 import pytest
 
-from epicyclic.contact.elastic_teeth import GearBody
-from epicyclic.contact.loaded_mesh import load_mesh_elastically
-from epicyclic.reference.mesh_stiffness import (
+from epicyclic.contact.elastic_teeth import GearBody, load_mesh_elastically
+from reference.mesh_stiffness import (
     STIFFNESS_CORRECTION,
     mesh_stiffness,
     theoretical_single_stiffness,

@@ -15,7 +15,7 @@ from epicyclic.kernels.contact_load import (
     local_law,
     solve_contact_loads,
 )
-from epicyclic.reference.mesh_stiffness import face_load_factor
+from reference.mesh_stiffness import face_load_factor
 
 
 def solve(

@@ -15,10 +15,10 @@ from epicyclic.contact.elastic_teeth import (
     GearBody,
     Rim,
     _stiffness,
+    load_mesh_elastically,
     mesh_compliance,
     tooth_plate,
 )
-from epicyclic.contact.loaded_mesh import load_mesh_elastically
 from epicyclic.gears.flanks import FlankDeviations, MicroGeometry, Relief, Topography
 from epicyclic.gears.generation import default_tool
 from epicyclic.machine.solve import NEAR, STEEPEST

@@ -15,7 +15,7 @@ from epicyclic.losses import pocket_flow as network
 from epicyclic.losses.pocket_tables import (
     LEAST_NUMBER,
     FlowFigures,
-    FlowMemory,
+    KnownFlows,
     flow_figures,
     make_tables,
     scaled_figures,
@@ -148,24 +148,24 @@ def test_a_single_case_and_few_points_are_solved(case):
     assert few["mesh_pocket_interpolation_error"].isnull().all()
 
 
-def test_memory_gives_what_is_solved():
+def test_known_flows_give_what_is_solved():
     """The asymmetric set: flows between two that are known, within a hundred-thousandth."""
     case = ep.load_case(asymmetric.planetary())
     built = build(case)
     for duty in built.mean_duties().values():
         family, speed, mixture, pressure = flow_request(duty, built.fluids)
-        memory = FlowMemory()
+        known = KnownFlows()
         read = 0
         for factor in (1.0, 1.0012, 1.0005, 1.0021, 1.0016):
             state = (speed * factor, mixture, pressure)
             solved = family.figures(*state)
-            told = memory.figures(family, *state)
+            told = known.figures(family, *state)
             if told is not None:
                 read += 1
                 assert told.power == pytest.approx(solved.power, rel=1e-5)
-            memory.add(family, *state, solved)
+            known = known.with_flow(family, *state, solved)
         assert read == 2
-        assert memory.figures(family, 1.1 * speed, mixture, pressure) is None
+        assert known.figures(family, 1.1 * speed, mixture, pressure) is None
 
 
 def test_a_flow_that_does_not_repeat_serves_those_near_it(case):
@@ -173,17 +173,17 @@ def test_a_flow_that_does_not_repeat_serves_those_near_it(case):
     built = build(case)
     duty = built.mean_duties()["mesh"]
     family, speed, mixture, pressure = flow_request(duty, built.fluids)
-    memory = FlowMemory()
+    known = KnownFlows()
     for factor, power in ((1.0, 311.0), (1.004, 327.0)):
         figures = FlowFigures(power, 0.013, 2.3e5, -0.7e5, 41.0, periods=60, periodic=False)
-        memory.add(family, speed * factor, mixture, pressure, figures)
-    near = memory.figures(family, 1.003 * speed, mixture, pressure)
+        known = known.with_flow(family, speed * factor, mixture, pressure, figures)
+    near = known.figures(family, 1.003 * speed, mixture, pressure)
     assert near.power == pytest.approx(311.0 * 1.003**3, rel=1e-12)
     assert near.speed_max == pytest.approx(41.0 * 1.003, rel=1e-12)
     assert (near.periods, near.periodic) == (60, False)
-    beyond = memory.figures(family, 1.008 * speed, mixture, pressure)
+    beyond = known.figures(family, 1.008 * speed, mixture, pressure)
     assert beyond.power == pytest.approx(327.0 * (1.008 / 1.004) ** 3, rel=1e-12)
-    assert memory.figures(family, 1.01 * speed, mixture, pressure) is None
+    assert known.figures(family, 1.01 * speed, mixture, pressure) is None
 
 
 def test_a_flow_without_voids_serves_all_speeds_oils_and_shares(monkeypatch):

@@ -12,8 +12,8 @@ import math
 import pytest
 
 import epicyclic as ep
-from epicyclic.reference.gear_loss import equal_sharing_loss_factor
-from epicyclic.reference.planetary import planetary_efficiency
+from reference.gear_loss import equal_sharing_loss_factor
+from reference.planetary import planetary_efficiency
 
 ROUNDING = 1e-10  # relative; sums of losses, powers a hundred times as large
 

@@ -16,11 +16,13 @@ from epicyclic.case.case import Case
 from epicyclic.case.train import TrainCase
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
-from epicyclic.losses.ranges import SomeFlags, ValidityFlag, standing
-from epicyclic.machine.element import OIL, BearingFigures, Loss, MeshFigures, joined_key
+from epicyclic.losses.ranges import SomeFlags, ValidityFlag
+from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
+from epicyclic.machine.element import OIL, Loss, joined_key
+from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.gear_set import GearSetResult
 from epicyclic.machine.heat import AGREEMENT, Answer, Settled, heat_of
-from epicyclic.machine.planets import SHARING_METHODS
+from epicyclic.machine.planets import SHARING_METHODS, BearingFigures
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, stage_torques
 from epicyclic.results.heat import HeatBalance, HeatWay
@@ -190,7 +192,7 @@ def _standing(
     for element in built.machine.elements:
         if isinstance(element, ShaftBearing):
             name = element.model.name
-            phrase = f"{name}: {standing('shaft_bearing', name)}"
+            phrase = f"{name}: {SHAFT_BEARING_RELIABILITY[name]}"
             yield joined_key(element.key, "shaft_bearing"), phrase
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,9 +27,10 @@ from epicyclic.losses.friction import (
 from epicyclic.losses.mixed_ehl import TALBOT_FLUID
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN
 from epicyclic.losses.pocket_flow import PocketModel, automatic_pocketing
-from epicyclic.losses.pocket_tables import FlowMemory, FlowTables
-from epicyclic.losses.ranges import STANDING, standing
-from epicyclic.losses.rolling import ROLLING_MODELS, MixedEhlRolling, PairedRolling, RollingModel
+from epicyclic.losses.pocket_tables import FlowTables
+from epicyclic.losses.ranges import FITTED_QUANTITIES
+from epicyclic.losses.reliability import RELIABILITY, reliability
+from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
 from epicyclic.machine.element import Fluids, fluids_at
 from epicyclic.machine.gear_mesh import MeshModels
 from epicyclic.machine.gear_set import LossChoice
@@ -92,14 +94,16 @@ def _automatic(case: SetCase, quantity: str, fitted: str, formula: str) -> str:
 
 def standing_of(case: SetCase) -> dict[str, str]:
     """The models of friction, rolling loss and bearings, and how well each is known to be right."""
-    models, fitted, form = resolve_models(case), fitted_oil_model(case), case.models.fitted_form
+    models, form = resolve_models(case), case.models.fitted_form
     if models["mesh"] == "loss-factor":
         del models["rolling"]
+    uses_fits = any("fitted" in models.get(role, "") for role in FITTED_QUANTITIES)
+    fitted = fitted_oil_model(case) if uses_fits else None
     return {
         role: "; ".join(
-            f"{name}: {standing(role, name, fitted, form)}" for name in models[role].split(", ")
+            f"{name}: {reliability(role, name, fitted, form)}" for name in models[role].split(", ")
         )
-        for role in STANDING
+        for role in RELIABILITY
         if role in models
     }
 
@@ -175,10 +179,7 @@ def rolling_of(case: SetCase) -> RollingModel:
     if name in (FittedRolling.name, FittedOrGoksem.name):
         fitted = fitted_rolling(case, "rolling_loss")
         return fitted if name == FittedRolling.name else FittedOrGoksem(fitted)
-    for model in (MixedEhlRolling, PairedRolling):
-        if name == model.name:
-            return model(case.models.oil_beyond_range == "held")
-    return ROLLING_MODELS[name]
+    return replace(ROLLING_MODELS[name], oil_held=case.models.oil_beyond_range == "held")
 
 
 def fitted_rolling(case: SetCase, quantity: str) -> FittedRolling:
@@ -230,7 +231,6 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
     choices, friction, rolling = loss_choices(case), friction_of(case), rolling_of(case)
     pocketing = pocketing_of(case)
     file = case.models.pocketing_table
-    memory = None if case.models.temperatures == "inlet" else FlowMemory()
     meshes = tuple(_before("_pocketing", choices))
     planets = case.gearing.count
     fed = _fed(case) / (len(meshes) * (planets or 1))
@@ -252,7 +252,6 @@ def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]
                 end_length=case.models.pocket_end_length,
                 file=None if file is None else case.folder / file,
                 tables=flow_tables,
-                memory=memory,
                 fed=fed,
                 any_order=not planets,
             ),

@@ -18,9 +18,10 @@ from epicyclic.contact.fitted_models import changed_properties
 from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.mixed_ehl import TALBOT_FLUID
-from epicyclic.losses.ranges import STANDING
-from epicyclic.machine.element import BearingFigures, MeshFigures
+from epicyclic.losses.reliability import RELIABILITY
+from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.gear_set import GearSetResult
+from epicyclic.machine.planets import BearingFigures
 from epicyclic.results.result import LossTerm
 from epicyclic.units import GIGAPASCAL, NEWTON, format_number, percent
 
@@ -113,13 +114,14 @@ def lubrication_notes(case: SetCase) -> Iterator[str]:
 
 def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:
     """On fitted models of another oil, and on those of this name that are not used."""
-    oil, model = case.lubricant.oil, fitted_oil_model(case)
-    uses_fit = any("fitted" in name for name in models.values())
-    if uses_fit and case.models.oil_model is not None and model is not None and model.oil != oil:
-        yield f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}."
+    oil, given = case.lubricant.oil, case.models.oil_model is not None
+    if given and any("fitted" in name for name in models.values()):
+        model = fitted_oil_model(case)
+        if model is not None and model.oil != oil:
+            yield f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}."
     changed = changed_properties(oil)
-    asked = any(getattr(case.models, key, "") == "auto" for key in STANDING)
-    if model is None and changed and asked:
+    asked = any(getattr(case.models, key, "") == "auto" for key in RELIABILITY)
+    if not given and changed and asked:
         yield (
             f"The models built in for {oil.name} are not used, because this oil differs from it in "
             f"{', '.join(changed)}; 'epicyclic oil characterise' fits models for it."

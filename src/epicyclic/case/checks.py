@@ -46,6 +46,7 @@ from epicyclic.case.train_tables import ListedSet
 from epicyclic.contact.fitted_models import OilModel
 from epicyclic.errors import InputError, Problem, rising_problems
 from epicyclic.gears.mesh import are_evenly_spaced
+from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.units import BAR
 
 if TYPE_CHECKING:
@@ -302,13 +303,14 @@ def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | Non
     chosen = (models.friction, models.rolling, getattr(models, "bearing", ""))
     if models.oil_model is None and not any(name.startswith("fitted") for name in chosen):
         return []
-    from epicyclic.losses.ranges import FITTED  # few cases need it
 
     asked = {
         key: quantity
-        for key, quantity in FITTED.items()
+        for key, quantity in FITTED_QUANTITIES.items()
         if getattr(models, key, "").startswith("fitted")
     }
+    if not asked and models.oil_model is None:
+        return []
     try:
         model = _oil_model(models, folder, lubricant)
     except InputError as error:

@@ -866,7 +866,7 @@ def read_oil_model(path: str | Path) -> OilModel:
         raise _file_error(file, f"cannot be read: {error.strerror}.") from None
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=64)
 def _read(path: Path, _changed: int, _size: int) -> OilModel:
     """The file as it was when it was last changed."""
     try:
@@ -924,7 +924,7 @@ def builtin_model(
     file = library.oil_model_file(oil.name)
     if file is None or _changed(oil, file):
         return None
-    return _read_builtin(file)
+    return read_oil_model(file)
 
 
 def changed_properties(oil: Oil) -> tuple[str, ...]:
@@ -938,20 +938,11 @@ def changed_properties(oil: Oil) -> tuple[str, ...]:
 
 @lru_cache(maxsize=64)
 def _changed(oil: Oil, file: Path) -> tuple[str, ...]:
-    own, simulated = map(_numbers, (oil, _read_builtin(file).oil))
-    return tuple(name for name in _SIMULATED if own[name] != simulated[name])
-
-
-@lru_cache(maxsize=64)
-def _read_builtin(file: Path) -> OilModel:
-    """The model in a file that comes with the package and does not change."""
-    return read_oil_model(file)
-
-
-def _numbers(oil: Oil) -> dict[str, Any]:
-    """What the contacts of an oil depend on."""
-    numbers: dict[str, Any] = _plain(oil.model_dump(include=set(_SIMULATED)))
-    return numbers
+    # only the oil: to check all fits takes much longer, and most cases of such an oil use none
+    settings = unsealed(read_text(file, "oil model", LARGEST_FILE))["settings"]
+    simulated = Oil.model_validate(settings["lubricant"]["oil"])
+    own, theirs = (_plain(each.model_dump(include=set(_SIMULATED))) for each in (oil, simulated))
+    return tuple(name for name in _SIMULATED if own[name] != theirs[name])
 
 
 def _plain(value: Any) -> Any:

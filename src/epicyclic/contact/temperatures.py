@@ -147,7 +147,7 @@ def iso_mean_friction(
     Examples
     --------
     >>> rough = roughness_factor(0.5e-6, 8.38e-3)
-    >>> round(mean_friction(560e3, 6.58, 8.38e-3, 12e-3, rough, 1.0), 4)
+    >>> round(iso_mean_friction(560e3, 6.58, 8.38e-3, 12e-3, rough, 1.0), 4)
     0.0687
     """
     group = line_load / MM / (sum_speed * radius * MM)  # N/mm, m/s, mm

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.contact.elastic_teeth import GearBody
-from epicyclic.contact.line_contact import Flanks, LineContacts
-from epicyclic.contact.loaded_mesh import (
+from epicyclic.contact.elastic_teeth import (
     UNMODIFIED,
+    GearBody,
     LoadedMesh,
     load_mesh_elastically,
     load_mesh_next_to,
 )
+from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.gears.flanks import ContactLines, FlankDeviations, contact_lines
 from epicyclic.gears.mesh import Mesh
 from epicyclic.oil.properties import OilState

@@ -16,9 +16,16 @@ from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.interpolation import along_path, over_pressure
 from epicyclic.kernels.line_contact import line_load_at_pressure
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.friction import FrictionModel, Schlenk
+from epicyclic.losses.friction import FRICTION_MODELS, FrictionModel, NothingToSolve
 from epicyclic.losses.mixed_ehl import beyond_data
-from epicyclic.losses.ranges import ModelUse, Range, RegressionFluid, ValidityFlag, check_contacts
+from epicyclic.losses.ranges import (
+    ModelUse,
+    Range,
+    RangeFlags,
+    RegressionFluid,
+    ValidityFlag,
+    check_contacts,
+)
 from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
 from epicyclic.oil.properties import OilState
 from epicyclic.units import (
@@ -193,7 +200,7 @@ _LABELS: dict[str, tuple[str, Quantity]] = {
 
 
 @dataclass(frozen=True)
-class _Fit:
+class _Fit(RangeFlags):
     """What friction and rolling loss share that are fitted to the simulated contacts of one oil."""
 
     name: ClassVar = "fitted"
@@ -224,7 +231,7 @@ class _Fit:
 
 
 @dataclass(frozen=True)
-class FittedFriction(_Fit):
+class FittedFriction(NothingToSolve, _Fit):
     """Coefficients fitted to the simulated contacts of one oil.
 
     Theory (O9).
@@ -321,6 +328,7 @@ def weight_of_fit(
 class _FittedOrFormula(Generic[Fit]):
     """A fit to the contacts of an oil, and a formula beyond them. Theory (O11)."""
 
+    name: ClassVar[str]
     made_for: ClassVar[RegressionFluid | None] = None
     beyond: ClassVar[FrictionModel | RollingModel]
 
@@ -348,20 +356,21 @@ class _FittedOrFormula(Generic[Fit]):
         """Weight of the fit at each contact. [1]"""
         return weight_of_fit(self.fitted.model, self.fitted.quantity, contact)
 
-    def beyond_flags(
-        self, role: str, contact: MeshContact, loss: FloatArray
-    ) -> tuple[ValidityFlag, ...]:
-        """What leaves the range of the formula where the formula is used."""
-        rest = (1 - self.weight(contact)) * loss
+    def flags(self, role: str, contact: MeshContact, loss: FloatArray) -> tuple[ValidityFlag, ...]:
+        """What leaves the range of the fit, and that of the formula where the formula is used."""
+        where = contact.mesh.name
+        fit = ModelUse(role, self.name, where, instead=self.beyond.name)
+        outside = check_contacts(fit, self.ranges, contact, loss)
+        rest: FloatArray = (1 - self.weight(contact)) * loss
         if not rest.any():
-            return ()
-        use = ModelUse(role, self.beyond.name, contact.mesh.name)
+            return outside
+        formula = ModelUse(role, self.beyond.name, where)
         part = float(rest.sum() / loss.sum())
-        return check_contacts(use, self.beyond.ranges, contact, rest, part)
+        return outside + check_contacts(formula, self.beyond.ranges, contact, rest, part)
 
 
 @dataclass(frozen=True, slots=True)
-class FittedOrSchlenk(_FittedOrFormula[FittedFriction]):
+class FittedOrSchlenk(NothingToSolve, _FittedOrFormula[FittedFriction]):
     """The fit to the contacts of an oil, and the mean friction of Schlenk beyond them.
 
     Theory (O11).
@@ -369,7 +378,7 @@ class FittedOrSchlenk(_FittedOrFormula[FittedFriction]):
 
     name: ClassVar = "fitted-or-schlenk"
     takes_oil_temperature: ClassVar[bool] = False
-    beyond: ClassVar = Schlenk()
+    beyond: ClassVar[FrictionModel] = FRICTION_MODELS["schlenk"]
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
@@ -389,7 +398,7 @@ class FittedOrGoksem(_FittedOrFormula[FittedRolling]):
     """
 
     name: ClassVar = "fitted-or-goksem-hargreaves"
-    beyond: ClassVar = ROLLING_MODELS["goksem-hargreaves"]
+    beyond: ClassVar[RollingModel] = ROLLING_MODELS["goksem-hargreaves"]
 
     def loss_density(self, contact: MeshContact) -> FloatArray:
         """See the class. [W/m]"""

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from epicyclic.contact.temperatures import Solid, flash_temperature, heat_share
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.fitted import FittedOrGoksem, FittedOrSchlenk
 from epicyclic.losses.friction import FrictionModel
-from epicyclic.losses.ranges import Flags, ModelUse, SomeFlags, ValidityFlag, check_contacts
+from epicyclic.losses.ranges import Flags, SomeFlags
 from epicyclic.losses.rolling import RollingModel
 
 # Flash temperature along the contact lines of a mesh, and which gear the heat goes to.
@@ -115,8 +114,8 @@ def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingMo
         friction=coefficient,
         heat=local_sliding,
         flags=Flags(
-            partial(_flags, "friction", friction, own, local_sliding),
-            partial(_flags, "rolling", rolling, contact, local_rolling),
+            partial(friction.flags, "friction", own, local_sliding),
+            partial(rolling.flags, "rolling", contact, local_rolling),
         ),
     )
 
@@ -147,7 +146,7 @@ def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
         rolling=0.0,
         friction=coefficient,
         heat=local_sliding,
-        flags=Flags(partial(_flags, "friction", friction, own, local_sliding)),
+        flags=Flags(partial(friction.flags, "friction", own, local_sliding)),
     )
 
 
@@ -207,14 +206,3 @@ def _sliding_integral(tip1: float, tip2: float) -> float:
         pairs = math.floor(tip1 - middle) + math.floor(middle + tip2) + 1
         total += 2 * abs(middle) * (end - start) / pairs
     return total
-
-
-def _flags(
-    role: str, model: FrictionModel | RollingModel, contact: MeshContact, weight: FloatArray
-) -> tuple[ValidityFlag, ...]:
-    where = contact.mesh.name
-    if isinstance(model, FittedOrSchlenk | FittedOrGoksem):
-        use = ModelUse(role, model.name, where, instead=model.beyond.name)
-        beyond = model.beyond_flags(role, contact, weight)
-        return (*check_contacts(use, model.ranges, contact, weight), *beyond)
-    return check_contacts(ModelUse(role, model.name, where), model.ranges, contact, weight)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +41,7 @@ TALBOT_FLUID = RegressionFluid(
     "talbot-2012", "the automatic transmission fluid of Talbot (2012), atf-talbot-2012"
 )
 
+REGRESSION_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012)"
 _SOURCE = "Talbot (2012), Table 5.1"
 _FLUID_SOURCE = "the fluid of Talbot (2012) at 100 and 25 degC"
 _PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SOURCE)
@@ -75,19 +75,6 @@ TALBOT_GEAR_RANGES = (
     Range("slide_to_roll_ratio", "slide-to-roll ratio", 0.025, 1.0, NUMBER, _SOURCE),
 )
 """Ranges of the 33,600 simulations behind Eq. 5.8 and 5.10."""
-
-
-@dataclass(frozen=True, slots=True)
-class TalbotRegression:
-    """A regression of the 33,600 mixed-EHL simulations of an automatic transmission fluid.
-
-    Conditions outside Table 5.1 are held at its limits, as `held_in_table` does.
-    """
-
-    oil_held: bool = True  # False to continue the formula beyond its oil.
-
-    made_for: ClassVar[RegressionFluid | None] = TALBOT_FLUID
-    ranges: ClassVar[tuple[Range, ...]] = TALBOT_GEAR_RANGES
 
 
 _HELD = {

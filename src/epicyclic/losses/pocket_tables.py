@@ -7,7 +7,7 @@ import math
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from importlib import metadata
 from itertools import pairwise
@@ -199,7 +199,7 @@ def from_scaled(
 # Tables of flows through pockets over the one number that they depend on.
 #
 # A table is made for the numbers that are asked of it. It starts from few of them and adds the one
-# nearest to the middle of every interval until the flow there was foretold by the others well
+# nearest to the middle of every interval until the flow there was predicted by the others well
 # enough; where that does not come to pass, all numbers asked for are solved.
 
 
@@ -209,8 +209,6 @@ SAME = 1e-9
 """Numbers that differ less, relatively, are one. [1]"""
 KEPT_MOST = 10_000
 """Flows remembered for the next tables."""
-
-_kept: dict[tuple[FlowFamily, float], Floats] = {}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -284,7 +282,7 @@ def make_tables(
                 return {family: table.finished() for family, table in growing.items()}
             for family in {family for family, _ in wanted}:
                 _ = family.geometry  # once, before threads ask for it at the same time
-            solved = list(pool.map(_scaled, wanted))
+            solved = list(pool.map(_scaled, *zip(*wanted, strict=True)))
             for family, table in growing.items():
                 table.take(
                     {
@@ -295,15 +293,9 @@ def make_tables(
                 )
 
 
-def _scaled(place: tuple[FlowFamily, float]) -> Floats:
-    if place not in _kept:
-        family, number = place
-        scaled = family.scaled(number)
-        if len(_kept) >= KEPT_MOST:
-            _kept.clear()
-        _kept[place] = scaled
-        return scaled
-    return _kept[place]
+@lru_cache(maxsize=KEPT_MOST)
+def _scaled(family: FlowFamily, number: float) -> Floats:
+    return family.scaled(number)
 
 
 class _Growing:
@@ -342,8 +334,8 @@ class _Growing:
             checked, self._open = self._open, []
             for gap in checked:
                 middle = self._middle(gap)
-                told = interpolate(self._place[known], scaled, float(self._place[middle]))
-                error = abs(float(told[0] / places[middle][0]) - 1)
+                expected = interpolate(self._place[known], scaled, float(self._place[middle]))
+                error = abs(float(expected[0] / places[middle][0]) - 1)
                 halves = ((gap[0], middle), (middle, gap[1]))
                 if error <= self._bound:
                     self._error = max(self._error, error)
@@ -402,24 +394,27 @@ RESTLESS = 5e-3
 periods scatters by 1 to 2 %, the scaled power changes by less than that. [1]"""
 
 
-class FlowMemory:
+@dataclass(frozen=True, slots=True)
+class KnownFlows:
     """Solved flows of some families."""
 
-    def __init__(self) -> None:
-        self._known: dict[FlowFamily, dict[float, Floats]] = {}
-        self._restless: dict[FlowFamily, dict[float, tuple[Floats, FlowFigures]]] = {}
+    # By family and ln(number): scaled figures, and the figures themselves.
+    flows: Mapping[tuple[FlowFamily, float], tuple[Floats, FlowFigures]] = field(
+        default_factory=dict[tuple[FlowFamily, float], tuple[Floats, FlowFigures]]
+    )
 
     def figures(
         self, family: FlowFamily, speed: float, mixture: MixtureState, pressure: float
     ) -> FlowFigures | None:
         """The flow between the two nearest ones known; None if that may be too far off."""
         place = math.log(FlowFamily.number(speed, mixture, pressure))
+        own = {other: flow for (one, other), flow in self.flows.items() if one == family}
         # the first one that is near, so that figures do not jump between two of them
-        for other, (scaled, figures) in self._restless.get(family, {}).items():
-            if abs(other - place) < RESTLESS:
-                told = from_scaled(scaled, speed, mixture.density)
-                return replace(told, periods=figures.periods, periodic=False)
-        known = self._known.get(family, {})
+        for other, (scaled, figures) in own.items():
+            if not figures.periodic and abs(other - place) < RESTLESS:
+                mean = from_scaled(scaled, speed, mixture.density)
+                return replace(mean, periods=figures.periods, periodic=False)
+        known = {other: scaled for other, (scaled, figures) in own.items() if figures.periodic}
         nearest = sorted(known, key=lambda other: abs(other - place))[:2]
         if nearest and nearest[0] == place:
             return from_scaled(known[place], speed, mixture.density)
@@ -434,21 +429,20 @@ class FlowMemory:
         scaled = known[one] + part * (known[two] - known[one])
         return from_scaled(scaled, speed, mixture.density, nodes=2, error=error)
 
-    def add(
+    def with_flow(
         self,
         family: FlowFamily,
         speed: float,
         mixture: MixtureState,
         pressure: float,
         figures: FlowFigures,
-    ) -> None:
-        """Remember a flow."""
-        place = math.log(FlowFamily.number(speed, mixture, pressure))
-        scaled = scaled_figures(figures, speed, mixture.density)
-        if figures.periodic:
-            self._known.setdefault(family, {})[place] = scaled
-        else:
-            self._restless.setdefault(family, {})[place] = (scaled, figures)
+    ) -> KnownFlows:
+        """These flows and another one."""
+        number = FlowFamily.number(speed, mixture, pressure)
+        if number == LEAST_NUMBER:  # it is scaled, and its speed may be too small to divide by
+            return self
+        place, scaled = math.log(number), scaled_figures(figures, speed, mixture.density)
+        return KnownFlows({**self.flows, (family, place): (scaled, figures)})
 
 
 # Tables of flows through pockets in a file, with the pockets that they were made for.

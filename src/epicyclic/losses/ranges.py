@@ -1,4 +1,4 @@
-"""Where models hold: ranges, flags for what leaves them, and how reliable each model is."""
+"""Where models hold: ranges, flags for what leaves them, and what every loss model states."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent
 
 if TYPE_CHECKING:
-    from epicyclic.contact.fitted_models import OilModel
+    pass
 
 # Ranges in which models were made: values held in them, and flags for what leaves them.
 
@@ -23,8 +23,8 @@ FloatArray = NDArray[np.float64]
 Real = TypeVar("Real", float, FloatArray)
 
 SMALLEST_SHOWN_SHARE = 0.01
-SMALLEST_TOLD = 0.01
-"""Part of the total loss below which a range left is told with others. [1]"""
+SMALLEST_APART = 0.01
+"""Part of the total loss below which a range left shares a sentence with others. [1]"""
 OUT_OF_RANGE = "Out of range"
 """Begins what `describe_flags` says of a flag."""
 OF_THIS_PACKAGE = "limit of this package; none is in print"
@@ -71,6 +71,60 @@ class RegressionFluid(NamedTuple):
 
     key: str  # What an oil states as its `friction_regression` if it is this fluid.
     title: str
+
+
+class LossModel(Protocol):
+    """What every model of friction or rolling loss states."""
+
+    @property
+    def name(self) -> str:
+        """Under which a case chooses it."""
+
+    @property
+    def title(self) -> str:
+        """For reports."""
+
+    @property
+    def source(self) -> str:
+        """Where it is printed."""
+
+    @property
+    def made_for(self) -> RegressionFluid | None:
+        """The fluid that it was made for, if it holds for no other."""
+
+    @property
+    def ranges(self) -> tuple[Range, ...]:
+        """Where the model was made; leaving it is flagged."""
+
+    def flags(self, role: str, contact: Any, loss: FloatArray) -> tuple[ValidityFlag, ...]:
+        """What leaves the ranges in a mesh with some loss at each point, for a role as `ModelUse`
+        has it.
+        """
+
+
+class RangeFlags:
+    """The flags of a model that is used wherever it is asked, also beyond its ranges."""
+
+    __slots__ = ()
+
+    def flags(
+        self: LossModel, role: str, contact: Any, loss: FloatArray
+    ) -> tuple[ValidityFlag, ...]:
+        """See `LossModel`."""
+        use = ModelUse(role, self.name, contact.mesh.name)
+        return check_contacts(use, self.ranges, contact, loss)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Formula(RangeFlags):
+    """A `LossModel` that is a formula: its entry in the table of its kind."""
+
+    name: str
+    title: str
+    source: str
+    reliability: str  # How well it is known to be right, and against what, as a phrase.
+    ranges: tuple[Range, ...] = ()
+    made_for: RegressionFluid | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,22 +219,22 @@ def describe_flags(
     flags: Iterable[ValidityFlag],
     # Loss that a model was used for; NaN if it is not known. [W]
     loss_of: Callable[[ModelUse], float] = lambda use: math.nan,
-    # Total loss; what concerns less than `SMALLEST_TOLD` of it is told in one sentence. [W]
+    # Total loss; what concerns less than `SMALLEST_APART` of it shares one sentence. [W]
     total: float = math.nan,
 ) -> tuple[str, ...]:
     """One sentence for each quantity and range left, those that concern most of the loss first."""
     concerned = flags_with_loss(flags, loss_of)
-    small = [pair for pair in concerned if pair[0] < SMALLEST_TOLD * total]
+    small = [pair for pair in concerned if pair[0] < SMALLEST_APART * total]
     large = [pair for pair in concerned if pair not in small]
     large.sort(key=_unknown_first)
-    told = [_sentence(watts, group) for watts, group in large]
+    sentences = [_sentence(watts, group) for watts, group in large]
     if len(small) == 1:
-        told.append(_sentence(*small[0]))
+        sentences.append(_sentence(*small[0]))
     elif small:
         ranges = "; ".join(range_text(group) for _, group in small)
         watts = max(watts for watts, _ in small)
-        told.append(f"{OUT_OF_RANGE}, each for {WATT.text(watts, 2)} at most: {ranges}.")
-    return tuple(told)
+        sentences.append(f"{OUT_OF_RANGE}, each for {WATT.text(watts, 2)} at most: {ranges}.")
+    return tuple(sentences)
 
 
 def flags_with_loss(
@@ -331,85 +385,9 @@ def _share(outside: NDArray[np.bool_] | bool, weight: FloatArray | float) -> flo
     return min(float(weights[outside].sum()) / total, 1.0) if total > 0 else 1.0
 
 
-# How well each model of friction and rolling loss is known to be right, and against what.
-
-
-_GEAR_TESTS = "fitted to gear tests, whose scatter was not found in print"
-_OF_THE_CASE = "given by the case"
-_NOT_KNOWN = "no comparison with measurements was found"
-STANDING: dict[str, dict[str, str]] = {
-    "friction": {
-        "mixed-ehl": "regression of simulated contacts, its error against them not printed; with "
-        "it the measured loss of the sets it was made for is predicted 3.5 % low in its slope at "
-        "90 °C (Talbot 2012, Fig. 5.9), lower at 40 and 60 °C",
-        "mixed-ehl+pairing": "mixed-ehl where both flanks are equally rough; the effect of a "
-        "smoother one is that of the solver of this package, not compared with measurements",
-        "xu-2007": "regression of simulated contacts; 24 to 36 % off the measured loss of one "
-        "jet-lubricated spur pair (tests of Petry-Johnson et al., second hand)",
-        "benedict-kelley": f"fitted to disc tests; {_NOT_KNOWN}",
-        "matsumoto": f"film and dry friction are estimates of the case; {_NOT_KNOWN}",
-        "doleschel": f"film and dry friction are estimates of the case; {_NOT_KNOWN}",
-        "schlenk": _GEAR_TESTS,
-        "niemann-winter": _GEAR_TESTS,
-        "constant": _OF_THE_CASE,
-        "table": _OF_THE_CASE,
-        "ehl-direct": "contacts solved, the error of interpolation stated among the warnings; "
-        "not compared with measurements",
-    },
-    "rolling": {
-        "mixed-ehl": "its scale is a reconstruction, right within a factor of about 2 against "
-        "smooth contacts (R4)",
-        "mixed-ehl+pairing": "as mixed-ehl where both flanks are equally rough, the effect of a "
-        "smoother one from the solver of this package",
-        "goksem-hargreaves": "within some 15 % of solved smooth contacts without heating; rough "
-        "contacts lose more",
-    },
-    "bearing": {
-        "mixed-ehl": "calibrated on three printed losses of one bearing; a fourth, with smoother "
-        "rollers, is met within 10 %",
-        "palmgren": "its source gives a range of a factor of 2 for caged rollers",
-    },
-    "churning": {
-        "changenet-velex": "fitted to tests of single gears, whose scatter was not found in print; "
-        "readings of its slow regime in other works lie up to 40 % lower",
-        "iso-14179-1": "coefficients of a standard, which states no error",
-    },
-    "shaft_bearing": {
-        "skf-2018": "formulas of a catalogue, which states no error",
-        "palmgren": "mean coefficients of bearings of a type, whose scatter was not found in print",
-        "harris": "mean coefficients of bearings of a type, whose scatter was not found in print",
-        "table": _OF_THE_CASE,
-    },
+FITTED_QUANTITIES = {
+    "friction": "friction",
+    "rolling": "rolling_loss",
+    "bearing": "bearing_rolling_loss",
 }
-"""By role and name of the model, each a phrase."""
-FITTED = {"friction": "friction", "rolling": "rolling_loss", "bearing": "bearing_rolling_loss"}
-"""Which quantity of a fit each role takes."""
-
-
-def standing(
-    role: str,  # ``"friction"``, ``"rolling"``, ``"bearing"`` of planets or ``"shaft_bearing"``.
-    name: str,  # Name of the model, as a case chooses it.
-    # The fitted models of the oil, for a name that begins with ``fitted``.
-    model: OilModel | None = None,
-    form: str = "",  # Which form of the fit; the first one if the file lacks it.
-) -> str:
-    """What is known of the error of a model, as a phrase.
-
-    Examples
-    --------
-    >>> standing("rolling", "goksem-hargreaves").split(";")[0]
-    'within some 15 % of solved smooth contacts without heating'
-    """
-    if not name.startswith("fitted"):
-        return STANDING[role][name]
-    assert model is not None
-    fit = model.fits[FITTED[role]]
-    fitted = next((item for item in fit.forms if item.form == form), fit.forms[0])
-    whole = fitted.errors[0]
-    known = (
-        f"median error {percent(whole.median, 0)}, 90 % of contacts within "
-        f"{percent(whole.largest_of_90_percent, 0)}, against {fit.contacts} contacts simulated for "
-        f"{model.oil.name}, not against measurements"
-    )
-    _, beyond, formula = name.partition("-or-")
-    return f"{known}; beyond them {formula}: {STANDING[role][formula]}" if beyond else known
+"""Which quantity of the fits of an oil each role takes."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.gears.gear import HOUSING
-from epicyclic.machine.machine import Machine, MeshRow, Operation, Terms
+from epicyclic.machine.machine import Machine, Operation
 
 # Systems of as many linear equations as unknowns.
 
@@ -206,10 +206,18 @@ def balance(
     """Torques and mesh loads from the balance of every body. Theory (T3), (T5)."""
     bodies = machine.bodies
     place = {body: index for index, body in enumerate(bodies)}
-    unknown = _unknown_torques(operation, place)
+    # torques that balance: of the output, and of all bodies of given speed but the input
+    held = [body for body in operation.speeds if body not in (operation.input, operation.output)]
+    unknown = [body for body in (operation.output, *held) if body in place]
     columns = np.zeros((len(bodies), len(machine.rows) + len(machine.couplings) + len(unknown)))
     scale: list[float] = []
-    lossy = [_lossy_terms(row, drives[row.key], efficiencies[row.key]) for row in machine.rows]
+    # each mesh with the term of its driven gear reduced
+    lossy = [
+        row.terms(1.0, efficiencies[row.key])
+        if drives[row.key]
+        else row.terms(efficiencies[row.key], 1.0)
+        for row in machine.rows
+    ]
     stiff = [coupling.terms() for coupling in machine.couplings]
     for number, terms in enumerate((*lossy, *stiff)):
         column: dict[str, float] = {}
@@ -250,11 +258,6 @@ def balance(
     )
 
 
-def _lossy_terms(row: MeshRow, first: bool, efficiency: float) -> Terms:
-    """The terms of a mesh with that of its driven gear reduced; `first` if gear 1 drives."""
-    return row.terms(1.0, efficiency) if first else row.terms(efficiency, 1.0)
-
-
 def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
     """The smallest solution of a linear system, and whether it is the only one."""
     if matrix.shape[0] == matrix.shape[1]:
@@ -272,12 +275,6 @@ def drives_first(powers: Mapping[str, float], before: Mapping[str, bool]) -> dic
     """For each mesh whether its first gear drives; as `before` where no power flows."""
     limit = NO_POWER * max(map(abs, powers.values()), default=0.0)
     return {key: before[key] if abs(power) <= limit else power > 0 for key, power in powers.items()}
-
-
-def _unknown_torques(operation: Operation, place: Mapping[str, int]) -> list[str]:
-    """Bodies whose torque balances: the output, and all of given speed but the input."""
-    held = [body for body in operation.speeds if body not in (operation.input, operation.output)]
-    return [body for body in (operation.output, *held) if body in place]
 
 
 def _known_torques(

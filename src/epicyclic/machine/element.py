@@ -7,9 +7,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.planet_bearing import RollerLoads
-from epicyclic.losses.pocket_tables import FLOW_NUMBERS
 from epicyclic.losses.ranges import ModelUse, Range, SomeFlags, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import BearingLoad
 from epicyclic.oil.oil import Oil
@@ -22,23 +19,10 @@ from epicyclic.oil.properties import (
 )
 from epicyclic.units import (
     CELSIUS,
-    DEGREE,
-    GIGAPASCAL,
-    KELVIN,
     KILOGRAM_PER_CUBIC_METRE,
-    METRE_PER_SECOND,
-    MICROMETRE,
-    MILLIMETRE,
     MILLIPASCAL_SECOND,
-    NEWTON,
-    NEWTON_METRE,
-    NEWTON_PER_MM,
-    NEWTON_PER_UM,
-    NUMBER,
     PER_GIGAPASCAL,
-    RPM,
     SQUARE_MM_PER_SECOND,
-    WATT_PER_KELVIN,
     Quantity,
 )
 
@@ -190,76 +174,6 @@ def displayed(source: DataclassInstance, field: dataclasses.Field[Any]) -> float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class MeshFigures:
-    """What an engineer checks by eye on a mesh; NaN where there is no load or no motion.
-
-    The largest line load and pressure leave out the 1 % of the contact that carries most: in the
-    corners of a helical face without end relief the load has no bound, and its largest value would
-    be that of the resolution.
-
-    Transmission error and stiffness, in the transverse plane of action, are those of elastic teeth
-    and NaN with another load distribution.
-
-    `flattening` is the half-width of the contact that is pressed with `hertz_pressure_max` over its
-    radius, `resistance` the loss over what the load could resist with at the speeds of both flanks,
-    a mean coefficient of friction: numbers above 1 cannot be.
-    """
-
-    contact: MeshContact | None
-    flattening: float
-    resistance: float
-    pressure_angle: float = figure("operating pressure angle, transverse", DEGREE)
-    transverse_contact_ratio: float = figure("transverse contact ratio", NUMBER)
-    overlap_ratio: float = figure("overlap ratio", NUMBER)
-    backlash: float = figure("circumferential backlash", MILLIMETRE)
-    misalignment: float = figure("misalignment, with tilt of the planet if coupled", MICROMETRE)
-    pitch_line_speed: float = figure("pitch-line speed, relative to carrier", METRE_PER_SECOND)
-    sliding_speed_max: float = figure("largest sliding speed", METRE_PER_SECOND)
-    line_load_max: float = figure("largest line load but for 1 % of the contact", NEWTON_PER_MM)
-    hertz_pressure_max: float = figure(
-        "largest Hertz pressure but for 1 % of the contact", GIGAPASCAL
-    )
-    contact_share: float = figure("share of the contact lines that carries", NUMBER)
-    film_ratio_min: float = figure("film ratio, smallest", NUMBER)
-    film_ratio_max: float = figure("film ratio, largest", NUMBER)
-    friction_mean: float = figure("mean coefficient of friction", NUMBER)
-    loss_factor: float = figure("loss factor H_V (Ohlendorf)", NUMBER)
-    transmission_error_range: float = figure("loaded transmission error, peak to peak", MICROMETRE)
-    mesh_stiffness: float = figure("mean mesh stiffness at this load", NEWTON_PER_UM)
-    pocket_pressure_max: float = figure(*FLOW_NUMBERS["pressure_max"])
-    pocket_pressure_min: float = figure(*FLOW_NUMBERS["pressure_min"])
-    pocket_speed_max: float = figure(*FLOW_NUMBERS["speed_max"])
-    pocket_power_difference: float = figure(*FLOW_NUMBERS["difference"])
-    pocket_interpolation_error: float = figure(
-        "pocketing loss: largest error of its interpolation", NUMBER
-    )
-    contact_temperature: float = figure("oil where it enters the contacts", CELSIUS)
-    flash_temperature_mean: float = figure("flash temperature, mean over the load", KELVIN)
-    flash_temperature_max: float = figure("flash temperature, largest", KELVIN)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class BearingFigures:
-    """What an engineer checks by eye on the planet bearing.
-
-    `flattening` and `resistance` as of `MeshFigures`, the latter at the speed of the pitch circle.
-    """
-
-    loads: RollerLoads | None
-    flattening: float
-    resistance: float
-    radial_force: float = figure("radial force", NEWTON)
-    moment: float = figure("tilting moment", NEWTON_METRE)
-    speed: float = figure("speed relative to carrier", RPM)
-    rollers_loaded: float = figure("loaded rollers, all rows", NUMBER)
-    roller_load_max: float = figure("most loaded roller", NEWTON)
-    roller_azimuth: float = figure("azimuth of that roller from the load", DEGREE)
-    hertz_pressure_max: float = figure("largest Hertz pressure, inner race", GIGAPASCAL)
-    contact_temperature: float = figure("oil where it enters the contacts", CELSIUS)
-    heat_conductance: float = figure("heat from race to race through the rollers", WATT_PER_KELVIN)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class FluidFigures:
     """Properties of the oil at its inlet temperature, and of its mixture with air."""
 
@@ -302,8 +216,9 @@ class State:
     # For each mesh, True if its first gear drives it; where losses turn a small load round, not
     # before they are found.
     drives: Mapping[str, bool] = field(default_factory=dict[str, bool])
-    # What each element has found out about itself from the speeds alone, by its key.
-    idle: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    # Results at another temperature, by the key of the element. What it solved then and what hardly
+    # depends on the temperature need not be solved again: flows through pockets.
+    earlier: Mapping[str, ElementResult] = field(default_factory=dict[str, Any])
 
 
 class Loss(NamedTuple):
@@ -352,11 +267,11 @@ class Element(Protocol):
     def figure_types(self) -> tuple[tuple[str, type[DataclassInstance]], ...]:
         """Names and types of its figures."""
 
-    def idle(self, state: State) -> object:
-        """What follows from the speeds alone; `State.idle` has it from then on."""
-
-    def loads(self, state: State) -> Mapping[str, float]:
+    def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
         """What of a state it depends on beside the speeds: loads in one unit, by their names."""
 
-    def evaluate(self, state: State) -> ElementResult:
-        """Losses, figures and flags in a state."""
+    def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
+        """Losses, figures and flags in a state.
+
+        `last`, its own result at the same speeds and temperatures, saves work.
+        """

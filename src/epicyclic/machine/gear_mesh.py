@@ -10,9 +10,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.contact.elastic_teeth import GearBody
+from epicyclic.contact.elastic_teeth import GearBody, LoadedMesh, load_mesh_elastically
 from epicyclic.contact.line_contact import Flanks
-from epicyclic.contact.loaded_mesh import LoadedMesh, load_mesh_elastically
 from epicyclic.contact.temperatures import Solid
 from epicyclic.gears.flanks import FlankDeviations
 from epicyclic.gears.generation import Tool
@@ -35,10 +34,10 @@ from epicyclic.losses.mesh import (
     mesh_warmth,
     ohlendorf_loss_factor,
 )
-from epicyclic.losses.pocket_tables import FlowFigures
+from epicyclic.losses.pocket_tables import FLOW_NUMBERS, FlowFigures
 from epicyclic.losses.ranges import SMALLEST_SHOWN_SHARE, SomeFlags
 from epicyclic.losses.rolling import RollingModel
-from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, Fluids, Loss, MeshFigures
+from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, Fluids, Loss, figure
 from epicyclic.machine.pocket_flow import (
     POCKETING_SOURCE,
     MeshFlow,
@@ -48,7 +47,18 @@ from epicyclic.machine.pocket_flow import (
     stored_note,
 )
 from epicyclic.oil.properties import OilState
-from epicyclic.plugins.contact_solver.direct import EhlDirect
+from epicyclic.units import (
+    CELSIUS,
+    DEGREE,
+    GIGAPASCAL,
+    KELVIN,
+    METRE_PER_SECOND,
+    MICROMETRE,
+    MILLIMETRE,
+    NEWTON_PER_MM,
+    NEWTON_PER_UM,
+    NUMBER,
+)
 
 FloatArray = NDArray[np.float64]
 
@@ -134,6 +144,55 @@ class MeshDuty:
         return replace(self, gears=replace(self.gears, deviations=tilted))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class MeshFigures:
+    """What an engineer checks by eye on a mesh; NaN where there is no load or no motion.
+
+    The largest line load and pressure leave out the 1 % of the contact that carries most: in the
+    corners of a helical face without end relief the load has no bound, and its largest value would
+    be that of the resolution.
+
+    Transmission error and stiffness, in the transverse plane of action, are those of elastic teeth
+    and NaN with another load distribution.
+
+    `flattening` is the half-width of the contact that is pressed with `hertz_pressure_max` over its
+    radius, `resistance` the loss over what the load could resist with at the speeds of both flanks,
+    a mean coefficient of friction: numbers above 1 cannot be.
+    """
+
+    contact: MeshContact | None
+    flattening: float
+    resistance: float
+    pressure_angle: float = figure("operating pressure angle, transverse", DEGREE)
+    transverse_contact_ratio: float = figure("transverse contact ratio", NUMBER)
+    overlap_ratio: float = figure("overlap ratio", NUMBER)
+    backlash: float = figure("circumferential backlash", MILLIMETRE)
+    misalignment: float = figure("misalignment, with tilt of the planet if coupled", MICROMETRE)
+    pitch_line_speed: float = figure("pitch-line speed, relative to carrier", METRE_PER_SECOND)
+    sliding_speed_max: float = figure("largest sliding speed", METRE_PER_SECOND)
+    line_load_max: float = figure("largest line load but for 1 % of the contact", NEWTON_PER_MM)
+    hertz_pressure_max: float = figure(
+        "largest Hertz pressure but for 1 % of the contact", GIGAPASCAL
+    )
+    contact_share: float = figure("share of the contact lines that carries", NUMBER)
+    film_ratio_min: float = figure("film ratio, smallest", NUMBER)
+    film_ratio_max: float = figure("film ratio, largest", NUMBER)
+    friction_mean: float = figure("mean coefficient of friction", NUMBER)
+    loss_factor: float = figure("loss factor H_V (Ohlendorf)", NUMBER)
+    transmission_error_range: float = figure("loaded transmission error, peak to peak", MICROMETRE)
+    mesh_stiffness: float = figure("mean mesh stiffness at this load", NEWTON_PER_UM)
+    pocket_pressure_max: float = figure(*FLOW_NUMBERS["pressure_max"])
+    pocket_pressure_min: float = figure(*FLOW_NUMBERS["pressure_min"])
+    pocket_speed_max: float = figure(*FLOW_NUMBERS["speed_max"])
+    pocket_power_difference: float = figure(*FLOW_NUMBERS["difference"])
+    pocket_interpolation_error: float = figure(
+        "pocketing loss: largest error of its interpolation", NUMBER
+    )
+    contact_temperature: float = figure("oil where it enters the contacts", CELSIUS)
+    flash_temperature_mean: float = figure("flash temperature, mean over the load", KELVIN)
+    flash_temperature_max: float = figure("flash temperature, largest", KELVIN)
+
+
 @dataclass(frozen=True, slots=True)
 class MeshOutcome:
     """Losses and flags of one mesh, how its figures are found, and what the next pass goes on from.
@@ -217,14 +276,13 @@ def solve_mesh(
     if duty.torque1 != 0 and duty.speed1 != 0:
         loads = distribute_load(duty, None if last is None else last.elastic)
     contact = None if loads is None else contact_under(duty, loads, oil, fluids.oil)
-    if contact is not None and isinstance(friction, EhlDirect):
+    loss = MeshLoss(0.0, 0.0)
+    if contact is not None:
         friction = friction.solved_for(contact)
-    if contact is None:
-        loss = MeshLoss(0.0, 0.0)
-    elif duty.models.by_loss_factor:
-        loss = loss_factor_loss(contact, friction)
-    else:
-        loss = local_loss(contact, friction, rolling)
+        if duty.models.by_loss_factor:
+            loss = loss_factor_loss(contact, friction)
+        else:
+            loss = local_loss(contact, friction, rolling)
     materials = duty.gears.materials
     share1 = 0.5 if contact is None else heat_share1(contact, loss.heat, materials)
     method, source = friction.title, friction.source
@@ -253,8 +311,7 @@ def solve_mesh(
     notes += stored_note(duty.models.pockets, duty.mesh, flow.figures)
     if duty.models.by_loss_factor:
         notes += loss_factor_notes(duty.mesh)
-    if isinstance(friction, EhlDirect):
-        notes += friction.remarks
+    notes += friction.remarks
     return MeshOutcome(losses, figures, loss.flags, notes, elastic, friction)
 
 

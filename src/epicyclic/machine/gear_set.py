@@ -5,25 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.planet_bearing import RollerLoads
+from epicyclic.losses.pocket_tables import KnownFlows
 from epicyclic.losses.ranges import Flags, ModelUse, SomeFlags, ValidityFlag
 from epicyclic.machine.disc import Disc, ThrustBearing, disc_loss, thrust_loss
 from epicyclic.machine.element import (
     LOAD_INDEPENDENT,
     OIL,
-    BearingFigures,
     ElementResult,
     Figures,
     Loss,
-    MeshFigures,
     State,
     joined_key,
 )
-from epicyclic.machine.gear_mesh import GearMesh, MeshDuty, MeshOutcome, solve_mesh
+from epicyclic.machine.gear_mesh import GearMesh, MeshDuty, MeshFigures, MeshOutcome, solve_mesh
 from epicyclic.machine.planets import (
+    BearingFigures,
     LoadSharing,
     PlanetBearing,
     PlanetContact,
@@ -137,37 +137,43 @@ class Planet:
         return contacts if first > 0 else [contact.turned_round() for contact in contacts]
 
 
-@dataclass(frozen=True, slots=True)
-class _Idle:
-    """What follows from the speeds; flows through pockets also by which gears drive.
+class Drags(NamedTuple):
+    """Losses that depend on the speeds only, and their flags."""
 
-    `meshes` and `bearings` have what became of each mesh, and of each planet bearing under each
-    share of the load, in the last pass, from where the next one goes on.
-    """
-
-    drags: dict[str, Loss]
+    losses: Mapping[str, Loss]
     flags: tuple[ValidityFlag, ...]
-    flows: dict[tuple[bool, ...], Mapping[str, MeshFlow]]
-    meshes: dict[str, MeshOutcome]
-    bearings: dict[tuple[str, float], RollerLoads | None]
 
 
-@dataclass(frozen=True, slots=True)
+Flows = Mapping[str, MeshFlow]
+"""Flow through the pockets of each mesh, by its key."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class GearSetResult(ElementResult):
-    """Losses, figures, flags of a set; meshes and bearings are those of its most loaded planet."""
+    """Losses, figures, flags of a set; meshes and bearings are those of its most loaded planet.
+
+    From `drags` on: what the next evaluation goes on from.
+    """
 
     # Share of the load that each planet carries; empty without planets. [1]
     shares: tuple[float, ...] = ()
+    drags: Drags
+    flows: Mapping[tuple[bool, ...], Flows]  # By which gears drive.
+    meshes: Mapping[str, MeshOutcome]
+    rollers: Mapping[tuple[str, float], RollerLoads | None]  # By planet and share of the load.
+    known_flows: KnownFlows  # Through pockets, also those at other temperatures.
 
 
 @dataclass(frozen=True, slots=True)
 class _Branch:
     """Losses of all planets with one and the same share, and how figures of one are found."""
 
-    losses: dict[str, Loss]
-    figures: dict[str, Callable[[], Any]]
+    losses: Mapping[str, Loss]
+    figures: Mapping[str, Callable[[], Any]]
     flags: SomeFlags
     notes: tuple[str, ...]
+    meshes: Mapping[str, MeshOutcome]
+    rollers: Mapping[tuple[str, float], RollerLoads | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,32 +193,50 @@ class GearSet:
     # None: each mesh carries what the losses leave, and its losses act on its own bodies.
     reference: Reference | None = None
 
-    def evaluate(self, state: State) -> GearSetResult:
-        """Losses, figures and flags in a state."""
-        idle = self._known_idle(state)
-        torques = self._torques(state, idle.drags)
+    def evaluate(self, state: State, last: ElementResult | None = None) -> GearSetResult:
+        """Losses, figures and flags in a state; `last`, under nearly these loads, saves work."""
+        assert last is None or isinstance(last, GearSetResult)
+        drags = self._drags(state) if last is None else last.drags
+        torques = self._torques(state, drags)
         shares = self.shares(state, torques)
-        flows = self._flows(state, torques, idle)
-        branches = [
-            self._branch(state, torques, share, shares.count(share), flows, idle)
-            for share in sorted(set(shares), reverse=True)
-        ]
-        found = idle.drags | {
-            name: _with_choice(loss, self.choices[name]) for name, loss in _summed(branches).items()
+        driving, duties = self._pocket_duties(state, torques)
+        if last is None:
+            flows, meshes, rollers = {}, {}, {}
+            earlier = state.earlier.get(self.key)
+            known = earlier.known_flows if isinstance(earlier, GearSetResult) else KnownFlows()
+        else:
+            flows, meshes, rollers = dict(last.flows), dict(last.meshes), dict(last.rollers)
+            known = last.known_flows
+        if driving not in flows:
+            flows[driving], known = mesh_flows(duties, state.fluids, known)
+        branches = []
+        for share in sorted(set(shares), reverse=True):
+            branch = self._branch(
+                state, torques, share, shares.count(share), flows[driving], meshes, rollers
+            )
+            meshes |= branch.meshes
+            rollers |= branch.rollers
+            branches.append(branch)
+        found = {
+            **drags.losses,
+            **{
+                name: _with_choice(loss, self.choices[name])
+                for name, loss in _summed(branches).items()
+            },
         }
         first = branches[0]
         return GearSetResult(
             losses={name: found[name] for name in self.choices},
             figures=Figures(first.figures),
-            flags=Flags(partial(_widest, branches)) + idle.flags,
+            flags=Flags(partial(_widest, branches)) + drags.flags,
             notes=first.notes,
             shares=shares if self.planets else (),
+            drags=drags,
+            flows=flows,
+            meshes=meshes,
+            rollers=rollers,
+            known_flows=known,
         )
-
-    @property
-    def _bodies(self) -> tuple[Disc, ...]:
-        """All its discs."""
-        return tuple(disc for discs in self.discs.values() for disc in discs)
 
     @property
     def terms(self) -> tuple[str, ...]:
@@ -227,16 +251,13 @@ class GearSet:
             *((planet.key, BearingFigures) for planet in self.planets if planet.bearing),
         )
 
-    def idle(self, state: State) -> _Idle:
-        """Losses that depend on the speeds only, and their flags."""
-        return self._drags(state)
-
-    def loads(self, state: State) -> Mapping[str, float]:
+    def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
         """What each mesh and each planet bearing carries, all planets together. [N m]
 
         Torques at the first gears of meshes; forces on bearings times the radius of their pins.
         """
-        torques = self._torques(state, self._known_idle(state).drags)
+        assert last is None or isinstance(last, GearSetResult)
+        torques = self._torques(state, None if last is None else last.drags)
         if not self._parts_apart:
             return torques
         duties = {duty.key: duty for duty in self.duties(state, torques, 1 / self.count)}
@@ -261,7 +282,7 @@ class GearSet:
 
     def loaded_duties(self, state: State) -> tuple[MeshDuty, ...]:
         """The meshes of the planet that carries most, misaligned if it tilts."""
-        torques = self._torques(state, self._known_idle(state).drags)
+        torques = self._torques(state)
         share = max(self.shares(state, torques))
         duties = {duty.key: duty for duty in self.duties(state, torques, share)}
         for planet in self.planets:
@@ -271,8 +292,7 @@ class GearSet:
 
     def mean_duties(self, state: State) -> tuple[MeshDuty, ...]:
         """The meshes of a planet that carries its mean share."""
-        torques = self._torques(state, self._known_idle(state).drags)
-        return self.duties(state, torques, 1 / self.count)
+        return self.duties(state, self._torques(state), 1 / self.count)
 
     def mean_loads(self, state: State) -> dict[str, PlanetLoad]:
         """Load on the bearing of a planet that carries its mean share and does not tilt."""
@@ -302,7 +322,7 @@ class GearSet:
         duties = self.duties(state, torques, 1 / self.count)
         return planet_shares(self.sharing, duties, None if bearing is None else bearing.bearing)
 
-    def _torques(self, state: State, drags: Mapping[str, Loss]) -> dict[str, float]:
+    def _torques(self, state: State, drags: Drags | None = None) -> dict[str, float]:
         """Torque at the first gear of each mesh, all planets together."""
         passed = {mesh.key: state.torques[f"{self.key}.{mesh.key}"] for mesh in self.meshes}
         if self.reference is None or state.lossless:
@@ -310,7 +330,8 @@ class GearSet:
         # the drag of the body itself does not take from the load that its torque states
         body, speed = self.reference.body, state.speeds[self.reference.body]
         own_shaft = ((body, HOUSING, 1.0),)
-        drag = sum(loss.watts for loss in drags.values() if loss.brakes == own_shaft)
+        losses = (drags or self._drags(state)).losses.values()
+        drag = sum(loss.watts for loss in losses if loss.brakes == own_shaft)
         own = drag / speed if speed else 0.0
         torques = {}
         for key, torque in passed.items():
@@ -319,32 +340,31 @@ class GearSet:
             torques[key] = 0.0 if abs(whole) <= ROUNDING * abs(added) else whole
         return torques
 
-    def _flows(
-        self, state: State, torques: Mapping[str, float], idle: _Idle
-    ) -> Mapping[str, MeshFlow]:
-        """Flow through the pockets of each mesh, under the mean load of its planets."""
+    def _pocket_duties(
+        self, state: State, torques: Mapping[str, float]
+    ) -> tuple[tuple[bool, ...], tuple[MeshDuty, ...]]:
+        """Which gears drive, and the meshes under the mean load of the planets, for their pockets.
+
+        With no reference the directions of the whole machine count: those of next to no load are
+        found last.
+        """
         duties = self.duties(state, torques, 1 / self.count)
         if self.reference is None:
             duties = tuple(
                 replace(duty, drives1=state.drives[f"{self.key}.{duty.key}"]) for duty in duties
             )
-        driving = tuple(duty.drives1 for duty in duties)
-        if driving not in idle.flows:
-            idle.flows[driving] = mesh_flows(duties, state.fluids)
-        return idle.flows[driving]
+        return tuple(duty.drives1 for duty in duties), duties
 
-    def _known_idle(self, state: State) -> _Idle:
-        found: _Idle | None = state.idle.get(self.key)
-        return self._drags(state) if found is None else found
-
-    def _drags(self, state: State) -> _Idle:
+    def _drags(self, state: State) -> Drags:
         """Losses that do not depend on planets, as the user wants them, where they act."""
         losses = {
             name: Loss(LOAD_INDEPENDENT, left_out=reason) for name, reason in self.missing.items()
         }
         flags: tuple[ValidityFlag, ...] = ()
         struck = sum(
-            disc.jets is not None and state.speeds[disc.body] != 0 for disc in self._bodies
+            disc.jets is not None and state.speeds[disc.body] != 0
+            for discs in self.discs.values()
+            for disc in discs
         )
         for name, discs in self.discs.items():
             losses[name], found = disc_loss(discs, state, struck)
@@ -356,7 +376,7 @@ class GearSet:
             name: self._placed(_with_choice(loss, self.choices[name]))
             for name, loss in losses.items()
         }
-        return _Idle(placed, flags, {}, {}, {})
+        return Drags(placed, flags)
 
     def _branch(
         self,
@@ -364,11 +384,13 @@ class GearSet:
         torques: Mapping[str, float],
         share: float,
         planets: int,
-        flows: Mapping[str, MeshFlow],
-        idle: _Idle,
+        flows: Flows,
+        last_meshes: Mapping[str, MeshOutcome],
+        last_rollers: Mapping[tuple[str, float], RollerLoads | None],
     ) -> _Branch:
         duties = {duty.key: duty for duty in self.duties(state, torques, share)}
         bearings = []
+        rollers: dict[tuple[str, float], RollerLoads | None] = {}
         notes: tuple[str, ...] = ()
         carrier = state.speeds[self.carrier]
         for planet in self.planets:
@@ -387,9 +409,9 @@ class GearSet:
                     planets,
                     state.fluids.at(joined_key(self.key, planet.key)),
                     speed,
-                    idle.bearings.get((planet.key, share)),
+                    last_rollers.get((planet.key, share)),
                 )
-                idle.bearings[planet.key, share] = bearing.loads
+                rollers[planet.key, share] = bearing.loads
                 bearings.append(bearing)
         meshes = [
             solve_mesh(
@@ -398,14 +420,14 @@ class GearSet:
                 flows[duty.key],
                 planets,
                 state.fluids.at(joined_key(self.key, duty.key)),
-                idle.meshes.get(duty.key),
+                last_meshes.get(duty.key),
             )
             for duty in duties.values()
         ]
-        idle.meshes.update(zip(duties, meshes, strict=True))
         notes += tuple(note for mesh in meshes for note in mesh.notes)
-        branch = _Branch({}, {}, (), notes)
-        losses, figures, flags = branch.losses, branch.figures, branch.flags
+        losses: dict[str, Loss] = {}
+        figures: dict[str, Callable[[], Any]] = {}
+        flags: SomeFlags = ()
         for planet, bearing in zip(self.planets, bearings, strict=True):
             losses |= {
                 name: self._in_bearing(loss, planet) for name, loss in bearing.losses.items()
@@ -417,7 +439,8 @@ class GearSet:
             losses |= self._of_mesh(duty, mesh.losses)
             flags = mesh.flags + flags
             figures[duty.key] = mesh.figures
-        return replace(branch, flags=flags)
+        outcomes = dict(zip(duties, meshes, strict=True))
+        return _Branch(losses, figures, flags, notes, outcomes, rollers)
 
     def _of_mesh(self, duty: MeshDuty, losses: Mapping[str, Loss]) -> dict[str, Loss]:
         """Losses of a mesh where they act: sliding is a share of its power, half of the rest brakes
@@ -468,7 +491,7 @@ def _with_choice(loss: Loss, choice: LossChoice) -> Loss:
     return loss._replace(watts=choice.factor * loss.watts, factor=choice.factor)
 
 
-def _summed(branches: Sequence[_Branch]) -> dict[str, Loss]:
+def _summed(branches: Sequence[_Branch]) -> Mapping[str, Loss]:
     """The losses of all planets together."""
     if len(branches) == 1:
         return branches[0].losses

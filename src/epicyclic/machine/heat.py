@@ -16,8 +16,8 @@ from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine import convection as shell
 from epicyclic.machine.convection import Fluid
-from epicyclic.machine.element import OIL, Fluids, Loss, MeshFigures
-from epicyclic.machine.gear_mesh import GearMesh
+from epicyclic.machine.element import OIL, Fluids, Loss
+from epicyclic.machine.gear_mesh import GearMesh, MeshFigures
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.heat_flow import Link, Network
 from epicyclic.machine.heat_paths import (
@@ -128,7 +128,8 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     def change(values: FloatArray) -> FloatArray:
         at = dict(zip(nodes, map(float, np.clip(values, COLDEST, HOTTEST)), strict=True))
         with np.errstate(invalid="warn"):
-            solution = solve_machine(machine, operation, model.fluids(at), unheated)
+            earlier = found[-1][0] if found else None
+            solution = solve_machine(machine, operation, model.fluids(at), unheated, earlier)
             answer = model.answer(at, solution)
         found.append((solution, answer))
         step: FloatArray = np.array([answer.temperatures[node] for node in nodes]) - values

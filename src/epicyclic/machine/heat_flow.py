@@ -25,7 +25,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A way for heat."""
+    """A path of heat."""
 
     key: str  # ``"sun-oil"``.
     hot: str  # Nodes whose temperatures drive the heat.
@@ -173,7 +173,7 @@ class Course:
     given_off: FloatArray  # Energy that arose, and that left for nodes of given temperature. [J]
 
 
-class _Ways(NamedTuple):
+class _PathMatrices(NamedTuple):
     """Where heat comes from and goes to, as matrices."""
 
     into: FloatArray
@@ -205,10 +205,10 @@ class Transient:
     taken: Mapping[str, float]  # Heat that leaves nodes at all times: that of a cooler. [W]
 
     @cached_property
-    def _ways(self) -> _Ways:
+    def _paths(self) -> _PathMatrices:
         place = {node: index for index, node in enumerate(self.capacities)}
         nodes, links = len(place), len(self.links)
-        ways = _Ways(
+        paths = _PathMatrices(
             into=np.zeros((nodes, len(self.sources))),
             drives=np.zeros((links, nodes)),
             known=np.zeros(links),
@@ -218,41 +218,41 @@ class Transient:
             inertia=np.array(list(self.capacities.values())),
         )
         for column, source in enumerate(self.sources):
-            ways.into[place[source.into], column] = 1.0
+            paths.into[place[source.into], column] = 1.0
         for row, link in enumerate(self.links):
             for node, sign in ((link.hot, 1.0), (link.cold, -1.0)):
                 if node in place:
-                    ways.drives[row, place[node]] += sign
+                    paths.drives[row, place[node]] += sign
                 else:
-                    ways.known[row] += sign * self.given[node]
+                    paths.known[row] += sign * self.given[node]
             for node, sign in ((link.hot, -1.0), (link.target, 1.0)):
                 if node in place:
-                    ways.moves[place[node], row] += sign
+                    paths.moves[place[node], row] += sign
                 else:
-                    ways.leaves[row] += sign
-        return ways
+                    paths.leaves[row] += sign
+        return paths
 
     def rates(self, temperatures: FloatArray) -> tuple[FloatArray, float, float]:
         """Rise of the temperatures [K/s], heat that arises and heat that leaves [W]."""
-        ways = self._ways
+        paths = self._paths
         heat, _ = self.heat.read(temperatures)
         conductance, _ = self.conductance.read(temperatures)
-        flows = conductance * (ways.drives @ temperatures + ways.known)
-        stored = ways.into @ heat - ways.taken + ways.moves @ flows
-        left = float(ways.leaves @ flows + ways.taken.sum())
-        return stored / ways.inertia, float(heat.sum()), left
+        flows = conductance * (paths.drives @ temperatures + paths.known)
+        stored = paths.into @ heat - paths.taken + paths.moves @ flows
+        left = float(paths.leaves @ flows + paths.taken.sum())
+        return stored / paths.inertia, float(heat.sum()), left
 
     def slopes(self, temperatures: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """What `rates` gives, over each of the temperatures."""
-        ways = self._ways
+        paths = self._paths
         _, slope = self.heat.read(temperatures)
         heat = slope[:, None] * self.heat.weights
         conductance, slope = self.conductance.read(temperatures)
-        driven = ways.drives @ temperatures + ways.known
-        flows = conductance[:, None] * ways.drives
+        driven = paths.drives @ temperatures + paths.known
+        flows = conductance[:, None] * paths.drives
         flows += (slope * driven)[:, None] * self.conductance.weights
-        stored = ways.into @ heat + ways.moves @ flows
-        return stored / ways.inertia[:, None], heat.sum(axis=0), ways.leaves @ flows
+        stored = paths.into @ heat + paths.moves @ flows
+        return stored / paths.inertia[:, None], heat.sum(axis=0), paths.leaves @ flows
 
     def integrate(
         self,
@@ -290,7 +290,7 @@ class Transient:
             t_eval=times,
             jac=slopes,
             rtol=LEAST_RELATIVE,
-            atol=np.append(np.full(count, tolerance), 2 * [tolerance * self._ways.inertia.sum()]),
+            atol=np.append(np.full(count, tolerance), 2 * [tolerance * self._paths.inertia.sum()]),
         )
         if not done.success:
             raise ConvergenceError(f"the course of the temperatures has no end: {done.message}")

@@ -5,16 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from epicyclic.contact.temperatures import Solid
 from epicyclic.gears.gear import HOUSING, Gear
 from epicyclic.machine.convection import SPLASHED_WALL, Fluid, dipped_disc, disc_coefficient
-from epicyclic.machine.element import OIL, BearingFigures, ElementResult, State, joined_key
+from epicyclic.machine.element import OIL, ElementResult, State, joined_key
 from epicyclic.machine.gear_set import GearSet, Planet
 from epicyclic.machine.heat_flow import Link
+from epicyclic.machine.planets import BearingFigures
 from epicyclic.machine.shaft_parts import ShaftBearing
 
-# Ways of the heat of gears, planets, pins, carriers and bearings: to the oil, to each other.
+if TYPE_CHECKING:
+    from epicyclic.machine.gear_set import GearSet, Planet
+
+# Paths of the heat of gears, planets, pins, carriers and bearings: to the oil, to each other.
 
 
 INLET = "oil_inlet"
@@ -59,7 +64,7 @@ class OneGear:
 def gear_set_links(
     own: GearSet, state: State, result: ElementResult, wetting: Wetting
 ) -> Iterator[Link]:
-    """Ways of the heat of a set. Theory (W29), (W30), (W31)."""
+    """Paths of the heat of a set. Theory (W29), (W30), (W31)."""
     planets = {planet.nodes[0]: planet for planet in own.planets}
     for one in gears_of(own):
         planet = planets.get(one.node)

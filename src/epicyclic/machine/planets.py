@@ -41,9 +41,19 @@ from epicyclic.losses.planet_bearing import (
 )
 from epicyclic.losses.ranges import Flags, SomeFlags
 from epicyclic.machine.convection import roller_conductance
-from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, BearingFigures, Loss
+from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, Loss, figure
 from epicyclic.machine.gear_mesh import MeshDuty, elastic_loads
 from epicyclic.oil.properties import OilState
+from epicyclic.units import (
+    CELSIUS,
+    DEGREE,
+    GIGAPASCAL,
+    NEWTON,
+    NEWTON_METRE,
+    NUMBER,
+    RPM,
+    WATT_PER_KELVIN,
+)
 
 # The share of the load that each planet of a set carries.
 
@@ -141,19 +151,15 @@ def _branches(
     pin_compliance = 0.0 if bearing is None else 1 / radial_stiffness(bearing, pin_force)
     if sharing.pin_stiffness is not None:
         pin_compliance += 1 / sharing.pin_stiffness
-    compliance = sum(_mesh_compliance(duty) for duty in duties)
+    # slope of the transmission error over the force, mean of the mesh period [m/N]
+    loaded = [elastic_loads(duty) for duty in duties]
+    compliance = sum(one.mean(1 / one.tangent_stiffness) for one in loaded)
     errors = np.array(sharing.position_errors or np.zeros(sharing.count))
     return Branches(
         np.array(sharing.angles),
         compliance + through_pin**2 * pin_compliance,
         math.copysign(through_pin, sun_mesh.torque1) * errors,
     )
-
-
-def _mesh_compliance(duty: MeshDuty) -> float:
-    """Slope of the transmission error over the force, mean of the mesh period. [m/N]"""
-    loaded = elastic_loads(duty)
-    return loaded.mean(1 / loaded.tangent_stiffness)
 
 
 # The load of a planet on its bearing, and how the planet tilts under it.
@@ -503,6 +509,27 @@ class PlanetBearing:
         if self.model == "mixed-ehl":
             return BEARING_METHOD, BEARING_SOURCE
         return PALMGREN_METHOD, PALMGREN_SOURCE
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BearingFigures:
+    """What an engineer checks by eye on the planet bearing.
+
+    `flattening` and `resistance` as of `MeshFigures`, the latter at the speed of the pitch circle.
+    """
+
+    loads: RollerLoads | None
+    flattening: float
+    resistance: float
+    radial_force: float = figure("radial force", NEWTON)
+    moment: float = figure("tilting moment", NEWTON_METRE)
+    speed: float = figure("speed relative to carrier", RPM)
+    rollers_loaded: float = figure("loaded rollers, all rows", NUMBER)
+    roller_load_max: float = figure("most loaded roller", NEWTON)
+    roller_azimuth: float = figure("azimuth of that roller from the load", DEGREE)
+    hertz_pressure_max: float = figure("largest Hertz pressure, inner race", GIGAPASCAL)
+    contact_temperature: float = figure("oil where it enters the contacts", CELSIUS)
+    heat_conductance: float = figure("heat from race to race through the rollers", WATT_PER_KELVIN)
 
 
 @dataclass(frozen=True, slots=True)

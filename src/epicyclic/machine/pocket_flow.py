@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -22,8 +22,8 @@ from epicyclic.losses.pocket_flow import (
 from epicyclic.losses.pocket_tables import (
     FlowFamily,
     FlowFigures,
-    FlowMemory,
     FlowTables,
+    KnownFlows,
     stored_table,
 )
 from epicyclic.losses.ranges import Range
@@ -69,8 +69,6 @@ class PocketSettings:
     file: Path | None = None  # File of a stored table.
     # Tables that the points of a sweep share.
     tables: FlowTables = field(default_factory=dict, hash=False, compare=False)
-    # Flows of this very case at other temperatures, while they settle.
-    memory: FlowMemory | None = field(default=None, hash=False, compare=False)
     fed: float = 0.0  # Oil that is fed into the mesh of one planet as the teeth mesh. [m^3/s]
     # Whether the gears may be named in any order: the smaller one is then gear 1 of the pockets.
     any_order: bool = False
@@ -170,11 +168,15 @@ def flow_requests(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[FlowRe
                 yield request
 
 
-def mesh_flows(duties: Sequence[MeshDuty], fluids: Fluids) -> Mapping[str, MeshFlow]:
-    """Flow through the pockets of each mesh, by its key.
+def mesh_flows(
+    duties: Sequence[MeshDuty],
+    fluids: Fluids,
+    known: KnownFlows,  # Those solved before.
+) -> tuple[dict[str, MeshFlow], KnownFlows]:
+    """Flow through the pockets of each mesh, by its key, and all that are known then.
 
     Read from the stored table of its settings, else scaled from another flow where that can be,
-    else from the tables of a sweep, where they have it.
+    else from the tables of a sweep or the known flows, where they have it.
 
     Raises
     ------
@@ -192,18 +194,16 @@ def mesh_flows(duties: Sequence[MeshDuty], fluids: Fluids) -> Mapping[str, MeshF
         request = flow_request(duty, fluids)
         figures = _stored_figures(settings, request)
         if figures is None and not _scales(request):
-            figures = _interpolated(settings, request)
+            figures = _interpolated(settings, request, known)
         if figures is None:
             direct[duty.key] = request
         else:
             flows[duty.key] = MeshFlow(figures)
     solved = dict(zip(direct, _solve_all(tuple(direct.values())), strict=True))
-    for duty in duties:
-        memory = duty.models.pockets.memory
-        figures = solved[duty.key].figures if duty.key in solved else None
-        if memory is not None and figures is not None:
-            memory.add(*direct[duty.key], figures)
-    return flows | solved
+    for key, flow in solved.items():
+        if flow.figures is not None:
+            known = known.with_flow(*direct[key], flow.figures)
+    return flows | solved, known
 
 
 def flow_request(duty: MeshDuty, fluids: Fluids) -> FlowRequest:
@@ -223,14 +223,14 @@ def _scales(request: FlowRequest) -> bool:
         return False
 
 
-def _interpolated(settings: PocketSettings, request: FlowRequest) -> FlowFigures | None:
-    """From the tables of a sweep or the flows found before; None if they do not hold the flow."""
+def _interpolated(
+    settings: PocketSettings, request: FlowRequest, known: KnownFlows
+) -> FlowFigures | None:
+    """From the tables of a sweep or the known flows; None if they do not hold the flow."""
     figures = None
     if request[0] in settings.tables:
         figures = settings.tables[request[0]].figures(*request[1:])
-    if figures is None and settings.memory is not None:
-        figures = settings.memory.figures(*request)
-    return figures
+    return known.figures(*request) if figures is None else figures
 
 
 def _stored_figures(settings: PocketSettings, request: FlowRequest) -> FlowFigures | None:

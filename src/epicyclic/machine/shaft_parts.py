@@ -50,14 +50,11 @@ class TableLoss:
     terms: ClassVar = ("drag",)
     figure_types: ClassVar = (("drag", TableLossFigures),)
 
-    def idle(self, state: State) -> None:
-        """Nothing that would be worth keeping."""
-
-    def loads(self, state: State) -> Mapping[str, float]:
+    def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
         """Nothing: torques and forces do not matter."""
         return {}
 
-    def evaluate(self, state: State) -> ElementResult:
+    def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
         """Loss, figures and flags in a state."""
         speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]
         temperature = state.fluids.oil.temperature
@@ -223,14 +220,11 @@ class Seal:
     terms: ClassVar = ("friction",)
     figure_types: ClassVar = (("seal", SealFigures),)
 
-    def idle(self, state: State) -> None:
-        """Nothing that would be worth keeping."""
-
-    def loads(self, state: State) -> Mapping[str, float]:
+    def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
         """Nothing: torques and forces do not matter."""
         return {}
 
-    def evaluate(self, state: State) -> ElementResult:
+    def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
         """Loss, figures and flags in a state."""
         speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]
         temperature = state.fluids.oil.temperature
@@ -302,17 +296,14 @@ class ShaftBearing:
         """Names of its losses."""
         return self.model.terms
 
-    def idle(self, state: State) -> None:
-        """Nothing that would be worth keeping."""
-
-    def loads(self, state: State) -> Mapping[str, float]:
+    def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
         """The forces on it; nothing if the user gives them, or the model needs none. [N]"""
         if self.force is not None or not self.model.depends_on_load:
             return {}
         force = state.forces[self.key]
         return {"radial": force.radial, "axial": force.axial}
 
-    def evaluate(self, state: State) -> ElementResult:
+    def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
         """Losses, figures and flags in a state."""
         load = state.forces[self.key] if self.force is None else self.force
         speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]

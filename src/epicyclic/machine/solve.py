@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ from epicyclic.machine.machine import Machine, Operation, forces_of
 
 
 CAUTION = 2.0
-"""How much larger the error of foretold losses is taken to be than its estimate. [1]"""
+"""How much larger the error of predicted losses is taken to be than its estimate. [1]"""
 STEEPEST = 3.0
 """Power above which no loss rises with its load. [1]"""
 BENT = 0.25
@@ -57,7 +57,7 @@ class Answer:
         before = replace(self, before=None) if self._alike(loads, result) else None
         return Answer(loads, result, before)
 
-    def foretold(
+    def predicted(
         self,
         loads: Mapping[str, float],
         allowed: float,  # Error of all losses together, relative. [1]
@@ -79,10 +79,8 @@ class Answer:
             if step.size > NEAR:
                 return None
             off += step.error(loss.watts, older) * loss.watts
-            told = loss.watts + step.part * (loss.watts - older)
-            watts = max(
-                min(0.0, loss.watts), told
-            )  # nothing loses less than nothing by foretelling
+            line = loss.watts + step.part * (loss.watts - older)
+            watts = max(min(0.0, loss.watts), line)  # no prediction makes a loss negative
             losses[name] = loss._replace(watts=watts) if watts != loss.watts else loss
         if not CAUTION * off <= allowed * sum(loss.watts for loss in losses.values()):
             return None
@@ -166,11 +164,11 @@ FloatArray = NDArray[np.float64]
 
 AGREEMENT = 5e-10
 """Relative change of each load from one pass to the next at which torques and losses agree. [1]"""
-FORETOLD = 0.1
-"""Error of a foretold loss over the change of the loads from one pass to the next, at most: losses
+PREDICTED = 0.1
+"""Error of a predicted loss over the change of the loads from one pass to the next, at most: losses
 are small beside powers, so that the error leaves less of the change than a pass does. [1]"""
 LOSS_AGREEMENT = 1e-7
-"""Error of foretold losses, at most, however little losses move the loads. [1]"""
+"""Error of predicted losses, at most, however little losses move the loads. [1]"""
 NO_POWER = 1e-12
 """Power, relative to the largest one, that is rounding. [1]"""
 PLAIN_PASSES, SECANTS = 15, 40
@@ -281,7 +279,8 @@ def start_of(machine: Machine, operation: Operation) -> Start:
     lossless = _lossless(machine, operation, speeds)
     efficiencies = {row.key: row.efficiency for row in machine.rows}
     directions = find_directions(machine, operation, speeds, lossless, efficiencies)
-    ratio = _ratio(operation, speeds)
+    output = speeds[operation.output]
+    ratio = speeds[operation.input] / output if output else None
     if directions.jammed:  # it stands still, whatever the speeds were meant to be
         speeds = dict.fromkeys(speeds, 0.0)
     return Start(speeds, lossless, directions, ratio)
@@ -292,6 +291,7 @@ def solve_machine(
     operation: Operation,
     fluids: Fluids | None,  # None if every loss is given.
     start: Start | None = None,  # As from `start_of`, for solutions that differ in the oil only.
+    earlier: Solution | None = None,  # At another temperature of the oil, which saves work.
 ) -> Solution:
     """Torques and losses that agree.
 
@@ -306,16 +306,18 @@ def solve_machine(
         start = start_of(machine, operation)
     speeds, lossless, directions = start.speeds, start.lossless, start.directions
     efficiencies: Mapping[str, float] = {row.key: row.efficiency for row in machine.rows}
-    known = _Known()
-    drives = _led(_Branch(machine, operation, start, fluids, known, directions.drives))
+    results = {} if earlier is None else earlier.results
+    branch = _Branch(machine, operation, start, fluids, {}, results, directions.drives)
+    drives = _led(branch)
     tried: list[Mapping[str, bool]] = []
     while drives not in tried and len(tried) < MOST_BRANCHES:
         tried.append(drives)
-        last = _converged(_Branch(machine, operation, start, fluids, known, drives))
+        branch = branch.turned(drives)
+        last = _converged(branch)
         drives = drives_first(last.balance.powers, drives)
     floating = frozenset(key for key, first in drives.items() if first != last.drives[key])
     if floating:
-        branch = _Branch(machine, operation, start, fluids, known, last.drives, floating)
+        branch = branch.turned(last.drives, floating)
         last = _converged(branch)
     if last.efficiencies != efficiencies and not directions.jammed:
         directions = find_directions(machine, operation, speeds, lossless, last.efficiencies)
@@ -326,7 +328,7 @@ def solve_machine(
         meshes=last.balance.meshes,
         drives=last.drives,
         rolling=last.balance.powers,
-        results=known.results,
+        results=branch.results,
         given=_given_losses(machine, last.balance),
         ratio=start.ratio,
         self_locking=directions.locking,
@@ -337,37 +339,34 @@ def solve_machine(
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Known:
-    """What the elements have answered, by their keys: each pass goes on from it."""
+class _Known(NamedTuple):
+    """What an element has answered: each pass goes on from it."""
 
-    idle: dict[str, Any] = field(default_factory=dict[str, Any])  # As `State.idle`.
-    # When they were last asked.
-    answers: dict[str, Answer] = field(default_factory=dict[str, Answer])
-    # Their last answers, foretold ones among them, and the loads that these belong to.
-    results: dict[str, ElementResult] = field(default_factory=dict[str, ElementResult])
-    loads: dict[str, Mapping[str, float]] = field(default_factory=dict[str, Mapping[str, float]])
+    answer: Answer  # When it was last evaluated.
+    # The last answer, which may be a predicted one, and the loads that it belongs to.
+    result: ElementResult
+    loads: Mapping[str, float]
 
-    @property
-    def loss(self) -> float:
-        """Of all elements. [W]"""
-        return sum(loss.watts for it in self.results.values() for loss in it.losses.values())
 
-    def follow(self, elements: Iterable[Element], state: State, allowed: float) -> None:
-        """Have the elements answer to a state; `allowed`: relative error of foretold losses."""
-        for element in elements:
-            key, loads = element.key, element.loads(state)
-            if key in self.loads and _agrees(self.loads[key], loads):
-                continue
-            last = self.answers.get(key)
-            told = None
-            if last is not None:
-                passed = distance(self.loads[key], loads)
-                told = last.foretold(loads, max(allowed, FORETOLD * passed))
-            if told is None:
-                told = element.evaluate(state)
-                self.answers[key] = last.followed_by(loads, told) if last else Answer(loads, told)
-            self.results[key], self.loads[key] = told, loads
+def _answered(
+    element: Element,
+    state: State,
+    known: _Known | None,
+    allowed: float,  # Relative error of predicted losses.
+) -> _Known:
+    """The answer of an element to a state: the last one, one predicted from it, or a new one."""
+    if known is None:
+        loads, result = element.loads(state), element.evaluate(state)
+        return _Known(Answer(loads, result), result, loads)
+    loads = element.loads(state, known.result)
+    if _agrees(known.loads, loads):
+        return known
+    passed = distance(known.loads, loads)
+    predicted = known.answer.predicted(loads, max(allowed, PREDICTED * passed))
+    if predicted is not None:
+        return _Known(known.answer, predicted, loads)
+    result = element.evaluate(state, known.result)
+    return _Known(known.answer.followed_by(loads, result), result, loads)
 
 
 @dataclass(frozen=True, slots=True)
@@ -384,14 +383,22 @@ class _Pass:
 class _Branch:
     """One choice of the directions of the rolling powers."""
 
-    machine: Machine  # As everywhere here.
-    operation: Operation  # As everywhere here.
-    start: Start  # As everywhere here.
-    fluids: Fluids | None  # As everywhere here.
-    known: _Known  # As everywhere here.
+    machine: Machine
+    operation: Operation
+    start: Start
+    fluids: Fluids | None
+    known: Mapping[str, _Known]  # What the elements have answered so far, by their keys.
+    earlier: Mapping[str, ElementResult]  # As `State.earlier`.
     drives: Mapping[str, bool]  # For each mesh, True if its first gear drives it.
     braking: Collection[str] = ()  # Meshes whose losses are friction, whichever gear drives.
     passes: int = 0  # So far.
+
+    def turned(self, drives: Mapping[str, bool], braking: Collection[str] = ()) -> _Branch:
+        """Another choice of the directions, from what the elements have answered so far."""
+        return _Branch(
+            self.machine, self.operation, self.start, self.fluids, self.known, self.earlier,
+            drives, braking,
+        )  # fmt: skip
 
     @cached_property
     def given(self) -> Mapping[str, float]:
@@ -405,10 +412,15 @@ class _Branch:
             return self.start.lossless
         return self._balance(self.given)
 
+    @property
+    def results(self) -> dict[str, ElementResult]:
+        """The last results of the elements, by their keys."""
+        return {key: known.result for key, known in self.known.items()}
+
     def begin(self) -> Balance:
         """Torques with the losses that are known so far."""
         found = self.unlost
-        return self._balance(*self._effects(found)) if self.known.results else found
+        return self._balance(*self._effects(found)) if self.known else found
 
     def under(self, found: Balance, meshes: Mapping[str, float]) -> Balance:
         """`found` with other loads of the meshes."""
@@ -428,22 +440,26 @@ class _Branch:
             If losses or torques grow beyond all bounds.
         """
         self.passes += 1
-        known, elements = self.known, self.machine.elements
         state = State(
             self.start.speeds,
             found.meshes,
             forces_of(self.machine.layouts, found.meshes),
             cast(Fluids, self.fluids),
-            lossless=not known.results,
+            lossless=not self.known,
             drives=self.drives,
-            idle=known.idle,
+            earlier=self.earlier,
         )
-        if not known.idle:
-            known.idle.update({element.key: element.idle(state) for element in elements})
-        allowed = _allowed(distance(self.unlost.meshes, found.meshes))
+        # an error of the losses changes the loads about as much as the losses do of which it is
+        # that share: it may change them by less than they have to agree
+        moved = distance(self.unlost.meshes, found.meshes)
+        allowed = min(AGREEMENT / moved, LOSS_AGREEMENT) if moved else LOSS_AGREEMENT
         with np.errstate(over="ignore"):  # a loss may be too large for a number
-            known.follow(elements, state, allowed)
-        if not math.isfinite(known.loss):
+            self.known = {
+                element.key: _answered(element, state, self.known.get(element.key), allowed)
+                for element in self.machine.elements
+            }
+        results = self.results.values()
+        if not math.isfinite(sum(loss.watts for it in results for loss in it.losses.values())):
             raise self.disagreement()
         efficiencies, frictions = self._effects(found)
         new = self._balance(efficiencies, frictions)
@@ -464,7 +480,7 @@ class _Branch:
         )
 
     def _effects(self, found: Balance) -> tuple[dict[str, float], list[Friction]]:
-        return effects_of(self.machine, found.powers, self.known.results.values(), self.braking)
+        return effects_of(self.machine, found.powers, self.results.values(), self.braking)
 
     def _balance(
         self, efficiencies: Mapping[str, float], frictions: Iterable[Friction] = ()
@@ -555,19 +571,6 @@ def _by_secants(branch: _Branch, found: Balance | _Pass) -> Balance | _Pass:
             return first
         raise
     return last
-
-
-def _allowed(moved: float) -> float:
-    """Error of all losses that changes loads by less than they may, if the losses moved them so.
-
-    An error changes the loads about as much as the losses do of which it is that share.
-    """
-    return min(AGREEMENT / moved, LOSS_AGREEMENT) if moved else LOSS_AGREEMENT
-
-
-def _ratio(operation: Operation, speeds: Mapping[str, float]) -> float | None:
-    output = speeds[operation.output]
-    return speeds[operation.input] / output if output else None
 
 
 def _agrees(old: Mapping[str, float], new: Mapping[str, float]) -> bool:

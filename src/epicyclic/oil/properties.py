@@ -160,17 +160,14 @@ def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> f
     law = oil.pressure_viscosity
     if isinstance(law, GoldLaw):
         return law.s * math.pow(nu / MM2_PER_S, law.t) * 1e-9
-    return _roelands_index(oil, law, temperature) * roelands_slope(mu)
+    # z, linear between the points of the law and constant beyond them, Theory (L5)
+    index = float(np.interp(temperature, *_roelands_points(oil, law)))
+    return index * roelands_slope(mu)
 
 
 def roelands_slope(mu: float) -> float:
     """alpha/z of Roelands' law, (ln mu + 9.67)/1.96e8 with mu in Pa s. Theory (L5). [1/Pa]"""
     return (math.log(mu) + ROELANDS_OFFSET) / ROELANDS_PRESSURE
-
-
-def _roelands_index(oil: Oil, law: RoelandsLaw, temperature: float) -> float:
-    """z, linear between the points of `law` and constant beyond them. Theory (L5)."""
-    return float(np.interp(temperature, *_roelands_points(oil, law)))
 
 
 @lru_cache(maxsize=64)

@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from epicyclic.errors import Status
-from epicyclic.machine.element import BearingFigures, MeshFigures
+from epicyclic.machine.gear_mesh import MeshFigures
+from epicyclic.machine.planets import BearingFigures
 from epicyclic.results.result import Result, in_words
 from epicyclic.units import GIGAPASCAL, WATT
 

@@ -17,13 +17,13 @@ from epicyclic.losses.ranges import ModelUse, ValidityFlag, describe_flags, flag
 from epicyclic.machine.element import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
-    BearingFigures,
     Figure,
     FluidFigures,
-    MeshFigures,
     displayed,
     figures,
 )
+from epicyclic.machine.gear_mesh import MeshFigures
+from epicyclic.machine.planets import BearingFigures
 from epicyclic.results.heat import HeatBalance
 from epicyclic.results.lubrication import OilSupply
 from epicyclic.results.views import Views

@@ -10,7 +10,7 @@ from epicyclic.builders.build import build
 from epicyclic.builders.built import Built
 from epicyclic.case.case import Case
 from epicyclic.case.train import TrainCase
-from epicyclic.contact.loaded_mesh import LoadedMesh
+from epicyclic.contact.elastic_teeth import LoadedMesh
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, scaled_figures, table_around

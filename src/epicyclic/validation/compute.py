@@ -18,7 +18,7 @@ from epicyclic.builders.build import build
 from epicyclic.builders.gear_sets import roller_bearing
 from epicyclic.builders.models import fluids_of
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, read_case
-from epicyclic.contact.loaded_mesh import LoadedMesh
+from epicyclic.contact.elastic_teeth import LoadedMesh
 from epicyclic.contact.temperatures import (
     LUBRICATION_FACTORS,
     bulk_rise_of_loss,

@@ -22,7 +22,7 @@ from epicyclic.contact.elastic_teeth import one_thread
 from epicyclic.contact.fitted_models import EYRING_STRESS, eyring_friction
 from epicyclic.errors import ConvergenceError, Status
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.ranges import SMALLEST_SHOWN_SHARE, Range, RegressionFluid
+from epicyclic.losses.ranges import SMALLEST_SHOWN_SHARE, Range, RangeFlags, RegressionFluid
 from epicyclic.plugins.contact_solver.conditions import (
     DRY_SPEED,
     FEWEST_KEPT,
@@ -123,7 +123,7 @@ class _Solved:
 
 
 @dataclass(frozen=True, slots=True)
-class EhlDirect:
+class EhlDirect(RangeFlags):
     """Line contacts of the mesh solved, and interpolated between them.
 
     Theory (O10).

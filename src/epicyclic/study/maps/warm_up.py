@@ -92,12 +92,19 @@ def heat_samples(
     """
     machines = [build(case.updated(changes), flow_tables) for changes in points]
     samples: list[list[HeatSample]] = [[] for _ in knots]
+    last: dict[int, Solution] = {}  # by the number of the machine, at the knot before
     for row, knot in zip(samples, knots, strict=True):
-        for built in machines:  # next to each other if they differ in torque only
+        for number, built in enumerate(
+            machines
+        ):  # next to each other if they differ in torque only
             model = built.thermal
             assert isinstance(model, NetworkModel)
             even = dict.fromkeys(model.nodes, knot)
-            solution = solve_machine(built.machine, built.operation, model.fluids(even))
+            fluids = model.fluids(even)
+            solution = solve_machine(
+                built.machine, built.operation, fluids, earlier=last.get(number)
+            )
+            last[number] = solution
             networks = [model.network(value, solution) for value in _between([knot])]
             links = tuple({link.key: link for link in one.links} for one in networks)
             heat = _heat(built.machine, solution, model.nodes)

@@ -8,6 +8,7 @@ module             solutions
 =================  ============================================================================
 `gear_loss`        loss factor of a mesh with constant friction
 `line_contact`     Hertz contact of two cylinders
+`mesh_stiffness`   stiffness of a mesh after ISO 6336-1
 `planetary`        efficiency of a planetary set from the loss of its meshes
 `roller_bearing`   load distribution of a roller bearing without misalignment
 `rotating_body`    power to turn a disc or a cylinder in a fluid at rest
