@@ -151,7 +151,7 @@ TWO = """\
 import os
 import sys
 from epicyclic.kernels._jit import kernel
-from epicyclic.kernels.compiling import listeners
+from epicyclic.kernels import listeners
 
 told, copies, fork = [], [], os.fork
 listeners.append(lambda: told.append(os.getpid()))

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-import numpy as np
-
 from epicyclic.builders.gearing import SetCase, gearing_of
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.listed_set import ListedCase
 from epicyclic.case.lubrication import oil_share
-from epicyclic.case.oil_laws import oil_laws
 from epicyclic.case.part_tables import PlanetBearing
 from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
+from epicyclic.errors import InputError, Problem
 from epicyclic.losses.fitted import FittedFriction, FittedOrGoksem, FittedOrSchlenk, FittedRolling
 from epicyclic.losses.friction import (
     DRY_FRICTION,
+    FRICTION_MODELS,
     FrictionMap,
     FrictionModel,
     FrictionSettings,
@@ -31,9 +30,7 @@ from epicyclic.machine.element import Fluids, fluids_at
 from epicyclic.machine.gear_mesh import MeshModels
 from epicyclic.machine.gear_set import LossChoice
 from epicyclic.machine.pocket_flow import PocketSettings
-from epicyclic.plugins.contact_solver.conditions import PRESETS
-from epicyclic.plugins.contact_solver.direct import DirectSettings, EhlDirect
-from epicyclic.plugins.contact_solver.rough import AsperityContact
+from epicyclic.registry import load, offered
 
 
 def resolve_models(case: SetCase) -> dict[str, str]:
@@ -124,30 +121,14 @@ def friction_of(case: SetCase) -> FrictionModel:
     if name in (FittedFriction.name, FittedOrSchlenk.name):
         fitted = FittedFriction(_given_oil_model(case), case.models.fitted_form)
         return fitted if name == FittedFriction.name else FittedOrSchlenk(fitted)
-    if name == EhlDirect.name:
-        return EhlDirect(_direct_settings(case))
-    return friction_model(name, friction_settings(case))
-
-
-def _direct_settings(case: SetCase) -> DirectSettings:
-    solver, boundary = case.contact_solver, case.models.boundary_friction
-    touching = PRESETS[solver.preset]
-    carried = None
-    if solver.heating != "isothermal":
-        given = solver.solid_conductivity, solver.solid_heat_capacity
-        solids = [gear.material.solid_with(*given) for gear in gearing_of(case).tables.values()]
-        carried = float(np.mean([solid.effusivity for solid in solids]))
-    return DirectSettings(
-        laws=oil_laws(solver),
-        asperities=AsperityContact(
-            solver.asperity_film, touching.friction if boundary is None else boundary
-        ),
-        effusivity=carried,
-        correlation_length=solver.correlation_length,
-        seed=solver.seed,
-        error=solver.error,
-        most_contacts=solver.most_contacts,
-    )
+    if name in FRICTION_MODELS:
+        return friction_model(name, friction_settings(case))
+    if name not in offered("friction_models"):
+        allowed = "is part of a plug-in that is not installed."
+        problem = Problem("models.friction", name, allowed, "Choose another model.")
+        raise InputError([problem])
+    model: FrictionModel = load("friction_models", name)(case)
+    return model
 
 
 def rolling_of(case: SetCase) -> RollingModel:

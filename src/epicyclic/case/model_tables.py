@@ -19,7 +19,7 @@ from epicyclic.case.oil_laws import (
 from epicyclic.case.plain import value_at
 from epicyclic.case.schema import VALUES_OR_ROWS, PointsTable, Table
 from epicyclic.oil.oil import Conductivity, HeatCapacity
-from epicyclic.plugins.contact_solver.conditions import DEFAULT, PRESETS
+from epicyclic.oil.rheology import DEFAULT, PRESETS
 from epicyclic.units import (
     Deviation,
     HertzPressure,

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from epicyclic.case.schema import Stress, Table
 from epicyclic.errors import Problem
-from epicyclic.plugins.contact_solver.conditions import (
+from epicyclic.oil.rheology import (
     DEFAULT,
     PRESETS,
     PRESSURE_LAWS,

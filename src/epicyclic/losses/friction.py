@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from typing import ClassVar, Protocol
 
@@ -72,6 +74,35 @@ class FrictionModel(Protocol):
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """Coefficient of friction at each point of `contact`, shape (n,). [1]"""
         ...
+
+
+class SolvedFriction(ABC):
+    """A friction model that first solves contacts of the mesh, which takes minutes."""
+
+    @abstractmethod
+    def solved_for(self, contact: MeshContact) -> FrictionModel:
+        """The model with contacts that are solved; those that it has, if they still hold."""
+
+    @property
+    @abstractmethod
+    def remarks(self) -> tuple[str, ...]:
+        """How many contacts were solved, how many not, and the error."""
+
+
+CONTACT_PROGRESS: ContextVar[Callable[[int, int], None]] = ContextVar(
+    "progress", default=lambda *_: None
+)
+"""Called with the numbers of contacts solved and planned so far, mesh by mesh."""
+
+
+@contextmanager
+def contact_progress(progress: Callable[[int, int], None]) -> Iterator[None]:
+    """Let `progress` be called as contacts of meshes are solved."""
+    token = CONTACT_PROGRESS.set(progress)
+    try:
+        yield
+    finally:
+        CONTACT_PROGRESS.reset(token)
 
 
 def specific_load(contact: MeshContact) -> float:

@@ -24,7 +24,7 @@ from epicyclic.losses.contact import (
     MeshLoad,
     mesh_contact,
 )
-from epicyclic.losses.friction import FrictionModel
+from epicyclic.losses.friction import FrictionModel, SolvedFriction
 from epicyclic.losses.mesh import (
     MeshLoss,
     heat_share1,
@@ -48,7 +48,6 @@ from epicyclic.machine.pocket_flow import (
     stored_note,
 )
 from epicyclic.oil.properties import OilState
-from epicyclic.plugins.contact_solver.direct import EhlDirect
 
 FloatArray = NDArray[np.float64]
 
@@ -217,7 +216,7 @@ def solve_mesh(
     if duty.torque1 != 0 and duty.speed1 != 0:
         loads = distribute_load(duty, None if last is None else last.elastic)
     contact = None if loads is None else contact_under(duty, loads, oil, fluids.oil)
-    if contact is not None and isinstance(friction, EhlDirect):
+    if contact is not None and isinstance(friction, SolvedFriction):
         friction = friction.solved_for(contact)
     if contact is None:
         loss = MeshLoss(0.0, 0.0)
@@ -253,7 +252,7 @@ def solve_mesh(
     notes += stored_note(duty.models.pockets, duty.mesh, flow.figures)
     if duty.models.by_loss_factor:
         notes += loss_factor_notes(duty.mesh)
-    if isinstance(friction, EhlDirect):
+    if isinstance(friction, SolvedFriction):
         notes += friction.remarks
     return MeshOutcome(losses, figures, loss.flags, notes, elastic, friction)
 

@@ -38,11 +38,10 @@ from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges,
 from epicyclic.machine.element import oil_flags
 from epicyclic.oil.oil import Conductivity, HeatCapacity
 from epicyclic.oil.properties import OilState, oil_state
+from epicyclic.oil.rheology import DEFAULT, PRESETS
 from epicyclic.plugins.contact_solver.conditions import (
-    DEFAULT,
     DRY_SPEED,
     FEWEST_KEPT,
-    PRESETS,
     VALIDATED_FILM_RATIO,
     Heating,
     LineContact,

@@ -24,9 +24,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from epicyclic.case.operating import PLANE, STATE
+from epicyclic.case.operating import AXES, PLANE, STATE
 from epicyclic.case.wording import one_line
 from epicyclic.errors import EpicyclicError, Problem
+from epicyclic.study.maps.formats import Format
 from epicyclic.study.maps.lumped import CAPACITY, CONDUCTANCE, SURROUNDINGS
 from epicyclic.study.maps.tables import Lookup, make_lookup, slack, stated
 from epicyclic.units import CELSIUS, RPM, format_number
@@ -333,3 +334,6 @@ def _write_documentation(folder: Path, data: xr.Dataset) -> None:
     )
     page = f'<!DOCTYPE html>\n<meta charset="utf-8">\n<title>Loss map</title>\n<dl>\n{rows}</dl>\n'
     (folder / "index.html").write_text(page, encoding="utf-8")
+
+
+FMU = Format(".fmu", "FMI 2.0", write_fmu, fmu_problems, (*AXES, STATE))
