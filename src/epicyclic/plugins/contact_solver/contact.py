@@ -247,13 +247,7 @@ def load_contact_case(
     source: str | Path | Mapping[str, Any],  # A TOML file, with profiles beside it, or its tables.
     changes: Mapping[str, Any] | None = None,  # Dotted keys to values as a file has them.
 ) -> ContactCase:
-    """Read and check a line contact.
-
-    Raises
-    ------
-    InputError
-        With every problem found.
-    """
+    """Read and check a line contact; raises `InputError` with every problem found."""
     problems: Sequence[Problem] = ()
     if isinstance(source, Mapping):
         name, tables = "the command", plain(source)

@@ -137,23 +137,14 @@ class EhlDirect(SolvedFriction):
         Between passes that bring torques and losses together the load changes by a few per cent,
         and the ratio to the closed form by far less than its error.
 
-        Raises
-        ------
-        ConvergenceError
-            If too many contacts have no solution.
+        Raises `ConvergenceError` if too many contacts have no solution.
         """
         if self.solved and abs(contact.force - self.solved.force) <= NEARLY * self.solved.force:
             return self
         return replace(self, solved=_solve_mesh(contact, self.settings))
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
-        """See the class. [1]
-
-        Raises
-        ------
-        ConvergenceError
-            If too many contacts have no solution.
-        """
+        """See the class. [1]; raises `ConvergenceError` if too many contacts have no solution."""
         return (self.solved or _solve_mesh(contact, self.settings)).friction(contact)
 
     @property
