@@ -17,7 +17,7 @@ import scipy.io
 import epicyclic as ep
 from epicyclic.plugins.simulators import tables as simulation
 from epicyclic.plugins.simulators.workbook import workbook_problems
-from epicyclic.study.maps.formats import FORMATS
+from epicyclic.study.maps.formats import formats
 
 HOW_TO = Path(__file__).parents[2] / "docs" / "how-to" / "loss-map.md"
 
@@ -369,4 +369,4 @@ def test_excel_refuses_more_points_than_it_has_rows():
 
 def test_the_how_to_lists_every_format():
     rows = re.findall(r"^\| `(\w+)` \| (?:`(\.\w+)`|by name) \|", HOW_TO.read_text("utf-8"), re.M)
-    assert rows == [(name, item.suffix) for name, item in FORMATS.items()]
+    assert rows == [(name, item.suffix) for name, item in formats().items()]

@@ -17,6 +17,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.contact.fitted_models import read_oil_model
+from epicyclic.losses.friction import CONTACT_PROGRESS, contact_progress
 from epicyclic.plugins.contact_solver.campaign import CampaignFolder, make_campaign, open_folder
 from epicyclic.plugins.contact_solver.fit import fit_campaigns, simulated_quantities
 from epicyclic.study.sweeps.runner import Runner
@@ -282,7 +283,7 @@ def test_contacts_of_a_mesh_are_solved_and_their_error_told(monkeypatch):
     monkeypatch.setattr(direct, "_friction", friction)
     case = ep.load_case("talbot-2012-pair").updated(PAIR | {"models.friction": "ehl-direct"})
     told = []
-    with direct.contacts_told(lambda *numbers: told.append(numbers)):
+    with contact_progress(lambda *numbers: told.append(numbers)):
         result = ep.solve(case)
     assert [done for done, _ in told] == list(range(1, len(calls) + 1))
     assert told[-1] == (len(calls), len(calls))
@@ -359,12 +360,11 @@ def test_roughness_that_the_grid_loses_is_not_fitted(finished, tmp_path):
 def test_contacts_of_a_mesh_are_told_where_output_is_redirected(monkeypatch, capsys):
     from epicyclic.cli import case as single
     from epicyclic.cli import common as progress
-    from epicyclic.plugins.contact_solver import direct
 
     monkeypatch.setattr(progress, "EVERY", 0.0)
     case = ep.load_case("talbot-2012-pair").updated({"models.friction": "ehl-direct"})
     with single.telling_contacts(case):
-        direct._PROGRESS.get()(3, 20)
+        CONTACT_PROGRESS.get()(3, 20)
     assert "contacts of the mesh: 3 of 20" in capsys.readouterr().err
 
 
@@ -385,8 +385,8 @@ def test_creeping_speed_and_lost_roughness_are_told(monkeypatch, rpm, kept, told
 
 
 def test_oil_and_heat_of_the_contact_solver_reach_every_contact(monkeypatch):
+    from epicyclic.oil.rheology import LimitingStress, TwoSlope
     from epicyclic.plugins.contact_solver import direct
-    from epicyclic.plugins.contact_solver.conditions import LimitingStress, TwoSlope
 
     calls = []
 
@@ -445,7 +445,8 @@ def test_too_many_unsolved_contacts_are_no_result(monkeypatch):
 
 @pytest.mark.slow
 def test_direct_contacts_of_smooth_flanks_are_those_of_the_solver():
-    from epicyclic.plugins.contact_solver.conditions import ContactOil, LineContact, Roelands
+    from epicyclic.oil.rheology import Roelands
+    from epicyclic.plugins.contact_solver.conditions import ContactOil, LineContact
     from epicyclic.plugins.contact_solver.steady import solve_smooth
 
     changes = PAIR | {

@@ -72,7 +72,7 @@ def test_the_kernels_of_this_run_are_kept():
 
 
 KERNEL = """\
-from epicyclic.kernels._jit import cache_notes, kernel
+from epicyclic.kernels.compiling import cache_notes, kernel
 
 @kernel
 def half(x):
@@ -150,8 +150,8 @@ def test_a_folder_of_the_user_must_be_private_too(tmp_path):
 TWO = """\
 import os
 import sys
-from epicyclic.kernels._jit import kernel
-from epicyclic.kernels.compiling import listeners
+from epicyclic.kernels.compiling import kernel
+from epicyclic.kernels import listeners
 
 told, copies, fork = [], [], os.fork
 listeners.append(lambda: told.append(os.getpid()))

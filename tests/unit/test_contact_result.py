@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from epicyclic.plugins.contact_solver.conditions import Roelands, TwoSlope
+from epicyclic.oil.rheology import Roelands, TwoSlope
 from epicyclic.plugins.contact_solver.contact import contact_model, load_contact_case, solve_contact
 from epicyclic.plugins.contact_solver.rough import AsperityContact
 

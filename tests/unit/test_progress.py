@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from epicyclic.cli import common as progress
-from epicyclic.kernels.compiling import listeners
+from epicyclic.kernels import listeners
 
 
 class Clock:

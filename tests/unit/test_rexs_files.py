@@ -123,7 +123,7 @@ MAKE_HOSTILE = """
 import io, os, sys, zipfile
 from pathlib import Path
 import epicyclic as ep
-from epicyclic.exchange.rexs.file import LARGEST, MOST_SIGNS
+from epicyclic.plugins.rexs.files import LARGEST, MOST_SIGNS
 head = b'<model version="1.5"><components>'
 tail = b'</components></model>'
 most = MOST_SIGNS - 20

@@ -11,17 +11,12 @@ from epicyclic.errors import InputError, Status
 from epicyclic.kernels.ehl_fluid import mean_shear, thinning_factor
 from epicyclic.kernels.ehl_rough import face_terms
 from epicyclic.kernels.ehl_steady import deflection_matrix, solve_steady
+from epicyclic.oil.rheology import Barus, Carreau, LimitingStress, Newtonian, ReeEyring, Roelands
 from epicyclic.plugins.contact_solver import rough
 from epicyclic.plugins.contact_solver.conditions import (
-    Barus,
-    Carreau,
     ContactOil,
     Heating,
-    LimitingStress,
     LineContact,
-    Newtonian,
-    ReeEyring,
-    Roelands,
     inlet_factor,
     temperature_rise,
 )

@@ -10,13 +10,13 @@ import pytest
 from epicyclic.errors import Status
 from epicyclic.kernels import ehl_linear, ehl_rough
 from epicyclic.kernels.ehl_rough import Column
+from epicyclic.oil.rheology import Roelands
 from epicyclic.plugins.contact_solver import rough
 from epicyclic.plugins.contact_solver.conditions import (
     FEWEST_KEPT,
     SOLVER_BOX,
     ContactOil,
     LineContact,
-    Roelands,
 )
 from epicyclic.plugins.contact_solver.rough import AsperityContact, solve_rough
 from epicyclic.plugins.contact_solver.steady import solve_smooth

@@ -12,13 +12,11 @@ import pytest
 from epicyclic.errors import InputError, Status
 from epicyclic.kernels.ehl_steady import deflection_matrix
 from epicyclic.kernels.line_contact import goksem_hargreaves_force, pan_hamrock_minimum_film
+from epicyclic.oil.rheology import Barus, Roelands, TwoSlope
 from epicyclic.plugins.contact_solver.conditions import (
     SOLVER_BOX,
-    Barus,
     ContactOil,
     LineContact,
-    Roelands,
-    TwoSlope,
     moes_central_film,
 )
 from epicyclic.plugins.contact_solver.steady import graded_nodes, grid_for, solve_smooth

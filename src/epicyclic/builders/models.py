@@ -5,20 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-import numpy as np
-
 from epicyclic.builders.lubrication import oil_share
 from epicyclic.builders.set_case import SetCase
 from epicyclic.case.case import Case
 from epicyclic.case.tables.base import Material
 from epicyclic.case.tables.elements import PlanetBearing
-from epicyclic.case.tables.models import oil_laws
 from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
 from epicyclic.contact.temperatures import Solid
+from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.fitted import FittedFriction, FittedOrGoksem, FittedOrSchlenk, FittedRolling
 from epicyclic.losses.friction import (
     DRY_FRICTION,
+    FRICTION_MODELS,
     FrictionMap,
     FrictionModel,
     FrictionSettings,
@@ -35,9 +34,7 @@ from epicyclic.machine.element import Fluids, fluids_at
 from epicyclic.machine.gear_mesh import MeshModels
 from epicyclic.machine.gear_set import LossChoice
 from epicyclic.machine.pocket_flow import PocketSettings
-from epicyclic.plugins.contact_solver.conditions import PRESETS
-from epicyclic.plugins.contact_solver.direct import DirectSettings, EhlDirect
-from epicyclic.plugins.contact_solver.rough import AsperityContact
+from epicyclic.registry import load, offered
 
 
 def resolve_models(case: SetCase) -> dict[str, str]:
@@ -127,30 +124,14 @@ def friction_of(case: SetCase) -> FrictionModel:
     if name in (FittedFriction.name, FittedOrSchlenk.name):
         fitted = FittedFriction(_given_oil_model(case), case.models.fitted_form)
         return fitted if name == FittedFriction.name else FittedOrSchlenk(fitted)
-    if name == EhlDirect.name:
-        return EhlDirect(_direct_settings(case))
-    return friction_model(name, friction_settings(case))
-
-
-def _direct_settings(case: SetCase) -> DirectSettings:
-    solver, boundary = case.contact_solver, case.models.boundary_friction
-    touching = PRESETS[solver.preset]
-    carried = None
-    if solver.heating != "isothermal":
-        given = solver.solid_conductivity, solver.solid_heat_capacity
-        solids = [solid_of(gear.material, *given) for gear in case.gearing.tables.values()]
-        carried = float(np.mean([solid.effusivity for solid in solids]))
-    return DirectSettings(
-        laws=oil_laws(solver),
-        asperities=AsperityContact(
-            solver.asperity_film, touching.friction if boundary is None else boundary
-        ),
-        effusivity=carried,
-        correlation_length=solver.correlation_length,
-        seed=solver.seed,
-        error=solver.error,
-        most_contacts=solver.most_contacts,
-    )
+    if name in FRICTION_MODELS:
+        return friction_model(name, friction_settings(case))
+    if name not in offered("friction_models"):
+        allowed = "is part of a plug-in that is not installed."
+        problem = Problem("models.friction", name, allowed, "Choose another model.")
+        raise InputError([problem])
+    model: FrictionModel = load("friction_models", name)(case)
+    return model
 
 
 def contact_modulus(one: Material, other: Material) -> float:

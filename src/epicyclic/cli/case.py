@@ -86,9 +86,9 @@ def telling_contacts(case: Case) -> Iterator[None]:
     from epicyclic.cli.common import progress_bar, working
 
     if case.models.friction == "ehl-direct":
-        from epicyclic.plugins.contact_solver.direct import contacts_told
+        from epicyclic.losses.friction import contact_progress
 
-        with progress_bar("contacts of the mesh") as progress, contacts_told(progress):
+        with progress_bar("contacts of the mesh") as progress, contact_progress(progress):
             yield
     elif sys.stderr.isatty():
         with working("solving"):  # pockets may take minutes too

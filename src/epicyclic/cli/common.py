@@ -27,11 +27,14 @@ from rich.progress import (
 
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import write_file
-from epicyclic.kernels.compiling import listeners
+from epicyclic.kernels import listeners
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
+
+    from epicyclic.case.case import Case
+    from epicyclic.study.load import ForeignCase
 
 
 # Exit codes of the command.
@@ -368,24 +371,19 @@ def point_of(case: Any) -> str:
     return operating_line(case.inputs()["operation"])
 
 
-def load_with(case: str, changes: Sequence[str]) -> Any:
-    from epicyclic.plugins.rexs.files import is_rexs
-    from epicyclic.study.load import load_case
+def load_with(case: str, changes: Sequence[str]) -> Case:
+    from epicyclic.study.load import load_case, reader_of
 
     parsed = parse_changes(changes)
-    return from_rexs(case, parsed) if is_rexs(case) else load_case(case, parsed)
+    reader = reader_of(case)
+    return load_case(case, parsed) if reader is None else case_with_remarks(reader(case), parsed)
 
 
-def from_rexs(file: str, changes: dict[str, Any], component: int | None = None) -> Any:
-    """The case of a REXS file; what it lacks, and what differs, is told on standard error."""
-    from epicyclic.plugins.rexs.importing import read_rexs
-
-    found = read_rexs(file, component)
+def case_with_remarks(found: ForeignCase, changes: dict[str, Any]) -> Case:
+    """The case in a file of another form; standard error shows what the file lacks."""
     loaded = found.case(changes)
-    for lack in found.lacking(changes):
-        click.echo(f"{lack.key}: {lack}", err=True)
-    for note in (*found.notes, *found.geometry_notes(loaded)):
-        click.echo(f"Note: {note}", err=True)
+    for remark in found.remarks(changes, loaded):
+        click.echo(remark, err=True)
     return loaded
 
 

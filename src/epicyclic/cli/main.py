@@ -29,14 +29,11 @@ from epicyclic.cli.compare import compare
 from epicyclic.cli.duty import duty
 from epicyclic.cli.many import loss_map, sweep
 from epicyclic.cli.merge import merge
-from epicyclic.cli.pockets import pockets, pockets_table, study
+from epicyclic.cli.pockets import pockets, pockets_table
 from epicyclic.cli.show import cases, init, oils, plot, report, schema
 from epicyclic.cli.uncertainty import compare_cases, uncertainty
 from epicyclic.errors import ConvergenceError, InputError, is_interrupt, printable
-from epicyclic.plugins.app.command import app
-from epicyclic.plugins.contact_solver.commands import contact, oil
-from epicyclic.plugins.rexs.commands import rexs
-from epicyclic.validation.commands import reproduce, validate
+from epicyclic.registry import load, offered
 
 # The command ``epicyclic``: parses, calls the library, prints.
 #
@@ -44,7 +41,20 @@ from epicyclic.validation.commands import reproduce, validate
 # the program an error arose.
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+class _Commands(click.Group):
+    """The commands of this package, and those of plug-ins, which are imported when called."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted({*self.commands, *offered("commands")})
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name in self.commands or cmd_name not in offered("commands"):
+            return super().get_command(ctx, cmd_name)
+        command: click.Command = load("commands", cmd_name)
+        return command
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="epicyclic")
 def cli() -> None:
     """Power losses of gear pairs, planetary sets and gearboxes: how much, where, and why.
@@ -73,20 +83,13 @@ COMMANDS = (
     mesh,
     pockets,
     pockets_table,
-    study,
-    contact,
-    oil,
     friction,
     compare,
-    validate,
-    reproduce,
     cases,
     oils,
     init,
-    app,
     report,
     plot,
-    rexs,
     schema,
 )
 for command in COMMANDS:

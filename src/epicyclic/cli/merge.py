@@ -12,8 +12,8 @@ from epicyclic.cli.common import output_option
 from epicyclic.cli.compare import comparison_writer
 from epicyclic.cli.duty import duty_writer
 from epicyclic.cli.many import Write, finish, map_writer, sweep_writer
-from epicyclic.cli.pockets import study_writer, table_writer
-from epicyclic.plugins.contact_solver.commands import campaign_writer
+from epicyclic.cli.pockets import table_writer
+from epicyclic.registry import load, offered
 
 
 @click.command()
@@ -31,23 +31,23 @@ def merge(files: tuple[Path, ...], output: Path) -> None:
     epicyclic sweep case.toml --vary "planet.count=3,4" -o s.nc --shard 2/2
     epicyclic merge s.nc.shard-* -o s.nc
     """
-    from epicyclic.plugins.contact_solver.campaign import Campaign
     from epicyclic.study.maps.compute import MapPlan
     from epicyclic.study.maps.duty import DutyPlan
     from epicyclic.study.measured.compare import ComparisonPlan
     from epicyclic.study.pocketing_table import TablePlan
     from epicyclic.study.sweeps.plan import SweepPlan
     from epicyclic.study.sweeps.runner import gather
-    from epicyclic.validation.pocketing import StudyPlan
 
-    writers: dict[Any, Callable[..., Write]] = {
+    own: dict[Any, Callable[..., Write]] = {
         SweepPlan: sweep_writer,
         MapPlan: map_writer,
-        StudyPlan: study_writer,
         TablePlan: table_writer,
-        Campaign: campaign_writer,
         ComparisonPlan: comparison_writer,
         DutyPlan: duty_writer,
     }
-    plan, rows, how = gather(files, {kind.kind: kind for kind in writers})
-    finish(plan, rows, writers[type(plan)](plan, output, **how))
+    plans = {plan.kind: plan for plan in own} | {
+        kind: load("plans", kind) for kind in offered("plans")
+    }
+    plan, rows, how = gather(files, plans)
+    writer = own.get(type(plan)) or load("plan_writers", plan.kind)
+    finish(plan, rows, writer(plan, output, **how))

@@ -1,1 +1,9 @@
 """Compiled numerics on plain arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+listeners: list[Callable[[], None]] = []
+"""Called before each kernel is compiled, which takes minutes at the first run of a version; not for
+one whose machine code is kept on disk. They stand here because the compiler is slow to import."""

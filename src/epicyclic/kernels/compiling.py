@@ -17,13 +17,7 @@ import numba
 from numba.core import caching, event
 
 from epicyclic.cache_folder import is_private, private_folder
-
-# Who is told that a kernel is compiled: at the first run of a version, which takes minutes.
-
-
-listeners: list[Callable[[], None]] = []
-"""Called before each kernel is compiled; not for one whose machine code is kept on disk."""
-
+from epicyclic.kernels import listeners
 
 # Kernels compiled in a process of their own, which takes the memory of the compiler with it.
 #

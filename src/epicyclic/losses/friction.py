@@ -21,7 +21,9 @@ A new one is a function with an entry in `FRICTION_MODELS`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from typing import ClassVar, Protocol, Self
 
@@ -132,6 +134,22 @@ class FrictionFormula(NothingToSolve, Formula):
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """Coefficient of friction at each point of `contact`, shape (n,). [1]"""
         return self.function(contact, self.settings)
+
+
+CONTACT_PROGRESS: ContextVar[Callable[[int, int], None]] = ContextVar(
+    "progress", default=lambda *_: None
+)
+"""Called with the numbers of contacts solved and planned so far, mesh by mesh."""
+
+
+@contextmanager
+def contact_progress(progress: Callable[[int, int], None]) -> Iterator[None]:
+    """Let `progress` be called as contacts of meshes are solved."""
+    token = CONTACT_PROGRESS.set(progress)
+    try:
+        yield
+    finally:
+        CONTACT_PROGRESS.reset(token)
 
 
 def specific_load(contact: MeshContact) -> float:

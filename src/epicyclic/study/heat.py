@@ -15,7 +15,6 @@ from epicyclic.case.messages import refused, written
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.machine.element import LOAD_DEPENDENT
 from epicyclic.machine.heat import COLDEST, HOTTEST
-from epicyclic.plugins.contact_solver.direct import EhlDirect
 from epicyclic.results.heat import HeatBalance
 from epicyclic.results.result import Result, in_words
 from epicyclic.study.solve import solve
@@ -98,7 +97,7 @@ def hottest(heat: HeatBalance) -> str:
 
 def takes_minutes(result: Result) -> bool:
     """True if the contacts of a mesh are solved, so that another solution takes minutes."""
-    return EhlDirect.name in result.models.values()
+    return "ehl-direct" in result.models.values()
 
 
 def with_warm_flanks(case: Case) -> Result:

@@ -2,12 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, cast
 
 from epicyclic.case.case import Case, read_case
-from epicyclic.plugins.rexs.files import is_rexs
+from epicyclic.registry import load, offered
+
+
+class ForeignCase(Protocol):
+    """A case in a file of another form than TOML, as a plug-in reads it."""
+
+    @property
+    def tables(self) -> Mapping[str, Any]:
+        """The tables of the case, as far as the file gives them."""
+
+    def case(self, changes: Mapping[str, Any] | None = None) -> Case:
+        """The case, with some keys set."""
+
+    def remarks(self, changes: Mapping[str, Any], case: Case) -> list[str]:
+        """What the file lacks for `case`, which was made with `changes`, and where it differs."""
+
+
+CaseReader = Callable[[str | Path], ForeignCase]
+
+
+def reader_of(path: str | Path) -> CaseReader | None:
+    """What reads a file of another form than TOML, by the ending of its name."""
+    name = str(path).lower()
+    endings = [ending for ending in offered("case_readers") if name.endswith(ending)]
+    return cast("CaseReader", load("case_readers", endings[0])) if endings else None
 
 
 def load_case(
@@ -32,9 +56,7 @@ def load_case(
     InputError
         With every problem found, not only the first.
     """
-    if isinstance(source, str | Path) and is_rexs(source):
-        from epicyclic.plugins.rexs.importing import read_rexs
-
-        return read_rexs(source).case(changes)
+    if isinstance(source, str | Path) and (reader := reader_of(source)) is not None:
+        return reader(source).case(changes)
     case = read_case(source)
     return case.updated(changes) if changes else case

@@ -1,4 +1,4 @@
-"""The commands validate and reproduce."""
+"""The commands validate, reproduce and study."""
 
 from __future__ import annotations
 
@@ -9,21 +9,27 @@ from typing import TYPE_CHECKING
 import click
 
 from epicyclic.cli.common import (
+    case_argument,
     check_page,
+    load_with,
     output_option,
     picture_bytes,
     picture_option,
     runner_options,
+    set_option,
+    shard_option,
     write_page,
 )
+from epicyclic.cli.many import Write, compute
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import make_folder, write_file
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from epicyclic.study.sweeps.runner import Runner
+    from epicyclic.study.sweeps.runner import Rows, Runner
     from epicyclic.validation.compare import ClosureFigure, Comparison
+    from epicyclic.validation.pocketing import StudyPlan
 
 
 # The command validate: published figures beside computed ones.
@@ -181,3 +187,92 @@ def reproduce(
     found.sort(key=lambda item: known.index(item.number))
     write_page(output / PAGE, chapter_html(chapter, found, rows))
     click.echo(summary(rows))
+
+
+# The command study: pocketing loss over its main parameters.
+
+
+STUDY = "study"
+"""With which files of unfinished studies begin in their folder."""
+
+
+@click.command()
+@case_argument
+@set_option
+@click.option(
+    "--what",
+    metavar="NAMES",
+    help="Of speed, helix-angle, face-width, oil-fraction, backlash, module, separated by commas; "
+    "default: all.",
+)
+@click.option(
+    "--range",
+    "ranges",
+    metavar="NAME=VALUES",
+    multiple=True,
+    help='What a study goes over, as in "helix-angle=0:30:7 deg".',
+)
+@click.option(
+    "--level",
+    "levels",
+    metavar="NAME=VALUES",
+    multiple=True,
+    help='Curves and panels of the other studies, as in "speed=2000,4000 rpm".',
+)
+@click.option("--mesh", metavar="MESH", help="sun_mesh (default) or ring_mesh of a planetary set.")
+@picture_option
+@output_option("Folder of the results.", required=True)
+@shard_option
+@runner_options
+def study(
+    case: str,
+    changes: tuple[str, ...],
+    what: str | None,
+    ranges: tuple[str, ...],
+    levels: tuple[str, ...],
+    mesh: str | None,
+    picture: str,
+    output: Path,
+    runner: Runner,
+) -> None:
+    """Study the pocketing loss of a mesh over its main parameters, and draw the figures.
+
+    Each study NAME goes to NAME.nc, NAME.csv and a picture in the folder OUTPUT. An interrupted
+    study goes on where it stopped, as a sweep does.
+    """
+    from epicyclic.study.sweeps.plan import parse_vary
+    from epicyclic.validation.pocketing import STUDIES, make_study
+
+    loaded = load_with(case, changes)
+    plan = make_study(
+        loaded,
+        STUDIES if what is None else [name.strip() for name in what.split(",") if name.strip()],
+        mesh=mesh,
+        ranges=parse_vary(loaded, ranges, "--range", "speed"),
+        levels=parse_vary(loaded, levels, "--level", "speed"),
+    )
+    write = study_writer(plan, output, picture)
+    compute(plan, output / STUDY, runner, write, picture=picture)
+
+
+def study_writer(plan: StudyPlan, folder: Path, picture: str) -> Write:
+    """Writes tables and figures to a folder; raises `InputError` if there can be none."""
+    from epicyclic.study.sweeps.run import write_dataset
+    from epicyclic.validation.plots import study_figure
+    from epicyclic.validation.pocketing import published_study, study_datasets
+
+    make_folder(folder)
+
+    def write(rows: Rows) -> str:
+        written = []
+        published = published_study(plan.case)
+        for name, dataset in study_datasets(plan, rows).items():
+            for suffix in (".nc", ".csv"):
+                written.append(folder / f"{name}{suffix}")
+                write_dataset(dataset, written[-1])
+            written.append(folder / f"{name}.{picture}")
+            figure = study_figure(dataset, published)
+            write_file(written[-1], picture_bytes(figure, written[-1]))
+        return "\n".join(f"Wrote {path}." for path in written)
+
+    return write

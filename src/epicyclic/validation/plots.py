@@ -262,7 +262,7 @@ def _plot_exponents(study: xr.Dataset, ax: Axes, published: PublishedStudy | Non
             loss[number],
             marker=MARKERS[number % len(MARKERS)],
             ms=4,
-            label=f"{_value(loss[curves][number])}: {slope:.2f}",
+            label=f"{_study_value(loss[curves][number])}: {slope:.2f}",
         )
     if published is not None and float(loss[curves][0]) == 0.0:
         speed = loss["speed"].to_numpy()
@@ -334,7 +334,7 @@ def _study_value(coordinate: xr.DataArray) -> str:
 
 
 def _study_described(coordinate: xr.DataArray) -> str:
-    return f"{coordinate.attrs['long_name']} {_value(coordinate)}"
+    return f"{coordinate.attrs['long_name']} {_study_value(coordinate)}"
 
 
 # Every figure of a chapter of Talbot (2012) that is computed again, with its data.

@@ -11,7 +11,7 @@ from epicyclic.case.read import value_at
 from epicyclic.case.tables.base import VALUES_OR_ROWS, PointsTable, Stress, Table
 from epicyclic.errors import Problem
 from epicyclic.oil.oil import Conductivity, HeatCapacity
-from epicyclic.plugins.contact_solver.conditions import (
+from epicyclic.oil.rheology import (
     DEFAULT,
     PRESETS,
     PRESSURE_LAWS,

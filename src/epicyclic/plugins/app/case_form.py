@@ -477,10 +477,7 @@ def opened(
 
     A case with problems is opened, if it is known what kind it is and a form can show it.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read.
+    Raises `InputError` if it cannot be read.
     """
     if is_rexs(path):
         from epicyclic.plugins.rexs.importing import read_rexs
@@ -503,11 +500,8 @@ def received(
 ) -> Desk:
     """The desk of an uploaded case.
 
-    Raises
-    ------
-    InputError
-        If two have the same name, not one of them is a case, it names files elsewhere, or they
-        cannot be kept.
+    Raises `InputError` if two have the same name, not one of them is a case, it names files
+    elsewhere, or they cannot be kept.
     """
     contents = [(Path(name).name, content) for name, content in files]
     counts = Counter(name.casefold() for name, _ in contents)  # as some systems compare names

@@ -20,8 +20,8 @@ from nicegui import ui
 
 from epicyclic.case.case import Case
 from epicyclic.errors import EpicyclicError
-from epicyclic.kernels.compiling import listeners
-from epicyclic.plugins.contact_solver.direct import contacts_told
+from epicyclic.kernels import listeners
+from epicyclic.losses.friction import contact_progress
 from epicyclic.plugins.rexs.exporting import rexs_bytes
 from epicyclic.plugins.rexs.files import is_rexs
 from epicyclic.records.contents import contents_of, set_of
@@ -291,7 +291,7 @@ def _stored(study: Study, progress: Progress) -> Stored:
 
 
 def _recorded(study: Study, progress: Progress) -> ResultRecord:
-    with contacts_told(progress):
+    with contact_progress(progress):
         return growing_record(study.case)
 
 
@@ -339,7 +339,7 @@ def answered(study: Study, only: str, progress: Progress) -> Answer:
     if not isinstance(found, ResultRecord):
         figures, sections = map_key_figures(found), map_sections(found, drawings)
         return Answer(figures, sections, frozenset(drawings.wide), {})
-    with contacts_told(progress):
+    with contact_progress(progress):
         if only:
             sections = [result_section(found, drawings, only)]
         else:
@@ -404,7 +404,7 @@ def _turning(found: ResultRecord, what: str, phase: float | None) -> Turning:
 
 def saved(case: Case, ending: str, original: str | None, progress: Progress) -> bytes:
     """The result of a case as a file of this type; of a REXS file, in a copy of the original."""
-    with contacts_told(progress):
+    with contact_progress(progress):
         result = solve(case)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"result{ending}"

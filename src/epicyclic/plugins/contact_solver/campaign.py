@@ -142,13 +142,7 @@ class Design:
 
 
 def quantity_of_axis(name: str) -> Quantity:
-    """Unit and range of an axis.
-
-    Raises
-    ------
-    InputError
-        If there is no such axis.
-    """
+    """Unit and range of an axis; raises `InputError` if there is no such axis."""
     if name not in AXES:
         remedy = did_you_mean(name, list(AXES)) or f"Axes are {', '.join(AXES)}."
         raise InputError([Problem("--range", name, "is no axis of a design.", remedy)])
@@ -160,10 +154,7 @@ def quantity_of_axis(name: str) -> Quantity:
 def parse_ranges(options: Iterable[str]) -> dict[str, tuple[float, float]]:
     """Limits of axes from ``NAME=LOW:HIGH UNIT``, in display units.
 
-    Raises
-    ------
-    InputError
-        For every range that cannot be read.
+    Raises `InputError` for every range that cannot be read.
     """
     ranges, problems = {}, []
     for option in options:
@@ -359,10 +350,7 @@ def make_campaign(
 ) -> Campaign:
     """Plan the simulations for an oil.
 
-    Raises
-    ------
-    InputError
-        With every problem of oil, ranges and changes.
+    Raises `InputError` with every problem of oil, ranges and changes.
     """
     for name, count in (("size", size), ("bearing_size", bearing_size)):
         if count is not None and count > MOST_CONTACTS:
@@ -562,13 +550,7 @@ class CampaignFolder:
         return self.campaign.size if self.table.exists() else len(self.journal.read())
 
     def prepare(self) -> None:
-        """Make the folder.
-
-        Raises
-        ------
-        InputError
-            If it cannot be made, or holds another campaign.
-        """
+        """Make the folder; raises `InputError` if it cannot be made, or holds another campaign."""
         make_folder(self.path)
         plan = self.path / "campaign.json"
         simulated = any(self.path.glob(f"{SIMULATIONS}.*"))  # first: shards may begin at once
@@ -594,13 +576,7 @@ class CampaignFolder:
         write_file(self.table, self._frame(rows).to_csv(index=False))
 
     def read(self) -> pd.DataFrame:
-        """The table of all results.
-
-        Raises
-        ------
-        InputError
-            If there is none, or it is damaged.
-        """
+        """The table of all results; raises `InputError` if there is none, or it is damaged."""
         import pandas as pd
 
         try:
@@ -657,10 +633,7 @@ class CampaignFolder:
 def open_folder(path: Path) -> CampaignFolder:
     """The campaign that a folder holds.
 
-    Raises
-    ------
-    InputError
-        If it holds none, or one of another version of these files.
+    Raises `InputError` if it holds none, or one of another version of these files.
     """
     data = _read_json(path / "campaign.json")
     try:

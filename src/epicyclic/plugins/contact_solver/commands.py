@@ -237,7 +237,7 @@ def fit(folders: tuple[Path, ...], output: Path | None, plot: Path | None) -> No
     _fit(campaigns, output or campaigns[0].model, plot)
 
 
-@oil.command()
+@oil.command("show")
 @click.argument("model", metavar="MODEL", type=click.Path(path_type=Path))
 def show_model(model: Path) -> None:
     """Show what a fitted MODEL file holds, and its errors."""

@@ -38,11 +38,10 @@ from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges,
 from epicyclic.machine.element import oil_flags
 from epicyclic.oil.oil import Conductivity, HeatCapacity
 from epicyclic.oil.properties import OilState, oil_state
+from epicyclic.oil.rheology import DEFAULT, PRESETS
 from epicyclic.plugins.contact_solver.conditions import (
-    DEFAULT,
     DRY_SPEED,
     FEWEST_KEPT,
-    PRESETS,
     VALIDATED_FILM_RATIO,
     Heating,
     LineContact,
@@ -248,13 +247,7 @@ def load_contact_case(
     source: str | Path | Mapping[str, Any],  # A TOML file, with profiles beside it, or its tables.
     changes: Mapping[str, Any] | None = None,  # Dotted keys to values as a file has them.
 ) -> ContactCase:
-    """Read and check a line contact.
-
-    Raises
-    ------
-    InputError
-        With every problem found.
-    """
+    """Read and check a line contact; raises `InputError` with every problem found."""
     problems: Sequence[Problem] = ()
     if isinstance(source, Mapping):
         name, tables = "the command", plain(source)

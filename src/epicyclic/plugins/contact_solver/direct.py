@@ -8,9 +8,6 @@ are drawn by the sliding power and take no part, tell the error. Theory (O10).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar
@@ -18,11 +15,16 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.builders.models import solid_of
+from epicyclic.builders.set_case import SetCase
+from epicyclic.case.tables.models import oil_laws
 from epicyclic.contact.elastic_teeth import one_thread
 from epicyclic.contact.fitted_models import EYRING_STRESS, eyring_friction
 from epicyclic.errors import ConvergenceError, Status
 from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.friction import CONTACT_PROGRESS
 from epicyclic.losses.ranges import SMALLEST_SHOWN_SHARE, Range, RangeFlags, RegressionFluid
+from epicyclic.oil.rheology import PRESETS, OilLaws
 from epicyclic.plugins.contact_solver.conditions import (
     DRY_SPEED,
     FEWEST_KEPT,
@@ -30,7 +32,6 @@ from epicyclic.plugins.contact_solver.conditions import (
     VALIDATED_FILM_RATIO,
     Heating,
     LineContact,
-    OilLaws,
     contact_oil,
     heating_of,
     line_contact,
@@ -77,19 +78,6 @@ def solver_range(name: str, label: str, unit: Quantity) -> Range:
     scale, _ = unit.scale_and_offset()
     low, high = SOLVER_BOX[name]
     return Range(name, label, low * scale, high * scale, unit, "tests of the solver")
-
-
-_PROGRESS: ContextVar[Callable[[int, int], None]] = ContextVar("progress", default=lambda *_: None)
-
-
-@contextmanager
-def contacts_told(progress: Callable[[int, int], None]) -> Iterator[None]:
-    """Call `progress` with the numbers of contacts solved and planned so far, mesh by mesh."""
-    token = _PROGRESS.set(progress)
-    try:
-        yield
-    finally:
-        _PROGRESS.reset(token)
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,29 +138,44 @@ class EhlDirect(RangeFlags):
         Between passes that bring torques and losses together the load changes by a few per cent,
         and the ratio to the closed form by far less than its error.
 
-        Raises
-        ------
-        ConvergenceError
-            If too many contacts have no solution.
+        Raises `ConvergenceError` if too many contacts have no solution.
         """
         if self.solved and abs(contact.force - self.solved.force) <= NEARLY * self.solved.force:
             return self
         return replace(self, solved=_solve_mesh(contact, self.settings))
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
-        """See the class. [1]
-
-        Raises
-        ------
-        ConvergenceError
-            If too many contacts have no solution.
-        """
+        """See the class. [1]; raises `ConvergenceError` if too many contacts have no solution."""
         return (self.solved or _solve_mesh(contact, self.settings)).friction(contact)
 
     @property
     def remarks(self) -> tuple[str, ...]:
         """How many contacts were solved, how many not, and the error."""
         return () if self.solved is None else (self.solved.remark,)
+
+
+def friction_of(case: SetCase) -> EhlDirect:
+    """The friction model of a case, with the numbers that the solver takes from it."""
+    solver, boundary = case.contact_solver, case.models.boundary_friction
+    touching = PRESETS[solver.preset]
+    carried = None
+    if solver.heating != "isothermal":
+        given = solver.solid_conductivity, solver.solid_heat_capacity
+        solids = [solid_of(gear.material, *given) for gear in case.gearing.tables.values()]
+        carried = float(np.mean([solid.effusivity for solid in solids]))
+    return EhlDirect(
+        DirectSettings(
+            laws=oil_laws(solver),
+            asperities=AsperityContact(
+                solver.asperity_film, touching.friction if boundary is None else boundary
+            ),
+            effusivity=carried,
+            correlation_length=solver.correlation_length,
+            seed=solver.seed,
+            error=solver.error,
+            most_contacts=solver.most_contacts,
+        )
+    )
 
 
 def _closed_form(contact: MeshContact) -> FloatArray:
@@ -344,7 +347,7 @@ def _ratios(
         friction, resolved = _friction(line, roughness, pair, heating, settings)
         found.append(abs(friction))
         kept = min(kept, resolved)
-        _PROGRESS.get()(done + len(found), done + points.size)
+        CONTACT_PROGRESS.get()(done + len(found), done + points.size)
     return np.array(found) / base[points], kept
 
 

@@ -66,10 +66,7 @@ def fit_quantity(
 ) -> QuantityFit:
     """Every form of a quantity. Theory (O8).
 
-    Raises
-    ------
-    ValueError
-        If no form can be fitted, with the reason.
+    Raises `ValueError` if no form can be fitted, with the reason.
     """
     fitted, left_out = [], {}
     domain = {name: _limits(getattr(states, name)) for name in CONDITIONS}
@@ -266,10 +263,8 @@ def fit_campaigns(
     and what is fitted is known to 10 %, whether or not it reached the error at which it is called
     converged.
 
-    Raises
-    ------
-    InputError
-        If there are too few of them, or campaigns differ in more than their points.
+    Raises `InputError` if there are too few of them, or campaigns differ in more than their
+    points.
     """
     _check_alike(folders)
     campaigns = [folder.campaign for folder in folders]

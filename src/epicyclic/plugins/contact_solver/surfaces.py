@@ -115,10 +115,8 @@ def generate_profile(
 ) -> Profile:
     """A random profile of given statistics. Theory (H26).
 
-    Raises
-    ------
-    InputError
-        If the statistics are impossible, or not reached by the sinh-arcsinh transformation.
+    Raises `InputError` if the statistics are impossible, or not reached by the sinh-arcsinh
+    transformation.
     """
     _check_statistics(rms, correlation_length, length, skewness, kurtosis)
     if rms == 0:
@@ -243,10 +241,8 @@ def read_profile(
 ) -> Profile:
     """A measured profile, the straight line through it taken off. Theory (H32).
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, has gaps or uneven positions, or nothing is left of it.
+    Raises `InputError` if it cannot be read, has gaps or uneven positions, or nothing is left
+    of it.
     """
     try:
         stat = path.stat()

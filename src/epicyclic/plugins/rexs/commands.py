@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from rich.console import Group, RenderableType
@@ -14,7 +14,7 @@ from rich.text import Text
 from epicyclic.cli.common import (
     EXIT_INCOMPLETE,
     case_argument,
-    from_rexs,
+    case_with_remarks,
     load_with,
     output_option,
     parse_changes,
@@ -22,8 +22,9 @@ from epicyclic.cli.common import (
 )
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import write_file
-from epicyclic.plugins.rexs.importing import RexsImport
-from epicyclic.report.tables import plain_table
+
+if TYPE_CHECKING:
+    from epicyclic.plugins.rexs.importing import RexsImport
 
 # What an import from REXS took, and what the file lacks.
 
@@ -35,6 +36,8 @@ def import_tables(
     notes: Sequence[str],  # What is to be known beside the notes of the import itself.
 ) -> RenderableType:
     """Summary of an import."""
+    from epicyclic.report.tables import plain_table
+
     head = Text(f"REXS {found.version}, {found.component}: {len(found.origins)} keys", "bold")
     parts: list[RenderableType] = [head]
     lacking = found.lacking(given)
@@ -133,6 +136,7 @@ def export(
     """
     from epicyclic.plugins.rexs.exporting import rexs_bytes
     from epicyclic.plugins.rexs.files import is_rexs
+    from epicyclic.plugins.rexs.importing import read_rexs
     from epicyclic.study.solve import solve
 
     if not is_rexs(output):
@@ -140,7 +144,7 @@ def export(
         raise InputError([Problem("--output", str(output), allowed, "Name such a file.")])
     if is_rexs(case):
         original = original or case
-        loaded = from_rexs(case, parse_changes(changes), component)
+        loaded = case_with_remarks(read_rexs(case, component), parse_changes(changes))
     else:
         loaded = load_with(case, changes)
     write_file(output, rexs_bytes(output, solve(loaded), original, component))

@@ -385,10 +385,7 @@ Place = tuple[float, float]
 def train_parts(case: TrainCase) -> Iterator[Component | Relation]:
     """Components and relations that describe a train of computed planetary sets and pairs.
 
-    Raises
-    ------
-    InputError
-        If another set is among them.
+    Raises `InputError` if another set is among them.
     """
     problems = [
         Problem(

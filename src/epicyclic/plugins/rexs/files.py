@@ -239,7 +239,7 @@ class XmlContent:
         if not self.root.text:  # made here, not read
             etree.indent(tree)
         after = "".join(map(_written_xml, self.root.itersiblings()))
-        text = f"{self.before}{_written(self.root)}\n{after}"
+        text = f"{self.before}{_written_xml(self.root)}\n{after}"
         return text.encode(tree.docinfo.encoding or "UTF-8", "xmlcharrefreplace")
 
     def _component_elements(self) -> Iterator[etree._Element]:
@@ -382,10 +382,7 @@ def read_document(
 ) -> Document:
     """Read a file, whatever its name says of its form.
 
-    Raises
-    ------
-    InputError
-        If it is no such file, is too large, or is not sound.
+    Raises `InputError` if it is no such file, is too large, or is not sound.
     """
     try:
         data = read_bytes(path, "REXS", LARGEST)

@@ -109,6 +109,12 @@ class RexsImport:
         write = train_text if self.kind == "train" else case_text
         return write(tables, [one_line(line, 400) for line in head], about)
 
+    def remarks(self, changes: Mapping[str, Any], case: Case) -> list[str]:
+        """What the file lacks for `case`, which was made with `changes`, and where it differs."""
+        notes = (*self.notes, *self.geometry_notes(case))
+        lacks = [f"{lack.key}: {lack}" for lack in self.lacking(changes)]
+        return lacks + [f"Note: {note}" for note in notes]
+
     def geometry_notes(self, case: Case) -> tuple[str, ...]:
         """Figures of the file, such as base diameters, that differ from those of `case`."""
         return tuple(checks.geometry_notes(case, self._chosen, self._model))

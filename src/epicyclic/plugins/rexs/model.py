@@ -219,10 +219,7 @@ class Component:
     def amount(self, name: str) -> tuple[float, str] | None:
         """Number and unit, of this package, of an attribute; None if it is not given.
 
-        Raises
-        ------
-        ValueError
-            If it is not a finite number, or its unit is not known.
+        Raises `ValueError` if it is not a finite number, or its unit is not known.
         """
         found = self.get(name)
         return None if found is None else (found.number(), checked_unit(found))
@@ -342,10 +339,8 @@ class Content(Protocol):
 def build_model(content: Content) -> Model:
     """The model of a file.
 
-    Raises
-    ------
-    InputError
-        If the version is not known, ids are no numbers or stand twice, or relations lead nowhere.
+    Raises `InputError` if the version is not known, ids are no numbers or stand twice, or
+    relations lead nowhere.
     """
     version = _version(content.version())
     problems: list[Problem] = []

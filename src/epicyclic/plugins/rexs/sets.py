@@ -99,11 +99,8 @@ def gear_sets(model: Model) -> list[Component]:
 def choose(model: Model, component: int | None) -> PlanetaryParts | Pair:
     """The gear set of a component, or the only one.
 
-    Raises
-    ------
-    InputError
-        If there is none, if there are several to choose from, or if it is of a kind that is not
-        covered.
+    Raises `InputError` if there is none, if there are several to choose from, or if it is of a
+    kind that is not covered.
     """
     if component is not None:
         chosen = model.components.get(component)
@@ -404,10 +401,7 @@ class Train:
 def chosen_train(model: Model) -> Train | None:
     """The train of a file with several stages; None for a file with fewer.
 
-    Raises
-    ------
-    InputError
-        If there are too many, or if one is of a kind that is not covered.
+    Raises `InputError` if there are too many, or if one is of a kind that is not covered.
     """
     kinds = ("planetary_stage", "cylindrical_stage")
     if len(model.of_type(kinds[0])) > MOST_STAGES:

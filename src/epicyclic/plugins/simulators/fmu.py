@@ -26,9 +26,10 @@ import numpy as np
 
 from epicyclic.case.messages import one_line
 from epicyclic.errors import EpicyclicError, Problem
+from epicyclic.study.maps.formats import Format
 from epicyclic.study.maps.lumped import CAPACITY, CONDUCTANCE, SURROUNDINGS
 from epicyclic.study.maps.tables import Lookup, make_lookup, slack, stated
-from epicyclic.study.operating import PLANE, STATE
+from epicyclic.study.operating import AXES, PLANE, STATE
 from epicyclic.units import CELSIUS, RPM, format_number
 
 if TYPE_CHECKING:
@@ -333,3 +334,6 @@ def _write_documentation(folder: Path, data: xr.Dataset) -> None:
     )
     page = f'<!DOCTYPE html>\n<meta charset="utf-8">\n<title>Loss map</title>\n<dl>\n{rows}</dl>\n'
     (folder / "index.html").write_text(page, encoding="utf-8")
+
+
+FMU = Format(".fmu", "FMI 2.0", write_fmu, fmu_problems, (*AXES, STATE))

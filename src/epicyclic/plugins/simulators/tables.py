@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from epicyclic.errors import Problem
+from epicyclic.study.maps.formats import Format
 from epicyclic.study.maps.tables import stated
-from epicyclic.study.operating import STATE
+from epicyclic.study.operating import AXES, PLANE, STATE
 from epicyclic.units import CELSIUS, RPM, format_number
 
 if TYPE_CHECKING:
@@ -235,3 +236,9 @@ def _negative_speeds(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
 
 def _torques(allowed: str) -> Problem:
     return Problem("torque", "", f"{allowed}.", "Give others.")
+
+
+VECTO = Format(".vtlm", "VECTO", write_vecto, vecto_problems, PLANE, each_state=True)
+MODELICA = Format(".mo", "Modelica", write_modelica, modelica_problems, PLANE, each_state=True)
+SIMSCAPE = Format(".m", "Simscape and Simulink", write_simscape, axes=(*AXES, STATE))
+GEM = Format("", "EPA GEM", write_gem, gem_problems, PLANE, each_state=True)

@@ -12,6 +12,7 @@ import numpy as np
 
 from epicyclic.case.read import flattened
 from epicyclic.errors import Problem, Status
+from epicyclic.study.maps.formats import Format
 from epicyclic.study.maps.tables import statements
 from epicyclic.study.operating import STATE
 
@@ -136,3 +137,7 @@ def _field(name: object) -> str:
     """The name of a variable as that of a field of a struct."""
     text = re.sub(r"\W", "_", str(name), flags=re.ASCII)
     return text if text[:1].isalpha() else f"x{text}"
+
+
+EXCEL = Format(".xlsx", "Excel workbook", write_workbook, workbook_problems)
+MATLAB = Format(".mat", "MATLAB", write_matlab)

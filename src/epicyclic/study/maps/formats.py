@@ -6,16 +6,15 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import check_place, whole_file
-from epicyclic.plugins.simulators import fmu, workbook
-from epicyclic.plugins.simulators import tables as simscape
-from epicyclic.plugins.simulators import tables as simulation
+from epicyclic.registry import load, offered
 from epicyclic.study.maps import tables
-from epicyclic.study.operating import AXES, PLANE, STATE
+from epicyclic.study.operating import STATE
 from epicyclic.study.sweeps.run import write_netcdf
 
 if TYPE_CHECKING:
@@ -38,31 +37,18 @@ class Format:
     each_state: bool = False  # True: a map of several states becomes several files.
 
 
-_SPACE = (*AXES, STATE)
+NETCDF = Format(".nc", "NetCDF", write_netcdf)
 
-FORMATS = {
-    "netcdf": Format(".nc", "NetCDF", write_netcdf),
-    "csv": Format(".csv", "table of all points", tables.write_csv),
-    "parquet": Format(".parquet", "table of all points", tables.write_parquet),
-    "excel": Format(".xlsx", "Excel workbook", workbook.write_workbook, workbook.workbook_problems),
-    "matlab": Format(".mat", "MATLAB", workbook.write_matlab),
-    "vecto": Format(
-        ".vtlm", "VECTO", simulation.write_vecto, simulation.vecto_problems, PLANE, each_state=True
-    ),
-    "modelica": Format(
-        ".mo",
-        "Modelica",
-        simulation.write_modelica,
-        simulation.modelica_problems,
-        PLANE,
-        each_state=True,
-    ),
-    "simscape": Format(".m", "Simscape and Simulink", simscape.write_simscape, axes=_SPACE),
-    "fmu": Format(".fmu", "FMI 2.0", fmu.write_fmu, fmu.fmu_problems, _SPACE),
-    "gem": Format(
-        "", "EPA GEM", simulation.write_gem, simulation.gem_problems, PLANE, each_state=True
-    ),
-}
+
+@cache
+def formats() -> Mapping[str, Format]:
+    """The formats of maps, of this package and of its plug-ins, by their names."""
+    own = {
+        "netcdf": NETCDF,
+        "csv": Format(".csv", "table of all points", tables.write_csv),
+        "parquet": Format(".parquet", "table of all points", tables.write_parquet),
+    }
+    return own | {name: load("map_formats", name) for name in offered("map_formats")}
 
 
 def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> None:
@@ -89,7 +75,7 @@ def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> 
     chosen = check_map_output(target, format, axes, data.attrs["held_shaft"])
     if chosen.axes is not None:
         tables.check_gaps(data)
-    kept = data if chosen is FORMATS["netcdf"] else tables.bare_map(data)
+    kept = data if chosen is NETCDF else tables.bare_map(data)
     with ExitStack() as stack:
         for state, file in files_of_map(target, chosen, axes).items():
             part = kept.sel({STATE: [state]}) if state else kept
@@ -133,13 +119,13 @@ def check_map_output(path: Path, format: str | None, axes: Coordinates, held: st
 
 def _choose(path: Path, format: str | None) -> Format:
     if format is not None:
-        if format in FORMATS:
-            return FORMATS[format]
+        if format in formats():
+            return formats()[format]
         problem = Problem(
-            "--format", f'"{format}"', f"must be one of {', '.join(FORMATS)}.", "Choose one."
+            "--format", f'"{format}"', f"must be one of {', '.join(formats())}.", "Choose one."
         )
         raise InputError([problem], "the command")
-    by_suffix = {item.suffix: item for item in FORMATS.values() if item.suffix}
+    by_suffix = {item.suffix: item for item in formats().values() if item.suffix}
     if path.suffix in by_suffix:
         return by_suffix[path.suffix]
     problem = Problem(

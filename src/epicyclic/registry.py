@@ -1,0 +1,66 @@
+"""The plug-ins of this package, and what each offers to the core.
+
+A plug-in is a package in `epicyclic.plugins`, or `epicyclic.validation`, whose light ``__init__``
+declares a `PlugIn` by the name ``PLUG_IN``. The core never imports a plug-in: it asks here for what
+it needs by the name that a user gives, and the module behind it is imported then.
+"""
+
+from __future__ import annotations
+
+import pkgutil
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any, Literal
+
+Kind = Literal[
+    "commands", "case_readers", "map_formats", "friction_models", "plans", "plan_writers", "names"
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlugIn:
+    """What a plug-in offers: for each name the place, ``"module:object"`` within the plug-in."""
+
+    commands: Mapping[str, str] = field(default_factory=dict)  # Click commands by their names.
+    # By the ending of a file, `epicyclic.study.load.CaseReader`.
+    case_readers: Mapping[str, str] = field(default_factory=dict)
+    # By the name of a format of loss maps, `epicyclic.study.maps.formats.Format`.
+    map_formats: Mapping[str, str] = field(default_factory=dict)
+    # By its name in ``models.friction``, a function of a case that returns a
+    # `epicyclic.losses.friction.FrictionModel`.
+    friction_models: Mapping[str, str] = field(default_factory=dict)
+    # By `Plan.kind`, classes of plans whose shards ``merge`` puts together, and for each a function
+    # of a plan and a path that returns an `epicyclic.cli.many.Write`.
+    plans: Mapping[str, str] = field(default_factory=dict)
+    plan_writers: Mapping[str, str] = field(default_factory=dict)
+    names: Mapping[str, str] = field(default_factory=dict)  # Public names of `epicyclic`.
+
+
+@cache
+def plug_ins() -> Mapping[str, PlugIn]:
+    """The plug-ins that are there, by the names of their packages."""
+    folder = find_spec("epicyclic.plugins")
+    found = [] if folder is None else pkgutil.iter_modules(folder.submodule_search_locations)
+    packages = [f"epicyclic.plugins.{module.name}" for module in found if module.ispkg]
+    if find_spec("epicyclic.validation") is not None:
+        packages.append("epicyclic.validation")
+    return {package: import_module(package).PLUG_IN for package in packages}
+
+
+@cache
+def offered(kind: Kind) -> Mapping[str, str]:
+    """What all plug-ins offer of one kind: names, and where each is."""
+    return {
+        name: f"{package}.{place}"
+        for package, plug_in in plug_ins().items()
+        for name, place in getattr(plug_in, kind).items()
+    }
+
+
+def load(kind: Kind, name: str) -> Any:
+    """The object that a plug-in offers under a name; KeyError if none does."""
+    module, _, attribute = offered(kind)[name].partition(":")
+    return getattr(import_module(module), attribute)
