@@ -9,10 +9,10 @@ import pytest
 from rich.console import Console
 
 import epicyclic as ep
-from epicyclic.case.uncertain_values import uncertain_values
 from epicyclic.gears import measures as accuracy
 from epicyclic.gears.measures import fit_allowances, flank_tolerances, named_fit
 from epicyclic.report.data_sheet import data_sheet
+from epicyclic.study.bands.inputs import uncertain_values
 
 PAIR = {
     "kind": "gear_pair",

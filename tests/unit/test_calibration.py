@@ -15,9 +15,10 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.case.case import build_case
-from epicyclic.case.parameters import Parameter, make_parameters
-from epicyclic.case.uncertain_values import uncertain_values
+from epicyclic.case.fields import Parameter
+from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.bands.samples import make_samples
+from epicyclic.study.measured.compare import make_parameters
 from epicyclic.study.measured.comparison import calibrated_case, uncertainty_tables
 from epicyclic.study.measured.fit import fit_parameters
 from epicyclic.study.measured.intervals import combinations, reaches

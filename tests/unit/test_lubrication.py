@@ -13,11 +13,11 @@ import asymmetric
 import epicyclic as ep
 import listed_trains
 from epicyclic.case.gearing import outside_radius
-from epicyclic.case.uncertain_values import uncertain_values
 from epicyclic.cli.main import cli
 from epicyclic.library import lubrication_methods
 from epicyclic.losses.drag import Dipped, SumpOil, changenet_velex, disc_drag, iso_14179_1
 from epicyclic.oil.properties import mixture_state, oil_state
+from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.bands.nearby import look_nearby
 from epicyclic.study.bands.quick import quick_band
 from problems import only, problems_of

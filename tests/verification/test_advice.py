@@ -11,10 +11,10 @@ from click.testing import CliRunner
 import epicyclic as ep
 from asymmetric import gear_pair
 from epicyclic import library
-from epicyclic.case.uncertain_values import remedy_for
 from epicyclic.cli.case import run
 from epicyclic.report.advice import advice_texts
 from epicyclic.study.bands.advice import Known, known_of, limits_of, measurements_of, model_remarks
+from epicyclic.study.bands.inputs import remedy_for
 from epicyclic.study.bands.quick import quick_dataset, quick_known
 
 QUICK = {"numerics.mesh_positions": 8, "numerics.contact_segments": 6}

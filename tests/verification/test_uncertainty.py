@@ -11,10 +11,11 @@ from scipy import stats
 
 import epicyclic as ep
 from asymmetric import gear_pair
-from epicyclic.case.uncertain_values import UncertainValue, uncertain_values
+from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.errors import InputError
 from epicyclic.losses.pocket_tables import FlowFamily
 from epicyclic.show.plots.catalogue import available
+from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.bands.nearby import look_nearby
 from epicyclic.study.bands.quick import quick_dataset
 from epicyclic.study.bands.samples import (

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 import epicyclic as ep
 from asymmetric import gear_pair
-from epicyclic.case.uncertain_values import UncertainValue
+from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.cli.uncertainty import uncertainty as command
 from epicyclic.errors import InputError
 from epicyclic.report.advice import LIMITS

@@ -15,9 +15,18 @@ from epicyclic.case.expand import gearing_of
 from epicyclic.case.fields import find_field, locate, to_inputs
 from epicyclic.case.gear_tables import Gears, GearTable
 from epicyclic.case.messages import key_parts, path_of, written
-from epicyclic.case.read import case_html, case_line, plain, value_at, with_value, without
+from epicyclic.case.read import (
+    case_html,
+    case_line,
+    owner_without_keys,
+    plain,
+    value_at,
+    with_value,
+    without,
+)
 from epicyclic.case.sizing import Found, complete, converted_roughness, negative_teeth, told_oil
 from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.uncertainty import check_uncertainty
 from epicyclic.case.validation import AnyCase, Validation, tables_of, unknown_key, validate
 from epicyclic.errors import InputError, Problem
 
@@ -131,8 +140,6 @@ class CaseTable(Table):
         if case is not None:
             case._tables, case._source = tables, source
         if case is not None and getattr(case, "uncertainty", {}):
-            from epicyclic.case.uncertain_values import check_uncertainty
-
             problems = [*problems, *check_uncertainty(case)]
         if case is None or problems:
             ordered = sorted(problems, key=lambda problem: _position(cls, problem))
@@ -237,18 +244,6 @@ def with_changes(
         except InputError as error:
             problems += [replace(problem, key=str(key)) for problem in error.problems]
     return tables, problems
-
-
-def owner_without_keys(tables: Mapping[str, Any], key: str) -> Problem | None:
-    """Why `tables` have no place for a key: what should hold it is not a table, but a name."""
-    path = key_parts(key)
-    for depth in range(1, len(path)):
-        owner = value_at(tables, path[:depth])
-        if owner is not None and not isinstance(owner, dict):
-            name = ".".join(path[:depth])
-            allowed = f"{name} is {written(owner)}, which has no keys."
-            return Problem(key, "", allowed, f"Change {name} to a table first.")
-    return None
 
 
 def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) -> dict[str, Any]:

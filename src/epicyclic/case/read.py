@@ -16,7 +16,7 @@ import numpy as np
 from pydantic import BaseModel
 
 from epicyclic.case.fields import to_inputs
-from epicyclic.case.messages import dotted, one_line, written
+from epicyclic.case.messages import dotted, key_parts, one_line, written
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, refuse
 from epicyclic.units import format_number, from_pint, unit_text
@@ -348,3 +348,15 @@ def _row(table: str, key: str, value: object) -> str:
 
 def _cell(content: str) -> str:
     return f'<td style="text-align: left">{content}</td>'
+
+
+def owner_without_keys(tables: Mapping[str, Any], key: str) -> Problem | None:
+    """Why `tables` have no place for a key: what should hold it is not a table, but a name."""
+    path = key_parts(key)
+    for depth in range(1, len(path)):
+        owner = value_at(tables, path[:depth])
+        if owner is not None and not isinstance(owner, dict):
+            name = ".".join(path[:depth])
+            allowed = f"{name} is {written(owner)}, which has no keys."
+            return Problem(key, "", allowed, f"Change {name} to a table first.")
+    return None

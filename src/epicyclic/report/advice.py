@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from epicyclic.case.uncertain_values import MODEL_FORM
+from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.report.page import Listing
 from epicyclic.results.result import Result, in_words
 from epicyclic.study.bands.advice import Known, limits_of, measurements_of

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from epicyclic.case.uncertain_values import MODEL_FORM
+from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.records.contents import ResultContents
 from epicyclic.results.result import in_words
 from epicyclic.show.plots.style import COLOURS, legend_below, styled_figure, write_beside

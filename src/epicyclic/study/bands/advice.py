@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from epicyclic import library
 from epicyclic.builders.build import layout_of
 from epicyclic.case.case import Case
-from epicyclic.case.uncertain_values import MODEL_FORM
+from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.ranges import range_text
 from epicyclic.results.result import Result

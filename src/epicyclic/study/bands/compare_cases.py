@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
-from epicyclic.case.uncertain_values import UncertainValue
+from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.errors import ConvergenceError
 from epicyclic.results.result import Result, versions
 from epicyclic.study.bands.nearby import (

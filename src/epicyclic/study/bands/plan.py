@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
 from epicyclic.case.read import plain
-from epicyclic.case.uncertain_values import UncertainValue
+from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.errors import InputError, Problem, Status, raise_any
 from epicyclic.results.result import Result
 from epicyclic.study.bands.nearby import (

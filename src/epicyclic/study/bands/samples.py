@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.case.uncertain_values import UncertainValue
+from epicyclic.case.tables.uncertainty import UncertainValue
 
 # Distributions of uncertain values, cut off where a case has no such values.
 

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
-from epicyclic.case.uncertain_values import UncertainValue, remedy_for
+from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.errors import ConvergenceError
 from epicyclic.results.result import origin
 from epicyclic.study.bands.advice import model_remarks
+from epicyclic.study.bands.inputs import remedy_for
 from epicyclic.study.bands.nearby import SUMS, Nearby, Outputs, factors_of, look_nearby
 from epicyclic.study.bands.plan import FEWEST, SampledCase, SamplePlan, check_samples, sampled_case
 from epicyclic.study.bands.samples import (

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.case.base import CaseTable
 from epicyclic.case.case import Case, build_case
-from epicyclic.case.parameters import make_parameters
+from epicyclic.case.fields import Parameter, no_start, parameter_of
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.study.measured.comparison import (
     AS_GIVEN,
@@ -334,3 +335,26 @@ def _same(cell: str, wanted: str) -> bool:
         return cell == wanted or float(cell) == float(wanted)
     except ValueError:
         return False
+
+
+def make_parameters(
+    case: CaseTable, keys: Iterable[str], varied: Iterable[str]
+) -> tuple[Parameter, ...]:
+    """The keys to be fitted, checked; `varied` are those that the table sets itself.
+
+    Raises
+    ------
+    InputError
+        For keys that are unknown, hold no number, or have no start value.
+    """
+    found = [_not_zero(parameter_of(case, key, set(varied))) for key in keys]
+    problems = [item for item in found if isinstance(item, Problem)]
+    raise_any(problems, "the fit")
+    return tuple(item for item in found if isinstance(item, Parameter))
+
+
+def _not_zero(item: Parameter | Problem) -> Parameter | Problem:
+    """The same unless it has no start value to be scaled by."""
+    if isinstance(item, Problem) or item.start != 0:
+        return item
+    return no_start(item.key, "is 0 in the case")

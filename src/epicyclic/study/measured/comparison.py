@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from epicyclic.builders.notes import NOT_INCLUDED
 from epicyclic.case.case import Case
-from epicyclic.case.uncertain_values import MODEL_FORM, model_form_of
+from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.losses.ranges import OUT_OF_RANGE
 from epicyclic.results.result import versions
+from epicyclic.study.bands.inputs import model_form_of
 from epicyclic.study.measured.intervals import Fit, FittedParameter
 from epicyclic.study.measured.residuals import Computed
 from epicyclic.study.measured.table import Measurements

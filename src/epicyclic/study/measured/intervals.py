@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
-from epicyclic.case.parameters import Parameter
-from epicyclic.case.uncertain_values import UncertainValue, uncertain_values
+from epicyclic.case.fields import Parameter
+from epicyclic.case.tables.uncertainty import UncertainValue
+from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.measured.residuals import STEP, Residuals
 from epicyclic.units import format_number
 

@@ -14,9 +14,8 @@ from typing import Any
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case
-from epicyclic.case.fields import field_at, is_whole_number, quantity_of, value_of
+from epicyclic.case.fields import field_at, is_continuous, is_whole_number, quantity_of, value_of
 from epicyclic.case.messages import one_line, path_of, sentence
-from epicyclic.case.parameters import is_continuous
 from epicyclic.case.read import value_at
 from epicyclic.errors import InputError, Problem
 from epicyclic.study.sweeps.axes import coordinate_of, field_problem
