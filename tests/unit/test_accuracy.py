@@ -12,7 +12,7 @@ import epicyclic as ep
 from epicyclic.case.uncertain_values import uncertain_values
 from epicyclic.gears import measures as accuracy
 from epicyclic.gears.measures import fit_allowances, flank_tolerances, named_fit
-from epicyclic.report.data_sheet import data_sheet
+from epicyclic.show.data_sheet import data_sheet
 
 PAIR = {
     "kind": "gear_pair",

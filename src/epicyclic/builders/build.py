@@ -12,7 +12,7 @@ from epicyclic.builders.train import build_train, train_layout
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.train import TrainCase
 from epicyclic.losses.pocket_tables import FlowTables
-from epicyclic.results.result import Layout
+from epicyclic.result.result import Layout
 
 
 def build(

@@ -22,7 +22,7 @@ from epicyclic.losses.mixed_ehl import TALBOT_FLUID
 from epicyclic.losses.ranges import STANDING
 from epicyclic.machine.element import BearingFigures, MeshFigures
 from epicyclic.machine.gear_set import GearSetResult
-from epicyclic.results.result import LossTerm
+from epicyclic.result.result import LossTerm
 from epicyclic.units import GIGAPASCAL, NEWTON, format_number, percent
 
 NOT_INCLUDED = "Not included"

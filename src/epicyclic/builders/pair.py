@@ -15,7 +15,7 @@ from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import HOUSING, joined_key
 from epicyclic.machine.gear_set import GearSet, Reference
 from epicyclic.machine.machine import Machine, MeshRow, Operation
-from epicyclic.results.result import Layout
+from epicyclic.result.result import Layout
 
 PAIR_MEMBERS = ("pinion", "gear")
 

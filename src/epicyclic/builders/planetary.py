@@ -31,7 +31,7 @@ from epicyclic.machine.gear_mesh import GearMesh
 from epicyclic.machine.gear_set import GearSet, Planet, PlanetMesh, Reference
 from epicyclic.machine.machine import Machine, MeshRow, Operation
 from epicyclic.machine.planets import LoadSharing, PlanetBearing
-from epicyclic.results.result import Layout
+from epicyclic.result.result import Layout
 
 MEMBERS = ("sun", "ring", "carrier")
 CAGED_PALMGREN = 0.0003

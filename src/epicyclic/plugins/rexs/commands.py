@@ -23,7 +23,7 @@ from epicyclic.cli.common import (
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import write_file
 from epicyclic.plugins.rexs.importing import RexsImport
-from epicyclic.report.tables import plain_table
+from epicyclic.show.terminal import plain_table
 
 # What an import from REXS took, and what the file lacks.
 
@@ -92,7 +92,7 @@ def import_(
     """
     from epicyclic.plugins.rexs.files import stem
     from epicyclic.plugins.rexs.importing import read_rexs
-    from epicyclic.report.tables import terminal
+    from epicyclic.show.terminal import terminal
 
     target = output or Path(f"{stem(file)}.toml")
     if target.exists():

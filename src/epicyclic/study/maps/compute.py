@@ -20,7 +20,7 @@ from epicyclic.case.train import TrainCase
 from epicyclic.case.wording import written
 from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.machine.element import HOUSING
-from epicyclic.results.result import Layout, number_fields
+from epicyclic.result.result import Layout, number_fields
 from epicyclic.study.maps.tables import Lookup, check_map, map_case
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import Axis

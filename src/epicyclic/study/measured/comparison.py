@@ -18,7 +18,7 @@ from epicyclic.case.case import Case
 from epicyclic.case.operating import OPERATING
 from epicyclic.case.uncertain_values import MODEL_FORM, model_form_of
 from epicyclic.losses.ranges import OUT_OF_RANGE
-from epicyclic.results.result import versions
+from epicyclic.result.result import versions
 from epicyclic.study.measured.intervals import Fit, FittedParameter
 from epicyclic.study.measured.residuals import Computed
 from epicyclic.study.measured.table import Measurements

@@ -17,7 +17,7 @@ from epicyclic.case.operating import AXES, axis_name
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import check_place, whole_file
 from epicyclic.netcdf_file import texts_not_copied
-from epicyclic.results.result import number_fields, origin
+from epicyclic.result.result import number_fields, origin
 from epicyclic.study.sweeps.axes import ROW, columns_of, unit_of
 from epicyclic.study.sweeps.plan import SweepPlan, make_plan
 from epicyclic.study.sweeps.runner import Progress, Rows, Runner

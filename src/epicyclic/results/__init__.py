@@ -1,1 +1,0 @@
-"""Results: losses, speeds, torques and figures, as objects and as JSON."""

@@ -1,0 +1,289 @@
+"""What is known without solving: gears as on a data sheet, states of a train, the library."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from epicyclic import library
+from epicyclic.case.case import Case
+from epicyclic.case.train import TrainCase
+from epicyclic.machine.element import HOUSING
+from epicyclic.oil.oil import GoldLaw, Oil
+from epicyclic.oil.properties import OilState, oil_state
+from epicyclic.show import page
+from epicyclic.show.page import MISSING, shown
+from epicyclic.show.terminal import as_on_page, plain_table, titled
+from epicyclic.study.data_sheet import DataSheet, GearSheet, MeshSheet, data_sheets, oil_at_inlet
+from epicyclic.study.trains import StateKinematics, train_states
+from epicyclic.units import (
+    CELSIUS,
+    KILOGRAM_PER_CUBIC_METRE,
+    PER_GIGAPASCAL,
+    SQUARE_MM_PER_SECOND,
+    Quantity,
+    format_number,
+    unit_text,
+)
+
+# What `check` shows: the gears of a case as on a data sheet, its oil, and what was found.
+
+
+MM, UM = 1e3, 1e6
+_GearRow = tuple[str, str, Callable[[GearSheet], str]]
+_MeshRow = tuple[str, str, Callable[[MeshSheet], str]]
+
+
+def _mm(value: float) -> str:
+    return f"{MM * value:.3f}"
+
+
+def _allowance(one: GearSheet, which: int) -> str:
+    return MISSING if one.allowances is None else f"{UM * one.allowances[which]:.1f}"
+
+
+def _tolerance(one: GearSheet, name: str) -> str:
+    return MISSING if one.tolerances is None else f"{UM * getattr(one.tolerances, name):.1f}"
+
+
+_GEAR_ROWS: tuple[_GearRow, ...] = (
+    ("teeth z", "", lambda one: str(one.gear.teeth)),
+    ("profile shift x, nominal", "", lambda one: f"{one.nominal_shift:z.4f}"),
+    ("profile shift x_E, as made", "", lambda one: f"{one.gear.profile_shift_coefficient:z.4f}"),
+    ("normal thickness s_n", "mm", lambda one: _mm(one.normal_thickness)),
+    ("reference diameter d", "mm", lambda one: _mm(2 * one.gear.reference_radius)),
+    ("base diameter d_b", "mm", lambda one: _mm(2 * one.gear.base_radius)),
+    ("tip diameter d_a", "mm", lambda one: _mm(2 * one.gear.tip_radius)),
+    ("root diameter d_f", "mm", lambda one: _mm(2 * one.gear.root_radius)),
+    (
+        "thickness of the tips s_a",
+        "mm",
+        lambda one: _mm(one.gear.thickness_at(one.gear.tip_radius)),
+    ),
+    ("face width b", "mm", lambda one: _mm(one.gear.face_width)),
+    ("teeth of the span k", "", lambda one: str(one.span[0]) if one.span else MISSING),
+    ("span W_k", "mm", lambda one: _mm(one.span[1]) if one.span else MISSING),
+    ("measuring ball D_M", "mm", lambda one: _mm(one.pins[0]) if one.pins else MISSING),
+    ("dimension over balls M_d", "mm", lambda one: _mm(one.pins[1]) if one.pins else MISSING),
+    ("allowance A_sne", "um", lambda one: _allowance(one, 0)),
+    ("allowance A_sni", "um", lambda one: _allowance(one, 1)),
+    ("single pitch f_pT, ISO 1328-1", "um", lambda one: _tolerance(one, "single_pitch")),
+    ("total profile F_alphaT", "um", lambda one: _tolerance(one, "profile")),
+    ("profile slope f_HalphaT", "um", lambda one: _tolerance(one, "profile_slope")),
+    ("total helix F_betaT", "um", lambda one: _tolerance(one, "helix")),
+    ("helix slope f_HbetaT", "um", lambda one: _tolerance(one, "helix_slope")),
+    ("roughness Rq", "um", lambda one: f"{UM * one.roughness:.3f}"),
+)
+
+_MESH_ROWS: tuple[_MeshRow, ...] = (
+    ("centre distance a", "mm", lambda one: _mm(one.mesh.center_distance)),
+    (
+        "pressure angle alpha_wt",
+        "deg",
+        lambda one: f"{math.degrees(one.mesh.operating_pressure_angle):.4f}",
+    ),
+    ("pitch diameter d_w1", "mm", lambda one: _mm(2 * one.mesh.operating_radius1)),
+    ("pitch diameter d_w2", "mm", lambda one: _mm(2 * one.mesh.operating_radius2)),
+    ("contact ratio epsilon_alpha", "", lambda one: f"{one.mesh.transverse_contact_ratio:.4f}"),
+    ("overlap ratio epsilon_beta", "", lambda one: f"{one.mesh.overlap_ratio:.4f}"),
+    (
+        "total contact ratio",
+        "",
+        lambda one: f"{one.mesh.transverse_contact_ratio + one.mesh.overlap_ratio:.4f}",
+    ),
+    ("normal backlash j_bn", "um", lambda one: f"{UM * one.mesh.normal_backlash:z.1f}"),
+    ("circumferential backlash j_wt", "um", lambda one: f"{UM * one.mesh.backlash:z.1f}"),
+    ("least j_bn, ISO/TR 10064-2", "um", lambda one: f"{UM * one.recommended_backlash:.1f}"),
+    ("clearance at tip 1", "mm", lambda one: _mm(one.mesh.tip_clearance1)),
+    ("clearance at tip 2", "mm", lambda one: _mm(one.mesh.tip_clearance2)),
+    ("specific sliding at root 1", "", lambda one: _ratio(one.specific_sliding[0])),
+    ("specific sliding at root 2", "", lambda one: _ratio(one.specific_sliding[1])),
+)
+
+
+def _ratio(value: float | None) -> str:
+    return MISSING if value is None else f"{value:.3f}"
+
+
+def data_sheet(case: Case) -> RenderableType:
+    """The gears and the oil of a case, and what was found, for a terminal."""
+    parts: list[RenderableType] = []
+    for name, sheet in data_sheets(case).items():
+        parts += map(as_on_page, _tables(sheet, f", {name}" if name else ""))
+    if (oil := _oil(case)) is not None:
+        parts.append(Text(oil))
+    if case.found:
+        told = tuple(map(str, case.found))
+        parts.append(as_on_page(page.Listing(told, "Found, converted or adjusted")))
+    return titled(case.title or case.kind, *parts)
+
+
+def _tables(sheet: DataSheet, of: str) -> Iterator[page.Table]:
+    names = [one.gear.name for one in sheet.gears]
+    yield _table(f"Gears{of}", names, _GEAR_ROWS, sheet.gears)
+    names = [one.mesh.name for one in sheet.meshes]
+    yield _table(f"Meshes{of}", names, _MESH_ROWS, sheet.meshes)
+
+
+def _table(
+    title: str,
+    names: Sequence[str],
+    rows: Sequence[tuple[str, str, Callable[[Any], str]]],
+    columns: Sequence[Any],
+) -> page.Table:
+    """The rows in which any column has a value."""
+    filled = ((label, unit, [text(one) for one in columns]) for label, unit, text in rows)
+    return page.Table(
+        ("", *names, "unit"),
+        tuple(
+            (page.Cell(label), *map(page.aligned, texts), page.Cell(unit_text(unit)))
+            for label, unit, texts in filled
+            if any(text != MISSING for text in texts)
+        ),
+        title,
+    )
+
+
+def _oil(case: Case) -> str | None:
+    """One line on the oil at the inlet."""
+    state = oil_at_inlet(case)
+    if state is None or case.lubricant is None:
+        return None
+    oil = case.lubricant.oil
+    law = "by Gold's constants" if isinstance(oil.pressure_viscosity, GoldLaw) else "by Roelands"
+    return (
+        f"Oil {oil.name} at {state.temperature - 273.15:.4g} °C: "
+        f"nu {UM * state.kinematic_viscosity:.4g} mm²/s, rho {state.density:.4g} kg/m³, "
+        f"alpha {1e9 * state.pressure_viscosity:.4g} 1/GPa {law}."
+    )
+
+
+# Shafts of a train and the ratio of every state, for a terminal.
+
+
+def state_tables(case: TrainCase) -> RenderableType:
+    """Shafts of a train with their members, and the ratio of every state."""
+    states = train_states(case)
+    shafts = plain_table("Shafts")
+    shafts.add_column("", no_wrap=True)
+    shafts.add_column("turns together")
+    for name, members in case.shape.shafts.items():
+        shafts.add_row("housing, stands still" if name == HOUSING else name, ", ".join(members))
+    table = plain_table(
+        f"Ratio: speed of {case.operation.input} over that of {case.operation.output}"
+    )
+    for head in ("state", "ratio", "step", "held", "joined", ""):
+        numeric = head in ("ratio", "step")
+        table.add_column(head, justify="right" if numeric else "left", no_wrap=numeric)
+    before: StateKinematics | None = None
+    for state in states:
+        table.add_row(
+            state.name or "always",
+            MISSING if state.ratio is None else shown(state.ratio, 5),
+            _step(before, state),
+            ", ".join(state.held),
+            ", ".join(" + ".join(group) for group in state.joined),
+            state.remark,
+        )
+        before = state
+    return Group(shafts, table)
+
+
+def _step(before: StateKinematics | None, state: StateKinematics) -> str:
+    """Ratio of the state before over that of this one, where both turn the output one way."""
+    if before is None or not before.ratio or not state.ratio or before.ratio * state.ratio < 0:
+        return ""
+    return format_number(before.ratio / state.ratio, 4)
+
+
+# Tables of what is built in.
+
+
+def case_table() -> RenderableType:
+    """Built-in cases and the words that name their variants."""
+    table = plain_table("Built-in cases")
+    table.add_column("name", no_wrap=True)
+    table.add_column("what it is")
+    table.add_column("variants: at most one word of each line, joined by -")
+    for name in library.case_files():
+        groups = library.case_variants().get(name, [])
+        words = "\n".join(f"{' '.join(group['words'])}  ({group['about']})" for group in groups)
+        table.add_row(name, library.builtin_case(name)["title"], words)
+    example = Text("For example: epicyclic run talbot-2012-n6-polished-40C")
+    return Group(table, example)
+
+
+def oil_table() -> RenderableType:
+    """The oil library."""
+    table = plain_table("Built-in oils")
+    table.add_column("name", no_wrap=True)
+    table.add_column("kind")
+    viscosity = unit_text(SQUARE_MM_PER_SECOND.display)
+    for column in (
+        f"ν 40 °C\n{viscosity}",
+        f"ν 100 °C\n{viscosity}",
+        f"ρ 40 °C\n{unit_text(KILOGRAM_PER_CUBIC_METRE.display)}",
+        f"α 40 °C\n{unit_text(PER_GIGAPASCAL.display)}",
+    ):
+        table.add_column(column, justify="right")
+    for name in sorted(library.oil_names(), key=_by_grade):
+        oil = Oil.model_validate(library.oil_table(name))
+        warm, hot = _state(oil, "40 degC"), _state(oil, "100 degC")
+        table.add_row(
+            name,
+            oil.kind,
+            shown(SQUARE_MM_PER_SECOND.to_display(warm.kinematic_viscosity)),
+            shown(SQUARE_MM_PER_SECOND.to_display(hot.kinematic_viscosity)),
+            shown(KILOGRAM_PER_CUBIC_METRE.to_display(warm.density)),
+            shown(PER_GIGAPASCAL.to_display(warm.pressure_viscosity), 3),
+        )
+    return Group(table, Text("Sources of the values: epicyclic oils NAME"))
+
+
+def _state(oil: Oil, temperature: str) -> OilState:
+    return oil_state(oil, CELSIUS.parse(temperature))
+
+
+def _by_grade(name: str) -> list[tuple[bool, int, str]]:
+    """Sort key that puts ISO VG 68 before ISO VG 100."""
+    return [(part.isdigit(), int(part) if part.isdigit() else 0, part) for part in name.split("-")]
+
+
+def oil_sheet(name: str) -> RenderableType:
+    """Every value of one oil with its source."""
+    oil = Oil.model_validate(library.oil_table(name))
+    table = plain_table(f"{name}: {oil.title}")
+    table.add_column("property")
+    table.add_column("value", justify="right", no_wrap=True)
+    table.add_column("source")
+    for point in oil.kinematic_viscosity:
+        table.add_row(
+            f"kinematic viscosity at {_text(CELSIUS, point.temperature, 4)}",
+            _text(SQUARE_MM_PER_SECOND, point.value),
+            point.source,
+        )
+    for density in oil.density:
+        table.add_row(
+            f"density at {_text(CELSIUS, density.temperature, 4)}",
+            _text(KILOGRAM_PER_CUBIC_METRE, density.value),
+            density.source,
+        )
+    law = oil.pressure_viscosity
+    calibrated = " (calibrated)" if law.calibrated else ""
+    table.add_row(
+        f"pressure-viscosity coefficient at 40 °C, {law.law} law{calibrated}",
+        _text(PER_GIGAPASCAL, _state(oil, "40 degC").pressure_viscosity, 4),
+        law.source,
+    )
+    factor = oil.lubricant_factor
+    table.add_row("lubricant factor X_L", f"{factor.value:g}", factor.source)
+    return Group(Text(oil.description), table)
+
+
+def _text(kind: Quantity, value: float, digits: int = 6) -> str:
+    """An SI `value` with its unit, as tables show them."""
+    return f"{shown(kind.to_display(value), digits)} {unit_text(kind.display)}"

@@ -1,0 +1,244 @@
+"""Reports as one HTML file that needs nothing else, and as PDF."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import logging
+from collections.abc import Callable
+from datetime import datetime
+from functools import cache
+from importlib import import_module, resources
+from types import ModuleType
+from typing import Any
+
+import jinja2
+import xarray as xr
+from markupsafe import Markup
+
+from epicyclic.case.operating import operating_line
+from epicyclic.errors import InputError, Problem
+from epicyclic.show.drawings import draw
+from epicyclic.show.files import is_sweep
+from epicyclic.show.inputs import input_tables
+from epicyclic.show.map_page import map_key_figures, map_sections, sweep_key_figures, sweep_sections
+from epicyclic.show.page import Drawings, Item, Section, gallery
+from epicyclic.show.plots.catalogue import Stored, available
+from epicyclic.show.plots.loss_map import map_line
+from epicyclic.show.plots.sweep import sweep_line, thinned
+from epicyclic.show.record import ResultRecord
+from epicyclic.show.result_page import result_sections
+from epicyclic.show.result_tables import key_figures
+from epicyclic.show.uncertainty_tables import band_figures, uncertainty_items
+from epicyclic.study.maps.tables import map_inputs
+
+# Reports as one HTML file that needs nothing else: style, figures and script lie within it.
+
+
+KINDS = {
+    "planetary": "Power losses of a planetary gear set",
+    "gear_pair": "Power losses of a gear pair",
+    "train": "Power losses of a train of gear sets",
+}
+
+
+def report_html(
+    stored: Stored,
+    progress: Callable[[int, int], None] | None = None,
+    *,
+    size: tuple[float, float] | None = None,
+) -> str:
+    """The report of a result, of a loss map or a sweep, or of how well one is known.
+
+    Parameters
+    ----------
+    stored : ResultRecord or xarray.Dataset
+        As `epicyclic.record`, `loss_map`, `sweep` or `uncertainty` returns it, or
+        `epicyclic.open_result`.
+    progress : callable, optional
+        Called with the numbers of plots drawn and to draw.
+    size : tuple of float, optional
+        Width and height of every figure, on which the size of its letters depends: a figure takes
+        the width that the page has. Default: what suits it. [mm]
+
+    Returns
+    -------
+    str
+        HTML. The same for the same content, whether computed or read from a file. Of a sweep of
+        very many points pictures and explorer have some, and say so.
+    """
+    tell = progress or (lambda done, total: None)
+    if not isinstance(stored, ResultRecord) and is_sweep(stored):
+        shown = thinned(stored)  # a page holds so many, a sweep any number
+        return page_html(**_sweep_content(stored, shown, _drawings(shown, tell, size)))
+    drawings = _drawings(stored, tell, size)
+    if isinstance(stored, ResultRecord):
+        content = _result_content(stored, drawings)
+    elif "torque_loss" in stored:
+        content = _map_content(stored, drawings)
+    else:
+        content = _uncertainty_content(stored, drawings)
+    return page_html(**content)
+
+
+def page_html(**content: Any) -> str:
+    """A page of its title, kind, operation, source, key figures and sections."""
+    return _template().render(
+        **content,
+        style=_asset("report.css"),
+        script=_asset("report.js"),
+        explorer=_asset("explorer.js"),
+        library=_library(),
+    )
+
+
+def _result_content(record: ResultRecord, drawings: Drawings) -> dict[str, Any]:
+    result = record.result
+    return {
+        "title": record.title,
+        "kind": KINDS[result.kind],
+        "operation": operating_line(result.inputs["operation"]),
+        "source": f"Computed {_time(record.created)} with epicyclic {result.versions['epicyclic']}",
+        "key_figures": key_figures(result),
+        "sections": result_sections(record, drawings),
+    }
+
+
+def _map_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
+    kind = map_inputs(data)["kind"]
+    return {
+        "title": str(data.attrs["title"]) or kind.replace("_", " "),
+        "kind": f"Loss map: {KINDS[kind]}",
+        "operation": map_line(data),
+        "source": f"Computed with {data.attrs['source']}",
+        "key_figures": map_key_figures(data),
+        "sections": map_sections(data, drawings),
+    }
+
+
+def _sweep_content(data: xr.Dataset, shown: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
+    kind = map_inputs(data)["kind"]
+    return {
+        "title": str(data.attrs["title"]) or kind.replace("_", " "),
+        "kind": f"Sweep: {KINDS[kind]}",
+        "operation": sweep_line(data),
+        "source": f"Computed with {data.attrs['source']}",
+        "key_figures": sweep_key_figures(data),
+        "sections": sweep_sections(data, shown, drawings),
+    }
+
+
+def _uncertainty_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
+    kind = map_inputs(data)["kind"]
+    what = "Energy of a duty cycle" if "point_error" in data else "Result"
+    return {
+        "title": str(data.attrs["title"]) or kind.replace("_", " "),
+        "kind": f"How well it is known: {KINDS[kind]}",
+        "operation": str(data.attrs.get("cycle", "")),
+        "source": f"Computed with {data.attrs['source']}",
+        "key_figures": band_figures(data),
+        "sections": [
+            Section(
+                "uncertainty",
+                what,
+                (
+                    *gallery(drawings, "drivers", wide=True),
+                    *gallery(drawings, "band"),
+                    *uncertainty_items(data),
+                ),
+            ),
+            Section("inputs", "Inputs", tuple(input_tables(map_inputs(data), map_inputs(data)))),
+        ],
+    }
+
+
+def _time(created: str) -> str:
+    return f"{datetime.fromisoformat(created):%Y-%m-%d %H:%M} UTC"
+
+
+def _drawings(
+    stored: Stored, progress: Callable[[int, int], None], size: tuple[float, float] | None
+) -> Drawings:
+    drawings = {}
+    names = list(available(stored))
+    for done, name in enumerate(names):
+        progress(done, len(names))
+        drawings[name] = draw(stored, name, size)
+    return drawings
+
+
+def items_html(*items: Item) -> str:
+    """Tables and lists as a page has them, without the page."""
+    render = _templates().get_template("items.html").module.render  # type: ignore[attr-defined]
+    return "".join(render(item) for item in items)
+
+
+def _template() -> jinja2.Template:
+    return _templates().get_template("report.html")
+
+
+@cache
+def _templates() -> jinja2.Environment:
+    return jinja2.Environment(
+        loader=jinja2.PackageLoader("epicyclic.show"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+def _asset(name: str) -> Markup:
+    """A file of the package that goes into the page as it is."""
+    files = resources.files("epicyclic.show") / "templates"
+    return Markup((files / name).read_text(encoding="utf-8"))
+
+
+@cache
+def _library() -> Markup:
+    """plotly.js, packed: 1.9 MB in place of 4.8."""
+    from plotly.offline import get_plotlyjs
+
+    packed = gzip.compress(get_plotlyjs().encode(), mtime=0)
+    return Markup(base64.b64encode(packed).decode())
+
+
+# Reports as PDF: the page of `report_html`, set by WeasyPrint.
+
+
+def check_pdf() -> None:
+    """Raise `InputError` if WeasyPrint, which is optional, cannot be used."""
+    _weasyprint()
+
+
+def _weasyprint() -> ModuleType:
+    try:
+        return import_module("weasyprint")
+    except (ImportError, OSError) as error:  # it needs Pango, a library of the system
+        problem = Problem(
+            "-o",
+            ".pdf",
+            f"needs WeasyPrint, which cannot be used: {error}.",
+            'Install it (pip install "epicyclic[pdf]"), or print the .html page from a browser.',
+        )
+        raise InputError([problem], "the command") from None
+
+
+def report_pdf(
+    page: str,  # As `report_html` returns it.
+) -> bytes:
+    """A page as PDF, of its still figures.
+
+    Raises
+    ------
+    InputError
+        If WeasyPrint cannot be used.
+    """
+    weasyprint = _weasyprint()
+
+    # it reports every property of style sheets for screens
+    logging.getLogger("weasyprint").setLevel(logging.CRITICAL)
+    fetcher = weasyprint.urls.URLFetcher(allowed_protocols=["data"])  # nothing from elsewhere
+    document = weasyprint.HTML(string=page, url_fetcher=fetcher)
+    pdf: bytes = document.write_pdf()
+    return pdf

@@ -1,0 +1,251 @@
+"""Where the power of a train flows: through which set from which shaft, and how much circulates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from epicyclic.machine.element import HOUSING
+from epicyclic.result.result import Result
+
+NO_POWER = 1e-9
+"""Power and torque, relative to the largest one, that is none. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """Shafts that turn together: one, or several that closed clutches join."""
+
+    key: str  # The shafts, ``"input+third"``.
+    shafts: tuple[str, ...]
+    speed: float  # [rad/s]
+    torque: float  # From outside. [N m]
+    passed: float  # That it passes on: what parts and the outside bring in. [N m]
+    clutches: Mapping[str, float]  # Torque through each of its clutches. [N m]
+    # ``"input"``, ``"output"``, ``"held"``, ``"at rest"`` without a brake of its own, ``"driven"``,
+    # ``"loaded"``, ``"idle"``, or empty for a shaft that passes power on.
+    role: str
+
+    @property
+    def power(self) -> float:
+        """That enters from outside. [W]"""
+        return self.torque * self.speed
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """What joins a set or part to a line."""
+
+    stage: str
+    line: str
+    members: tuple[str, ...]  # Members of the set, ``("sun",)``; empty for other parts.
+    torque: float  # That the stage takes from the line. [N m]
+    power: float  # That enters the stage here. [W]
+    # How much of it returns to where it came from; of the sign of `power`. [W]
+    circulating: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """A set, bearing, seal or drag."""
+
+    key: str
+    loss: float  # [W]
+    # Rolling power of its meshes, ``"sun_mesh"``. [W]
+    rolling: Mapping[str, float] = field(default_factory=dict[str, float])
+
+
+@dataclass(frozen=True, slots=True)
+class TrainFlow:
+    """The power flow of a train."""
+
+    lines: Mapping[str, Line]
+    stages: Mapping[str, Stage]
+    links: tuple[Link, ...]  # Also those of lines at rest, which carry torque but no power.
+
+    def of_stage(self, key: str) -> tuple[Link, ...]:
+        """The links of a stage."""
+        return tuple(link for link in self.links if link.stage == key)
+
+    def of_line(self, key: str) -> tuple[Link, ...]:
+        """The links of a line."""
+        return tuple(link for link in self.links if link.line == key)
+
+    @property
+    def circulating(self) -> float:
+        """Largest power that circulates through one link. [W]"""
+        return max((abs(link.circulating) for link in self.links), default=0.0)
+
+
+def power_flow(result: Result) -> TrainFlow:
+    """The power flow of a result; a single set or pair is one stage.
+
+    A link circulates what flows in closed loops from stage to stage; the rest leads from where
+    power enters to where it leaves or is lost. Where several loops share a link, the split between
+    them is one of several possible ones.
+    """
+    members, train = result.flow.members, result.train
+    speeds = {name: member.speed for name, member in members.items()}
+    torques = {name: member.torque for name, member in members.items()}
+    if train is None:
+        stage = "gear set" if result.kind == "planetary" else "gear pair"
+
+        def power_of(key: str) -> float:
+            return members[key].power
+
+        return _flow(
+            speeds,
+            torques,
+            {stage: torques},
+            {stage: result.total},
+            ends=(max(members, key=power_of), min(members, key=power_of)),
+            shafts={name: (f"{stage}.{name}",) for name in torques},
+        )
+    return _flow(
+        speeds,
+        torques,
+        train.stages,
+        result.stage_losses,
+        clutches=train.clutches,
+        rolling=train.rolling,
+        ends=(train.input, train.output),
+        shafts=result.inputs.get("shafts", {}),
+    )
+
+
+def _flow(
+    speeds: Mapping[str, float],  # Speeds of every shaft, and torques from outside. [rad/s], [N m]
+    torques: Mapping[str, float],  # Speeds of every shaft, and torques from outside. [rad/s], [N m]
+    # Torque that each stage takes from each shaft. [N m]
+    stages: Mapping[str, Mapping[str, float]],
+    losses: Mapping[str, float],  # Losses of each stage. [W]
+    *,
+    clutches: Mapping[str, float] | None = None,  # Torque through each closed clutch. [N m]
+    rolling: Mapping[str, float] | None = None,  # Rolling power of each mesh. [W]
+    ends: Sequence[str] = (),  # Input and output shaft.
+    # Members of each shaft that has a name of its own.
+    shafts: Mapping[str, Sequence[str]] | None = None,
+) -> TrainFlow:
+    """The power flow of the numbers that a result holds."""
+    joined = clutches or {}
+    groups = _groups(speeds, joined)
+    largest = max((abs(torque) for own in stages.values() for torque in own.values()), default=0.0)
+    lines = {
+        "+".join(group): _line(group, speeds, torques, stages, joined, ends, NO_POWER * largest)
+        for group in groups
+    }
+    line_of = {shaft: key for key, line in lines.items() for shaft in line.shafts}
+    links = []
+    for stage, taken in stages.items():
+        found: dict[str, list[str]] = {}
+        for shaft in taken:
+            found.setdefault(line_of.get(shaft, HOUSING), []).append(shaft)
+        for key, own in found.items():
+            torque = sum(taken[shaft] for shaft in own)
+            speed = lines[key].speed if key in lines else 0.0
+            names = tuple(name for shaft in own for name in _members(stage, shaft, shafts or {}))
+            links.append(Link(stage, key, names, torque, torque * speed))
+    of_meshes: dict[str, dict[str, float]] = {}
+    for mesh, power in (rolling or {}).items():
+        stage, _, name = mesh.partition(".")
+        of_meshes.setdefault(stage, {})[name] = power
+    return TrainFlow(
+        lines,
+        {key: Stage(key, losses.get(key, 0.0), of_meshes.get(key, {})) for key in stages},
+        _with_loops(links),
+    )
+
+
+def _groups(shafts: Iterable[str], clutches: Iterable[str]) -> list[tuple[str, ...]]:
+    """Shafts that clutches join, together; the others alone; in the order of `shafts`."""
+    owner = {shaft: {shaft} for shaft in shafts}
+    for clutch in clutches:
+        one, _, two = clutch.partition("+")
+        both = owner[one] | owner[two]
+        owner |= dict.fromkeys(both, both)
+    groups = (tuple(shaft for shaft in owner if shaft in group) for group in owner.values())
+    return list(dict.fromkeys(groups))
+
+
+def _line(
+    group: tuple[str, ...],
+    speeds: Mapping[str, float],
+    torques: Mapping[str, float],
+    stages: Mapping[str, Mapping[str, float]],
+    clutches: Mapping[str, float],
+    ends: Sequence[str],
+    none: float,
+) -> Line:
+    speed = speeds[group[0]]
+    outside = sum(torques[shaft] for shaft in group)
+    given = [outside, *(-sum(own.get(shaft, 0.0) for shaft in group) for own in stages.values())]
+    passed = sum(torque for torque in given if torque > 0)
+    if ends and ends[0] in group:
+        role = "input"
+    elif ends and ends[1] in group:
+        role = "output"
+    elif speed == 0:
+        role = "held" if abs(outside) > none else "at rest"
+    elif abs(outside) > none:
+        role = "driven" if outside * speed > 0 else "loaded"
+    else:
+        role = "" if passed > none else "idle"
+    own_clutches = {key: clutches[key] for key in clutches if set(key.split("+")) <= {*group}}
+    return Line("+".join(group), group, speed, outside, passed, own_clutches, role)
+
+
+def _members(stage: str, shaft: str, shafts: Mapping[str, Sequence[str]]) -> list[str]:
+    """The members of a set on a shaft."""
+    prefix = f"{stage}." if stage else ""
+    return [
+        name.removeprefix(prefix)
+        for name in shafts.get(shaft, [shaft])
+        if name.startswith(prefix) and "." not in name.removeprefix(prefix)
+    ]
+
+
+# --- loops ----------------------------------------------------------------------------------------
+
+
+def _with_loops(links: Sequence[Link]) -> tuple[Link, ...]:
+    """Links with the power that circulates: loops are taken out one by one, the shortest first."""
+    left = [abs(link.power) for link in links]
+    none = NO_POWER * max(left, default=0.0)
+    while loop := _shortest_loop(links, left, none):
+        least = min(left[number] for number in loop)
+        for number in loop:
+            left[number] -= least
+    found = []
+    for link, rest in zip(links, left, strict=True):
+        share = abs(link.power) - rest
+        circulating = share if share > none else 0.0
+        found.append(replace(link, circulating=circulating if link.power > 0 else -circulating))
+    return tuple(found)
+
+
+def _shortest_loop(links: Sequence[Link], left: Sequence[float], none: float) -> list[int]:
+    """Numbers of the links of a loop; none if power flows in no loop any more."""
+    onward: dict[tuple[str, str], list[tuple[tuple[str, str], int]]] = {}
+    for number, link in enumerate(links):
+        if left[number] > none:
+            line, stage = ("line", link.line), ("stage", link.stage)
+            start, end = (line, stage) if link.power > 0 else (stage, line)
+            onward.setdefault(start, []).append((end, number))
+    loops = [loop for start in onward if (loop := _way_back(onward, start))]
+    return min(loops, key=len, default=[])
+
+
+def _way_back(
+    onward: Mapping[tuple[str, str], list[tuple[tuple[str, str], int]]], start: tuple[str, str]
+) -> list[int]:
+    """The shortest way from `start` back to it, as numbers of links."""
+    ways: dict[tuple[str, str], list[int]] = {}
+    front: list[tuple[tuple[str, str], list[int]]] = [(start, [])]
+    for place, way in front:
+        for end, number in onward.get(place, ()):
+            if end == start:
+                return [*way, number]
+            if end not in ways:
+                ways[end] = [*way, number]
+                front.append((end, ways[end]))
+    return []

@@ -1,0 +1,305 @@
+"""Pages on a terminal: tables that keep their numbers whole, however narrow it is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from rich import box
+from rich.cells import cell_len
+from rich.columns import Columns
+from rich.console import Console, ConsoleOptions, Group, JustifyMethod, RenderableType, RenderResult
+from rich.padding import Padding
+from rich.table import Column, Table
+from rich.text import Text
+
+from epicyclic.case.operating import operating_line
+from epicyclic.case.wording import sentence
+from epicyclic.losses.ranges import share_text
+from epicyclic.result.result import Result
+from epicyclic.show import page
+from epicyclic.show.result_tables import (
+    bearing_tables,
+    clutches_table,
+    heat_items,
+    key_figures,
+    locking_text,
+    losses_table,
+    members_table,
+    mesh_tables,
+    oil_table,
+    part_tables,
+    planets_table,
+    rolling_table,
+    shafts_table,
+    standing_items,
+    sums_table,
+    terms_table,
+    users_text,
+)
+from epicyclic.study.friction import FrictionComparison, recommended
+
+# Tables of a terminal that keep their numbers whole, however narrow it is.
+
+
+GAP = 3
+"""Between two columns, the spaces on both sides of a line that is not drawn."""
+LONGEST_WORD = 24
+"""Longest word that stays whole; what is longer is an address, or a key with its table."""
+FIRST_SHARE = 0.5
+"""Largest share of the width for the names in the first column."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Need:
+    """Width that a column needs at least, for its longest word, and at most."""
+
+    least: int
+    most: int
+
+
+class FittedTable(Table):
+    """A table that a narrow terminal shows in parts, one below the other.
+
+    Text wraps between words. Where that is not enough, the columns are shared out to several
+    tables that all begin with the first column.
+    """
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        needs = [_need_of(column) for column in self.columns]
+        room = options.max_width + 1
+        if sum(need.most + GAP for need in needs) <= room:
+            yield from super().__rich_console__(console, options)
+            return
+        first = min(needs[0].least, int(FIRST_SHARE * room))
+        rest = room - first - 2 * GAP
+        needs = [_Need(min(need.least, rest), need.most) for need in needs]
+        needs[0] = _Need(first, needs[0].most)
+        for number, block in enumerate(_blocks(needs, room)):
+            widths = _widths([needs[place] for place in block], room)
+            part = self._part(block, widths, bool(number))
+            yield from Table.__rich_console__(part, console, options)
+
+    def _part(self, block: Sequence[int], widths: Sequence[int], continued: bool) -> Table:
+        """Some of the columns, in the style of the whole."""
+        part = Table(
+            title=None if continued else self.title,
+            title_justify=self.title_justify,
+            title_style=self.title_style,
+            header_style=self.header_style,
+            box=self.box,
+            pad_edge=self.pad_edge,
+            show_header=self.show_header,
+        )
+        chosen = [self.columns[place] for place in block]
+        for column, width in zip(chosen, widths, strict=True):
+            part.add_column(column.header, justify=column.justify, width=width, overflow="fold")
+        cells = zip(*(column.cells for column in chosen), strict=True)
+        for row, content in zip(self.rows, cells, strict=True):
+            part.add_row(*content, style=row.style, end_section=row.end_section)
+        return part
+
+
+def _need_of(column: Column) -> _Need:
+    """Room for the longest word and for the longest line of a column."""
+    texts = [_plain(one) for one in (column.header, *column.cells)]
+    words = [cell_len(word) for text in texts for word in text.split()]
+    lines = [cell_len(line) for text in texts for line in text.splitlines()]
+    most = max(lines, default=1)
+    return _Need(min(most if column.no_wrap else max(words, default=1), LONGEST_WORD, most), most)
+
+
+def _plain(cell: object) -> str:
+    return cell.plain if isinstance(cell, Text) else str(cell)
+
+
+def _blocks(needs: Sequence[_Need], room: int) -> Iterator[list[int]]:
+    """Places of the columns of each part, the first one in all."""
+    block, taken = [0], needs[0].least + GAP
+    for place, need in enumerate(needs[1:], 1):
+        if len(block) > 1 and taken + need.least + GAP > room:
+            yield block
+            block, taken = [0], needs[0].least + GAP
+        block.append(place)
+        taken += need.least + GAP
+    yield block
+
+
+def _widths(needs: Sequence[_Need], room: int) -> list[int]:
+    """Widths of the columns of a part; what is left goes to those that want more."""
+    widths = [need.least for need in needs]
+    left = room - sum(widths) - GAP * len(needs)
+    while left > 0 and any(width < need.most for width, need in zip(widths, needs, strict=True)):
+        narrow = [n for n, need in enumerate(needs) if widths[n] < need.most]
+        smallest = min(narrow, key=lambda n: widths[n])
+        widths[smallest] += 1
+        left -= 1
+    return widths
+
+
+# Tables of results, libraries and comparisons for a terminal.
+
+
+PIPE_WIDTH = 100
+"""Width of tables that do not go to a terminal. [characters]"""
+
+
+def terminal() -> Console:
+    """The console for results, on standard output."""
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=PIPE_WIDTH)
+
+
+def result_tables(
+    result: Result,
+    remarks: Sequence[str] = (),  # On its temperatures.
+    # How well the total loss and the efficiency are known.
+    known: Sequence[str | page.Listing] = (),
+) -> RenderableType:
+    """Everything an engineer reads first: losses, figures, warnings, sources."""
+    parts: list[RenderableType] = [_headline(result)]
+    parts += [it if isinstance(it, str) else as_on_page(it) for it in known]
+    parts += map(as_on_page, standing_items(result))
+    parts += map(as_on_page, _tables(result))
+    if result.heat is not None:
+        parts += map(as_on_page, heat_items(result.heat))
+    parts += remarks
+    parts += map(as_on_page, (*oil_table(result), *planets_table(result)))
+    parts += [_methods(result), _list("Warnings", result.warnings)]
+    return titled(result.title or result.kind, *parts, _list("Sources", result.sources))
+
+
+def _headline(result: Result) -> Group:
+    """Operating point and key figures."""
+    found = [f"{one.label} {one.cell.text} {one.unit}".rstrip() for one in key_figures(result)]
+    lines: list[RenderableType] = [
+        Text(operating_line(result.inputs["operation"])),
+        Columns(found, padding=(0, 3)),
+    ]
+    if result.train and (locking := locking_text(result.train)):
+        lines.append(Text(locking, style="bold"))
+    return Group(*lines)
+
+
+def _tables(result: Result) -> Iterator[page.Table]:
+    """Losses and figures of a set or train."""
+    if (train := result.train) is not None:
+        yield from (sums_table(result, train), shafts_table(result), rolling_table(result, train))
+        yield from clutches_table(train)
+        yield from terms_table(result, train)
+    else:
+        yield from (losses_table(result), members_table(result))
+    yield from mesh_tables(result)
+    yield from bearing_tables(result)
+    yield from part_tables(result)
+
+
+def titled(title: str, *parts: RenderableType) -> RenderableType:
+    """Parts with space between them, under a title."""
+    whole = (Text(title, style="bold"), *(Text(it) if isinstance(it, str) else it for it in parts))
+    return Group(*(Padding(part, (0, 0, 1, 0)) for part in whole))
+
+
+def as_on_page(item: page.Table | page.Listing) -> RenderableType:
+    """A table or list of a report, for a terminal."""
+    if isinstance(item, page.Listing):
+        return _list(item.title, item.items)
+    table = plain_table(item.title)
+    for column, head in enumerate(item.head):
+        table.add_column(head, justify="right" if item.is_numeric(column) else "left")
+    for place, row in enumerate(item.rows):
+        strong = place in item.strong
+        table.add_row(
+            *(cell.text for cell in row),
+            style="bold" if strong else "",
+            end_section=strong or item.strong == {place + 1},
+        )
+    return Group(table, Text(item.note)) if item.note else table
+
+
+def _methods(result: Result) -> Group:
+    """Which method computed which terms, each method once."""
+    users: dict[str, list[str]] = {}
+    for name, method in result.methods.items():
+        users.setdefault(method, []).append(name)
+    return _list("Methods", [f"{users_text(names)}: {how}" for how, names in users.items()])
+
+
+def _list(title: str, items: Sequence[str]) -> Group:
+    if not items:
+        return Group(Text(f"{title}: none"))
+    lines = [Padding(Text(f"• {item}"), (0, 0, 0, 2)) for item in items]
+    return Group(Text(title, style="bold"), *lines)
+
+
+def plain_table(title: str) -> FittedTable:
+    """An empty table in the style of the package."""
+    return FittedTable(
+        title=title,
+        title_justify="left",
+        title_style="bold",
+        header_style="",
+        box=box.SIMPLE_HEAD,
+        pad_edge=False,
+    )
+
+
+def number_table(
+    title: str, *columns: str, no_wrap: tuple[bool, bool] = (False, False)
+) -> FittedTable:
+    """An empty table of names, in its first column, and numbers; `no_wrap` of which of both."""
+    table = plain_table(title)
+    for place, column in enumerate(columns):
+        is_number = place > 0
+        justify: JustifyMethod = "right" if is_number else "left"
+        table.add_column(column, justify=justify, no_wrap=no_wrap[is_number])
+    return table
+
+
+def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
+    """Friction models side by side, with the spread, what they leave, and which one suits."""
+    meshes = list(rows[0].mean_friction)
+    if all(math.isnan(row.mean_friction[mesh]) for row in rows for mesh in meshes):
+        return Text("There is no load or no motion: nothing slides, and no friction to compare.")
+    columns = [f"μ {mesh.replace('_', ' ').replace('.', ': ')}" for mesh in meshes]
+    table = number_table("Friction models", "", *columns, "sliding W", "quick W", "to chosen", "")
+    table.columns[-1].justify = "left"
+    chosen = next((row.sliding for row in rows if row.chosen), 0.0)
+    for row in rows:
+        outside = f"out of range {share_text(row.outside)}"
+        known = (("chosen", row.chosen), (outside, row.flagged), ("other oil", row.other_oil))
+        table.add_row(
+            row.name,
+            *(f"{row.mean_friction[mesh]:z.4f}" for mesh in meshes),
+            f"{row.sliding:z.1f}",
+            f"{row.quick:z.1f}",
+            f"{row.sliding / chosen:.2f}" if chosen else "",
+            ", ".join(mark for mark, holds in known if holds),
+            style="bold" if row.chosen else "",
+        )
+    low, high = min(row.sliding for row in rows), max(row.sliding for row in rows)
+    quick = Text(
+        "sliding: local, along the contact lines; quick: mean friction times loss factor; out of "
+        "range: share of the sliding loss"
+    )
+    spread = Text(
+        f"Spread: {low:.1f} to {high:.1f} W" + (f", a factor of {high / low:.2f}." if low else ".")
+    )
+    best, why = recommended(rows)
+    advice = Text.assemble(
+        ("Recommended: ", "bold"), f"{best.name}: {why}. {sentence(best.standing)}"
+    )
+    lists = [
+        _list("Out of range, and for another oil", [it for row in rows for it in _left(row)]),
+        _list("How well they are known", [f"{row.name}: {row.standing}" for row in rows]),
+        _list("Sources", [f"{row.name}: {row.title}, {row.source}" for row in rows]),
+    ]
+    spaced = (part for item in lists for part in (Text(), item))
+    return Group(table, quick, spread, Text(), advice, *spaced)
+
+
+def _left(row: FrictionComparison) -> list[str]:
+    """Why a model does not suit, and by how much."""
+    other = [f"{row.name}: made for {row.other_oil}"] if row.other_oil else []
+    return [*other, *(f"{row.name}, {reason}" for reason in row.reasons)]

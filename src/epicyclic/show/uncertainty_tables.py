@@ -1,0 +1,360 @@
+"""How well a result or a map is known, in tables: for terminals and pages."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import xarray as xr
+from rich.console import RenderableType
+
+from epicyclic.case.wording import one_line
+from epicyclic.result.result import in_words
+from epicyclic.show.advice import LIMITS, MOST, advice_texts, driver_name
+from epicyclic.show.page import (
+    MISSING,
+    Cell,
+    KeyFigure,
+    Listing,
+    Table,
+    aligned,
+    number,
+    shown,
+    tenths,
+)
+from epicyclic.show.plots.loss_map import at_temperatures
+from epicyclic.show.plots.losses import mean_shares
+from epicyclic.show.terminal import as_on_page, titled
+from epicyclic.study.bands.advice import known_of
+from epicyclic.units import format_number, known_text, percent, unit_text
+
+# Tables over the speeds and torques of a map.
+
+
+MOST_COLUMNS = 9
+"""Most columns of a table of values; larger maps are shown at evenly spaced points."""
+
+
+def grid_table(
+    point: xr.Dataset,  # A map over speed and torque, as `map_at` makes it.
+    title: str,
+    cell: Callable[[int, int], Cell],  # Content for the number of a speed and of a torque.
+) -> Table:
+    """A table of what `cell` says of speeds and torques, by their numbers."""
+    speeds, torques = (_some(point.sizes[axis]) for axis in ("speed", "torque"))
+    rows = tuple(
+        (Cell(format_number(float(point["speed"][i]))), *(cell(i, j) for j in torques))
+        for i in speeds
+    )
+    unit = unit_text(str(point["torque"].attrs["units"]))
+    heads = (f"{format_number(float(point['torque'][j]))} {unit}" for j in torques)
+    if "temperature" in point.coords:
+        title = f"{title}, at {format_number(float(point['temperature']))} °C"
+    return Table((f"speed, {unit_text(str(point['speed'].attrs['units']))}", *heads), rows, title)
+
+
+def _some(count: int) -> list[int]:
+    """Numbers of some `MOST_COLUMNS` of `count` points, evenly spaced but for the last."""
+    step = max(1, math.ceil((count - 1) / (MOST_COLUMNS - 1)))
+    return sorted({*range(0, count, step), count - 1})
+
+
+# How well the losses of a map are known, in tables.
+
+
+LEAST = 0.02
+"""Largest share in the variance at any point, from which an input is shown. [1]"""
+
+
+def map_band_tables(data: xr.Dataset) -> Iterator[Table | Listing]:
+    """The band of the total loss over speed and torque at each temperature, and what makes it."""
+    for point in at_temperatures(data).values():
+        total = point.sel(result="total").transpose("speed", "torque", ...)
+        yield grid_table(point, "95 % band of the total loss, W", _band_of(total))
+    yield _drivers(data)
+    yield Listing(tuple(_limits(data)), LIMITS)
+
+
+def _limits(data: xr.Dataset) -> Iterator[str]:
+    """What to do about the drivers that matter over the whole map, in the order of `_drivers`."""
+    total, mean = data.sel(result="total"), _mean_shares(data)
+    width = total["high"] - total["low"]
+    for driver in mean["driver"].values[:MOST]:
+        if mean.sel(driver=driver) <= LEAST:
+            return
+        keys = str(driver).split(" + ")
+        own = data.sel(input=keys)
+        name = " + ".join(map(str, own["input_name"].values))
+        advice = "; ".join(dict.fromkeys(map(str, own["input_advice"].values)))
+        alone = width * np.sqrt(data["first_order"].sel(driver=driver).clip(0.0, 1.0))
+        place = _place(data, alone.isel(alone.argmax(alone.dims)))
+        yield (
+            f"{name}: up to {format_number(float(alone.max()), 3)} W of the band, at {place}; "
+            f"{advice}."
+        )
+
+
+def _mean_shares(data: xr.Dataset) -> xr.DataArray:
+    """`mean_shares`, the largest first."""
+    mean = mean_shares(data)
+    return mean.sortby(-mean)
+
+
+def _place(data: xr.Dataset, point: xr.DataArray) -> str:
+    """The operating point, by the axes of the map that have more than one value."""
+    axes = [str(name) for name in data["total"].dims if data.sizes[name] > 1]
+    return ", ".join(f"{name} {_value(point[name])}" for name in axes)
+
+
+def _band_of(total: xr.Dataset) -> Callable[[int, int], Cell]:
+    low, high = total["low"].to_numpy(), total["high"].to_numpy()
+
+    def cell(i: int, j: int) -> Cell:
+        if not np.isfinite(low[i, j]):
+            return Cell(MISSING)
+        return aligned(f"{low[i, j]:.0f} to {high[i, j]:.0f}")
+
+    return cell
+
+
+def _drivers(data: xr.Dataset) -> Table:
+    """Shares of the variance of the total loss: where the loss is, and where they are largest."""
+    shares, mean = data["first_order"], _mean_shares(data)
+    rows = []
+    for driver in mean["driver"].values:
+        own = shares.sel(driver=driver)
+        if not (own > LEAST).any():
+            continue
+        largest = own.isel(own.argmax(own.dims))
+        name = " + ".join(map(driver_name, str(driver).split(" + ")))
+        rows.append(
+            (
+                Cell(name),
+                aligned(percent(max(float(mean.sel(driver=driver)), 0.0))),
+                aligned(percent(float(largest))),
+                Cell(_place(data, largest)),
+            )
+        )
+    known = float(data["explained"].min())
+    note = (
+        "Shares of its variance, alone, by curves through the samples, the mean weighted with the "
+        f"loss; the curves explain {percent(known)} or more of it at every point."
+    )
+    head = ("", "mean share", "largest", "at")
+    return Table(head, tuple(rows), "What the uncertainty of the total loss is due to", note=note)
+
+
+def _value(value: xr.DataArray) -> str:
+    if value.dtype.kind not in "if":
+        return str(value.item())
+    return f"{format_number(value.item())} {unit_text(str(value.attrs.get('units', '')))}".rstrip()
+
+
+# How well a result is known, in tables: for terminals and pages.
+
+
+LEAST_OF_UNCERTAINTY_TABLES = 0.005
+"""Share in the variance from which an input or a model is named. [1]"""
+NO_SHARE = 1e-3
+"""Share in the variance of a loss below which curves through samples show no effect. [1]"""
+CUT_OFF = 1e-3
+"""Probability of impossible values that is worth a sentence. [1]"""
+
+
+def uncertainty_tables(data: xr.Dataset) -> RenderableType:
+    """All of a dataset of `epicyclic.uncertainty`, for a terminal."""
+    return titled(one_line(data.attrs["title"]), *map(as_on_page, uncertainty_items(data)))
+
+
+def uncertainty_items(data: xr.Dataset) -> Iterator[Table | Listing]:
+    """Results with their bands, the budget of the total loss, and what to know of it."""
+    if "explained" in data:
+        yield from map_band_tables(data)
+    else:
+        yield _results(data)
+        yield _budget(data)
+        yield Listing(tuple(advice_texts(known_of(data))), LIMITS)
+    yield Listing(tuple(_notes(data)), "Notes")
+
+
+def pair_tables(data: xr.Dataset) -> RenderableType:
+    """All of a dataset of `epicyclic.compare_cases`, for a terminal."""
+    rows = []
+    names = [str(name) for name in data["result"].values]
+    for name in names:
+        one = data.sel(result=name)
+        unit = str(one["unit"].values)
+        cells = (
+            _shown(float(one[key]), unit)
+            for key in ("first", "second", "difference", "standard_uncertainty", "low", "high")
+        )
+        chance = aligned(percent(float(one["probability"])))
+        rows.append((Cell(in_words(name) + (", %" if unit == "1" else "")), *cells, chance))
+    strong = frozenset({names.index("total"), names.index("efficiency")})
+    head = ("", "first", "second", "mean difference", "u", "95 % from", "to", "second smaller")
+    title = f"{data.attrs['second_title']} less {data.attrs['first_title']}"
+    table = Table(head, tuple(rows), "Second less first", strong, "Losses in W.")
+    total = data.sel(result="total")
+    notes = [
+        f"Shared: {data.attrs['shared'] or 'nothing'}.",
+        f"Total loss: u of the difference {known_text(float(total['standard_uncertainty']))}; of "
+        "two results that know nothing of each other "
+        f"{known_text(float(total['unpaired_uncertainty']))}.",
+    ]
+    if data.attrs["failed"]:
+        notes.append(f"{data.attrs['failed']} of {data.attrs['pairs']} pairs have no result.")
+    return titled(one_line(title), as_on_page(table), as_on_page(Listing(tuple(notes), "Notes")))
+
+
+def band_figures(data: xr.Dataset) -> list[KeyFigure]:
+    """The ends of the band, for the head of a page."""
+    found = []
+    for name, label in (("total", "lost"), ("efficiency", "efficiency")):
+        one = data.sel(result=name)
+        unit = str(one["unit"].values)
+        for key, end in (("low", "from"), ("high", "to")):
+            value = float(one[key])
+            if math.isfinite(value):
+                shown_unit = "%" if unit == "1" else unit
+                found.append(KeyFigure(f"{label} {end}", _shown(value, unit), shown_unit))
+    return found
+
+
+def _results(data: xr.Dataset) -> Table:
+    rows = []
+    names = [str(name) for name in data["result"].values]
+    for name in names:
+        one = data.sel(result=name)
+        values = (
+            _shown(float(one[key]), str(one["unit"].values))
+            for key in ("nominal", "mean", "standard_uncertainty", "expanded_uncertainty",
+                        "low", "high", "shortest_low", "shortest_high")
+        )  # fmt: skip
+        further = ", %" if name == "efficiency" else ""
+        if name in ("load_dependent", "load_independent"):
+            further = data.attrs["grouping"]
+        rows.append((Cell(in_words(name) + further), *values))
+    strong = frozenset({names.index("total"), names.index("efficiency")})
+    head = ("", "case", "mean", "u_c", "U", "95 % from", "to", "shortest", "to")
+    what = "Losses" if _unit(data) == "W" else "Energies"
+    note = f"u_c: combined standard uncertainty; U = 2 u_c. {what} in {_unit(data)}."
+    return Table(head, tuple(rows), "Results with their uncertainty", strong, note)
+
+
+def _unit(data: xr.Dataset) -> str:
+    """Unit of losses, or of energies lost."""
+    return str(data["unit"].sel(result="total").values)
+
+
+def _shown(value: float, unit: str) -> Cell:
+    """A number as precise as such numbers are."""
+    if math.isnan(value):
+        return number(None, "")
+    if unit == "W":
+        return tenths(value)
+    return number(value, "", text=f"{100 * value:z.3f}" if unit == "1" else shown(value, 5))
+
+
+def _budget(data: xr.Dataset) -> Table:
+    """What makes the variance of the total loss, the largest share first."""
+    total = data.sel(result="total", sum="total")
+    orders = [name for name in ("first_order", "total_order") if name in data]
+    largest = total[orders[-1]]
+    order = largest.sortby(-largest)["driver"].values
+    rows = []
+    for driver in map(str, order):
+        keys = driver.split(" + ")
+        if not total["contribution"].sel(input=keys).any():
+            continue
+        one = total.sel(driver=driver)
+        shares = [percent(max(float(one[name]), 0.0)) for name in orders]
+        for place, key in enumerate(keys):
+            own = total.sel(input=key)
+            rows.append(
+                (
+                    Cell(driver_name(key)),
+                    Cell(str(own["distribution"].values)),
+                    _value_of_uncertainty_tables(own),
+                    _shown(float(own["contribution"]), _unit(data)),
+                    *(aligned("" if place else text) for text in shares),
+                )
+            )
+    heads = ("", "distribution", "value", f"per u_i, {_unit(data)}", "share", "with others")
+    note = (
+        "per u_i: change of the total loss for one standard deviation. Shares of its variance, "
+        "alone and with all interactions; values that are correlated share one."
+    )
+    if len(orders) == 1:
+        note = note.replace("alone and with all interactions; ", "each alone; ")
+    head = heads[: len(heads) + len(orders) - 2]
+    return Table(head, tuple(rows), "What the uncertainty of the total loss is due to", note=note)
+
+
+def _value_of_uncertainty_tables(own: xr.Dataset) -> Cell:
+    unit = unit_text(str(own["input_unit"].values)).removesuffix("1")
+    return aligned(f"{shown(float(own['input_value']))} {unit}".rstrip())
+
+
+def _notes(data: xr.Dataset) -> Iterator[str]:
+    failed, count = int(data.attrs["failed"]), data.sizes["sample"]
+    if failed and "failed_samples" in data:
+        yield (
+            f"{failed} samples at {int((data['failed_samples'] > 0).sum())} points have no result "
+            "and are left out of their intervals."
+        )
+    elif failed:
+        reason = next(str(text) for text in data["message"].values if text)
+        yield (
+            f"{failed} of {count} samples have no result and are left out of the intervals; for "
+            f"example: {reason}"
+        )
+    if data.attrs.get("left_out"):
+        yield (
+            f"Left out, because one standard deviation away there is no solution: "
+            f"{data.attrs['left_out']}."
+        )
+    for key in map(str, data["input"].values):
+        share = float(data["cut_off"].sel(input=key))
+        if share > CUT_OFF:
+            beyond = percent(share)
+            yield f"{key}: {beyond} of its distribution is beyond what it can be, and cut off."
+    idle = [str(key) for key in data["input"].values if not _moves(data, str(key))]
+    if idle:
+        yield f"Without effect here: {', '.join(idle)}."
+    yield from _of_points(data)
+    sources: dict[str, list[str]] = {}
+    for key in sorted(set(map(str, data["input"].values)) - set(idle)):
+        source = str(data["distribution_source"].sel(input=key).values)
+        sources.setdefault(source, []).append(driver_name(key))
+    for source, keys in sources.items():
+        yield f"{', '.join(keys)}: {source}."
+
+
+def _moves(data: xr.Dataset, key: str) -> bool:
+    """Whether an input changes any result."""
+    if "contribution" in data:
+        return bool(data["contribution"].sel(input=key).any())
+    driver = next(name for name in map(str, data["driver"].values) if key in name.split(" + "))
+    return bool((data["total_order"].sel(driver=driver) > NO_SHARE).any())
+
+
+def _of_points(data: xr.Dataset) -> Iterator[str]:
+    """How well some points stand for a whole cycle."""
+    if "point_error" not in data:
+        return
+    error, spread = (
+        float(data["point_error"]),
+        float(data["standard_uncertainty"].sel(result="total")),
+    )
+    if not error:
+        yield f"Cycle: {data.attrs['cycle']}, all solved with every sample."
+    else:
+        yield (
+            f"Cycle: {data.attrs['cycle']}; {data.attrs['points']} points stand for it, by which "
+            f"u_c of the total may be off by {percent(error / spread, 0)} (standard error)."
+        )
+    yield (
+        "Shares by curves through the samples, which explain "
+        f"{percent(float(data['curves_explain']))} of the variance of the total."
+    )
