@@ -143,16 +143,14 @@ def test_sizes_that_are_none_are_refused(text):
         parse_size(text)
 
 
+def terms_within(result, *sets):
+    """The losses of a result as those of sets of a train."""
+    return tuple(replace(term, name=f"{own}.{term.name}") for own in sets for term in result.terms)
+
+
 def test_a_single_set_of_a_train_shows_its_components(talbot_record):
     contents = talbot_record.result
-    inside = contents.model_copy(
-        update={
-            "kind": "train",
-            "losses": {f"S.{name}": watts for name, watts in contents.losses.items()},
-            "groups": {f"S.{name}": group for name, group in contents.groups.items()},
-            "not_included": {f"S.{name}": why for name, why in contents.not_included.items()},
-        }
-    )
+    inside = replace(contents, kind="train", terms=terms_within(contents, "S"))
     alone, within = (plot_losses(one, axes()) for one in (contents, inside))
     names = [[text.get_text() for text in ax.get_yticklabels()] for ax in (alone, within)]
     assert names[0] == names[1]
@@ -162,15 +160,8 @@ def test_a_single_set_of_a_train_shows_its_components(talbot_record):
 def test_several_sets_are_bars_of_their_own_however_many(talbot_record, monkeypatch):
     monkeypatch.setattr("epicyclic.show.plots.losses.MOST_BARS", 1)
     contents = talbot_record.result
-    both = {
-        field: {f"{own}.{name}": value for own in ("P1", "P2") for name, value in given.items()}
-        for field, given in (
-            ("losses", contents.losses),
-            ("groups", contents.groups),
-            ("not_included", contents.not_included),
-        )
-    }
-    ax = plot_losses(contents.model_copy(update={"kind": "train"} | both), axes())
+    both = replace(contents, kind="train", terms=terms_within(contents, "P1", "P2"))
+    ax = plot_losses(both, axes())
     assert [text.get_text() for text in ax.get_yticklabels()] == ["P1", "P2"]
 
 
@@ -191,11 +182,9 @@ def test_too_many_losses_are_summed_by_what_loses_them(talbot_record, monkeypatc
 @pytest.mark.parametrize(("factor", "unit", "scale"), [(1.0, "W", 1.0), (7.3, "kW", 1e3)])
 def test_large_losses_are_in_kilowatts(talbot_record, factor, unit, scale):
     contents = talbot_record.result
-    larger = contents.model_copy(
-        update={
-            "total": factor * contents.total,
-            "losses": {name: factor * watts for name, watts in contents.losses.items()},
-        }
+    larger = replace(
+        contents,
+        terms=tuple(replace(term, watts=factor * term.watts) for term in contents.terms),
     )
     ax = plot_loss_sum(larger, axes())
     assert ax.get_xlabel() == f"power loss, {unit}"
@@ -261,16 +250,20 @@ def test_columns_of_torque_and_power_are_in_the_unit_of_their_largest(talbot_rec
 
 def test_key_figures_have_no_false_digits(talbot_record):
     result = talbot_record.result
-    terms = (
-        replace(result.terms[0], group="load-dependent", watts=21928.87),
-        replace(result.terms[0], group="load-independent", watts=96.23),
-    )
-    found = {one.label: one for one in key_figures(replace(result, terms=terms, unloaded=None))}
+
+    def shown(load_dependent):
+        watts = {"load-dependent": load_dependent, "load-independent": 96.23}
+        terms = (replace(result.terms[0], group=group, watts=watts[group]) for group in watts)
+        figures = key_figures(replace(result, terms=tuple(terms)))
+        return {one.label: one for one in figures}
+
+    found = shown(21928.87)
     texts = {name: (one.cell.text, one.unit) for name, one in found.items()}
     assert texts["total loss"] == ("22.0", "kW")
-    assert texts["load-dependent"] == ("2568", "W")
     assert texts["load-independent"] == ("96.2", "W")
-    assert found["total loss"].cell.value == 22025.1  # in watts, as in the JSON form
+    assert found["total loss"].cell.value == pytest.approx(22025.1)  # in watts, as in JSON
+    small = shown(2568.4)["load-dependent"]
+    assert (small.cell.text, small.unit) == ("2568", "W")
 
 
 def test_gears_that_hide_others_are_named():

@@ -11,7 +11,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 from rich.console import Group, RenderableType
-from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
@@ -19,7 +18,7 @@ from epicyclic.case.operating import OPERATING
 from epicyclic.case.wording import one_line
 from epicyclic.result.result import in_words, of_gear
 from epicyclic.show.page import MISSING, error_text, shown
-from epicyclic.show.terminal import number_table, plain_table
+from epicyclic.show.terminal import number_table, plain_table, spaced, titled
 from epicyclic.study.measured.comparison import CALIBRATED, ErrorFigures, MeasuredComparison
 from epicyclic.study.measured.intervals import Fit, FittedParameter
 from epicyclic.study.sweeps.run import AS_TESTED
@@ -59,7 +58,7 @@ def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
         )
     if any(mesh["film_ratio"].isnull().all() for mesh in meshes.values()):
         parts.append(Text(f'"{MISSING}": without motion there is no film and no friction power.'))
-    return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
+    return spaced(*parts)
 
 
 def _notes(mesh: xr.Dataset) -> list[str]:
@@ -168,7 +167,7 @@ def pocket_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
         line for mesh in meshes.values() for line in str(mesh.attrs["notes"]).splitlines()
     )
     parts.append(Text("\n".join(f"• {line}" for line in (*models, *notes))))
-    return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
+    return spaced(*parts)
 
 
 def _balance(mesh: xr.Dataset) -> Table:
@@ -381,7 +380,7 @@ def fitted_comment(item: FittedParameter, fit: Fit) -> str:
 
 def duty_tables(data: xr.Dataset) -> RenderableType:
     """Energy in, out and lost by component, for each temperature that was asked for."""
-    parts: list[RenderableType] = [Text(one_line(data.attrs["title"]), style="bold")]
+    parts: list[RenderableType] = []
     if "temperature" in data.dims:
         for value in data["temperature"].values:
             title = f"Oil at {shown(float(value))} °C"
@@ -392,8 +391,7 @@ def duty_tables(data: xr.Dataset) -> RenderableType:
         f"{name.replace('_', ' ')}: {data.attrs[name]}"
         for name in ("cycle", "basis", "reference_shaft", "modes")
     ]
-    parts.append(Text("\n".join(stated)))
-    return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
+    return titled(one_line(data.attrs["title"]), *parts, Text("\n".join(stated)))
 
 
 def _tables(data: xr.Dataset, title: str) -> list[RenderableType]:
@@ -506,9 +504,7 @@ def warm_up_tables(data: xr.Dataset) -> RenderableType:
     losses.add_section()
     total = data["total_loss"].values
     losses.add_row("total", f"{total[0]:.1f}", f"{total[-1]:.1f}", style="bold")
-    return Group(*(Padding(part, (0, 0, 1, 0)) for part in (
-        Text(one_line(data.attrs["title"]), style="bold"), table, losses, Text(_summary(data)),
-    )))  # fmt: skip
+    return titled(one_line(data.attrs["title"]), table, losses, Text(_summary(data)))
 
 
 def _summary(data: xr.Dataset) -> str:

@@ -197,8 +197,13 @@ def _tables(result: Result) -> Iterator[page.Table]:
 
 def titled(title: str, *parts: RenderableType) -> RenderableType:
     """Parts with space between them, under a title."""
-    whole = (Text(title, style="bold"), *(Text(it) if isinstance(it, str) else it for it in parts))
-    return Group(*(Padding(part, (0, 0, 1, 0)) for part in whole))
+    return spaced(Text(title, style="bold"), *parts)
+
+
+def spaced(*parts: RenderableType) -> RenderableType:
+    """Parts with space below each."""
+    texts = (Text(it) if isinstance(it, str) else it for it in parts)
+    return Group(*(Padding(part, (0, 0, 1, 0)) for part in texts))
 
 
 def as_on_page(item: page.Table | page.Listing) -> RenderableType:
