@@ -1,0 +1,1 @@
+"""Results: losses, speeds, torques and figures, as objects and as JSON."""

@@ -144,7 +144,7 @@ _BALANCE = (
     "sound_speed",
 )
 _ERRORS = ("power_difference", "mass_error")
-_EXTREMES_OF_POCKET_TABLE = (
+_EXTREMES_OF_POCKETS = (
     ("highest pressure", "pressure", np.nanargmax),
     ("lowest pressure", "pressure", np.nanargmin),
     ("fastest, along the face", "axial_speed", None),
@@ -185,7 +185,7 @@ def _balance(mesh: xr.Dataset) -> Table:
 
 def _extremes(mesh: xr.Dataset) -> Table:
     table = _table("Extremes", "", "value", "unit", "pocket of", "roll angle", "across the face")
-    for label, name, pick in _EXTREMES_OF_POCKET_TABLE:
+    for label, name, pick in _EXTREMES_OF_POCKETS:
         values = mesh[name].to_numpy()
         index = _place(np.abs(values), np.nanargmax) if pick is None else _place(values, pick)
         table.add_row(label, *_at(mesh, name, index))

@@ -154,8 +154,6 @@ def _value(value: xr.DataArray) -> str:
 # How well a result is known, in tables: for terminals and pages.
 
 
-LEAST_OF_UNCERTAINTY_TABLES = 0.005
-"""Share in the variance from which an input or a model is named. [1]"""
 NO_SHARE = 1e-3
 """Share in the variance of a loss below which curves through samples show no effect. [1]"""
 CUT_OFF = 1e-3
@@ -275,7 +273,7 @@ def _budget(data: xr.Dataset) -> Table:
                 (
                     Cell(driver_name(key)),
                     Cell(str(own["distribution"].values)),
-                    _value_of_uncertainty_tables(own),
+                    _input_value(own),
                     _shown(float(own["contribution"]), _unit(data)),
                     *(aligned("" if place else text) for text in shares),
                 )
@@ -291,7 +289,7 @@ def _budget(data: xr.Dataset) -> Table:
     return Table(head, tuple(rows), "What the uncertainty of the total loss is due to", note=note)
 
 
-def _value_of_uncertainty_tables(own: xr.Dataset) -> Cell:
+def _input_value(own: xr.Dataset) -> Cell:
     unit = unit_text(str(own["input_unit"].values)).removesuffix("1")
     return aligned(f"{shown(float(own['input_value']))} {unit}".rstrip())
 
