@@ -26,16 +26,17 @@ if TYPE_CHECKING:
     from epicyclic.plugins.rexs.exporting import write_rexs as write_rexs
     from epicyclic.plugins.rexs.importing import RexsImport as RexsImport
     from epicyclic.plugins.rexs.importing import read_rexs as read_rexs
-    from epicyclic.records.files import open_result as open_result
-    from epicyclic.records.files import save_result as save_result
-    from epicyclic.records.record import ResultRecord as ResultRecord
-    from epicyclic.records.record import record as record
-    from epicyclic.report.html import report_html as report_html
-    from epicyclic.results.result import Result as Result
+    from epicyclic.show.files import open_result as open_result
+    from epicyclic.show.files import save_result as save_result
+    from epicyclic.show.html import report_html as report_html
+    from epicyclic.show.record import ResultRecord as ResultRecord
+    from epicyclic.show.record import record as record
+    from epicyclic.show.views import Result as Result
+    from epicyclic.show.views import solve as solve
+    from epicyclic.show.views import solve_for as solve_for
     from epicyclic.study.bands.compare_cases import compare_cases as compare_cases
     from epicyclic.study.bands.run import uncertainty as uncertainty
     from epicyclic.study.heat import heat_balance as heat_balance
-    from epicyclic.study.heat import solve_for as solve_for
     from epicyclic.study.load import load_case as load_case
     from epicyclic.study.maps.compute import loss_map as loss_map
     from epicyclic.study.maps.duty import duty_cycle as duty_cycle
@@ -49,7 +50,6 @@ if TYPE_CHECKING:
     from epicyclic.study.pockets import pocket_details as pocket_details
     from epicyclic.study.solve import loaded_meshes as loaded_meshes
     from epicyclic.study.solve import mesh_contacts as mesh_contacts
-    from epicyclic.study.solve import solve as solve
     from epicyclic.study.sweeps.run import sweep as sweep
     from epicyclic.validation.pocketing import pocketing_study as pocketing_study
 
@@ -61,8 +61,8 @@ _HOME = {
     "MeasuredComparison": "epicyclic.study.measured.comparison",
     "PlanetaryCase": "epicyclic.case.case",
     "Problem": "epicyclic.errors",
-    "Result": "epicyclic.results.result",
-    "ResultRecord": "epicyclic.records.record",
+    "Result": "epicyclic.show.views",
+    "ResultRecord": "epicyclic.show.record",
     "case_schema": "epicyclic.case.case",
     "compare_cases": "epicyclic.study.bands.compare_cases",
     "compare_measured": "epicyclic.study.measured.compare",
@@ -73,14 +73,14 @@ _HOME = {
     "loss_map": "epicyclic.study.maps.compute",
     "mesh_contacts": "epicyclic.study.solve",
     "mesh_details": "epicyclic.study.meshes",
-    "open_result": "epicyclic.records.files",
+    "open_result": "epicyclic.show.files",
     "pocket_details": "epicyclic.study.pockets",
     "pocketing_table": "epicyclic.study.pocketing_table",
-    "record": "epicyclic.records.record",
-    "report_html": "epicyclic.report.html",
-    "save_result": "epicyclic.records.files",
-    "solve": "epicyclic.study.solve",
-    "solve_for": "epicyclic.study.heat",
+    "record": "epicyclic.show.record",
+    "report_html": "epicyclic.show.html",
+    "save_result": "epicyclic.show.files",
+    "solve": "epicyclic.show.views",
+    "solve_for": "epicyclic.show.views",
     "sweep": "epicyclic.study.sweeps.run",
     "uncertainty": "epicyclic.study.bands.run",
     "warm_up": "epicyclic.study.maps.warm_up",

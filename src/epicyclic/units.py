@@ -293,6 +293,10 @@ class Quantity:
         """SI `value` in the display unit."""
         return _convert_back(value, self.si, self.display)
 
+    def from_display(self, value: float) -> float:
+        """A number in the display unit in SI."""
+        return _convert(value, self.display, self.si) if self.si else value
+
     def scale_and_offset(self) -> tuple[float, float]:
         """What arrays of SI values are multiplied by, and what is added, for the display unit."""
         if not self.si:

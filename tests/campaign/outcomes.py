@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import epicyclic as ep
 from epicyclic.case.case import Case
 from epicyclic.errors import Status, is_interrupt
-from epicyclic.results.result import Result
+from epicyclic.result.result import Result
 from limits import is_soon
 
 __all__ = ["FAULTS", "LONGEST", "Outcome", "outcome_of"]

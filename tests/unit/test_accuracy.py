@@ -11,7 +11,7 @@ from rich.console import Console
 import epicyclic as ep
 from epicyclic.gears import measures as accuracy
 from epicyclic.gears.measures import fit_allowances, flank_tolerances, named_fit
-from epicyclic.report.data_sheet import data_sheet
+from epicyclic.show.data_sheet import data_sheet
 from epicyclic.study.bands.inputs import uncertain_values
 
 PAIR = {

@@ -12,7 +12,7 @@ from rich.console import Console
 import epicyclic as ep
 from epicyclic.builders.build import build
 from epicyclic.builders.models import resolve_models
-from epicyclic.report.tables import result_tables
+from epicyclic.show.terminal import result_tables
 from epicyclic.study.friction import compare_friction
 
 IDENTITY = 1e-12  # rounding only

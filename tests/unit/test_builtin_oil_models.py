@@ -6,6 +6,7 @@ import html
 import io
 import json
 import runpy
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,9 +25,8 @@ from epicyclic.losses.mixed_ehl import SIMULATED
 from epicyclic.losses.reliability import RELIABILITY, reliability
 from epicyclic.losses.rolling import ROLLING_MODELS
 from epicyclic.plugins.contact_solver.fit import fit_quantity
-from epicyclic.records.contents import contents_of
-from epicyclic.report.result_tables import standing_items
-from epicyclic.report.tables import result_tables
+from epicyclic.show.result_tables import standing_items
+from epicyclic.show.terminal import result_tables
 from epicyclic.study.friction import compare_friction, recommended
 
 OIL = "iso-vg-220-mineral"
@@ -259,11 +259,11 @@ def test_tables_and_reports_begin_with_the_models(case):
 
 
 def test_models_of_a_train_are_named_once_for_all_sets():
-    contents = contents_of(ep.solve(ep.load_case("train-eaxle")))
+    result = ep.solve(ep.load_case("train-eaxle"))
     told = {
         "P1.friction": "schlenk: a", "P2.friction": "schlenk: a", "P3.friction": "table: b",
     }  # fmt: skip
-    (listing,) = standing_items(contents.model_copy(update={"standing": told}))
+    (listing,) = standing_items(replace(result, standing=told))
     assert listing.items == ("friction of P1, P2: schlenk: a", "friction of P3: table: b")
 
 

@@ -8,7 +8,7 @@ from test_gear_sizes import X, changed
 from test_tooth_measures import RING, TABLES
 
 from epicyclic import load_case
-from epicyclic.report.data_sheet import data_sheet
+from epicyclic.show.data_sheet import data_sheet
 from epicyclic.study.data_sheet import data_sheets
 
 

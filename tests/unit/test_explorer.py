@@ -14,10 +14,10 @@ import pytest
 import xarray as xr
 
 import epicyclic as ep
-from epicyclic.report import explorer
-from epicyclic.report.explorer import explorer_items
-from epicyclic.report.page import Explorer, Listing
-from epicyclic.report.pdf import report_pdf
+from epicyclic.show import explorer
+from epicyclic.show.explorer import explorer_items
+from epicyclic.show.html import report_pdf
+from epicyclic.show.page import Explorer, Listing
 from epicyclic.show.plots.catalogue import panels_of
 from epicyclic.show.plots.loss_map import map_line, shown_panels
 from epicyclic.show.plots.sweep import LEFT_OUT, MOST_POINTS, thinned

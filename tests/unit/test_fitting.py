@@ -8,9 +8,9 @@ from collections import Counter
 import pytest
 from rich.console import Console
 
-from epicyclic.report.page import Cell as Text
-from epicyclic.report.page import Listing, Table, number
-from epicyclic.report.tables import as_on_page
+from epicyclic.show.page import Cell as Text
+from epicyclic.show.page import Listing, Table, number
+from epicyclic.show.terminal import as_on_page
 
 ROWS = tuple(
     (

@@ -14,10 +14,10 @@ import epicyclic as ep
 from epicyclic.builders.build import build
 from epicyclic.errors import InputError
 from epicyclic.losses.friction import FRICTION_MODELS
-from epicyclic.records.contents import Heat
-from epicyclic.report.heat_tables import heat_items, remarks
+from epicyclic.result.stored import read_result
 from epicyclic.show.plots.catalogue import available, figure_of
 from epicyclic.show.plots.heat_network import heat_figure
+from epicyclic.show.result_tables import heat_items, remarks
 from epicyclic.study import heat as analysis
 from epicyclic.study.heat import beyond_range
 from epicyclic.study.solve import mesh_contacts, solve
@@ -68,7 +68,9 @@ def test_heat_of_the_losses_leaves_by_the_outlets(everything):
 
 def test_stored_heat_is_that_of_the_result(everything):
     heat = everything.heat
-    stored = Heat.model_validate(json.loads(everything.to_json())["heat"]).balance
+    read, problems = read_result(json.loads(everything.to_json()))
+    assert not problems
+    stored = read.heat
     assert stored.temperatures == pytest.approx(heat.temperatures, rel=1e-12)
     assert stored.given == pytest.approx(heat.given, rel=1e-12)
     assert [way.key for way in stored.ways] == [way.key for way in heat.ways]

@@ -12,7 +12,7 @@ from epicyclic.machine.balance import balance, speeds_of
 from epicyclic.machine.element import LOAD_INDEPENDENT, ElementResult, Loss
 from epicyclic.machine.machine import Machine, MeshRow, Operation
 from epicyclic.machine.solve import solve_machine
-from epicyclic.results.result import MemberState, PowerFlow
+from epicyclic.result.result import MemberState, PowerFlow
 
 MEMBERS = ("sun", "ring", "carrier")
 ROUNDING = 1e-12  # relative; a few roundings of doubles

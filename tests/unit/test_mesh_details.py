@@ -11,8 +11,8 @@ from rich.console import Console
 
 import epicyclic as ep
 from epicyclic.machine.solve import NEAR, STEEPEST
-from epicyclic.report.mesh_table import mesh_tables
 from epicyclic.show.plots.mesh import mesh_figure
+from epicyclic.show.studies import mesh_tables
 
 
 @pytest.fixture(scope="module")

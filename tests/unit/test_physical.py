@@ -11,7 +11,7 @@ import epicyclic as ep
 from epicyclic.errors import Status
 from epicyclic.losses.pocket_tables import FlowFigures
 from epicyclic.machine import pocket_flow
-from epicyclic.results.physical import judged
+from epicyclic.result.physical import judged
 
 
 @pytest.fixture(scope="module")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,12 +14,9 @@ from matplotlib.text import Text
 import epicyclic as ep
 import listed_trains
 from epicyclic.cli.common import parse_size
-from epicyclic.records.record import sets_of
-from epicyclic.report.drawings import draw
-from epicyclic.report.page import Cell, Table
-from epicyclic.report.result_tables import key_figures, members_table
-from epicyclic.report.uncertainty_tables import _shown
-from epicyclic.results.result import of_gear
+from epicyclic.result.result import of_gear
+from epicyclic.show.drawings import draw
+from epicyclic.show.page import Cell, Table
 from epicyclic.show.plots.catalogue import figure_of
 from epicyclic.show.plots.drawing import plot_gear_set
 from epicyclic.show.plots.loss_map import limits_of, limits_of_band, limits_of_half_width
@@ -33,6 +31,9 @@ from epicyclic.show.plots.mesh import (
 from epicyclic.show.plots.pockets import plot_power, pocket_figure
 from epicyclic.show.plots.power_flow import SLIDE
 from epicyclic.show.plots.style import styled_figure
+from epicyclic.show.record import sets_of
+from epicyclic.show.result_tables import key_figures, members_table
+from epicyclic.show.uncertainty_tables import _shown
 from epicyclic.study.operating import operating_line
 from epicyclic.study.shapes import gear_shapes
 from epicyclic.units import decimals_of, format_number, known_text, power_unit
@@ -142,16 +143,14 @@ def test_sizes_that_are_none_are_refused(text):
         parse_size(text)
 
 
+def terms_within(result, *sets):
+    """The losses of a result as those of sets of a train."""
+    return tuple(replace(term, name=f"{own}.{term.name}") for own in sets for term in result.terms)
+
+
 def test_a_single_set_of_a_train_shows_its_components(talbot_record):
     contents = talbot_record.result
-    inside = contents.model_copy(
-        update={
-            "kind": "train",
-            "losses": {f"S.{name}": watts for name, watts in contents.losses.items()},
-            "groups": {f"S.{name}": group for name, group in contents.groups.items()},
-            "not_included": {f"S.{name}": why for name, why in contents.not_included.items()},
-        }
-    )
+    inside = replace(contents, kind="train", terms=terms_within(contents, "S"))
     alone, within = (plot_losses(one, axes()) for one in (contents, inside))
     names = [[text.get_text() for text in ax.get_yticklabels()] for ax in (alone, within)]
     assert names[0] == names[1]
@@ -161,15 +160,8 @@ def test_a_single_set_of_a_train_shows_its_components(talbot_record):
 def test_several_sets_are_bars_of_their_own_however_many(talbot_record, monkeypatch):
     monkeypatch.setattr("epicyclic.show.plots.losses.MOST_BARS", 1)
     contents = talbot_record.result
-    both = {
-        field: {f"{own}.{name}": value for own in ("P1", "P2") for name, value in given.items()}
-        for field, given in (
-            ("losses", contents.losses),
-            ("groups", contents.groups),
-            ("not_included", contents.not_included),
-        )
-    }
-    ax = plot_losses(contents.model_copy(update={"kind": "train"} | both), axes())
+    both = replace(contents, kind="train", terms=terms_within(contents, "P1", "P2"))
+    ax = plot_losses(both, axes())
     assert [text.get_text() for text in ax.get_yticklabels()] == ["P1", "P2"]
 
 
@@ -190,11 +182,9 @@ def test_too_many_losses_are_summed_by_what_loses_them(talbot_record, monkeypatc
 @pytest.mark.parametrize(("factor", "unit", "scale"), [(1.0, "W", 1.0), (7.3, "kW", 1e3)])
 def test_large_losses_are_in_kilowatts(talbot_record, factor, unit, scale):
     contents = talbot_record.result
-    larger = contents.model_copy(
-        update={
-            "total": factor * contents.total,
-            "losses": {name: factor * watts for name, watts in contents.losses.items()},
-        }
+    larger = replace(
+        contents,
+        terms=tuple(replace(term, watts=factor * term.watts) for term in contents.terms),
     )
     ax = plot_loss_sum(larger, axes())
     assert ax.get_xlabel() == f"power loss, {unit}"
@@ -249,24 +239,31 @@ def test_the_operating_point_is_written_like_the_power():
 
 def test_columns_of_torque_and_power_are_in_the_unit_of_their_largest(talbot_record):
     result = talbot_record.result
-    sun = result.members["sun"]
-    large = sun.model_copy(update={"torque": sun.torque.model_copy(update={"value": -12345.6})})
-    table = members_table(result.model_copy(update={"members": result.members | {"sun": large}}))
+    members = result.flow.members
+    large = replace(members["sun"], torque=-12345.6)
+    flow = replace(result.flow, members=members | {"sun": large})
+    table = members_table(replace(result, flow=flow))
     assert table.head[2] == "torque, kN·m"
     (row,) = (cells for cells in table.rows if cells[0].text == "sun")
     assert (row[2].text, row[2].value) == ("-12.3456", -12345.6)
 
 
 def test_key_figures_have_no_false_digits(talbot_record):
-    result = talbot_record.result.model_copy(
-        update={"total": 22025.1, "load_dependent": 2568.4, "load_independent": 96.23}
-    )
-    found = {one.label: one for one in key_figures(result)}
+    result = talbot_record.result
+
+    def shown(load_dependent):
+        watts = {"load-dependent": load_dependent, "load-independent": 96.23}
+        terms = (replace(result.terms[0], group=group, watts=watts[group]) for group in watts)
+        figures = key_figures(replace(result, terms=tuple(terms)))
+        return {one.label: one for one in figures}
+
+    found = shown(21928.87)
     texts = {name: (one.cell.text, one.unit) for name, one in found.items()}
     assert texts["total loss"] == ("22.0", "kW")
-    assert texts["load-dependent"] == ("2568", "W")
     assert texts["load-independent"] == ("96.2", "W")
-    assert found["total loss"].cell.value == 22025.1  # in watts, as in the JSON form
+    assert found["total loss"].cell.value == pytest.approx(22025.1)  # in watts, as in JSON
+    small = shown(2568.4)["load-dependent"]
+    assert (small.cell.text, small.unit) == ("2568", "W")
 
 
 def test_gears_that_hide_others_are_named():

@@ -94,7 +94,7 @@ def test_roller_bars_carry_the_radial_force(talbot_record):
     bearing = talbot_record.fields["bearings/planet_bearing"]
     loads = np.array([bar.get_height() for bar in bars]).reshape(bearing["load"].shape)
     azimuth = np.radians(bearing["azimuth"].to_numpy())
-    force = talbot_record.result.planet_bearing["radial_force"].value
+    force = talbot_record.result.bearing.radial_force
     assert (loads @ np.cos(azimuth)).sum() == pytest.approx(force, rel=1e-6)
 
 

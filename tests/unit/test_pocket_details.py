@@ -12,8 +12,8 @@ from PIL import Image
 from rich.console import Console
 
 import epicyclic as ep
-from epicyclic.report.pocket_table import pocket_tables
 from epicyclic.show.plots.pockets import MeshScene, pocket_animation, pocket_figure, section_figure
+from epicyclic.show.studies import pocket_tables
 from epicyclic.study.pockets import mesh_duties
 
 SPUR = {"gears.helix_angle": "0 deg"}

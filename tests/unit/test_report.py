@@ -10,8 +10,8 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.case.template import case_template
-from epicyclic.report.result_tables import mesh_tables
-from epicyclic.report.shown import error_text, shown
+from epicyclic.show.page import error_text, shown
+from epicyclic.show.result_tables import mesh_tables
 from epicyclic.units import unit_text
 
 
@@ -80,7 +80,7 @@ def test_errors_of_balances_are_told_in_percent(share, told):
 def test_figures_of_meshes_tell_how_well_pockets_are_computed_where_that_is_known(talbot_record):
     told = {
         row[0].text: [cell.text for cell in row[1:-1]]
-        for table in mesh_tables(talbot_record.result, talbot_record.labels)
+        for table in mesh_tables(talbot_record.result)
         for row in table.rows
     }
     assert told["pocketing loss: error of its energy balance"] == ["under 0.01 %"] * 2

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.report.drawings import draw
+from epicyclic.show.drawings import draw
 from epicyclic.show.plots.loss_map import map_at
 
 VOID = {"meta", "br", "link", "img", "col"}
@@ -211,7 +211,7 @@ def test_figures_have_the_size_that_is_asked_for(pair_map, map_page):
 
 def test_a_report_prints_as_pdf(map_page):
     pytest.importorskip("weasyprint", reason="optional")
-    from epicyclic.report.pdf import report_pdf
+    from epicyclic.show.html import report_pdf
 
     pdf = report_pdf(map_page)
     assert pdf.startswith(b"%PDF")

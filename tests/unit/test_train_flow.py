@@ -7,8 +7,7 @@ import math
 import pytest
 
 import epicyclic as ep
-from epicyclic.records.contents import contents_of
-from epicyclic.records.power_flow import power_flow
+from epicyclic.show.power_flow import power_flow
 from epicyclic.study.trains import loss_sums, train_states
 from trains import published, simple, small_axle
 
@@ -27,7 +26,7 @@ def axle():
 
 
 def assert_balanced(result):
-    flow = power_flow(contents_of(result))
+    flow = power_flow(result)
     scale = result.input_power
     for key, stage in flow.stages.items():
         assert sum(link.power for link in flow.of_stage(key)) == pytest.approx(
@@ -56,7 +55,7 @@ def test_every_set_bearing_and_seal_of_an_axle_is_balanced(axle):
 @pytest.mark.parametrize("torque", ["-40 N*m", "0 N*m"])
 def test_a_coasting_and_an_unloaded_axle_are_balanced(torque):
     result = ep.solve(small_axle(**{"operation.torque": torque}))
-    flow = power_flow(contents_of(result))
+    flow = power_flow(result)
     scale = max(abs(member.power) for member in result.flow.members.values())
     for key, stage in flow.stages.items():
         power = sum(link.power for link in flow.of_stage(key))
@@ -66,27 +65,25 @@ def test_a_coasting_and_an_unloaded_axle_are_balanced(torque):
 def test_the_torques_of_a_wolfrom_set_hold_its_ring():
     result = ep.solve(ep.load_case(published("wolfrom")))
     assert_balanced(result)
-    ring = next(
-        link for link in power_flow(contents_of(result)).links if link.members == ("fixed_ring",)
-    )
+    ring = next(link for link in power_flow(result).links if link.members == ("fixed_ring",))
     outside = sum(member.torque for member in result.flow.members.values())
     assert ring.torque == pytest.approx(-outside)
     assert ring.power == 0.0
 
 
 def test_what_circulates_flows_in_loops(eight_speeds):
-    flow = power_flow(contents_of(eight_speeds["R"]))
+    flow = power_flow(eight_speeds["R"])
     assert flow.circulating == pytest.approx(
         32515, rel=1e-4
     )  # P4 returns it to P3 through the output
     for key in (*flow.lines, *flow.stages):
         loops = [link.circulating for link in flow.links if key in (link.line, link.stage)]
         assert sum(loops) == pytest.approx(0.0, abs=1e-6)
-    assert all(power_flow(contents_of(eight_speeds[gear])).circulating == 0 for gear in "1234567")
+    assert all(power_flow(eight_speeds[gear]).circulating == 0 for gear in "1234567")
 
 
 def test_closed_clutches_make_one_line_of_two_shafts(eight_speeds):
-    lines = power_flow(contents_of(eight_speeds["1"])).lines
+    lines = power_flow(eight_speeds["1"]).lines
     line = lines["input+third"]
     assert (line.shafts, line.role) == (("input", "third"), "input")
     assert line.clutches == {"input+third": pytest.approx(300.0)}
@@ -97,7 +94,7 @@ def test_closed_clutches_make_one_line_of_two_shafts(eight_speeds):
 
 def test_a_single_set_is_one_stage():
     result = ep.solve(ep.load_case("talbot-2012-pair").updated({"operation.torque": "100 N*m"}))
-    (stage,) = power_flow(contents_of(result)).stages.values()
+    (stage,) = power_flow(result).stages.values()
     assert stage.loss == pytest.approx(result.total)
 
 

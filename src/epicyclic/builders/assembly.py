@@ -25,9 +25,17 @@ from epicyclic.machine.heat import AGREEMENT, Answer, Settled, heat_of
 from epicyclic.machine.planets import SHARING_METHODS, BearingFigures
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, stage_torques
-from epicyclic.results.heat import HeatBalance, HeatWay
-from epicyclic.results.lubrication import OilSupply
-from epicyclic.results.result import LossTerm, MemberState, PowerFlow, Result, Train, in_words
+from epicyclic.result.result import (
+    HeatBalance,
+    HeatWay,
+    LossTerm,
+    MemberState,
+    OilSupply,
+    PowerFlow,
+    Result,
+    Train,
+    in_words,
+)
 
 Methods = dict[str, tuple[str, str]]
 
@@ -117,14 +125,14 @@ def _ways(case: Case, answer: Answer) -> Iterator[HeatWay]:
             link.key,
             link.hot,
             link.target,
-            link.conductance,
             flows[link.key],
+            link.conductance,
             link.method,
             link.source,
         )
     power = case.thermal.cooler_power
     if answer.links and power:
-        yield HeatWay("oil-cooler", OIL, "cooler", math.nan, power, "given power", "given")
+        yield HeatWay("oil-cooler", OIL, "cooler", power, math.nan, "given power", "given")
 
 
 def _losses(solution: Solution) -> Iterator[tuple[str, Loss]]:

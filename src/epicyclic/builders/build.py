@@ -17,7 +17,7 @@ from epicyclic.case.train_shape import mesh_rows
 from epicyclic.gears.gear import CARRIER
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.machine import Machine, Operation
-from epicyclic.results.result import Layout
+from epicyclic.result.result import Layout
 
 
 def build(

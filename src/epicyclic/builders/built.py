@@ -12,7 +12,7 @@ from epicyclic.machine.heat import Settled, ThermalModel, isothermal, settle
 from epicyclic.machine.machine import Machine, Operation
 from epicyclic.machine.planets import PlanetLoad
 from epicyclic.machine.solve import lossless_state, solve_machine
-from epicyclic.results.result import Layout
+from epicyclic.result.result import Layout
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ from epicyclic.losses.reliability import RELIABILITY
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.gear_set import GearSetResult
 from epicyclic.machine.planets import BearingFigures
-from epicyclic.results.result import LossTerm
+from epicyclic.result.result import LossTerm
 from epicyclic.units import GIGAPASCAL, NEWTON, format_number, percent
 
 NOT_INCLUDED = "Not included"

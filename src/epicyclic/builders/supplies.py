@@ -13,7 +13,7 @@ from epicyclic.machine.disc import churned
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.pocket_flow import oil_in_mesh
 from epicyclic.machine.solve import Solution
-from epicyclic.results.lubrication import OilSupply
+from epicyclic.result.result import OilSupply
 
 
 def stated_supplies(case: Case) -> Iterator[tuple[str, OilSupply]]:

@@ -32,7 +32,7 @@ from epicyclic.machine.machine import Machine
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.oil.oil import Oil
 from epicyclic.oil.properties import mixture_state, oil_state
-from epicyclic.results.result import in_words
+from epicyclic.result.result import in_words
 
 GRAVITY_TEMPERATURE = 288.75
 """15.6 degC, at which the specific gravity of petroleum is stated. [K]"""

@@ -18,7 +18,7 @@ from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import Element
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.machine import Operation
-from epicyclic.results.result import Layout
+from epicyclic.result.result import Layout
 
 
 def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from epicyclic.case.case import Case
-    from epicyclic.results.result import Result
+    from epicyclic.result.result import Result
     from epicyclic.study.heat import Found
 
 
@@ -51,23 +51,23 @@ if TYPE_CHECKING:
 )
 def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path | None) -> None:
     """Compute the losses of a case and print them by component."""
-    from epicyclic.report.advice import band_texts, result_json
-    from epicyclic.report.heat_tables import remarks
-    from epicyclic.report.tables import result_tables
+    from epicyclic.show.advice import band_texts, result_json
+    from epicyclic.show.result_tables import remarks
+    from epicyclic.show.terminal import result_tables
     from epicyclic.study.bands.quick import quick_known
     from epicyclic.study.solve import solve
 
     loaded = load_with(case, changes)
     if save is not None:
-        from epicyclic.records.files import check_result_output
+        from epicyclic.show.files import check_result_output
 
         check_result_output(save)
     with telling_contacts(loaded):
         result = solve(loaded)
     known = quick_known(loaded, result, brief=True)
     if save is not None:
-        from epicyclic.records.files import save_result
-        from epicyclic.records.record import record
+        from epicyclic.show.files import save_result
+        from epicyclic.show.record import record
 
         save_result(record(loaded, result=result), save)
     show(
@@ -105,9 +105,8 @@ def check(case: str, changes: tuple[str, ...]) -> None:
 
     Of a train also the ratio of every state.
     """
-    from epicyclic.report.data_sheet import data_sheet
-    from epicyclic.report.state_tables import state_tables
-    from epicyclic.report.tables import terminal
+    from epicyclic.show.data_sheet import data_sheet, state_tables
+    from epicyclic.show.terminal import terminal
 
     loaded = load_with(case, changes)
     click.echo(f"{case}: a sound {loaded.kind} case.")
@@ -127,7 +126,7 @@ def check(case: str, changes: tuple[str, ...]) -> None:
 @plot_option("Draw the sliding loss with every model to FILE (.png, .svg, .pdf).")
 def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     """Compare all friction models on a case: spread, ranges left, and which one suits."""
-    from epicyclic.report.tables import friction_table, terminal
+    from epicyclic.show.terminal import friction_table, terminal
     from epicyclic.study.friction import compare_friction
 
     loaded = load_with(case, changes)
@@ -146,8 +145,8 @@ def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
 @plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf.")
 def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     """Show how the teeth carry: load, transmission error, stiffness, pressure, friction power."""
-    from epicyclic.report.mesh_table import mesh_tables
-    from epicyclic.report.tables import terminal
+    from epicyclic.show.studies import mesh_tables
+    from epicyclic.show.terminal import terminal
     from epicyclic.study.meshes import mesh_details
 
     loaded = load_with(case, changes)
@@ -235,8 +234,8 @@ def _check_target(quantity: str, target: str | None) -> None:
 
 
 def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:
-    from epicyclic.report.heat_tables import found_text, heat_items, remarks, ways_items
-    from epicyclic.report.tables import as_on_page, titled
+    from epicyclic.show.result_tables import found_text, heat_items, remarks, ways_items
+    from epicyclic.show.terminal import as_on_page, titled
 
     assert result.heat is not None
     return titled(
@@ -294,8 +293,8 @@ def warm_up(
     """
     from epicyclic.cli.common import progress_bar
     from epicyclic.files import check_place
-    from epicyclic.report.tables import terminal
-    from epicyclic.report.warm_up_table import warm_up_tables
+    from epicyclic.show.studies import warm_up_tables
+    from epicyclic.show.terminal import terminal
     from epicyclic.study.maps.warm_up import warm_up as compute
 
     if output is not None:
@@ -317,7 +316,7 @@ def warm_up(
 
 def _write(data: xr.Dataset, output: Path) -> None:
     from epicyclic.files import whole_file
-    from epicyclic.report.warm_up_table import warm_up_rows
+    from epicyclic.show.studies import warm_up_rows
     from epicyclic.study.sweeps.run import csv_safe, write_dataset
 
     if output.suffix == OUTPUTS[0]:

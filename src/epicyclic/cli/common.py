@@ -212,7 +212,7 @@ def show(
     if json_file == "-":
         click.echo(as_json())
         return
-    from epicyclic.report.tables import terminal
+    from epicyclic.show.terminal import terminal
 
     if json_file is not None:
         write_file(Path(json_file), as_json() + "\n")
@@ -256,7 +256,7 @@ def check_page(path: Path) -> None:
     """Raise `InputError` if a page cannot be written to a file of this name."""
     check_ending("-o", path, (PAGE, PRINT))
     if path.suffix == PRINT:
-        from epicyclic.report.pdf import check_pdf
+        from epicyclic.show.html import check_pdf
 
         check_pdf()
 
@@ -264,7 +264,7 @@ def check_page(path: Path) -> None:
 def write_page(path: Path, page: str) -> None:
     """Write a page as it is, or printed to a PDF."""
     if path.suffix == PRINT:
-        from epicyclic.report.pdf import report_pdf
+        from epicyclic.show.html import report_pdf
 
         write_file(path, report_pdf(page))
     else:

@@ -94,7 +94,7 @@ def compare(
     A shard keeps its points beside the file of --json, which 'epicyclic merge' writes.
     """
     from epicyclic.cli.common import progress_bar, tell
-    from epicyclic.report.measured_table import measured_tables
+    from epicyclic.show.studies import measured_tables
     from epicyclic.study.measured.compare import compare_measured
 
     keys = [key.strip() for key in (fit or "").split(",") if key.strip()]
@@ -144,8 +144,8 @@ def comparison_writer(plan: ComparisonPlan, output: Path, plot: str | None = Non
     check_place(output)
 
     def write(rows: Rows) -> str:
-        from epicyclic.report.measured_table import measured_tables
-        from epicyclic.report.tables import terminal
+        from epicyclic.show.studies import measured_tables
+        from epicyclic.show.terminal import terminal
 
         comparison = plan.comparison(rows)
         write_file(output, comparison.to_json() + "\n")
@@ -197,7 +197,7 @@ def _calibrated_text(comparison: MeasuredComparison) -> str:
     """The calibrated case as a case file that says which values are fitted, and to what."""
     from epicyclic.case.template import case_text, train_text
     from epicyclic.case.train import TrainCase
-    from epicyclic.report.measured_table import fitted_comment
+    from epicyclic.show.studies import fitted_comment
     from epicyclic.study.measured.comparison import CALIBRATED
 
     calibrated, fit = comparison.calibrated_case, comparison.fit

@@ -126,7 +126,7 @@ def duty_writer(
     check_same(plan, path)
 
     def write(rows: Rows) -> str:
-        from epicyclic.report.duty_table import duty_json
+        from epicyclic.show.studies import duty_json
         from epicyclic.study.maps.compute import to_map
         from epicyclic.study.maps.cycle import open_cycle
         from epicyclic.study.sweeps.runner import HERE
@@ -217,7 +217,7 @@ def _map(
 ) -> xr.Dataset:
     """The map that is named, or one of the case that is."""
     from epicyclic.cli.common import progress_bar
-    from epicyclic.records.files import open_map
+    from epicyclic.show.files import open_map
     from epicyclic.study.maps.duty import cycle_map
 
     if Path(map_or_case).suffix == _MAP_SUFFIX:
@@ -238,7 +238,7 @@ def _write_map(data: xr.Dataset, map_file: Path) -> None:
 
 
 def _write_table(result: xr.Dataset, output: Path | None) -> None:
-    from epicyclic.report.duty_table import duty_rows
+    from epicyclic.show.studies import duty_rows
     from epicyclic.study.sweeps.run import csv_safe, write_dataset
 
     if output is not None and output.suffix == _MAP_SUFFIX:
@@ -248,6 +248,6 @@ def _write_table(result: xr.Dataset, output: Path | None) -> None:
 
 
 def _show(result: xr.Dataset, json_file: str | None) -> None:
-    from epicyclic.report.duty_table import duty_json, duty_tables
+    from epicyclic.show.studies import duty_json, duty_tables
 
     show(lambda: duty_tables(result), lambda: duty_json(result), json_file)

@@ -50,7 +50,7 @@ def refuse_options(options: Mapping[str, object]) -> None:
 
 def convert(file: Path, output: Path, name: str | None, *, heated: bool) -> None:
     """Write the map of `file` to `output`, with the temperature as a state if it is `heated`."""
-    from epicyclic.records.files import open_map
+    from epicyclic.show.files import open_map
     from epicyclic.study.maps.formats import write_map
     from epicyclic.study.maps.lumped import with_temperature_state
     from epicyclic.study.maps.tables import map_case
@@ -206,7 +206,7 @@ def loss_map(
 
     FILE.nc is a map that is stored already: it is written in another format, and nothing computed.
     """
-    from epicyclic.records.files import is_stored
+    from epicyclic.show.files import is_stored
 
     if is_stored(case):
         refuse_options(

@@ -49,8 +49,8 @@ ANIMATION = ".gif"
 def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Path | None) -> None:
     """Show the pockets between the teeth: shape, pressure, speed of the flow, power."""
     from epicyclic.cli.common import working
-    from epicyclic.report.pocket_table import pocket_tables
-    from epicyclic.report.tables import terminal
+    from epicyclic.show.studies import pocket_tables
+    from epicyclic.show.terminal import terminal
     from epicyclic.study.pockets import pocket_details
 
     if animate is not None:

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 @click.command()
 def cases() -> None:
     """List the built-in cases and their variants."""
-    from epicyclic.report.library_tables import case_table
-    from epicyclic.report.tables import terminal
+    from epicyclic.show.data_sheet import case_table
+    from epicyclic.show.terminal import terminal
 
     terminal().print(case_table())
 
@@ -44,8 +44,8 @@ def oils(name: str | None) -> None:
     """List the built-in oils, or show one with the source of every value."""
     from epicyclic import library
     from epicyclic.case.messages import did_you_mean
-    from epicyclic.report.library_tables import oil_sheet, oil_table
-    from epicyclic.report.tables import terminal
+    from epicyclic.show.data_sheet import oil_sheet, oil_table
+    from epicyclic.show.terminal import terminal
 
     if name is None:
         terminal().print(oil_table())
@@ -113,7 +113,7 @@ def report(source: str, changes: tuple[str, ...], output: Path, size: str | None
     check_page(output)
     millimetres = None if size is None else parse_size(size)
     stored = _stored(source, changes)
-    from epicyclic.report.html import report_html
+    from epicyclic.show.html import report_html
 
     with progress_bar("figures") as progress:
         page = report_html(stored, progress, size=millimetres)
@@ -168,8 +168,8 @@ def plot(
 
 def _stored(source: str, changes: Sequence[str]) -> Stored:
     """What a file holds, or the record of a case."""
-    from epicyclic.records.files import is_stored, open_result
-    from epicyclic.records.record import record
+    from epicyclic.show.files import is_stored, open_result
+    from epicyclic.show.record import record
 
     if not is_stored(source):
         return record(load_with(source, changes))

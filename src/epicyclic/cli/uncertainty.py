@@ -79,8 +79,8 @@ def uncertainty(
     everywhere. With -o, an interrupted computation goes on where it stopped.
     """
     from epicyclic.files import check_place
-    from epicyclic.report.tables import terminal
-    from epicyclic.report.uncertainty_tables import uncertainty_tables
+    from epicyclic.show.terminal import terminal
+    from epicyclic.show.uncertainty_tables import uncertainty_tables
 
     if output is not None:
         check_ending("-o", output, (MAP_SUFFIX,))
@@ -127,7 +127,7 @@ def _check_use(
 
 
 def _source(source: str, changes: tuple[str, ...]) -> Case | xr.Dataset:
-    from epicyclic.records.files import open_map
+    from epicyclic.show.files import open_map
 
     if Path(source).suffix == MAP_SUFFIX:
         return open_map(source)
@@ -242,8 +242,8 @@ def compare_cases(first: str, second: str, samples: int, seed: int, runner: Runn
     Inputs that both cases share are drawn once for both.
     """
     from epicyclic.cli.common import progress_bar
-    from epicyclic.report.tables import terminal
-    from epicyclic.report.uncertainty_tables import pair_tables
+    from epicyclic.show.terminal import terminal
+    from epicyclic.show.uncertainty_tables import pair_tables
     from epicyclic.study.bands.compare_cases import compare_cases as compare
 
     cases = [load_with(name, ()) for name in (first, second)]

@@ -29,7 +29,7 @@ from epicyclic.machine.gear_mesh import OHLENDORF_SOURCE
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.planets import SHARING_METHODS
 from epicyclic.machine.pocket_flow import POCKETING_SOURCE, pocketing_method
-from epicyclic.results.result import Result, in_words
+from epicyclic.result.result import Result, in_words
 from epicyclic.study.solve import build_computed, solve
 from epicyclic.units import percent
 

@@ -15,8 +15,7 @@ from epicyclic.case.messages import refused, written
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.machine.element import LOAD_DEPENDENT
 from epicyclic.machine.heat import COLDEST, HOTTEST
-from epicyclic.results.heat import HeatBalance
-from epicyclic.results.result import Result, in_words
+from epicyclic.result.result import HeatBalance, Result, in_words
 from epicyclic.study.solve import solve
 from epicyclic.units import CELSIUS, NEWTON_METRE, Power, Quantity, Temperature, VolumeFlow
 
@@ -202,42 +201,12 @@ class _Search:
 
 def solve_for(
     case: Case,
-    quantity: str,
-    temperature: str | float,
+    quantity: str,  # A key of `QUANTITIES`.
+    temperature: str | float,  # Of the oil: text with a unit, or in kelvin.
     *,
     progress: Callable[[int, int], object] | None = None,
 ) -> Found:
-    """The cooling, flow or power with which the oil has a temperature.
-
-    Parameters
-    ----------
-    case : PlanetaryCase or GearPairCase
-    quantity : str
-        ``"cooler_power"``: heat that a cooler takes from the oil; ``"oil_flow"``: oil that leaves
-        and comes back at the inlet temperature; ``"input_power"``: torque at the given speed.
-    temperature : str or float
-        Temperature of the oil in the gearbox: text with a unit, or in kelvin.
-    progress : callable, optional
-        Called with the number of settled states found, and of those expected.
-
-    Returns
-    -------
-    Found
-
-    Raises
-    ------
-    InputError
-        If no value of the quantity leads to that temperature.
-
-    Examples
-    --------
-    >>> import epicyclic as ep
-    >>> case = ep.load_case("talbot-2012-pair", {
-    ...     "operation.torque": "100 N*m", "operation.speed": "2000 rpm"})
-    >>> found = ep.solve_for(case, "oil_flow", "110 degC")
-    >>> round(found.result.heat.oil - 273.15, 4)
-    110.0
-    """
+    """The cooling, flow or power with which the oil has a temperature, as `epicyclic.solve_for`."""
     if quantity not in QUANTITIES:
         allowed = f"is none of {', '.join(QUANTITIES)}."
         raise InputError([Problem("quantity", written(quantity), allowed, "Name one of them.")])

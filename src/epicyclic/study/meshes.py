@@ -21,7 +21,7 @@ from epicyclic.losses.mesh import flash_temperatures, loss_factor_notes
 from epicyclic.losses.planet_bearing import RollerBearing, RollerLoads
 from epicyclic.machine.element import Fluids, joined_key
 from epicyclic.machine.gear_mesh import MeshDuty, contact_under, distribute_load
-from epicyclic.results.result import of_gear
+from epicyclic.result.result import of_gear
 from epicyclic.study.solve import build_computed
 from epicyclic.units import (
     DEGREE,

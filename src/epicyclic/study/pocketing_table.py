@@ -24,7 +24,7 @@ from epicyclic.losses.pocket_tables import (
 )
 from epicyclic.machine.pocket_flow import POCKETING_SOURCE, flow_request, pocketing_method
 from epicyclic.oil.properties import MixtureState
-from epicyclic.results.result import origin
+from epicyclic.result.result import origin
 from epicyclic.study.operating import AXES
 from epicyclic.study.pockets import mesh_duties
 from epicyclic.study.sweeps.plan import SweepPlan, make_plan

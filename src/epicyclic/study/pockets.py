@@ -28,7 +28,7 @@ from epicyclic.losses.pocket_tables import FLOW_NUMBERS, FlowFamily, flow_figure
 from epicyclic.machine.element import Fluids, joined_key
 from epicyclic.machine.gear_mesh import MeshDuty
 from epicyclic.machine.pocket_flow import flow_family, oil_in_mesh, pocket_notes, solve_pockets
-from epicyclic.results.result import of_gear
+from epicyclic.result.result import of_gear
 from epicyclic.study.meshes import Variable, variable
 from epicyclic.study.solve import build_computed
 from epicyclic.units import (

@@ -17,8 +17,8 @@ from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, scaled_figure
 from epicyclic.machine.element import OIL
 from epicyclic.machine.gear_mesh import elastic_loads, load_mesh
 from epicyclic.machine.pocket_flow import flow_numbers, flow_requests
-from epicyclic.results.physical import judged
-from epicyclic.results.result import Result
+from epicyclic.result.physical import judged
+from epicyclic.result.result import Result
 from epicyclic.study.operating import AXES
 
 # The sets of a case whose losses are computed.
@@ -56,28 +56,13 @@ WARMER = (30.0, 60.0)
 are read between two of their flows where one between them was foretold. [K]"""
 
 
-def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
-    """The losses of a case.
-
-    Parameters
-    ----------
-    case : PlanetaryCase or GearPairCase
-        From `load_case`.
-    flow_tables : mapping, optional
-        Tables of flows through pockets, as `sweep` makes them for its points; flows that they do
-        not hold are solved.
-
-    Returns
-    -------
-    Result
-        Its status is ``unphysical`` if a loss is below zero, energy does not balance, or teeth or
-        rollers carry or resist with more than any can; the first of its warnings says why.
-
-    Raises
-    ------
-    ConvergenceError
-        If an iteration ends without a solution, or a loss is not a finite number.
-    """
+def solve(
+    case: Case,
+    *,
+    # Tables of flows through pockets; flows that they do not hold are solved.
+    flow_tables: FlowTables | None = None,
+) -> Result:
+    """The losses of a case; errors as for `epicyclic.solve`."""
     built = build(case, flow_tables)
     result = assemble(case, built, built.solve())
     if case.models.load_dependent == "as-tested":

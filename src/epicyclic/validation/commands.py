@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 @output_option("A page with pictures and tables in place of the table: .html, or .pdf.", "FILE")
 def validate(temperatures: bool, bands: bool, output: Path | None) -> None:
     """Compare with published figures: published, computed, difference, verdict."""
-    from epicyclic.report.tables import terminal
+    from epicyclic.show.terminal import terminal
 
     chosen = [
         name for name, is_on in (("--temperatures", temperatures), ("--bands", bands)) if is_on
@@ -66,7 +66,7 @@ def validate(temperatures: bool, bands: bool, output: Path | None) -> None:
     elif bands:
         terminal().print(_banded())
     elif output is None:
-        from epicyclic.report.tables import as_on_page
+        from epicyclic.show.terminal import as_on_page
         from epicyclic.validation.pages import closure_table, validation_table
 
         rows, closures = _compared(), _closures()

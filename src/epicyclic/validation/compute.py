@@ -38,7 +38,7 @@ from epicyclic.losses.friction import (
 )
 from epicyclic.losses.mesh import ohlendorf_closed_form, ohlendorf_loss_factor
 from epicyclic.losses.planet_bearing import roller_loads
-from epicyclic.results.result import Result
+from epicyclic.result.result import Result
 from epicyclic.study.solve import loaded_meshes, mesh_contacts, solve
 
 # What other programs print, computed: one function for each kind of figure.

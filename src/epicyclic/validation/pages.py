@@ -8,10 +8,11 @@ from collections.abc import Callable, Iterator, Sequence
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from epicyclic.report.drawings import svg_text
-from epicyclic.report.explore import explorable
-from epicyclic.report.html import page_html
-from epicyclic.report.page import (
+from epicyclic.result.result import versions
+from epicyclic.show.drawings import explorable, svg_text
+from epicyclic.show.html import page_html
+from epicyclic.show.page import (
+    MISSING,
     Cell,
     Drawing,
     Gallery,
@@ -22,11 +23,10 @@ from epicyclic.report.page import (
     Table,
     aligned,
     number,
+    shown,
 )
-from epicyclic.report.shown import MISSING, shown
-from epicyclic.report.tables import number_table
-from epicyclic.results.result import versions
 from epicyclic.show.plots.style import styled_figure
+from epicyclic.show.terminal import number_table
 from epicyclic.units import percent, unit_text
 from epicyclic.validation.compare import (
     CLOSURES,

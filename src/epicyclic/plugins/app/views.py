@@ -17,8 +17,8 @@ from epicyclic.errors import EpicyclicError
 from epicyclic.plugins.app import worker as tasks
 from epicyclic.plugins.app.case_form import Desk, Shelf, number_in
 from epicyclic.plugins.app.worker import IN_PAGE, MESH, Answer, Doing, Ended, Latest, Study, Worker
-from epicyclic.report.html import items_html
-from epicyclic.report.page import Drawing, Gallery, Item, KeyFigure, Listing, Row, Section, Table
+from epicyclic.show.html import items_html
+from epicyclic.show.page import Drawing, Gallery, Item, KeyFigure, Listing, Row, Section, Table
 from epicyclic.study.operating import OPERATING, OperatingValue
 
 # Chapters of a report on the page: tables at once, figures as they are drawn, each to save.

@@ -24,18 +24,17 @@ from epicyclic.kernels import listeners
 from epicyclic.losses.friction import contact_progress
 from epicyclic.plugins.rexs.exporting import rexs_bytes
 from epicyclic.plugins.rexs.files import is_rexs
-from epicyclic.records.contents import contents_of, set_of
-from epicyclic.records.record import ResultRecord, growing_record, sets_of
-from epicyclic.report.drawings import svg_text
-from epicyclic.report.map_page import map_key_figures, map_sections
-from epicyclic.report.page import Drawing, KeyFigure, Section, Table
-from epicyclic.report.result_page import result_section, result_sections
-from epicyclic.report.result_tables import key_figures
-from epicyclic.report.side_by_side import side_by_side
-from epicyclic.results.result import in_words
+from epicyclic.result.result import in_words, set_of
+from epicyclic.show.drawings import svg_text
+from epicyclic.show.map_page import map_key_figures, map_sections
+from epicyclic.show.page import Drawing, KeyFigure, Section, Table
 from epicyclic.show.plots.catalogue import PLOTS, Stored, figure_of
 from epicyclic.show.plots.drawing import POSITION, Turning, turning_mesh, turning_set
 from epicyclic.show.plots.style import figure_bytes
+from epicyclic.show.record import ResultRecord, growing_record, sets_of
+from epicyclic.show.result_page import result_section, result_sections
+from epicyclic.show.result_tables import key_figures, side_by_side
+from epicyclic.show.views import save
 from epicyclic.study.maps.compute import loss_map
 from epicyclic.study.operating import AXES, operating_line
 from epicyclic.study.solve import solve
@@ -356,7 +355,7 @@ def _turning_titles(found: ResultRecord) -> dict[str, str]:
 
 def moved(case: Case, progress: Progress) -> list[KeyFigure]:
     """Key figures of a case, and nothing that takes longer; nothing is kept."""
-    return key_figures(contents_of(solve(case)))
+    return key_figures(solve(case))
 
 
 def compared(first: Case, second: Case, names: tuple[str, str], progress: Progress) -> list[Table]:
@@ -410,5 +409,5 @@ def saved(case: Case, ending: str, original: str | None, progress: Progress) -> 
         path = Path(folder) / f"result{ending}"
         if is_rexs(path):
             return rexs_bytes(path, result, original, None)
-        result.save(path)
+        save(result, path)
         return path.read_bytes()

@@ -243,7 +243,7 @@ def show_model(model: Path) -> None:
     """Show what a fitted MODEL file holds, and its errors."""
     from epicyclic.contact.fitted_models import read_oil_model
     from epicyclic.plugins.contact_solver.show import oil_model_tables
-    from epicyclic.report.tables import terminal
+    from epicyclic.show.terminal import terminal
 
     terminal().print(oil_model_tables(read_oil_model(model)))
 
@@ -252,7 +252,7 @@ def _fit(folders: Sequence[CampaignFolder], output: Path, plot: Path | None) -> 
     """Fit, write and show the models."""
     from epicyclic.plugins.contact_solver.fit import fit_and_write
     from epicyclic.plugins.contact_solver.show import oil_model_tables
-    from epicyclic.report.tables import terminal
+    from epicyclic.show.terminal import terminal
 
     model = fit_and_write(folders, output)
     terminal().print(oil_model_tables(model))

@@ -67,7 +67,7 @@ from epicyclic.plugins.contact_solver.surfaces import (
     generate_profile,
     read_profile,
 )
-from epicyclic.results.result import versions
+from epicyclic.result.result import versions
 from epicyclic.units import (
     MICROMETRE,
     MILLIMETRE,

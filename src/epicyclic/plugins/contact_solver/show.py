@@ -24,8 +24,7 @@ from epicyclic.losses.fitted import domain_ranges
 from epicyclic.plugins.contact_solver.contact import FRAMES, ContactFigure, ContactResult
 from epicyclic.plugins.contact_solver.rough import Frame
 from epicyclic.plugins.contact_solver.surfaces import Profile
-from epicyclic.report.shown import shown
-from epicyclic.report.tables import number_table, plain_table
+from epicyclic.show.page import shown
 from epicyclic.show.plots.style import (
     COLOURS,
     LINE_STYLES,
@@ -34,6 +33,7 @@ from epicyclic.show.plots.style import (
     legend_below,
     styled_figure,
 )
+from epicyclic.show.terminal import number_table, plain_table
 from epicyclic.units import MICROMETRE, Quantity, percent, unit_text
 
 # Table of one line contact.

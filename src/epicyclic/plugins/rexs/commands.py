@@ -22,6 +22,7 @@ from epicyclic.cli.common import (
 )
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import write_file
+from epicyclic.show.terminal import plain_table
 
 if TYPE_CHECKING:
     from epicyclic.plugins.rexs.importing import RexsImport
@@ -36,7 +37,6 @@ def import_tables(
     notes: Sequence[str],  # What is to be known beside the notes of the import itself.
 ) -> RenderableType:
     """Summary of an import."""
-    from epicyclic.report.tables import plain_table
 
     head = Text(f"REXS {found.version}, {found.component}: {len(found.origins)} keys", "bold")
     parts: list[RenderableType] = [head]
@@ -95,7 +95,7 @@ def import_(
     """
     from epicyclic.plugins.rexs.files import stem
     from epicyclic.plugins.rexs.importing import read_rexs
-    from epicyclic.report.tables import terminal
+    from epicyclic.show.terminal import terminal
 
     target = output or Path(f"{stem(file)}.toml")
     if target.exists():

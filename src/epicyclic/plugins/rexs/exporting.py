@@ -45,7 +45,7 @@ from epicyclic.plugins.rexs.model import (
     written,
 )
 from epicyclic.plugins.rexs.sets import Mesh, Pair, PlanetaryParts, Train, choose, chosen_train
-from epicyclic.results.result import Result
+from epicyclic.result.result import Result
 from epicyclic.units import RPM, format_number
 
 # A gear set as the parts of a new REXS file.

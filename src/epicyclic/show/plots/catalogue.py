@@ -13,10 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from epicyclic.errors import InputError, Problem
-from epicyclic.records.contents import set_of
-from epicyclic.records.files import is_sweep
-from epicyclic.records.record import ResultRecord, sets_of
-from epicyclic.results.result import in_words
+from epicyclic.result.result import in_words, set_of
+from epicyclic.show.files import is_sweep
 from epicyclic.show.plots.drawing import plot_gear_set, plot_teeth
 from epicyclic.show.plots.heat_network import plot_heat_network
 from epicyclic.show.plots.loss_map import (
@@ -62,6 +60,7 @@ from epicyclic.show.plots.sweep import (
     sweep_line,
     varied,
 )
+from epicyclic.show.record import ResultRecord, sets_of
 from epicyclic.study.maps.tables import map_case, map_inputs
 from epicyclic.study.operating import operating_line
 from epicyclic.study.shapes import gear_shapes
@@ -255,7 +254,7 @@ def _heat(stored: Stored) -> list[Panel]:
     heat = stored.result.heat if isinstance(stored, ResultRecord) else None
     if heat is None or not heat.ways:
         return []
-    return [Panel("", partial(plot_heat_network, heat.balance))]
+    return [Panel("", partial(plot_heat_network, heat))]
 
 
 PLOTS: dict[str, Plot] = {

@@ -18,7 +18,7 @@ from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from epicyclic.results.result import in_words
+from epicyclic.result.result import in_words
 from epicyclic.show.plots.mesh import top_of_scale
 from epicyclic.show.plots.style import COLOUR_MAP, COLOURS, label_of, legend_below, styled_figure
 

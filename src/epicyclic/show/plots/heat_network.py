@@ -15,8 +15,7 @@ from matplotlib.patches import Polygon, Rectangle
 
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.element import OIL
-from epicyclic.results.heat import HeatBalance
-from epicyclic.results.result import in_words
+from epicyclic.result.result import HeatBalance, in_words
 from epicyclic.show.plots.power_flow import INK, SLIDE, SOFT, Arrow, draw_box, fit
 from epicyclic.show.plots.style import COLOURS, LINE_STYLES, styled_figure
 from epicyclic.units import CELSIUS, format_number, unit_text

@@ -13,8 +13,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from epicyclic.case.tables.uncertainty import MODEL_FORM
-from epicyclic.records.contents import ResultContents
-from epicyclic.results.result import in_words
+from epicyclic.result.result import Result, in_words
 from epicyclic.show.plots.style import COLOURS, legend_below, styled_figure, write_beside
 from epicyclic.units import decimals_of, format_number, percent, power_unit
 
@@ -32,7 +31,7 @@ ROOM = 1.32
 MOST_BARS = 16
 
 
-def plot_losses(result: ResultContents, ax: Axes) -> Axes:
+def plot_losses(result: Result, ax: Axes) -> Axes:
     """Every component of the loss, its power and share; of several sets every set and part."""
     unit, scale = power_unit(result.total)
     total, rows = result.total / scale, _rows(result, scale)
@@ -57,7 +56,7 @@ def plot_losses(result: ResultContents, ax: Axes) -> Axes:
     return ax
 
 
-def plot_loss_sum(result: ResultContents, ax: Axes) -> Axes:
+def plot_loss_sum(result: Result, ax: Axes) -> Axes:
     """How the components add up to the total loss, the largest of each group first."""
     start = 0.0
     labels: list[str] = []
@@ -77,21 +76,23 @@ def plot_loss_sum(result: ResultContents, ax: Axes) -> Axes:
     return ax
 
 
-def _rows(result: ResultContents, scale: float) -> list[tuple[str, str, float]]:
+def _rows(result: Result, scale: float) -> list[tuple[str, str, float]]:
     """Label, group and power of every bar: of every set, or what a single one loses by component.
 
     Where these are too many, all losses of a mesh, bearing or body are one.
     """
     sums: dict[tuple[str, str], float] = {}
-    for name, label in _labels(result).items():
-        key = in_words(label), result.groups[name]
-        sums[key] = sums.get(key, 0.0) + result.losses[name] / scale
+    labels = _labels(result)
+    for term in result.terms:
+        if term.name in labels:
+            key = in_words(labels[term.name]), term.group
+            sums[key] = sums.get(key, 0.0) + term.watts / scale
     return [(label, group, power) for (label, group), power in sums.items()]
 
 
-def _labels(result: ResultContents) -> dict[str, str]:
+def _labels(result: Result) -> dict[str, str]:
     """The bar to which each loss belongs."""
-    shown = [name for name in result.losses if name not in result.not_included]
+    shown = [term.name for term in result.terms if not term.left_out]
     if result.kind == "train":
         sets = {name: name.partition(".")[0] for name in shown}
         if len(set(sets.values())) > 1:

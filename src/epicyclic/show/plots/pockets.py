@@ -19,7 +19,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from epicyclic.results.result import in_words, of_gear
+from epicyclic.result.result import in_words, of_gear
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
     COLOURS,

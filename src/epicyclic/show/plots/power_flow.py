@@ -11,9 +11,9 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyBboxPatch, Polygon, Rectangle
 
-from epicyclic.records.contents import ResultContents
-from epicyclic.records.power_flow import Line, Link, TrainFlow, power_flow
+from epicyclic.result.result import Result
 from epicyclic.show.plots.style import COLOURS
+from epicyclic.show.power_flow import Line, Link, TrainFlow, power_flow
 from epicyclic.units import RPM, format_number, known_text, percent, torque_text, unit_text
 
 # Shapes that the slides of power and of heat have in common. Every length is in inches.
@@ -135,7 +135,7 @@ class _Layout:
         return [link for link in links if link.members and abs(link.torque) > NO_POWER * most]
 
 
-def plot_power_flow(result: ResultContents, ax: Axes) -> Axes:
+def plot_power_flow(result: Result, ax: Axes) -> Axes:
     """Which power each set takes from which shaft, what circulates, what is lost where."""
     flow = power_flow(result)
     ax.set_axis_off()
@@ -156,16 +156,17 @@ def plot_power_flow(result: ResultContents, ax: Axes) -> Axes:
     return ax
 
 
-def _headline(result: ResultContents) -> str:
-    words = [f"state {result.state}"] if result.state else []
-    if result.ratio is not None:
-        words.append(f"ratio {_shown(result.ratio)}")
+def _headline(result: Result) -> str:
+    train = result.train
+    words = [f"state {train.state}"] if train and train.state else []
+    if train and train.ratio is not None:
+        words.append(f"ratio {_shown(train.ratio)}")
     if result.efficiency is not None:
         words.append(f"efficiency {100 * result.efficiency:.2f} %")
     words.append(f"loss {_power(result.total)}")
-    if result.power_ratio is not None:
-        words.append(f"rolling power {_shown(result.power_ratio, 3)} times the input power")
-    if result.self_locking:
+    if train and train.power_ratio is not None:
+        words.append(f"rolling power {_shown(train.power_ratio, 3)} times the input power")
+    if train and train.self_locking:
         words.append("self-locking")
     return ", ".join(words)
 

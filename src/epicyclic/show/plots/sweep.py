@@ -17,7 +17,7 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from epicyclic.records.files import is_sweep
+from epicyclic.show.files import is_sweep
 from epicyclic.show.plots.loss_map import draw_lines
 from epicyclic.show.plots.style import (
     COLOUR_MAP,

@@ -16,7 +16,7 @@ from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.ranges import range_text
-from epicyclic.results.result import Result
+from epicyclic.result.result import Result
 from epicyclic.study.friction import compare_friction, recommended
 from epicyclic.units import known_text, percent
 

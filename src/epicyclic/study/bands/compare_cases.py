@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.errors import ConvergenceError
-from epicyclic.results.result import Result, versions
+from epicyclic.result.result import Result, versions
 from epicyclic.study.bands.nearby import (
     INPUT_POWER,
     Outputs,

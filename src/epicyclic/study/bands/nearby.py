@@ -15,7 +15,7 @@ from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
 from epicyclic.errors import EpicyclicError, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import LOAD_DEPENDENT
-from epicyclic.results.result import Result
+from epicyclic.result.result import Result
 from epicyclic.study.bands.inputs import model_form_of, uncertain_values
 from epicyclic.study.solve import flows_around, solve, without_torque
 from epicyclic.study.sweeps.run import AS_TESTED

@@ -15,7 +15,7 @@ from epicyclic.case.case import Case
 from epicyclic.case.read import plain
 from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.errors import InputError, Problem, Status, raise_any
-from epicyclic.results.result import Result
+from epicyclic.result.result import Result
 from epicyclic.study.bands.nearby import (
     INPUT_POWER,
     Nearby,

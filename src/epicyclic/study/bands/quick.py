@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import UncertainValue
-from epicyclic.results.result import Result
+from epicyclic.result.result import Result
 from epicyclic.study.bands.advice import Known, model_remarks
 from epicyclic.study.bands.inputs import remedy_for
 from epicyclic.study.bands.nearby import HALF_WIDTH, Nearby, factors_of, look_nearby

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.errors import ConvergenceError
-from epicyclic.results.result import origin
+from epicyclic.result.result import origin
 from epicyclic.study.bands.advice import model_remarks
 from epicyclic.study.bands.inputs import remedy_for
 from epicyclic.study.bands.nearby import SUMS, Nearby, Outputs, factors_of, look_nearby

@@ -18,7 +18,7 @@ from epicyclic.case.messages import did_you_mean, written
 from epicyclic.case.train import TrainCase
 from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.gears.gear import HOUSING
-from epicyclic.results.result import Layout, number_fields
+from epicyclic.result.result import Layout, number_fields
 from epicyclic.study.maps.tables import Lookup, check_map, map_case
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
 from epicyclic.study.solve import solve

@@ -26,7 +26,7 @@ from epicyclic.machine.heat_flow import Course, Curves, Link, Source, Transient
 from epicyclic.machine.heat_paths import INLET
 from epicyclic.machine.machine import Machine
 from epicyclic.machine.solve import Solution, solve_machine
-from epicyclic.results.result import origin
+from epicyclic.result.result import origin
 from epicyclic.study.maps.compute import MapPlan, held_shaft, map_plan, resolving_zero
 from epicyclic.study.maps.cycle import TIME, Cycle, open_cycle
 from epicyclic.study.maps.duty import check_states, crowded, point_of, texts_of

@@ -17,7 +17,7 @@ from epicyclic.builders.notes import NOT_INCLUDED
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.losses.ranges import OUT_OF_RANGE
-from epicyclic.results.result import versions
+from epicyclic.result.result import versions
 from epicyclic.study.bands.inputs import model_form_of
 from epicyclic.study.measured.intervals import Fit, FittedParameter
 from epicyclic.study.measured.residuals import Computed

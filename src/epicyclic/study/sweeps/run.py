@@ -16,7 +16,7 @@ from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import check_place, whole_file
 from epicyclic.netcdf_file import texts_not_copied
-from epicyclic.results.result import number_fields, origin
+from epicyclic.result.result import number_fields, origin
 from epicyclic.study.operating import AXES, axis_name
 from epicyclic.study.sweeps.axes import ROW, columns_of, unit_of
 from epicyclic.study.sweeps.plan import SweepPlan, make_plan

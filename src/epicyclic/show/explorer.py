@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.colors import to_hex
 
-from epicyclic.report.page import Explorer, Item, Listing
+from epicyclic.show.page import Explorer, Item, Listing
 from epicyclic.show.plots.loss_map import BEST_EFFICIENCY, EFFICIENCIES, LEAST_EFFICIENCY
 from epicyclic.show.plots.style import COLOUR_MAP
 from epicyclic.study.operating import OPERATING, PLANE

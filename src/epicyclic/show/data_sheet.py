@@ -1,4 +1,4 @@
-"""What `check` shows: the gears of a case as on a data sheet, its oil, and what was found."""
+"""What is known without solving: gears as on a data sheet, states of a train, the library."""
 
 from __future__ import annotations
 
@@ -6,16 +6,32 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from rich.console import RenderableType
+from rich.console import Group, RenderableType
 from rich.text import Text
 
+from epicyclic import library
 from epicyclic.case.case import Case
-from epicyclic.oil.oil import GoldLaw
-from epicyclic.report import page
-from epicyclic.report.shown import MISSING
-from epicyclic.report.tables import as_on_page, titled
+from epicyclic.case.train import TrainCase
+from epicyclic.gears.gear import HOUSING
+from epicyclic.oil.oil import GoldLaw, Oil
+from epicyclic.oil.properties import OilState, oil_state
+from epicyclic.show import page
+from epicyclic.show.page import MISSING, shown
+from epicyclic.show.terminal import as_on_page, plain_table, titled
 from epicyclic.study.data_sheet import DataSheet, GearSheet, MeshSheet, data_sheets, oil_at_inlet
-from epicyclic.units import unit_text
+from epicyclic.study.trains import StateKinematics, train_states
+from epicyclic.units import (
+    CELSIUS,
+    KILOGRAM_PER_CUBIC_METRE,
+    PER_GIGAPASCAL,
+    SQUARE_MM_PER_SECOND,
+    Quantity,
+    format_number,
+    unit_text,
+)
+
+# What `check` shows: the gears of a case as on a data sheet, its oil, and what was found.
+
 
 MM, UM = 1e3, 1e6
 _GearRow = tuple[str, str, Callable[[GearSheet], str]]
@@ -144,3 +160,130 @@ def _oil(case: Case) -> str | None:
         f"nu {UM * state.kinematic_viscosity:.4g} mm²/s, rho {state.density:.4g} kg/m³, "
         f"alpha {1e9 * state.pressure_viscosity:.4g} 1/GPa {law}."
     )
+
+
+# Shafts of a train and the ratio of every state, for a terminal.
+
+
+def state_tables(case: TrainCase) -> RenderableType:
+    """Shafts of a train with their members, and the ratio of every state."""
+    states = train_states(case)
+    shafts = plain_table("Shafts")
+    shafts.add_column("", no_wrap=True)
+    shafts.add_column("turns together")
+    for name, members in case.shape.shafts.items():
+        shafts.add_row("housing, stands still" if name == HOUSING else name, ", ".join(members))
+    table = plain_table(
+        f"Ratio: speed of {case.operation.input} over that of {case.operation.output}"
+    )
+    for head in ("state", "ratio", "step", "held", "joined", ""):
+        numeric = head in ("ratio", "step")
+        table.add_column(head, justify="right" if numeric else "left", no_wrap=numeric)
+    before: StateKinematics | None = None
+    for state in states:
+        table.add_row(
+            state.name or "always",
+            MISSING if state.ratio is None else shown(state.ratio, 5),
+            _step(before, state),
+            ", ".join(state.held),
+            ", ".join(" + ".join(group) for group in state.joined),
+            state.remark,
+        )
+        before = state
+    return Group(shafts, table)
+
+
+def _step(before: StateKinematics | None, state: StateKinematics) -> str:
+    """Ratio of the state before over that of this one, where both turn the output one way."""
+    if before is None or not before.ratio or not state.ratio or before.ratio * state.ratio < 0:
+        return ""
+    return format_number(before.ratio / state.ratio, 4)
+
+
+# Tables of what is built in.
+
+
+def case_table() -> RenderableType:
+    """Built-in cases and the words that name their variants."""
+    table = plain_table("Built-in cases")
+    table.add_column("name", no_wrap=True)
+    table.add_column("what it is")
+    table.add_column("variants: at most one word of each line, joined by -")
+    for name in library.case_files():
+        groups = library.case_variants().get(name, [])
+        words = "\n".join(f"{' '.join(group['words'])}  ({group['about']})" for group in groups)
+        table.add_row(name, library.builtin_case(name)["title"], words)
+    example = Text("For example: epicyclic run talbot-2012-n6-polished-40C")
+    return Group(table, example)
+
+
+def oil_table() -> RenderableType:
+    """The oil library."""
+    table = plain_table("Built-in oils")
+    table.add_column("name", no_wrap=True)
+    table.add_column("kind")
+    viscosity = unit_text(SQUARE_MM_PER_SECOND.display)
+    for column in (
+        f"ν 40 °C\n{viscosity}",
+        f"ν 100 °C\n{viscosity}",
+        f"ρ 40 °C\n{unit_text(KILOGRAM_PER_CUBIC_METRE.display)}",
+        f"α 40 °C\n{unit_text(PER_GIGAPASCAL.display)}",
+    ):
+        table.add_column(column, justify="right")
+    for name in sorted(library.oil_names(), key=_by_grade):
+        oil = Oil.model_validate(library.oil_table(name))
+        warm, hot = _state(oil, "40 degC"), _state(oil, "100 degC")
+        table.add_row(
+            name,
+            oil.kind,
+            shown(SQUARE_MM_PER_SECOND.to_display(warm.kinematic_viscosity)),
+            shown(SQUARE_MM_PER_SECOND.to_display(hot.kinematic_viscosity)),
+            shown(KILOGRAM_PER_CUBIC_METRE.to_display(warm.density)),
+            shown(PER_GIGAPASCAL.to_display(warm.pressure_viscosity), 3),
+        )
+    return Group(table, Text("Sources of the values: epicyclic oils NAME"))
+
+
+def _state(oil: Oil, temperature: str) -> OilState:
+    return oil_state(oil, CELSIUS.parse(temperature))
+
+
+def _by_grade(name: str) -> list[tuple[bool, int, str]]:
+    """Sort key that puts ISO VG 68 before ISO VG 100."""
+    return [(part.isdigit(), int(part) if part.isdigit() else 0, part) for part in name.split("-")]
+
+
+def oil_sheet(name: str) -> RenderableType:
+    """Every value of one oil with its source."""
+    oil = Oil.model_validate(library.oil_table(name))
+    table = plain_table(f"{name}: {oil.title}")
+    table.add_column("property")
+    table.add_column("value", justify="right", no_wrap=True)
+    table.add_column("source")
+    for point in oil.kinematic_viscosity:
+        table.add_row(
+            f"kinematic viscosity at {_text(CELSIUS, point.temperature, 4)}",
+            _text(SQUARE_MM_PER_SECOND, point.value),
+            point.source,
+        )
+    for density in oil.density:
+        table.add_row(
+            f"density at {_text(CELSIUS, density.temperature, 4)}",
+            _text(KILOGRAM_PER_CUBIC_METRE, density.value),
+            density.source,
+        )
+    law = oil.pressure_viscosity
+    calibrated = " (calibrated)" if law.calibrated else ""
+    table.add_row(
+        f"pressure-viscosity coefficient at 40 °C, {law.law} law{calibrated}",
+        _text(PER_GIGAPASCAL, _state(oil, "40 degC").pressure_viscosity, 4),
+        law.source,
+    )
+    factor = oil.lubricant_factor
+    table.add_row("lubricant factor X_L", f"{factor.value:g}", factor.source)
+    return Group(Text(oil.description), table)
+
+
+def _text(kind: Quantity, value: float, digits: int = 6) -> str:
+    """An SI `value` with its unit, as tables show them."""
+    return f"{shown(kind.to_display(value), digits)} {unit_text(kind.display)}"

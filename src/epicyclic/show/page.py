@@ -1,4 +1,4 @@
-"""What a page of a report consists of."""
+"""What pages and terminals show: numbers, tables, lists, figures, chapters."""
 
 from __future__ import annotations
 
@@ -8,7 +8,36 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
-from epicyclic.report.shown import MISSING, shown
+from epicyclic.units import format_number, percent
+
+# Numbers and units as tables show them.
+
+
+MISSING = "-"
+"""Stands where there is no number."""
+
+_ROUNDING_NOISE = 1e-9
+"""What is smaller, in any unit that tables use, is left over from rounding and shown as 0."""
+_SMALLEST_ERROR = 1e-4
+"""Of what is computed, that has digits. [1]"""
+
+
+def shown(value: float, digits: int = 4) -> str:
+    """`value` with up to `digits` significant digits."""
+    if math.isnan(value):
+        return MISSING
+    return format_number(0.0 if abs(value) < _ROUNDING_NOISE else value, digits)
+
+
+def error_text(share: float) -> str:
+    """The error of a balance or an interpolation, as a share of one."""
+    if math.isnan(share):
+        return MISSING
+    return percent(share, 2) if abs(share) >= _SMALLEST_ERROR else "under 0.01 %"
+
+
+# What a page of a report consists of.
+
 
 SHORT = 6
 """Lines of a table that is not divided between pages."""
@@ -40,7 +69,7 @@ def number(value: float | None, key: str, digits: int = 4, text: str = "") -> Ce
     """A cell that shows `value`, as `text` if that is given."""
     if value is None:
         return Cell(MISSING)
-    return Cell(text or shown(value, digits), value, key)
+    return Cell(text or shown(value, digits), value + 0.0, key)  # no -0.0
 
 
 def tenths(value: float | None, key: str = "") -> Cell:

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from epicyclic.gears.gear import HOUSING
-from epicyclic.records.contents import ResultContents
-from epicyclic.units import RPM
+from epicyclic.result.result import Result
 
 NO_POWER = 1e-9
 """Power and torque, relative to the largest one, that is none. [1]"""
@@ -78,40 +77,38 @@ class TrainFlow:
         return max((abs(link.circulating) for link in self.links), default=0.0)
 
 
-def power_flow(result: ResultContents) -> TrainFlow:
+def power_flow(result: Result) -> TrainFlow:
     """The power flow of a result; a single set or pair is one stage.
 
     A link circulates what flows in closed loops from stage to stage; the rest leads from where
     power enters to where it leaves or is lost. Where several loops share a link, the split between
     them is one of several possible ones.
     """
-    speeds = {
-        name: (member.speed.value or 0.0) / RPM.to_display(1.0)
-        for name, member in result.members.items()
-    }
-    torques = {name: member.torque.value or 0.0 for name, member in result.members.items()}
-    if result.kind != "train":
+    members, train = result.flow.members, result.train
+    speeds = {name: member.speed for name, member in members.items()}
+    torques = {name: member.torque for name, member in members.items()}
+    if train is None:
         stage = "gear set" if result.kind == "planetary" else "gear pair"
-        powers = {name: member.power.value or 0.0 for name, member in result.members.items()}
+
+        def power_of(key: str) -> float:
+            return members[key].power
+
         return _flow(
             speeds,
             torques,
             {stage: torques},
             {stage: result.total},
-            ends=(
-                max(powers, key=lambda key: powers[key]),
-                min(powers, key=lambda key: powers[key]),
-            ),
+            ends=(max(members, key=power_of), min(members, key=power_of)),
             shafts={name: (f"{stage}.{name}",) for name in torques},
         )
     return _flow(
         speeds,
         torques,
-        result.stage_torques,
-        result.stages,
-        clutches=result.clutches,
-        rolling=result.rolling_power,
-        ends=(result.input, result.output),
+        train.stages,
+        result.stage_losses,
+        clutches=train.clutches,
+        rolling=train.rolling,
+        ends=(train.input, train.output),
         shafts=result.inputs.get("shafts", {}),
     )
 

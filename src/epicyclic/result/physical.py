@@ -9,7 +9,7 @@ from dataclasses import replace
 from epicyclic.errors import Status
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.planets import BearingFigures
-from epicyclic.results.result import Result, in_words
+from epicyclic.result.result import Result, in_words
 from epicyclic.units import GIGAPASCAL, WATT
 
 NEGLIGIBLE = 1e-3

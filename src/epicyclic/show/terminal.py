@@ -1,46 +1,145 @@
-"""Tables of results, libraries and comparisons for a terminal."""
+"""Pages on a terminal: tables that keep their numbers whole, however narrow it is."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from rich import box
+from rich.cells import cell_len
 from rich.columns import Columns
-from rich.console import Console, Group, JustifyMethod, RenderableType
+from rich.console import Console, ConsoleOptions, Group, JustifyMethod, RenderableType, RenderResult
 from rich.padding import Padding
+from rich.table import Column, Table
 from rich.text import Text
 
 from epicyclic.case.messages import sentence
 from epicyclic.losses.ranges import share_text
-from epicyclic.records.contents import ResultContents, contents_of
-from epicyclic.report import page
-from epicyclic.report.fitting import FittedTable
-from epicyclic.report.heat_tables import heat_items
-from epicyclic.report.result_tables import (
-    Labels,
+from epicyclic.result.result import Result
+from epicyclic.show import page
+from epicyclic.show.result_tables import (
     bearing_tables,
+    clutches_table,
+    heat_items,
     key_figures,
+    locking_text,
     losses_table,
     members_table,
     mesh_tables,
     oil_table,
-    planets_table,
-    standing_items,
-    users_text,
-)
-from epicyclic.report.train_tables import (
-    clutches_table,
-    locking_text,
     part_tables,
+    planets_table,
     rolling_table,
     shafts_table,
+    standing_items,
     sums_table,
     terms_table,
+    users_text,
 )
-from epicyclic.results.result import Result, number_fields
 from epicyclic.study.friction import FrictionComparison, recommended
 from epicyclic.study.operating import operating_line
+
+# Tables of a terminal that keep their numbers whole, however narrow it is.
+
+
+GAP = 3
+"""Between two columns, the spaces on both sides of a line that is not drawn."""
+LONGEST_WORD = 24
+"""Longest word that stays whole; what is longer is an address, or a key with its table."""
+FIRST_SHARE = 0.5
+"""Largest share of the width for the names in the first column."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Need:
+    """Width that a column needs at least, for its longest word, and at most."""
+
+    least: int
+    most: int
+
+
+class FittedTable(Table):
+    """A table that a narrow terminal shows in parts, one below the other.
+
+    Text wraps between words. Where that is not enough, the columns are shared out to several
+    tables that all begin with the first column.
+    """
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        needs = [_need_of(column) for column in self.columns]
+        room = options.max_width + 1
+        if sum(need.most + GAP for need in needs) <= room:
+            yield from super().__rich_console__(console, options)
+            return
+        first = min(needs[0].least, int(FIRST_SHARE * room))
+        rest = room - first - 2 * GAP
+        needs = [_Need(min(need.least, rest), need.most) for need in needs]
+        needs[0] = _Need(first, needs[0].most)
+        for number, block in enumerate(_blocks(needs, room)):
+            widths = _widths([needs[place] for place in block], room)
+            part = self._part(block, widths, bool(number))
+            yield from Table.__rich_console__(part, console, options)
+
+    def _part(self, block: Sequence[int], widths: Sequence[int], continued: bool) -> Table:
+        """Some of the columns, in the style of the whole."""
+        part = Table(
+            title=None if continued else self.title,
+            title_justify=self.title_justify,
+            title_style=self.title_style,
+            header_style=self.header_style,
+            box=self.box,
+            pad_edge=self.pad_edge,
+            show_header=self.show_header,
+        )
+        chosen = [self.columns[place] for place in block]
+        for column, width in zip(chosen, widths, strict=True):
+            part.add_column(column.header, justify=column.justify, width=width, overflow="fold")
+        cells = zip(*(column.cells for column in chosen), strict=True)
+        for row, content in zip(self.rows, cells, strict=True):
+            part.add_row(*content, style=row.style, end_section=row.end_section)
+        return part
+
+
+def _need_of(column: Column) -> _Need:
+    """Room for the longest word and for the longest line of a column."""
+    texts = [_plain(one) for one in (column.header, *column.cells)]
+    words = [cell_len(word) for text in texts for word in text.split()]
+    lines = [cell_len(line) for text in texts for line in text.splitlines()]
+    most = max(lines, default=1)
+    return _Need(min(most if column.no_wrap else max(words, default=1), LONGEST_WORD, most), most)
+
+
+def _plain(cell: object) -> str:
+    return cell.plain if isinstance(cell, Text) else str(cell)
+
+
+def _blocks(needs: Sequence[_Need], room: int) -> Iterator[list[int]]:
+    """Places of the columns of each part, the first one in all."""
+    block, taken = [0], needs[0].least + GAP
+    for place, need in enumerate(needs[1:], 1):
+        if len(block) > 1 and taken + need.least + GAP > room:
+            yield block
+            block, taken = [0], needs[0].least + GAP
+        block.append(place)
+        taken += need.least + GAP
+    yield block
+
+
+def _widths(needs: Sequence[_Need], room: int) -> list[int]:
+    """Widths of the columns of a part; what is left goes to those that want more."""
+    widths = [need.least for need in needs]
+    left = room - sum(widths) - GAP * len(needs)
+    while left > 0 and any(width < need.most for width, need in zip(widths, needs, strict=True)):
+        narrow = [n for n, need in enumerate(needs) if widths[n] < need.most]
+        smallest = min(narrow, key=lambda n: widths[n])
+        widths[smallest] += 1
+        left -= 1
+    return widths
+
+
+# Tables of results, libraries and comparisons for a terminal.
+
 
 PIPE_WIDTH = 100
 """Width of tables that do not go to a terminal. [characters]"""
@@ -59,49 +158,52 @@ def result_tables(
     known: Sequence[str | page.Listing] = (),
 ) -> RenderableType:
     """Everything an engineer reads first: losses, figures, warnings, sources."""
-    contents = contents_of(result)
-    labels = {field.key: field.label for field in number_fields(result.layout)}
-    parts: list[RenderableType] = [_headline(contents)]
+    parts: list[RenderableType] = [_headline(result)]
     parts += [it if isinstance(it, str) else as_on_page(it) for it in known]
-    parts += map(as_on_page, standing_items(contents))
-    parts += map(as_on_page, _tables(contents, labels))
+    parts += map(as_on_page, standing_items(result))
+    parts += map(as_on_page, _tables(result))
     if result.heat is not None:
         parts += map(as_on_page, heat_items(result.heat))
     parts += remarks
-    parts += map(as_on_page, (*oil_table(contents, labels), *planets_table(contents)))
-    parts += [_methods(contents), _list("Warnings", contents.warnings)]
-    return titled(result.title or result.kind, *parts, _list("Sources", contents.sources))
+    parts += map(as_on_page, (*oil_table(result), *planets_table(result)))
+    parts += [_methods(result), _list("Warnings", result.warnings)]
+    return titled(result.title or result.kind, *parts, _list("Sources", result.sources))
 
 
-def _headline(contents: ResultContents) -> Group:
+def _headline(result: Result) -> Group:
     """Operating point and key figures."""
-    found = [f"{one.label} {one.cell.text} {one.unit}".rstrip() for one in key_figures(contents)]
+    found = [f"{one.label} {one.cell.text} {one.unit}".rstrip() for one in key_figures(result)]
     lines: list[RenderableType] = [
-        Text(operating_line(contents.inputs["operation"])),
+        Text(operating_line(result.inputs["operation"])),
         Columns(found, padding=(0, 3)),
     ]
-    if locking := locking_text(contents):
+    if result.train and (locking := locking_text(result.train)):
         lines.append(Text(locking, style="bold"))
     return Group(*lines)
 
 
-def _tables(contents: ResultContents, labels: Labels) -> Iterator[page.Table]:
+def _tables(result: Result) -> Iterator[page.Table]:
     """Losses and figures of a set or train."""
-    if contents.kind == "train":
-        yield from (sums_table(contents), shafts_table(contents), rolling_table(contents))
-        yield from clutches_table(contents)
-        yield from terms_table(contents)
+    if (train := result.train) is not None:
+        yield from (sums_table(result, train), shafts_table(result), rolling_table(result, train))
+        yield from clutches_table(train)
+        yield from terms_table(result, train)
     else:
-        yield from (losses_table(contents), members_table(contents))
-    yield from mesh_tables(contents, labels)
-    yield from bearing_tables(contents, labels)
-    yield from part_tables(contents, labels)
+        yield from (losses_table(result), members_table(result))
+    yield from mesh_tables(result)
+    yield from bearing_tables(result)
+    yield from part_tables(result)
 
 
 def titled(title: str, *parts: RenderableType) -> RenderableType:
     """Parts with space between them, under a title."""
-    whole = (Text(title, style="bold"), *(Text(it) if isinstance(it, str) else it for it in parts))
-    return Group(*(Padding(part, (0, 0, 1, 0)) for part in whole))
+    return spaced(Text(title, style="bold"), *parts)
+
+
+def spaced(*parts: RenderableType) -> RenderableType:
+    """Parts with space below each."""
+    texts = (Text(it) if isinstance(it, str) else it for it in parts)
+    return Group(*(Padding(part, (0, 0, 1, 0)) for part in texts))
 
 
 def as_on_page(item: page.Table | page.Listing) -> RenderableType:
@@ -121,10 +223,10 @@ def as_on_page(item: page.Table | page.Listing) -> RenderableType:
     return Group(table, Text(item.note)) if item.note else table
 
 
-def _methods(contents: ResultContents) -> Group:
+def _methods(result: Result) -> Group:
     """Which method computed which terms, each method once."""
     users: dict[str, list[str]] = {}
-    for name, method in contents.methods.items():
+    for name, method in result.methods.items():
         users.setdefault(method, []).append(name)
     return _list("Methods", [f"{users_text(names)}: {how}" for how, names in users.items()])
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from epicyclic.case.tables.uncertainty import MODEL_FORM
-from epicyclic.report.page import Listing
-from epicyclic.results.result import Result, in_words
+from epicyclic.result.result import Result, in_words
+from epicyclic.show.page import Listing
 from epicyclic.study.bands.advice import Known, limits_of, measurements_of
 from epicyclic.units import known_text, percent
 

@@ -1,34 +1,39 @@
-"""Reports as one HTML file that needs nothing else: style, figures and script lie within it."""
+"""Reports as one HTML file that needs nothing else, and as PDF."""
 
 from __future__ import annotations
 
 import base64
 import gzip
+import logging
 from collections.abc import Callable
 from datetime import datetime
 from functools import cache
-from importlib import resources
+from importlib import import_module, resources
+from types import ModuleType
 from typing import Any
 
 import jinja2
 import xarray as xr
 from markupsafe import Markup
 
-from epicyclic.records.files import is_sweep
-from epicyclic.records.record import ResultRecord
-from epicyclic.report.drawings import draw
-from epicyclic.report.inputs import input_tables
-from epicyclic.report.map_page import map_key_figures, map_sections
-from epicyclic.report.page import Drawings, Item, Section, gallery
-from epicyclic.report.result_page import result_sections
-from epicyclic.report.result_tables import key_figures
-from epicyclic.report.sweep_page import sweep_key_figures, sweep_sections
-from epicyclic.report.uncertainty_tables import band_figures, uncertainty_items
+from epicyclic.errors import InputError, Problem
+from epicyclic.show.drawings import draw
+from epicyclic.show.files import is_sweep
+from epicyclic.show.inputs import input_tables
+from epicyclic.show.map_page import map_key_figures, map_sections, sweep_key_figures, sweep_sections
+from epicyclic.show.page import Drawings, Item, Section, gallery
 from epicyclic.show.plots.catalogue import Stored, available
 from epicyclic.show.plots.loss_map import map_line
 from epicyclic.show.plots.sweep import sweep_line, thinned
+from epicyclic.show.record import ResultRecord
+from epicyclic.show.result_page import result_sections
+from epicyclic.show.result_tables import key_figures
+from epicyclic.show.uncertainty_tables import band_figures, uncertainty_items
 from epicyclic.study.maps.tables import map_inputs
 from epicyclic.study.operating import operating_line
+
+# Reports as one HTML file that needs nothing else: style, figures and script lie within it.
+
 
 KINDS = {
     "planetary": "Power losses of a planetary gear set",
@@ -175,7 +180,7 @@ def _template() -> jinja2.Template:
 @cache
 def _templates() -> jinja2.Environment:
     return jinja2.Environment(
-        loader=jinja2.PackageLoader("epicyclic.report"),
+        loader=jinja2.PackageLoader("epicyclic.show"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
@@ -185,7 +190,7 @@ def _templates() -> jinja2.Environment:
 
 def _asset(name: str) -> Markup:
     """A file of the package that goes into the page as it is."""
-    files = resources.files("epicyclic.report") / "templates"
+    files = resources.files("epicyclic.show") / "templates"
     return Markup((files / name).read_text(encoding="utf-8"))
 
 
@@ -196,3 +201,44 @@ def _library() -> Markup:
 
     packed = gzip.compress(get_plotlyjs().encode(), mtime=0)
     return Markup(base64.b64encode(packed).decode())
+
+
+# Reports as PDF: the page of `report_html`, set by WeasyPrint.
+
+
+def check_pdf() -> None:
+    """Raise `InputError` if WeasyPrint, which is optional, cannot be used."""
+    _weasyprint()
+
+
+def _weasyprint() -> ModuleType:
+    try:
+        return import_module("weasyprint")
+    except (ImportError, OSError) as error:  # it needs Pango, a library of the system
+        problem = Problem(
+            "-o",
+            ".pdf",
+            f"needs WeasyPrint, which cannot be used: {error}.",
+            'Install it (pip install "epicyclic[pdf]"), or print the .html page from a browser.',
+        )
+        raise InputError([problem], "the command") from None
+
+
+def report_pdf(
+    page: str,  # As `report_html` returns it.
+) -> bytes:
+    """A page as PDF, of its still figures.
+
+    Raises
+    ------
+    InputError
+        If WeasyPrint cannot be used.
+    """
+    weasyprint = _weasyprint()
+
+    # it reports every property of style sheets for screens
+    logging.getLogger("weasyprint").setLevel(logging.CRITICAL)
+    fetcher = weasyprint.urls.URLFetcher(allowed_protocols=["data"])  # nothing from elsewhere
+    document = weasyprint.HTML(string=page, url_fetcher=fetcher)
+    pdf: bytes = document.write_pdf()
+    return pdf

@@ -1,17 +1,33 @@
-"""Checks of what a file holds, so that reports and plots can rely on it."""
+"""Files of results: one NetCDF file with a group for each field, readable without this package."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
+from pydantic_core import from_json
 
-from epicyclic.errors import Problem
+from epicyclic.case.case import Case
+from epicyclic.case.messages import one_line
+from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.files import check_place, whole_file
+from epicyclic.netcdf_file import read_groups
+from epicyclic.result.result import Result
+from epicyclic.result.stored import read_result
+from epicyclic.show.record import ResultRecord, record
+from epicyclic.study.maps.tables import check_map
 from epicyclic.study.operating import AXES
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+# Checks of what a file holds, so that reports and plots can rely on it.
+
 
 RUN_AGAIN = (
     "Write it again: epicyclic run CASE --save FILE.nc, or epicyclic map CASE ... -o FILE.nc."
@@ -221,3 +237,195 @@ def _uncertainty_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
         yield Problem(f"{path}/result", "", f"lacks {', '.join(sorted(lacking))}.", RUN_AGAIN)
     if not isinstance(data.attrs.get("failed"), int | np.integer):
         yield Problem(f"{path}/failed", "", "must be a number.", RUN_AGAIN)
+
+
+# Files of results: one NetCDF file with a group for each field, readable without this package.
+
+
+SUFFIX = ".nc"
+FORMAT = "epicyclic result"
+FORMAT_VERSION = 1
+
+
+def save_result(result: ResultRecord | Case, path: str | Path) -> None:
+    """Write a result with everything that reports and plots show, whole or not at all.
+
+    Parameters
+    ----------
+    result : ResultRecord, PlanetaryCase, GearPairCase or TrainCase
+        A case is solved first.
+    path : str or Path
+        A ``.nc`` file: NetCDF with groups, its own documentation.
+
+    Raises
+    ------
+    InputError
+        If there is no place for the file.
+    """
+    import xarray as xr
+
+    target = Path(path)
+    check_result_output(target)
+    kept = result if isinstance(result, ResultRecord) else record(result)
+    contents = kept.result
+    text = json.dumps(contents.to_dict(), allow_nan=False, ensure_ascii=False)
+    attributes = {
+        "format": FORMAT,
+        "format_version": FORMAT_VERSION,
+        "title": contents.title,
+        "source": f"epicyclic {contents.versions.get('epicyclic', '')}",
+        "created": kept.created,
+        "conventions": "losses in W of the whole gear set, summed over planets; attribute result: "
+        "the result as JSON; attribute given: the case as it was given; groups: meshes, planet "
+        "bearing, shapes",
+        "result": text,
+        "given": json.dumps(kept.given),
+    }
+    tree = xr.DataTree.from_dict({"/": kept.numbers.assign_attrs(attributes), **kept.fields})
+    with whole_file(target) as temporary:
+        tree.to_netcdf(temporary, engine="netcdf4")
+
+
+def check_result_output(path: Path) -> None:
+    """Raise `InputError` unless a result can be written to `path`."""
+    if path.suffix != SUFFIX:
+        problem = Problem("FILE", str(path), f"must end in {SUFFIX}.", f"Name it {path.stem}.nc.")
+        raise InputError([problem], "the command")
+    check_place(path)
+
+
+def is_stored(name: str | Path) -> bool:
+    """True for the name of a stored result, map or sweep, False for that of a case."""
+    return Path(name).suffix.lower() == SUFFIX
+
+
+def is_sweep(data: xr.Dataset) -> bool:
+    """True for what a sweep makes, False for a loss map."""
+    return "torque_loss" not in data and {"total", "status"} <= set(data.data_vars)
+
+
+def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
+    """Read what `save_result`, `write_map`, 'epicyclic sweep' or 'epicyclic uncertainty' wrote.
+
+    Parameters
+    ----------
+    path : str or Path
+        A ``.nc`` file.
+
+    Returns
+    -------
+    ResultRecord or xarray.Dataset
+        A loss map is a dataset as `loss_map` returns it, a sweep as `sweep`, an uncertainty as
+        `uncertainty`.
+
+    Raises
+    ------
+    InputError
+        If it is no such file, is damaged, or holds too much.
+    """
+    source = Path(path)
+    try:
+        fields = read_groups(source)
+        root = fields.pop("")
+        if root.attrs.get("format") == FORMAT:
+            return _record_of(root, fields)
+        if "torque_loss" in root and "reference_shaft" in root.attrs:
+            raise_any(map_problems(root))
+            raise_any(_attribute_problems(root.attrs, "reference_shaft"))
+            check_map(root)
+            return root
+        if {"contribution", "nominal"} <= set(root.data_vars):
+            raise_any(field_problems("uncertainty/", root))
+            return root
+        if is_sweep(root):
+            raise_any(sweep_problems(root))
+            raise_any(_attribute_problems(root.attrs))
+            return root
+        _refuse("is neither a stored result nor a loss map nor an uncertainty nor a sweep.")
+    except InputError as error:
+        raise InputError(error.problems, str(source)) from None
+
+
+def open_map(path: str | Path) -> xr.Dataset:
+    """Read a loss map. Parameters and errors as for `open_result`."""
+    found = open_result(path)
+    if isinstance(found, ResultRecord):
+        problem = Problem("MAP", str(path), "is a stored result.", "Give a loss map.")
+        raise InputError([problem], "the command")
+    check_map(found, str(path))
+    return found
+
+
+def _refuse(what: str, remedy: str = RUN_AGAIN) -> NoReturn:
+    raise InputError([Problem("", "", f"the file {what}", remedy)])
+
+
+def _record_of(root: xr.Dataset, fields: dict[str, xr.Dataset]) -> ResultRecord:
+    version = root.attrs.get("format_version")
+    if version != FORMAT_VERSION:
+        _refuse(f"has the format version {version}; this program reads {FORMAT_VERSION}.")
+    raise_any(problem for path, data in fields.items() for problem in field_problems(path, data))
+    stated = dict(root.attrs)
+    problems: list[Problem] = []
+    try:
+        datetime.fromisoformat(stated.get("created", ""))
+    except (TypeError, ValueError) as error:
+        problems.append(_problem("created", f"Input should be a valid datetime, {error}"))
+    result: Result | None = None
+    content = _read_json(stated, "result", problems)
+    if content is not None:
+        result, found = read_result(content, _wrong_inputs)
+        problems += (_problem(".".join(filter(None, ("result", *it[:1]))), it[1]) for it in found)
+    given = _read_json(stated, "given", problems)
+    raise_any(problems)
+    assert result is not None
+    return ResultRecord(result, given, stated["created"], root.drop_attrs(deep=False), fields)
+
+
+def _problem(place: str, what: str) -> Problem:
+    return Problem(place, "", f"{one_line(what)}.", RUN_AGAIN)
+
+
+def _read_json(stated: Mapping[str, Any], name: str, problems: list[Problem]) -> Any:
+    """The table that an attribute holds as JSON text."""
+    if name not in stated:
+        problems.append(_problem(name, "Field required"))
+        return None
+    try:
+        found = from_json(str(stated[name]))
+    except ValueError as error:  # also if it is nested too deep
+        problems.append(_problem(name, f"Value error, {error}"))
+        return None
+    if isinstance(found, dict):
+        return found
+    problems.append(_problem(name, "Input should be a valid dictionary"))
+    return None
+
+
+def _attribute_problems(stated: Mapping[str, Any], *more: str) -> Iterator[Problem]:
+    """What reports would miss in the attributes of a map or sweep."""
+    for name in ("title", "source", *more):
+        if not isinstance(stated.get(name), str):
+            what = "Input should be a valid string" if name in stated else "Field required"
+            yield _problem(name, what)
+    problems: list[Problem] = []
+    case = _read_json(stated, "case", problems)
+    versions = _read_json(stated, "versions", problems)
+    yield from problems
+    if case is not None and (wrong := _wrong_inputs(case)):
+        yield _problem("case", f"Value error, {wrong}")
+    if versions is not None and not isinstance(versions.get("epicyclic"), str):
+        yield _problem("versions", "Value error, must name the version of epicyclic")
+
+
+def _wrong_inputs(inputs: Mapping[str, Any]) -> str:
+    """Why inputs are not those of a case with its operating point as text; empty if they are."""
+    if inputs.get("kind") not in ("planetary", "gear_pair", "train"):
+        return "must name the kind of the case"
+    operation = inputs.get("operation")
+    keys = [key.rpartition(".")[2] for key in AXES.values()]
+    if inputs["kind"] == "train":
+        keys = ["speed", "torque", "input", "output"]
+    if not isinstance(operation, dict) or not all(isinstance(operation.get(k), str) for k in keys):
+        return f"must state operation with {', '.join(keys)}"
+    return ""

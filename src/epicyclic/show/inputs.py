@@ -13,7 +13,7 @@ from epicyclic.case.case import KINDS
 from epicyclic.case.fields import Place, dict_value, locate, quantity_of
 from epicyclic.case.tables.elements import ELEMENT_CHECKS
 from epicyclic.case.train import form_of_set
-from epicyclic.report.page import Cell, Table
+from epicyclic.show.page import Cell, Table
 from epicyclic.units import format_number, unit_text
 
 MEMBERS = ("sun", "planet", "ring", "pinion", "gear")

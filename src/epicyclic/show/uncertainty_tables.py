@@ -1,28 +1,159 @@
-"""How well a result is known, in tables: for terminals and pages."""
+"""How well a result or a map is known, in tables: for terminals and pages."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
 
+import numpy as np
+import xarray as xr
 from rich.console import RenderableType
 
 from epicyclic.case.messages import one_line
-from epicyclic.report.advice import LIMITS, advice_texts, driver_name
-from epicyclic.report.map_band_tables import map_band_tables
-from epicyclic.report.page import Cell, KeyFigure, Listing, Table, aligned, number, tenths
-from epicyclic.report.shown import shown
-from epicyclic.report.tables import as_on_page, titled
-from epicyclic.results.result import in_words
+from epicyclic.result.result import in_words
+from epicyclic.show.advice import LIMITS, MOST, advice_texts, driver_name
+from epicyclic.show.page import (
+    MISSING,
+    Cell,
+    KeyFigure,
+    Listing,
+    Table,
+    aligned,
+    number,
+    shown,
+    tenths,
+)
+from epicyclic.show.plots.loss_map import at_temperatures
+from epicyclic.show.plots.losses import mean_shares
+from epicyclic.show.terminal import as_on_page, titled
 from epicyclic.study.bands.advice import known_of
-from epicyclic.units import known_text, percent, unit_text
+from epicyclic.units import format_number, known_text, percent, unit_text
 
-if TYPE_CHECKING:
-    import xarray as xr
+# Tables over the speeds and torques of a map.
 
-LEAST = 0.005
-"""Share in the variance from which an input or a model is named. [1]"""
+
+MOST_COLUMNS = 9
+"""Most columns of a table of values; larger maps are shown at evenly spaced points."""
+
+
+def grid_table(
+    point: xr.Dataset,  # A map over speed and torque, as `map_at` makes it.
+    title: str,
+    cell: Callable[[int, int], Cell],  # Content for the number of a speed and of a torque.
+) -> Table:
+    """A table of what `cell` says of speeds and torques, by their numbers."""
+    speeds, torques = (_some(point.sizes[axis]) for axis in ("speed", "torque"))
+    rows = tuple(
+        (Cell(format_number(float(point["speed"][i]))), *(cell(i, j) for j in torques))
+        for i in speeds
+    )
+    unit = unit_text(str(point["torque"].attrs["units"]))
+    heads = (f"{format_number(float(point['torque'][j]))} {unit}" for j in torques)
+    if "temperature" in point.coords:
+        title = f"{title}, at {format_number(float(point['temperature']))} °C"
+    return Table((f"speed, {unit_text(str(point['speed'].attrs['units']))}", *heads), rows, title)
+
+
+def _some(count: int) -> list[int]:
+    """Numbers of some `MOST_COLUMNS` of `count` points, evenly spaced but for the last."""
+    step = max(1, math.ceil((count - 1) / (MOST_COLUMNS - 1)))
+    return sorted({*range(0, count, step), count - 1})
+
+
+# How well the losses of a map are known, in tables.
+
+
+LEAST = 0.02
+"""Largest share in the variance at any point, from which an input is shown. [1]"""
+
+
+def map_band_tables(data: xr.Dataset) -> Iterator[Table | Listing]:
+    """The band of the total loss over speed and torque at each temperature, and what makes it."""
+    for point in at_temperatures(data).values():
+        total = point.sel(result="total").transpose("speed", "torque", ...)
+        yield grid_table(point, "95 % band of the total loss, W", _band_of(total))
+    yield _drivers(data)
+    yield Listing(tuple(_limits(data)), LIMITS)
+
+
+def _limits(data: xr.Dataset) -> Iterator[str]:
+    """What to do about the drivers that matter over the whole map, in the order of `_drivers`."""
+    total, mean = data.sel(result="total"), _mean_shares(data)
+    width = total["high"] - total["low"]
+    for driver in mean["driver"].values[:MOST]:
+        if mean.sel(driver=driver) <= LEAST:
+            return
+        keys = str(driver).split(" + ")
+        own = data.sel(input=keys)
+        name = " + ".join(map(str, own["input_name"].values))
+        advice = "; ".join(dict.fromkeys(map(str, own["input_advice"].values)))
+        alone = width * np.sqrt(data["first_order"].sel(driver=driver).clip(0.0, 1.0))
+        place = _place(data, alone.isel(alone.argmax(alone.dims)))
+        yield (
+            f"{name}: up to {format_number(float(alone.max()), 3)} W of the band, at {place}; "
+            f"{advice}."
+        )
+
+
+def _mean_shares(data: xr.Dataset) -> xr.DataArray:
+    """`mean_shares`, the largest first."""
+    mean = mean_shares(data)
+    return mean.sortby(-mean)
+
+
+def _place(data: xr.Dataset, point: xr.DataArray) -> str:
+    """The operating point, by the axes of the map that have more than one value."""
+    axes = [str(name) for name in data["total"].dims if data.sizes[name] > 1]
+    return ", ".join(f"{name} {_value(point[name])}" for name in axes)
+
+
+def _band_of(total: xr.Dataset) -> Callable[[int, int], Cell]:
+    low, high = total["low"].to_numpy(), total["high"].to_numpy()
+
+    def cell(i: int, j: int) -> Cell:
+        if not np.isfinite(low[i, j]):
+            return Cell(MISSING)
+        return aligned(f"{low[i, j]:.0f} to {high[i, j]:.0f}")
+
+    return cell
+
+
+def _drivers(data: xr.Dataset) -> Table:
+    """Shares of the variance of the total loss: where the loss is, and where they are largest."""
+    shares, mean = data["first_order"], _mean_shares(data)
+    rows = []
+    for driver in mean["driver"].values:
+        own = shares.sel(driver=driver)
+        if not (own > LEAST).any():
+            continue
+        largest = own.isel(own.argmax(own.dims))
+        name = " + ".join(map(driver_name, str(driver).split(" + ")))
+        rows.append(
+            (
+                Cell(name),
+                aligned(percent(max(float(mean.sel(driver=driver)), 0.0))),
+                aligned(percent(float(largest))),
+                Cell(_place(data, largest)),
+            )
+        )
+    known = float(data["explained"].min())
+    note = (
+        "Shares of its variance, alone, by curves through the samples, the mean weighted with the "
+        f"loss; the curves explain {percent(known)} or more of it at every point."
+    )
+    head = ("", "mean share", "largest", "at")
+    return Table(head, tuple(rows), "What the uncertainty of the total loss is due to", note=note)
+
+
+def _value(value: xr.DataArray) -> str:
+    if value.dtype.kind not in "if":
+        return str(value.item())
+    return f"{format_number(value.item())} {unit_text(str(value.attrs.get('units', '')))}".rstrip()
+
+
+# How well a result is known, in tables: for terminals and pages.
+
+
 NO_SHARE = 1e-3
 """Share in the variance of a loss below which curves through samples show no effect. [1]"""
 CUT_OFF = 1e-3
@@ -142,7 +273,7 @@ def _budget(data: xr.Dataset) -> Table:
                 (
                     Cell(driver_name(key)),
                     Cell(str(own["distribution"].values)),
-                    _value(own),
+                    _input_value(own),
                     _shown(float(own["contribution"]), _unit(data)),
                     *(aligned("" if place else text) for text in shares),
                 )
@@ -158,7 +289,7 @@ def _budget(data: xr.Dataset) -> Table:
     return Table(head, tuple(rows), "What the uncertainty of the total loss is due to", note=note)
 
 
-def _value(own: xr.Dataset) -> Cell:
+def _input_value(own: xr.Dataset) -> Cell:
     unit = unit_text(str(own["input_unit"].values)).removesuffix("1")
     return aligned(f"{shown(float(own['input_value']))} {unit}".rstrip())
 

@@ -1,4 +1,4 @@
-"""Results: what `solve` returns, and its JSON form."""
+"""Results: what `solve` returns, with temperatures and supply of oil, and its JSON form."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import json
 import math
 import platform
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from functools import lru_cache, partial
+from dataclasses import dataclass, field
+from functools import cache, lru_cache, partial
 from importlib import metadata
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -17,20 +17,169 @@ from epicyclic.losses.ranges import ModelUse, ValidityFlag, describe_flags, flag
 from epicyclic.machine.element import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
+    OIL,
     Figure,
     FluidFigures,
     displayed,
-    figures,
 )
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.planets import BearingFigures
-from epicyclic.results.heat import HeatBalance
-from epicyclic.results.lubrication import OilSupply
-from epicyclic.results.views import Views
-from epicyclic.units import CELSIUS, DEGREE, NEWTON_METRE, RPM, WATT, known_text, percent
+from epicyclic.result.codec import plain, stored
+from epicyclic.units import CELSIUS, DEGREE, NEWTON_METRE, NUMBER, RPM, WATT, known_text, percent
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
+
+
+# Temperatures of a result, and the ways of its heat.
+
+
+@dataclass(frozen=True, slots=True)
+class HeatWay:
+    """Heat from one part to another.
+
+    Attributes
+    ----------
+    key : str
+        ``"sun-oil"``.
+    hot, into : str
+        Where it comes from and goes to.
+    watts : float
+        Negative if it flows the other way. [W]
+    conductance : float
+        NaN for a cooler of given power. [W/K]
+    method, source : str
+        How the conductance is found, and where that is printed.
+    """
+
+    key: str
+    hot: str = field(metadata=stored(key="from"))
+    into: str = field(metadata=stored(key="to"))
+    watts: float = field(metadata=stored(key="heat"))
+    conductance: float
+    method: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class HeatBalance:
+    """Temperatures that follow from the losses, and the ways of their heat.
+
+    Attributes
+    ----------
+    model : str
+        ``"flank"`` or ``"network"``.
+    temperatures : mapping of str to float
+        Temperatures of all nodes. [K]
+    sources : mapping of str to float
+        Heat that losses bring to each node. [W]
+    ways : tuple of HeatWay
+        Empty with ``"flank"``.
+    given : mapping of str to float
+        Temperatures that were given: of the oil inlet, the air, a coolant; of all oil with
+        ``"flank"``. [K]
+    residual : float
+        Largest heat of a node that does not leave it, over all heat or the largest flow. [1]
+    evaluations : int
+        Evaluations of the losses, until temperatures and losses agreed.
+    """
+
+    model: str
+    temperatures: Mapping[str, float] = field(metadata=stored(unit=CELSIUS))
+    given: Mapping[str, float] = field(metadata=stored(unit=CELSIUS))
+    sources: Mapping[str, float]
+    ways: tuple[HeatWay, ...] = field(metadata=stored(index="key"))
+    residual: float
+    evaluations: int
+
+    @property
+    def oil(self) -> float:
+        """Temperature of the oil. [K]"""
+        return {**self.given, **self.temperatures}[OIL]
+
+    @property
+    def brought(self) -> dict[str, float]:
+        """Heat that losses bring to each node; what has no temperature of its own is oil. [W]"""
+        heat = {node: self.sources.get(node, 0.0) for node in (*self.temperatures, OIL)}
+        heat[OIL] = sum(self.sources.values()) - sum(heat[node] for node in heat if node != OIL)
+        return heat
+
+    @property
+    def outlets(self) -> tuple[HeatWay, ...]:
+        """The ways that lead out of the gearbox."""
+        return tuple(way for way in self.ways if way.into not in self.temperatures)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers and text, in the units stated beside them."""
+        found: dict[str, Any] = plain(self)
+        return found
+
+
+# How oil gets to the gears of a set, and what follows from it.
+
+
+@dataclass(frozen=True, slots=True)
+class OilSupply:
+    """The share of oil around the gears of a set, and their churning.
+
+    Attributes
+    ----------
+    method : str
+        ``"dip"``.
+    share, low, high : float
+        Share of oil by volume, and the ends of its 95 % band. [1]
+    grade : str
+        ``"given"``, ``"read"`` or ``"estimate"``.
+    source : str
+    churning : mapping of str to float
+        What parts that dip lose after each model; empty if none dips. [W]
+    meshes : mapping of str to float
+        Share of oil in the pockets of each mesh. [1]
+    """
+
+    method: str
+    share: float
+    low: float
+    high: float
+    grade: str
+    source: str
+    churning: Mapping[str, float] = field(default_factory=dict[str, float])
+    meshes: Mapping[str, float] = field(default_factory=dict[str, float])
+
+    @property
+    def text(self) -> str:
+        """In words, for a list of models and how well they are known."""
+        if self.grade == "given":
+            return f"{self.method}: share of oil {self.share:.2g}, given by {self.source}"
+        band = f"95 %: {self.low:.2g} to {self.high:.2g}"
+        fed = max(self.meshes.values(), default=0.0) - self.share
+        more = f"; up to {fed:.2g} more in the meshes" if fed > 0 else ""
+        return f"{self.method}: share of oil {self.share:.2g} ({band}; {self.source}){more}"
+
+    @property
+    def comparison(self) -> str:
+        """Churning after each model in words; empty if nothing dips."""
+        return ", ".join(f"{name} {known_text(watts)}" for name, watts in self.churning.items())
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain numbers and text."""
+        return {
+            "method": self.method,
+            "oil_share": {
+                "value": self.share,
+                "low": self.low,
+                "high": self.high,
+                "unit": "1",
+                "grade": self.grade,
+                "source": self.source,
+            },
+            "oil_share_in_meshes": plain(self.meshes, NUMBER),
+            "churning": plain(self.churning, WATT),
+        }
+
+
+# Results: what `solve` returns, and its JSON form.
+
 
 LOSSES_OF_ROLES = {
     "friction": "sliding",
@@ -84,8 +233,8 @@ class MemberState:
         From outside, losses accounted for. [N m]
     """
 
-    speed: float
-    torque: float
+    speed: float = field(metadata=stored(unit=RPM))
+    torque: float = field(metadata=stored(unit=NEWTON_METRE))
 
     @property
     def power(self) -> float:
@@ -163,15 +312,22 @@ class Train:
     """
 
     state: str
-    ratio: float | None
-    power_ratio: float | None
-    rolling: Mapping[str, float]
-    clutches: Mapping[str, float]
-    stages: Mapping[str, Mapping[str, float]]
-    self_locking: bool
-    jammed: bool
     input: str
     output: str
+    ratio: float | None
+    power_ratio: float | None
+    self_locking: bool
+    jammed: bool
+    rolling: Mapping[str, float] = field(metadata=stored(key="rolling_power"))
+    clutches: Mapping[str, float]
+    stages: Mapping[str, Mapping[str, float]] = field(metadata=stored(key="stage_torques"))
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Versions of this package and of what its numbers depend on."""
+    names = ("epicyclic", "numpy", "numba", "pint", "pydantic")
+    return {"python": platform.python_version()} | {name: metadata.version(name) for name in names}
 
 
 class Stated(Protocol):
@@ -182,7 +338,7 @@ class Stated(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Result(Views):
+class Result:
     """The losses of one case, where they arise, and how they were found.
 
     Attributes
@@ -229,6 +385,8 @@ class Result(Views):
     status : Status
     unloaded : float or None
         Total loss without torque, where losses are grouped as a test rig does; else None. [W]
+    versions : mapping of str to str
+        Versions of this package and of what its numbers depend on.
     """
 
     title: str
@@ -252,9 +410,10 @@ class Result(Views):
     planet_shares: tuple[float, ...] = ()
     train: Train | None = None
     heat: HeatBalance | None = None
-    lubrication: Mapping[str, OilSupply] = dataclasses.field(default_factory=dict[str, OilSupply])
+    lubrication: Mapping[str, OilSupply] = field(default_factory=dict[str, OilSupply])
     status: Status = Status.CONVERGED
     unloaded: float | None = None
+    versions: Mapping[str, str] = field(default_factory=versions)
 
     @property
     def inputs(self) -> Mapping[str, Any]:
@@ -278,6 +437,28 @@ class Result(Views):
     def losses(self) -> dict[str, float]:
         """Every loss term. [W]"""
         return {term.name: term.watts for term in self.terms}
+
+    @property
+    def groups(self) -> dict[str, str]:
+        """The group of every loss."""
+        return {term.name: term.group for term in self.terms}
+
+    @property
+    def not_included(self) -> dict[str, str]:
+        """Why losses are not included, of those that are not."""
+        return {term.name: term.left_out for term in self.terms if term.left_out}
+
+    @property
+    def methods(self) -> dict[str, str]:
+        """How every loss, and the load, is found."""
+        own = {term.name: term.method for term in self.terms if not term.left_out}
+        return {**own, **self.load_methods}
+
+    @property
+    def citations(self) -> dict[str, str]:
+        """Where the `methods` are printed."""
+        own = {term.name: term.source for term in self.terms if not term.left_out}
+        return {**own, **self.load_sources}
 
     @property
     def load_dependent(self) -> float:
@@ -346,56 +527,48 @@ class Result(Views):
         The keys are those of every result of this kind; NaN stands where there is no such number.
         """
         values = self.values()
-        for field in number_fields(self.layout):
-            yield Figure(field.key, field.label, values[field.key], field.unit)
+        for it in number_fields(self.layout):
+            yield Figure(it.key, it.label, values[it.key], it.unit)
 
     def values(self) -> dict[str, float]:
         """The `numbers` alone, by their keys."""
-        return {
-            field.key: field.read(self) + 0.0  # no -0.0
-            for field in number_fields(self.layout)
-        }
+        return {it.key: it.read(self) + 0.0 for it in number_fields(self.layout)}  # no -0.0
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers and text, in W and in the units stated beside them."""
-        result: dict[str, Any] = {
-            "title": self.title,
-            "kind": self.kind,
-            "status": str(self.status),
-            "losses": self.losses,
-            "load_dependent": self.load_dependent,
-            "load_independent": self.load_independent,
-            "total": self.total,
-            "input_power": self.input_power,
-            "efficiency": self.efficiency,
-            "units": dict.fromkeys(_POWERS, WATT.display) | {"efficiency": "1"},
-            "warnings": list(self.warnings),
-            "not_included": {term.name: term.left_out for term in self.terms if term.left_out},
-            "factors": {term.name: term.factor for term in self.terms if term.factor != 1.0},
-            "methods": {
-                **{term.name: term.method for term in self.terms if not term.left_out},
-                **self.load_methods,
-            },
-            "groups": {term.name: term.group for term in self.terms},
-            "citations": {
-                **{term.name: term.source for term in self.terms if not term.left_out},
-                **self.load_sources,
-            },
-            "models": dict(self.models),
-            "standing": dict(self.standing),
-            "validity": [dataclasses.asdict(flag) for flag in self.flags],
-            "members": _members_dict(self.flow),
-            "meshes": {name: _figures_dict(mesh) for name, mesh in self.meshes.items()},
-            "fluid": None if self.fluid is None else _figures_dict(self.fluid),
-            **({} if self.heat is None else {"heat": self.heat.to_dict()}),
-            **({"lubrication": self._lubrication()} if self.lubrication else {}),
-            **(self._planets() if self.train is None else self._train(self.train)),
-            "sources": list(self.sources),
-            "inputs": dict(self.inputs),
-            "versions": versions(),
-        }
-        clean: dict[str, Any] = _json_value(result)
-        return clean
+        result: dict[str, Any] = plain(
+            {
+                "title": self.title,
+                "kind": self.kind,
+                "status": str(self.status),
+                "losses": self.losses,
+                "load_dependent": self.load_dependent,
+                "load_independent": self.load_independent,
+                "total": self.total,
+                "input_power": self.input_power,
+                "efficiency": self.efficiency,
+                "units": dict.fromkeys(_POWERS, WATT.display) | {"efficiency": "1"},
+                "warnings": self.warnings,
+                "not_included": self.not_included,
+                "factors": {term.name: term.factor for term in self.terms if term.factor != 1.0},
+                "methods": self.methods,
+                "groups": self.groups,
+                "citations": self.citations,
+                "models": self.models,
+                "standing": self.standing,
+                "validity": self.flags,
+                "members": _members_dict(self.flow),
+                "meshes": self.meshes,
+                "fluid": self.fluid,
+                **({} if self.heat is None else {"heat": self.heat}),
+                **({"lubrication": self._lubrication()} if self.lubrication else {}),
+                **(self._planets() if self.train is None else self._train(self.train)),
+                "sources": self.sources,
+                "inputs": self.inputs,
+                "versions": self.versions,
+            }
+        )
+        return result
 
     def _lubrication(self) -> dict[str, Any]:
         """Lubrication of a single set itself, of a train by sets."""
@@ -405,33 +578,24 @@ class Result(Views):
     def _planets(self) -> dict[str, Any]:
         """What only a single set states."""
         return {
-            "planet_bearing": None if self.bearing is None else _figures_dict(self.bearing),
-            "planet_angles": {
-                "value": [DEGREE.to_display(angle) for angle in self.planet_angles],
-                "unit": "deg",
-            },
-            "planet_shares": {"value": list(self.planet_shares), "unit": "1"},
-            "mesh_load_factor": {"value": self.mesh_load_factor, "unit": "1"},
+            "planet_bearing": self.bearing,
+            "planet_angles": plain(self.planet_angles, DEGREE),
+            "planet_shares": plain(self.planet_shares, NUMBER),
+            "mesh_load_factor": plain(self.mesh_load_factor, NUMBER),
         }
 
     def _train(self, train: Train) -> dict[str, Any]:
         """What only a train states."""
+        own = plain(train)
+        flows = {key: own.pop(key) for key in ("rolling_power", "clutches", "stage_torques")}
         return {
-            "state": train.state,
-            "input": train.input,
-            "output": train.output,
-            "ratio": train.ratio,
-            "power_ratio": train.power_ratio,
-            "self_locking": train.self_locking,
-            "jammed": train.jammed,
+            **own,
             "shafts": _members_dict(self.flow),
-            "rolling_power": dict(train.rolling),
-            "clutches": dict(train.clutches),
-            "stage_torques": {name: dict(taken) for name, taken in train.stages.items()},
+            **flows,
             "stages": self.stage_losses,
             "kinds": self.kind_losses,
-            "bearings": {name: _figures_dict(item) for name, item in self.bearings.items()},
-            "parts": {name: _figures_dict(item) for name, item in self.parts.items()},
+            "bearings": self.bearings,
+            "parts": self.parts,
         }
 
     @property
@@ -455,12 +619,6 @@ class Result(Views):
         return json.dumps(self.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
 
 
-def versions() -> dict[str, str]:
-    """Versions of this package and of what its numbers depend on."""
-    names = ("epicyclic", "numpy", "numba", "pint", "pydantic")
-    return {"python": platform.python_version()} | {name: metadata.version(name) for name in names}
-
-
 def origin(case: Stated) -> dict[str, str]:
     """Attributes of a dataset that tell what made it, from which case."""
     used = versions()
@@ -472,29 +630,7 @@ def origin(case: Stated) -> dict[str, str]:
 
 
 def _members_dict(flow: PowerFlow) -> dict[str, Any]:
-    return {
-        name: {
-            "speed": {"value": RPM.to_display(member.speed), "unit": "rpm"},
-            "torque": {"value": member.torque, "unit": "N*m"},
-            "power": {"value": member.power, "unit": "W"},
-        }
-        for name, member in flow.members.items()
-    }
-
-
-def _figures_dict(source: DataclassInstance) -> dict[str, Any]:
-    return {item.key: {"value": item.value, "unit": item.unit} for item in figures(source)}
-
-
-def _json_value(value: Any) -> Any:
-    """`value` with None for every NaN, which JSON does not know, and 0.0 for every -0.0."""
-    if isinstance(value, dict):
-        return {key: _json_value(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_json_value(item) for item in value]
-    if isinstance(value, float):
-        return None if math.isnan(value) else value + 0.0
-    return value
+    return {name: plain(it) | {"power": plain(it.power, WATT)} for name, it in flow.members.items()}
 
 
 # --- the numbers of every result of a kind --------------------------------------------------------
@@ -513,74 +649,54 @@ class NumberField:
 @lru_cache(maxsize=16)
 def number_fields(layout: Layout) -> tuple[NumberField, ...]:
     """The numbers that every result of a layout has."""
+    return tuple(NumberField(*field) for field in _number_fields(layout))
+
+
+def _number_fields(layout: Layout) -> Iterator[tuple[str, str, str, Callable[[Result], float]]]:
     watt = WATT.display
-    fields = [
-        NumberField(name, in_words(name), watt, partial(_loss, name)) for name in layout.losses
-    ]
-    fields += [
-        NumberField("load_dependent", "load-dependent loss", watt, lambda it: it.load_dependent),
-        NumberField(
-            "load_independent", "load-independent loss", watt, lambda it: it.load_independent
-        ),
-        NumberField("total", "total loss", watt, lambda it: it.total),
-        NumberField("input_power", "input power", watt, lambda it: it.input_power),
-        NumberField("efficiency", "efficiency", "1", lambda it: _or_nan(it.efficiency)),
-    ]
+    for name in layout.losses:
+        yield name, in_words(name), watt, partial(_loss, name)
+    yield "load_dependent", "load-dependent loss", watt, lambda it: it.load_dependent
+    yield "load_independent", "load-independent loss", watt, lambda it: it.load_independent
+    yield "total", "total loss", watt, lambda it: it.total
+    yield "input_power", "input power", watt, lambda it: it.input_power
+    yield "efficiency", "efficiency", "1", lambda it: _or_nan(it.efficiency)
     if layout.shares:
-        fields.append(
-            NumberField("mesh_load_factor", "mesh load factor", "1", lambda it: it.mesh_load_factor)
-        )
+        yield "mesh_load_factor", "mesh load factor", "1", lambda it: it.mesh_load_factor
     if layout.rolling:
-        fields += _train_fields(layout)
-    for name in layout.members:
-        fields += [
-            NumberField(
-                f"{name}_speed", f"speed of the {name}", RPM.display, partial(_speed, name)
-            ),
-            NumberField(
-                f"{name}_torque",
-                f"torque on the {name}",
-                NEWTON_METRE.display,
-                partial(_torque, name),
-            ),
-        ]
-    fields += [
-        NumberField(
-            f"{node}_temperature",
-            f"temperature of the {in_words(node)}",
-            CELSIUS.display,
-            partial(_temperature, node),
-        )
-        for node in layout.nodes
-    ]
-    if layout.fluid:
-        fields += _part_fields("fluid", FluidFigures, lambda it: it.fluid)
-    for name in layout.meshes:
-        fields += _part_fields(name, MeshFigures, partial(_mesh, name))
-    for name in layout.bearings:
-        fields += _part_fields(name, BearingFigures, partial(_bearing, name))
-    for name, kind in layout.parts:
-        fields += _part_fields(name, kind, partial(_part, name))
-    return tuple(fields)
-
-
-def _train_fields(layout: Layout) -> Iterator[NumberField]:
-    yield NumberField("ratio", "speed of the input over that of the output", "1", _ratio)
-    yield NumberField(
-        "power_ratio", "sum of the rolling powers over the input power", "1", _power_ratio
-    )
+        label = "speed of the input over that of the output"
+        yield "ratio", label, "1", partial(_of_train, "ratio")
+        label = "sum of the rolling powers over the input power"
+        yield "power_ratio", label, "1", partial(_of_train, "power_ratio")
     for name in layout.rolling:
-        yield NumberField(
-            f"{name}_rolling_power",
-            f"{in_words(name)}: rolling power",
-            WATT.display,
-            partial(_rolling, name),
-        )
+        label = f"{in_words(name)}: rolling power"
+        yield f"{name}_rolling_power", label, watt, partial(_rolling, name)
+    for name in layout.members:
+        label, unit = f"speed of the {name}", RPM.display
+        yield f"{name}_speed", label, unit, partial(_speed, name)
+        label, unit = f"torque on the {name}", NEWTON_METRE.display
+        yield f"{name}_torque", label, unit, partial(_torque, name)
+    for node in layout.nodes:
+        label = f"temperature of the {in_words(node)}"
+        yield f"{node}_temperature", label, CELSIUS.display, partial(_temperature, node)
+    if layout.fluid:
+        yield from _part_fields("fluid", FluidFigures, lambda it: it.fluid)
+    for name in layout.meshes:
+        yield from _part_fields(name, MeshFigures, partial(_part, "meshes", name))
+    for name in layout.bearings:
+        yield from _part_fields(name, BearingFigures, partial(_part, "bearings", name))
+    for name, kind in layout.parts:
+        yield from _part_fields(name, kind, partial(_part, "parts", name))
 
 
 def in_words(name: str) -> str:
     """A key of a train in words: ``"P1: sun mesh"``."""
     return name.replace("_", " ").replace(".", ": ")
+
+
+def set_of(key: str) -> str:
+    """The set to which a mesh, gear or bearing belongs; empty if there is one set only."""
+    return key.rpartition(".")[0]
 
 
 def of_gear(name: str) -> str:
@@ -593,15 +709,12 @@ def _part_fields(
     name: str,
     kind: type[DataclassInstance],
     part: Callable[[Result], DataclassInstance | None],
-) -> Iterator[NumberField]:
-    for field in dataclasses.fields(kind):
-        if "label" in field.metadata:
-            yield NumberField(
-                f"{name}_{field.name}",
-                f"{name.replace('_', ' ').replace('.', ', ')}: {field.metadata['label']}",
-                field.metadata["unit"].display or "1",
-                partial(_part_number, part, field),
-            )
+) -> Iterator[tuple[str, str, str, Callable[[Result], float]]]:
+    title = name.replace("_", " ").replace(".", ", ")
+    for it in dataclasses.fields(kind):
+        if "label" in it.metadata:
+            label, unit = f"{title}: {it.metadata['label']}", it.metadata["unit"].display or "1"
+            yield f"{name}_{it.name}", label, unit, partial(_part_number, part, it)
 
 
 def _part_number(
@@ -617,16 +730,12 @@ def _loss(name: str, result: Result) -> float:
     return result.losses[name]
 
 
+def _of_train(name: str, result: Result) -> float:
+    return _or_nan(getattr(result.train, name, None))
+
+
 def _or_nan(value: float | None) -> float:
     return math.nan if value is None else value
-
-
-def _ratio(result: Result) -> float:
-    return math.nan if result.train is None else _or_nan(result.train.ratio)
-
-
-def _power_ratio(result: Result) -> float:
-    return math.nan if result.train is None else _or_nan(result.train.power_ratio)
 
 
 def _rolling(name: str, result: Result) -> float:
@@ -647,13 +756,6 @@ def _temperature(node: str, result: Result) -> float:
     return CELSIUS.to_display(result.heat.temperatures[node])
 
 
-def _mesh(name: str, result: Result) -> MeshFigures | None:
-    return result.meshes.get(name)
-
-
-def _bearing(name: str, result: Result) -> BearingFigures | None:
-    return result.bearings.get(name)
-
-
-def _part(name: str, result: Result) -> DataclassInstance | None:
-    return result.parts.get(name)
+def _part(group: str, name: str, result: Result) -> DataclassInstance | None:
+    found: DataclassInstance | None = getattr(result, group).get(name)
+    return found

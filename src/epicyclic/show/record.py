@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Mapping
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
@@ -11,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
 from epicyclic.losses.planet_bearing import RollerBearing
-from epicyclic.records.contents import ResultContents, contents_of, set_of
-from epicyclic.results.result import Result
+from epicyclic.result.result import Result, set_of
 from epicyclic.study.bands.quick import quick_dataset
 from epicyclic.study.meshes import bearing_details, mesh_details
 from epicyclic.study.pockets import pocket_details
@@ -30,8 +30,7 @@ class ResultRecord:
 
     Attributes
     ----------
-    result : ResultContents
-        The JSON form of the result.
+    result : Result
     given : mapping
         The case without defaults, as it was given.
     created : str
@@ -46,7 +45,7 @@ class ResultRecord:
         ``"meshes/P1.sun_mesh"``.
     """
 
-    result: ResultContents
+    result: Result
     given: Mapping[str, Any]
     created: str
     numbers: xr.Dataset
@@ -62,13 +61,10 @@ class ResultRecord:
         """Title of the case, or what kind of gears it is."""
         return self.result.title or self.result.kind.replace("_", " ")
 
-    @property
-    def labels(self) -> dict[str, str]:
-        """What every number of the result is called, by its key."""
-        return {str(key): number.attrs["long_name"] for key, number in self.numbers.items()}
-
     def group(self, name: str) -> dict[str, xr.Dataset]:
         """The fields whose path begins with `name`, by the rest of it."""
+        if isinstance(self.fields, _Growing):
+            return self.fields.group(name)
         return {
             path.removeprefix(f"{name}/"): data
             for path, data in self.fields.items()
@@ -76,18 +72,27 @@ class ResultRecord:
         }
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class _GrowingRecord(ResultRecord):
-    """A record that computes a group of fields when it is first asked for."""
+class _Growing(Mapping[str, "xr.Dataset"]):
+    """Fields by path, each group of which is computed when it is first asked for."""
 
-    fields: dict[str, xr.Dataset]
-    makers: dict[str, Callable[[], Mapping[str, xr.Dataset]]]
+    def __init__(self, makers: Mapping[str, Callable[[], Mapping[str, xr.Dataset]]]) -> None:
+        self._makers = makers
+        self._found: dict[str, Mapping[str, xr.Dataset]] = {}
 
     def group(self, name: str) -> dict[str, xr.Dataset]:
-        if name in self.makers:
-            self.fields.update(_under(name, self.makers[name]()))
-            del self.makers[name]
-        return ResultRecord.group(self, name)  # classes with slots are made twice: no super()
+        if name not in self._found:
+            self._found[name] = self._makers[name]() if name in self._makers else {}
+        return dict(self._found[name])
+
+    def __getitem__(self, path: str) -> xr.Dataset:
+        group, _, name = path.partition("/")
+        return self.group(group)[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return (f"{group}/{name}" for group, found in self._found.items() for name in found)
+
+    def __len__(self) -> int:
+        return sum(map(len, self._found.values()))
 
 
 def growing_record(case: Case) -> ResultRecord:
@@ -104,9 +109,7 @@ def growing_record(case: Case) -> ResultRecord:
         As for `solve`, and when a group is asked for.
     """
     result = solve(case)
-    contents = contents_of(result)
-    makers = _makers(case, result, contents)
-    return _GrowingRecord(**_head(case, result, contents), fields={}, makers=makers)
+    return _record(case, result, _Growing(_makers(case, result)))
 
 
 def record(
@@ -132,41 +135,35 @@ def record(
         As for `solve`.
     """
     result = solve(case) if result is None else result
-    contents = contents_of(result)
-    fields: dict[str, xr.Dataset] = {}
-    for name, make in _makers(case, result, contents).items():
-        if groups is None or name in groups:
-            fields |= _under(name, make())
-    return ResultRecord(**_head(case, result, contents), fields=fields)
+    fields = {
+        f"{group}/{name}": data
+        for group, make in _makers(case, result).items()
+        if groups is None or group in groups
+        for name, data in make().items()
+    }
+    return _record(case, result, fields)
 
 
-def _makers(
-    case: Case, result: Result, contents: ResultContents
-) -> dict[str, Callable[[], Mapping[str, xr.Dataset]]]:
+def _record(case: Case, result: Result, fields: Mapping[str, xr.Dataset]) -> ResultRecord:
+    return ResultRecord(
+        result=result,
+        given=json.loads(json.dumps(case.given())),
+        created=datetime.now(UTC).isoformat(timespec="seconds"),
+        numbers=_numbers(result),
+        fields=fields,
+    )
+
+
+def _makers(case: Case, result: Result) -> dict[str, Callable[[], Mapping[str, xr.Dataset]]]:
     """What computes each group of fields."""
     return {
         "gears": lambda: gear_shapes(case),
         "views": lambda: mesh_views(case),
         "bearings": lambda: _bearings(case, result),
-        "meshes": lambda: _meshes(case, contents),
+        "meshes": lambda: mesh_details(case) if case.operation.torque and result.meshes else {},
         "uncertainty": lambda: _uncertainty(case, result),
-        "pockets": lambda: _pockets(case, contents),
+        "pockets": lambda: _pockets(case, result),
     }
-
-
-def _head(case: Case, result: Result, contents: ResultContents) -> dict[str, Any]:
-    """What a record has beside its fields."""
-    return {
-        "result": contents,
-        "given": json.loads(json.dumps(case.given())),
-        "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        "numbers": _numbers(result),
-    }
-
-
-def _under(group: str, fields: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
-    """The fields of a group by their paths."""
-    return {f"{group}/{name}": data for name, data in fields.items()}
 
 
 def _bearings(case: Case, result: Result) -> dict[str, xr.Dataset]:
@@ -177,23 +174,17 @@ def _bearings(case: Case, result: Result) -> dict[str, xr.Dataset]:
     }
 
 
-def _meshes(case: Case, contents: ResultContents) -> dict[str, xr.Dataset]:
-    return mesh_details(case) if case.operation.torque != 0 and contents.meshes else {}
-
-
 def _uncertainty(case: Case, result: Result) -> dict[str, xr.Dataset]:
     known = quick_dataset(case, result)
     return {} if known is None else {"result": known}
 
 
-def _pockets(case: Case, contents: ResultContents) -> dict[str, xr.Dataset]:
+def _pockets(case: Case, result: Result) -> dict[str, xr.Dataset]:
     """Pockets of sets in which every mesh turns and has the flow of its pockets solved."""
     lacking = {
-        set_of(key)
-        for key, mesh in contents.meshes.items()
-        if mesh["pocket_pressure_max"].value is None
+        set_of(key) for key, mesh in result.meshes.items() if math.isnan(mesh.pocket_pressure_max)
     }
-    flowing = [key for key in contents.meshes if set_of(key) not in lacking]
+    flowing = [key for key in result.meshes if set_of(key) not in lacking]
     # the outlines, for pictures of one moment, would be ten times all the rest
     pockets = pocket_details(case, flowing) if flowing else {}
     return {name: data.drop_dims("end") for name, data in pockets.items()}

@@ -6,12 +6,9 @@ from collections.abc import Callable, Iterator, Mapping
 
 import xarray as xr
 
-from epicyclic.losses.ranges import ModelUse
-from epicyclic.records.contents import ResultContents
-from epicyclic.records.record import ResultRecord, sets_of
-from epicyclic.report.heat_tables import heat_items, ways_items
-from epicyclic.report.inputs import input_tables
-from epicyclic.report.page import (
+from epicyclic.result.result import Result, Train, in_words
+from epicyclic.show.inputs import input_tables
+from epicyclic.show.page import (
     Cell,
     Drawings,
     Gallery,
@@ -24,26 +21,26 @@ from epicyclic.report.page import (
     gallery,
     number,
 )
-from epicyclic.report.result_tables import (
+from epicyclic.show.record import ResultRecord, sets_of
+from epicyclic.show.result_tables import (
     bearing_tables,
+    clutches_table,
+    heat_items,
     losses_table,
     members_table,
     mesh_tables,
     oil_table,
-    planets_table,
-    standing_items,
-    users_text,
-)
-from epicyclic.report.train_tables import (
-    clutches_table,
     part_tables,
+    planets_table,
     rolling_table,
     shafts_table,
+    standing_items,
     sums_table,
     terms_table,
+    users_text,
+    ways_items,
 )
-from epicyclic.report.uncertainty_tables import uncertainty_items
-from epicyclic.results.result import in_words
+from epicyclic.show.uncertainty_tables import uncertainty_items
 from epicyclic.units import format_number, percent, unit_text
 
 
@@ -108,7 +105,7 @@ def _uncertainty(record: ResultRecord, drawings: Drawings) -> tuple[Item, ...]:
     return tuple(items)
 
 
-def _losses(result: ResultContents, drawings: Drawings) -> tuple[Item, ...]:
+def _losses(result: Result, drawings: Drawings) -> tuple[Item, ...]:
     return (
         Row((losses_table(result), *gallery(drawings, "losses"))),
         Row((members_table(result), *gallery(drawings, "loss-sum"))),
@@ -116,20 +113,20 @@ def _losses(result: ResultContents, drawings: Drawings) -> tuple[Item, ...]:
     )
 
 
-def _train_losses(result: ResultContents, drawings: Drawings) -> tuple[Item, ...]:
+def _train_losses(result: Result, train: Train, drawings: Drawings) -> tuple[Item, ...]:
     """Power flow, sums, shafts, rolling powers, every single loss."""
     return (
         *gallery(drawings, "power-flow", wide=True),
-        sums_table(result),
+        sums_table(result, train),
         Row((*gallery(drawings, "losses"), *gallery(drawings, "loss-sum"))),
         shafts_table(result),
-        Row((rolling_table(result), *clutches_table(result))),
-        *terms_table(result),
+        Row((rolling_table(result, train), *clutches_table(train))),
+        *terms_table(result, train),
     )
 
 
-def _validity_lead(result: ResultContents) -> str:
-    if not result.validity:
+def _validity_lead(result: Result) -> str:
+    if not result.flags:
         return "Every model was used within the range in which it was made."
     return (
         "Some models were used outside the range in which they were made. Their conditions are "
@@ -137,20 +134,20 @@ def _validity_lead(result: ResultContents) -> str:
     )
 
 
-def _validity(result: ResultContents) -> tuple[Table | Listing, ...]:
+def _validity(result: Result) -> tuple[Table | Listing, ...]:
     items: list[Table | Listing] = []
-    if result.validity:
+    if result.flags:
         rows = tuple(
             (
                 Cell(flag.quantity),
                 Cell(f"{_number(flag.found_low)} to {_number(flag.found_high)}", about="nowrap"),
                 Cell(_limits(flag.low, flag.high), about="nowrap"),
                 Cell(unit_text(flag.unit), about="nowrap"),
-                Cell(str(ModelUse(**flag.use.model_dump()))),
+                Cell(str(flag.use)),
                 aligned("under 1 %" if flag.share < 0.01 else percent(flag.share, 0)),
                 Cell(flag.source),
             )
-            for flag in sorted(result.validity, key=lambda flag: -flag.share)
+            for flag in sorted(result.flags, key=lambda flag: -flag.share)
         )
         head = ("quantity", "found", "range", "unit", "model", "share", "source of the range")
         items.append(Table(head, rows))
@@ -170,11 +167,11 @@ def _number(value: float | None) -> str:
     return "" if value is None else format_number(value, 3)
 
 
-def _heat(result: ResultContents, drawings: Drawings) -> tuple[Item, ...]:
+def _heat(result: Result, drawings: Drawings) -> tuple[Item, ...]:
     """Temperatures, and the ways of the heat."""
     if result.heat is None:
         return ()
-    heat = result.heat.balance
+    heat = result.heat
     picture = gallery(drawings, "heat-network", wide=True)
     ways = ways_items(heat) if heat.ways else ()
     return (*picture, Row(tuple(heat_items(heat))), *ways)
@@ -207,20 +204,21 @@ def _gears_table(title: str, gears: Mapping[str, xr.Dataset]) -> Table:
 
 def _bearings(record: ResultRecord, drawings: Drawings) -> tuple[str, tuple[Item, ...]]:
     """Title and content of the chapter on bearings; of a train also those of shafts, and seals."""
-    result, labels = record.result, record.labels
+    result = record.result
     parts: tuple[Item, ...] = (
         *gallery(drawings, "roller-loads", "roller-pressure"),
-        *bearing_tables(result, labels),
-        *part_tables(result, labels),
+        *bearing_tables(result),
+        *part_tables(result),
     )
     return "Bearings and seals" if result.kind == "train" else "Planet bearing", parts
 
 
-def _methods(result: ResultContents) -> tuple[Table | Listing, ...]:
+def _methods(result: Result) -> tuple[Table | Listing, ...]:
     """Each method once with what it computes and where it is printed."""
     users: dict[tuple[str, str], list[str]] = {}
+    citations = result.citations
     for name, method in result.methods.items():
-        key = method, result.citations.get(name, "")
+        key = method, citations.get(name, "")
         users.setdefault(key, []).append(name)
     rows = tuple(
         (Cell(users_text(names)), Cell(method), Cell(source))
@@ -254,8 +252,9 @@ def versions_line(versions: Mapping[str, str]) -> Listing:
 
 def _losses_chapter(record: ResultRecord, drawings: Drawings) -> Section:
     result = record.result
-    losses = _train_losses if result.kind == "train" else _losses
-    return Section("losses", "Losses", (*standing_items(result), *losses(result, drawings)))
+    train = result.train
+    losses = _losses(result, drawings) if train is None else _train_losses(result, train, drawings)
+    return Section("losses", "Losses", (*standing_items(result), *losses))
 
 
 def _validity_chapter(record: ResultRecord, drawings: Drawings) -> Section:
@@ -274,7 +273,7 @@ def _gears_chapter(record: ResultRecord, drawings: Drawings) -> Section:
 
 def _load_chapter(record: ResultRecord, drawings: Drawings) -> Section:
     items: tuple[Item, ...] = (
-        *mesh_tables(record.result, record.labels),
+        *mesh_tables(record.result),
         *gallery(drawings, "line-load", "pressure", "pair-load", "transmission-error", "stiffness"),
     )
     return Section("load", "Load on the teeth", items)
@@ -310,9 +309,7 @@ _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
     "friction": _friction_chapter,
     "bearing": lambda record, drawings: Section("bearing", *_bearings(record, drawings)),
     "pockets": _pockets_chapter,
-    "oil": lambda record, drawings: Section(
-        "oil", "Oil", tuple(oil_table(record.result, record.labels))
-    ),
+    "oil": lambda record, drawings: Section("oil", "Oil", tuple(oil_table(record.result))),
     "methods": lambda record, drawings: Section(
         "methods", "Methods and assumptions", _methods(record.result)
     ),

@@ -1,1 +1,0 @@
-"""Results with everything that reports and plots show, and the files they are kept in."""

@@ -1,0 +1,245 @@
+"""A result from its JSON form, checked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from epicyclic.errors import Status
+from epicyclic.gears.gear import HOUSING
+from epicyclic.losses.ranges import OUT_OF_RANGE, ValidityFlag
+from epicyclic.machine.element import OIL, FluidFigures
+from epicyclic.machine.gear_mesh import MeshFigures
+from epicyclic.machine.planets import BearingFigures
+from epicyclic.machine.shaft_parts import SealFigures, ShaftBearingFigures, TableLossFigures
+from epicyclic.result.codec import Reader
+from epicyclic.result.result import (
+    HeatBalance,
+    Layout,
+    LossTerm,
+    MemberState,
+    OilSupply,
+    PowerFlow,
+    Result,
+    Train,
+)
+from epicyclic.units import DEGREE, NUMBER, RPM, WATT
+
+Numbers = Mapping[str, float]
+Texts = Mapping[str, str]
+Part = ShaftBearingFigures | SealFigures | TableLossFigures
+"""Figures of further elements of a train."""
+_FORM = {
+    "title": str,
+    "kind": Literal["planetary", "gear_pair", "train"],
+    "status": Literal["converged", "failed", "unphysical"],
+    "losses": Numbers,
+    "load_dependent": float,
+    "load_independent": float,
+    "total": float,
+    "input_power": float,
+    "efficiency": float | None,
+    "warnings": tuple[str, ...],
+    "not_included": Texts,
+    "factors": Numbers,
+    "methods": Texts,
+    "groups": Mapping[str, Literal["load-dependent", "load-independent"]],
+    "citations": Texts,
+    "models": Texts,
+    "validity": tuple[ValidityFlag, ...],
+    "members": Mapping[str, MemberState],
+    "meshes": Mapping[str, MeshFigures],
+    "fluid": FluidFigures | None,
+    "sources": tuple[str, ...],
+    "inputs": Mapping[str, Any],
+    "versions": Texts,
+}
+"""What every result states."""
+_MORE: dict[str, tuple[Any, Any]] = {
+    "standing": (Texts, {}),
+    "heat": (HeatBalance | None, None),
+    "planet_bearing": (BearingFigures | None, None),
+    "bearings": (Mapping[str, BearingFigures], {}),
+    "parts": (Mapping[str, Part], {}),
+}
+"""What only some state, and what it is for the others."""
+_Check = Callable[[Mapping[str, Any]], str]
+
+
+@dataclass(frozen=True, slots=True)
+class StatedCase:
+    """The case of a result that was read: its inputs alone."""
+
+    stated: Mapping[str, Any]
+
+    def inputs(self) -> Mapping[str, Any]:
+        """The case, defaults included, as a case file has it."""
+        return self.stated
+
+
+def read_result(
+    data: Any,  # As `Result.to_dict` returns it.
+    check_inputs: _Check = lambda inputs: "",  # What is wrong with the inputs, in words.
+) -> tuple[Result | None, list[tuple[str, str]]]:
+    """The result, or None and where `data` is none with what is wrong there."""
+    reader = Reader()
+    if not isinstance(data, dict):
+        return None, [("", "Input should be a valid dictionary")]
+    found = {}
+    for key, kind in _FORM.items():
+        if key in data:
+            found[key] = reader.read(kind, data[key], key)
+        else:
+            reader.refuse(key, "Field required")
+    for key, (kind, default) in _MORE.items():
+        found[key] = reader.read(kind, data[key], key) if key in data else default
+    is_train = data.get("kind") == "train"
+    found["train"] = reader.read(Train, data, "") if is_train else None
+    for key, unit in (("planet_angles", DEGREE), ("planet_shares", NUMBER)):
+        angles = data.get(key)
+        found[key] = reader.read(tuple[float, ...], angles, key, unit) if angles else ()
+    found["lubrication"] = _supplies(data.get("lubrication", {}), reader)
+    if not reader.problems:
+        if wrong := check_inputs(found["inputs"]):
+            reader.refuse("inputs", f"Value error, {wrong}")
+        if "epicyclic" not in found["versions"]:
+            reader.refuse("versions", "Value error, must name the version of epicyclic")
+    if not reader.problems:
+        for place, wrong in _contradictions(found, data):
+            reader.refuse(place, f"Value error, {wrong}")
+    return (None if reader.problems else _made(found, data)), reader.problems
+
+
+def _contradictions(found: Mapping[str, Any], data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """What does not belong together."""
+    if not found["members"]:
+        yield "members", "Dictionary should have at least 1 item after validation, not 0"
+    if found["losses"].keys() != found["groups"].keys():
+        yield "", "losses and groups name different losses"
+    if len(found["planet_angles"]) != len(found["planet_shares"]):
+        yield "", "planet_angles and planet_shares count different planets"
+    heat: HeatBalance | None = found["heat"]
+    if heat is not None:
+        if heat.model not in ("flank", "network"):
+            yield "heat.model", "must be 'flank' or 'network'"
+        if OIL not in {**heat.temperatures, **heat.given}:
+            yield "heat", "the temperature of the oil is missing"
+        if not {way.hot for way in heat.ways} <= heat.temperatures.keys():
+            yield "heat", "ways name parts without temperatures"
+    train: Train | None = found["train"]
+    if train is None:
+        if found["fluid"] is None or data.get("mesh_load_factor") is None:
+            yield "", "fluid or mesh_load_factor is missing"
+        return
+    named = {train.input, train.output}
+    named |= {shaft for clutch in train.clutches for shaft in clutch.split("+")}
+    named |= {shaft for taken in train.stages.values() for shaft in taken}
+    unknown = named - found["members"].keys() - {HOUSING}
+    if unknown:
+        yield "", f"members lacks {', '.join(sorted(unknown))}"
+    shafts = found["inputs"].get("shafts", {})
+    if not isinstance(shafts, dict) or not all(
+        isinstance(names, list) and all(isinstance(name, str) for name in names)
+        for names in shafts.values()
+    ):
+        yield "", "inputs.shafts must be lists of members"
+
+
+def _made(found: dict[str, Any], data: Mapping[str, Any]) -> Result:
+    losses, methods, citations = found["losses"], found["methods"], found["citations"]
+    train: Train | None = found["train"]
+    bearing = found["planet_bearing"]
+    bearings = found["bearings"] if bearing is None else {"planet_bearing": bearing}
+    heat: HeatBalance | None = found["heat"]
+    models = found["inputs"].get("models")
+    tested = isinstance(models, Mapping) and models.get("load_dependent") == "as-tested"
+    return Result(
+        title=found["title"],
+        kind=found["kind"],
+        layout=Layout(
+            losses=tuple(losses),
+            members=tuple(found["members"]),
+            meshes=tuple(found["meshes"]),
+            bearings=tuple(bearings),
+            shares=bool(found["planet_shares"]),
+            rolling=() if train is None else tuple(train.rolling),
+            parts=tuple((key, type(part)) for key, part in found["parts"].items()),
+            fluid=found["fluid"] is not None,
+            nodes=() if heat is None else tuple(heat.temperatures),
+        ),
+        terms=tuple(
+            LossTerm(
+                name,
+                watts,
+                found["groups"][name],
+                methods.get(name, ""),
+                citations.get(name, ""),
+                found["factors"].get(name, 1.0),
+                found["not_included"].get(name, ""),
+            )
+            for name, watts in losses.items()
+        ),
+        flow=PowerFlow(
+            {name: _member(data["members"][name], it) for name, it in found["members"].items()},
+            found["input_power"],
+            found["efficiency"],
+        ),
+        meshes=found["meshes"],
+        bearings=bearings,
+        parts=found["parts"],
+        fluid=found["fluid"],
+        models=found["models"],
+        standing=found["standing"],
+        flags=found["validity"],
+        notes=tuple(text for text in found["warnings"] if not text.startswith(OUT_OF_RANGE)),
+        load_methods={key: text for key, text in methods.items() if key not in losses},
+        load_sources={key: text for key, text in citations.items() if key not in losses},
+        sources=found["sources"],
+        case=StatedCase(found["inputs"]),
+        planet_angles=found["planet_angles"],
+        planet_shares=found["planet_shares"],
+        train=train,
+        heat=heat,
+        lubrication=found["lubrication"],
+        status=Status(found["status"]),
+        unloaded=found["load_independent"] if tested else None,
+        versions=found["versions"],
+    )
+
+
+def _member(stated: Mapping[str, Any], member: MemberState) -> MemberState:
+    """The member with that one of its speeds, alike but for rounding, that has its power."""
+    power = stated.get("power")
+    watts = power.get("value") if isinstance(power, dict) else None
+    if not isinstance(watts, float) or not member.torque:
+        return member
+    near = watts / member.torque
+    speeds = (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
+    exact = (replace(member, speed=speed) for speed in speeds)
+    shown = RPM.to_display(member.speed)
+    return next(
+        (it for it in exact if it.power == watts and RPM.to_display(it.speed) == shown), member
+    )
+
+
+def _supplies(stated: Any, reader: Reader) -> dict[str, OilSupply]:
+    """Of a single set, or of the sets of a train by their names."""
+    found = {}
+    try:
+        for name, own in ({"": stated} if "method" in stated else stated).items():
+            share = own["oil_share"]
+            found[name] = OilSupply(
+                method=own["method"],
+                share=share["value"],
+                low=share["low"],
+                high=share["high"],
+                grade=share["grade"],
+                source=share["source"],
+                churning=reader.read(Numbers, own["churning"], "lubrication.churning", WATT),
+                meshes=reader.read(Numbers, own["oil_share_in_meshes"], "lubrication", NUMBER),
+            )
+    except (AttributeError, KeyError, TypeError):
+        reader.refuse("lubrication", "is no supply of oil")
+    return found

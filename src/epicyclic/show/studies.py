@@ -1,0 +1,551 @@
+"""Tables of meshes, pockets, measurements, duty cycles and warming up, for a terminal."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from epicyclic.case.messages import one_line
+from epicyclic.result.result import in_words, of_gear
+from epicyclic.show.page import MISSING, error_text, shown
+from epicyclic.show.terminal import number_table, plain_table, spaced, titled
+from epicyclic.study.measured.comparison import CALIBRATED, ErrorFigures, MeasuredComparison
+from epicyclic.study.measured.intervals import Fit, FittedParameter
+from epicyclic.study.operating import OPERATING
+from epicyclic.study.sweeps.run import AS_TESTED
+from epicyclic.units import percent, unit_text
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+# A loaded mesh in tables: position by position, and its extremes with where they occur.
+
+
+_OVER_PERIOD = ("transmission_error", "mesh_stiffness")
+_EXTREMES = (
+    "line_load",
+    "hertz_pressure",
+    "sliding_speed",
+    "film_ratio",
+    "friction_power",
+    "flash_temperature",
+)
+_SMALLEST = ("film_ratio",)
+"""Figures whose smallest value matters."""
+
+
+def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
+    """All meshes, one after the other, as `epicyclic.mesh_details` returns them."""
+    parts: list[RenderableType] = []
+    for mesh in meshes.values():
+        title = Text(str(mesh.attrs["title"]), style="bold")
+        parts += [title, _over_period(mesh), _figures(mesh)]
+    notes = dict.fromkeys(line for mesh in meshes.values() for line in _notes(mesh))
+    parts += [Text(f"• {note}") for note in notes]
+    if any(mesh["transmission_error"].isnull().all() for mesh in meshes.values()):
+        parts.append(
+            Text(f'"{MISSING}": this load distribution knows no deflection; compliance does.')
+        )
+    if any(mesh["film_ratio"].isnull().all() for mesh in meshes.values()):
+        parts.append(Text(f'"{MISSING}": without motion there is no film and no friction power.'))
+    return spaced(*parts)
+
+
+def _notes(mesh: xr.Dataset) -> list[str]:
+    return str(mesh.attrs["notes"]).splitlines()
+
+
+def _over_period(mesh: xr.Dataset) -> Table:
+    """Position by position: deflection, stiffness, the load of every tooth pair."""
+    table = plain_table("Over one base pitch")
+    lines = mesh["contact_line"].to_numpy()
+    names = ("roll_angle", *_OVER_PERIOD)
+    for name, short in zip(names, ("roll angle", "TE", "stiffness"), strict=True):
+        table.add_column(f"{short}\n{_unit(mesh, name)}", justify="right")
+    for line in lines:
+        table.add_column(f"pair {line + 1}\n{_unit(mesh, 'pair_load')}", justify="right")
+    table.add_column(f"line load\n{_unit(mesh, 'line_load')}", justify="right")
+    table.add_column(f"pressure\n{_unit(mesh, 'hertz_pressure')}", justify="right")
+    for position in range(mesh.sizes["mesh_position"]):
+        here = mesh.isel(mesh_position=position)
+        cells = [float(here[name]) for name in names]
+        cells += [float(here["pair_load"].sel(contact_line=line)) for line in lines]
+        cells += [float(here[name].max()) for name in ("line_load", "hertz_pressure")]
+        table.add_row(*(shown(cell) for cell in cells))
+    return table
+
+
+def _figures(mesh: xr.Dataset) -> Table:
+    """Means over the period, and extremes with the place where they occur."""
+    table = plain_table("Figures")
+    for column in ("", "value", "unit", "at"):
+        table.add_column(column, justify="right" if column == "value" else "left")
+    for label, value, name in _means(mesh):
+        table.add_row(label, shown(value), _unit(mesh, name), "")
+    for name in _EXTREMES:
+        value, place = _extreme(mesh, name)
+        word = "smallest" if name in _SMALLEST else "largest"
+        label = f"{word} {mesh[name].attrs['long_name']}"
+        table.add_row(label, shown(value), _unit(mesh, name), place)
+    return table
+
+
+def _means(mesh: xr.Dataset) -> Iterator[tuple[str, float, str]]:
+    error, stiffness = (mesh[name] for name in _OVER_PERIOD)
+    weight = mesh["weight"]
+    yield "mean transmission error", float((error * weight).sum(skipna=False)), _OVER_PERIOD[0]
+    span = float(error.max() - error.min())
+    yield "transmission error, peak to peak", span, _OVER_PERIOD[0]
+    yield "mean mesh stiffness", float((stiffness * weight).sum(skipna=False)), _OVER_PERIOD[1]
+
+
+def _extreme(mesh: xr.Dataset, name: str) -> tuple[float, str]:
+    """Extreme of `name` and its place in the plane of action."""
+    values = np.abs(mesh[name].to_numpy())
+    if np.isnan(values).all():
+        return float("nan"), ""
+    pick = np.nanargmin if name in _SMALLEST else np.nanargmax
+    index = np.unravel_index(int(pick(values)), values.shape)
+    path, face = (
+        f"{shown(float(mesh[key].to_numpy()[index]), 3)} {_unit(mesh, key)}"
+        for key in ("path_position", "face_position")
+    )
+    return float(values[index]), f"path {path}, face {face}"
+
+
+def _unit(mesh: xr.Dataset, name: str) -> str:
+    return unit_text(str(mesh[name].attrs["units"]))
+
+
+# The pockets of the meshes in tables: power and its balance, extremes with their place.
+
+
+FloatArray = NDArray[np.float64]
+
+_BALANCE = (
+    "power",
+    "power_from_flow",
+    "power_other_end",
+    "power_difference",
+    "mass_error",
+    "periods",
+    "speed",
+    "oil_fraction",
+    "sound_speed",
+)
+_ERRORS = ("power_difference", "mass_error")
+_EXTREMES_OF_POCKETS = (
+    ("highest pressure", "pressure", np.nanargmax),
+    ("lowest pressure", "pressure", np.nanargmin),
+    ("fastest, along the face", "axial_speed", None),
+    ("fastest, contact side", "contact_gap_speed", None),
+    ("fastest, backlash side", "backlash_gap_speed", None),
+    ("smallest section", "end_area", np.nanargmin),
+    ("smallest backlash-side gap", "backlash_gap", np.nanargmin),
+)
+"""What to call them, variables, what picks them; None: the largest without its sign."""
+
+
+def pocket_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
+    """All meshes, one after the other, as `epicyclic.pocket_details` returns them."""
+    parts: list[RenderableType] = []
+    for mesh in meshes.values():
+        title = Text(str(mesh.attrs["title"]), style="bold")
+        parts += [title, _balance(mesh), _extremes(mesh)]
+    models = dict.fromkeys(f"Model: {mesh.attrs['model']}." for mesh in meshes.values())
+    notes = dict.fromkeys(
+        line for mesh in meshes.values() for line in str(mesh.attrs["notes"]).splitlines()
+    )
+    parts.append(Text("\n".join(f"• {line}" for line in (*models, *notes))))
+    return spaced(*parts)
+
+
+def _balance(mesh: xr.Dataset) -> Table:
+    table = _table("Figures", "", "value", "unit")
+    for name in _BALANCE:
+        value = float(mesh[name])
+        text = error_text(value) if name in _ERRORS else shown(value, 5)
+        table.add_row(str(mesh[name].attrs["long_name"]), text, _unit(mesh, name))
+    count = mesh.attrs["meshes"]
+    if count > 1:
+        total = count * float(mesh["power"])
+        table.add_row(f"power of all {count} such meshes", shown(total, 5), _unit(mesh, "power"))
+    return table
+
+
+def _extremes(mesh: xr.Dataset) -> Table:
+    table = _table("Extremes", "", "value", "unit", "pocket of", "roll angle", "across the face")
+    for label, name, pick in _EXTREMES_OF_POCKETS:
+        values = mesh[name].to_numpy()
+        index = _place(np.abs(values), np.nanargmax) if pick is None else _place(values, pick)
+        table.add_row(label, *_at(mesh, name, index))
+    return table
+
+
+def _place(values: FloatArray, pick: Callable[[FloatArray], Any]) -> tuple[int, ...]:
+    return tuple(map(int, np.unravel_index(int(pick(values)), values.shape)))
+
+
+def _at(mesh: xr.Dataset, name: str, index: tuple[int, ...]) -> Iterator[str]:
+    """Value, unit and place of one element."""
+    kind, step, place = index
+    position = f"{mesh[name].dims[-1]}_position"
+    yield shown(float(mesh[name].to_numpy()[index]))
+    yield _unit(mesh, name)
+    yield f"tooth {of_gear(mesh['tooth'].to_numpy()[kind])}"
+    yield f"{shown(float(mesh['roll_angle'][kind, step]), 3)} {_unit(mesh, 'roll_angle')}"
+    yield f"{shown(float(mesh[position][place]), 3)} {_unit(mesh, position)}"
+
+
+def _table(title: str, *columns: str) -> Table:
+    table = plain_table(title)
+    for column in columns:
+        table.add_column(column, justify="right" if column == "value" else "left")
+    return table
+
+
+# Measured losses beside computed ones, for a terminal.
+
+
+MOST_POINTS = 40
+"""Points that are shown; JSON and the table in Python have all."""
+
+
+def measured_tables(comparison: MeasuredComparison) -> RenderableType:
+    """Errors by set of points; with a fit, the calibrated values and what limits them."""
+    parts: list[RenderableType] = [_error_table(comparison), Text(_legend(comparison)), Text()]
+    parts.append(_point_table(comparison))
+    if len(comparison.measured) > MOST_POINTS:
+        parts.append(Text(f"The first {MOST_POINTS} of {len(comparison.measured)} points."))
+    if comparison.fit is not None:
+        parts += [Text(), _fit_table(comparison.fit)]
+        if len(comparison.fit.parameters) > 1:
+            parts.append(_correlation_table(comparison.fit))
+        parts.append(Text(_fit_line(comparison.fit)))
+        parts += [Text(f"Warning: {note}", style="bold") for note in comparison.fit.warnings]
+    return Group(*parts, *(Text(f"Note: {note}") for note in comparison.notes))
+
+
+def _error_table(comparison: MeasuredComparison) -> Table:
+    names = ["n", "mean W", "mean %", "rms W", "size %", "most W", "most %", "line"]
+    weighted = comparison.measured.uncertainty is not None
+    heads = ["case, points", *names, *["χ²"] * weighted]
+    table = number_table("Computed less measured loss", *heads, no_wrap=(True, True))
+    for number, row in enumerate(comparison.errors):
+        if number and not row.group:
+            table.add_section()
+        name = f"  {row.group}" if row.group else f"{row.state}: {row.points}"
+        cells = _error_cells(row)[: len(names) + weighted]
+        table.add_row(name, *cells, style="" if row.group else "bold")
+    return table
+
+
+def _point_table(comparison: MeasuredComparison) -> Table:
+    """Every point: measured, computed before and after a fit, and what is left."""
+    measured, states = comparison.measured, comparison.states
+    last = list(states)[-1]
+    weighted = measured.uncertainty is not None
+    table = plain_table("Points")
+    conditions = [
+        (unit_text(OPERATING[name].unit), values) for name, values in measured.conditions.items()
+    ]
+    columns = [*conditions, ("measured W", measured.loss)]
+    if measured.uncertainty is not None:
+        columns.append(("u W", measured.uncertainty))
+    columns += [(f"{name} W", values) for name, values in states.items()]
+    columns.append(("residual W", comparison.residuals(last)))
+    if weighted:
+        columns.append(("over u", comparison.normalised(last)))
+    for name in ("line", *(name for name, _ in columns)):
+        table.add_column(name, justify="right")
+    for row, line in enumerate(measured.lines[:MOST_POINTS]):
+        mark = "*" if comparison.held_out[row] else ""
+        table.add_row(f"{line}{mark}", *(shown(float(values[row])) for _, values in columns))
+    return table
+
+
+def _error_cells(row: ErrorFigures) -> list[str]:
+    return [
+        str(row.count),
+        shown(row.bias, 3),
+        _percent(row.relative_bias),
+        shown(row.rms, 3),
+        _percent(row.mean_percentage),
+        shown(row.largest, 3),
+        _percent(row.relative_largest),
+        str(row.largest_line) if row.count else MISSING,
+        shown(row.chi_squared, 3),
+    ]
+
+
+def _percent(value: float) -> str:
+    return MISSING if math.isnan(value) else f"{100 * value:z.1f}"
+
+
+def _legend(comparison: MeasuredComparison) -> str:
+    text = (
+        "mean: of the errors; size: mean of their magnitude; most: by magnitude, in W with its "
+        "line; %: over the measured loss."
+    )
+    if comparison.load_dependent == AS_TESTED:
+        text += (
+            " Load-dependent losses as tested: total loss less that without torque at the same "
+            "speed and oil inlet temperature, each at its own temperatures."
+        )
+    if comparison.held_out.any():
+        text += " Lines with * were held out."
+    if comparison.fit is not None:
+        text += f" {CALIBRATED}: with values fitted to these measurements; that is no validation."
+    return text
+
+
+def _fit_table(fit: Fit) -> Table:
+    interval = f"{100 * fit.confidence:.4g} % interval"
+    heads = ("key", "start", CALIBRATED, "std. error", interval)
+    table = number_table(f"{CALIBRATED} values", *heads, no_wrap=(True, True))
+    table.add_column("unit")
+    for item in fit.parameters:
+        table.add_row(
+            item.key,
+            shown(item.start),
+            shown(item.value),
+            shown(item.standard_error, 2),
+            _interval(item),
+            unit_text(item.unit),
+        )
+    return table
+
+
+def _interval(item: FittedParameter) -> str:
+    if item.at_bound and math.isnan(item.low):
+        return "at its bound"
+    return MISSING if math.isnan(item.low) else f"{shown(item.low)} to {shown(item.high)}"
+
+
+def _correlation_table(fit: Fit) -> Table:
+    heads = (f"({number + 1})" for number in range(len(fit.parameters)))
+    table = number_table("Correlations", "", *heads, no_wrap=(True, False))
+    for number, (item, row) in enumerate(zip(fit.parameters, fit.correlation, strict=True)):
+        table.add_row(f"({number + 1}) {item.key}", *(shown(value, 3) for value in row))
+    return table
+
+
+def _fit_line(fit: Fit) -> str:
+    text = (
+        f"Weighted least squares, {fit.points} points, {fit.degrees_of_freedom} degrees of freedom"
+    )
+    if math.isfinite(fit.chi_squared):
+        text += f", χ² {shown(fit.chi_squared, 4)}"
+    text += f"; {fit.evaluations} computed points. {_about_intervals(fit)}"
+    if fit.discrepancy > 0 and fit.widening > 1:
+        text += (
+            f" Birge ratio {shown(fit.widening, 3)}: beyond the uncertainties of the measurements "
+            f"the model is off by about {shown(fit.discrepancy, 2)} W at these points. That "
+            "variance is in the intervals."
+        )
+    elif math.isfinite(fit.discrepancy) and math.isnan(fit.widening):
+        text += (
+            f" The points scatter by {shown(fit.discrepancy, 2)} W about the fit, measurements and "
+            "model together."
+        )
+    return text
+
+
+def _about_intervals(fit: Fit) -> str:
+    if all(item.profiled for item in fit.parameters):
+        return "Intervals follow from profiles of the likelihood."
+    return "Intervals are those of the linearised model."
+
+
+def fitted_comment(item: FittedParameter, fit: Fit) -> str:
+    """What a case file says behind a calibrated value."""
+    start = f"{shown(item.start)} {unit_text(item.unit)}".rstrip()
+    return (
+        f"{CALIBRATED}; {100 * fit.confidence:.4g} % interval: {_interval(item)}; before: {start}"
+    )
+
+
+# Energies of a duty cycle as tables, for a terminal and for files.
+
+
+def duty_tables(data: xr.Dataset) -> RenderableType:
+    """Energy in, out and lost by component, for each temperature that was asked for."""
+    parts: list[RenderableType] = []
+    if "temperature" in data.dims:
+        for value in data["temperature"].values:
+            title = f"Oil at {shown(float(value))} °C"
+            parts += _tables(data.sel(temperature=value), title)
+    else:
+        parts += _tables(data, "Duty cycle")
+    stated = [
+        f"{name.replace('_', ' ')}: {data.attrs[name]}"
+        for name in ("cycle", "basis", "reference_shaft", "modes")
+    ]
+    return titled(one_line(data.attrs["title"]), *parts, Text("\n".join(stated)))
+
+
+def _tables(data: xr.Dataset, title: str) -> list[RenderableType]:
+    modes = [str(name) for name in data["mode"].values]
+    heads = ("", *modes, "total", "of lost")
+    table = number_table(f"{title}: energy in kJ", *heads, no_wrap=(True, False))
+    _add_row(table, "entering", data["energy_in"])
+    _add_row(table, "leaving", data["energy_out"], end_section=True)
+    lost = data["energy_lost"]
+    whole = float(lost.sum())
+    for name in lost["component"].values:
+        row = lost.sel(component=name)
+        share = percent(float(row.sum()) / whole) if whole else ""
+        _add_row(table, str(name).replace("_", " "), row, share)
+    _add_row(table, "lost", lost.sum("component"), style="bold", end_section=True)
+    _add_row(table, "duration s", data["duration"])
+    efficiencies = [*data["efficiency"].values, data["total_efficiency"].item()]
+    table.add_row("efficiency", *("" if math.isnan(it) else percent(it, 3) for it in efficiencies))
+    states = [_states_table(data)] if "state" in data.dims else []
+    return [table, *states, Text(_error_text(data, whole))]
+
+
+def _states_table(data: xr.Dataset) -> Table:
+    """Energy of each state."""
+    heads = ("", "entering", "leaving", "lost", "duration s", "efficiency")
+    table = number_table("States: energy in kJ", *heads)
+    for name in data["state"].values:
+        own = data.sel(state=name)
+        values = [own["state_energy_in"], own["state_energy_out"]]
+        values += [own["state_energy_lost"].sum(), own["state_duration"]]
+        efficiency = float(own["state_efficiency"])
+        shown_efficiency = "" if math.isnan(efficiency) else percent(efficiency, 3)
+        table.add_row(str(name), *(shown(float(it), 6) for it in values), shown_efficiency)
+    return table
+
+
+def _add_row(table: Table, name: str, values: xr.DataArray, share: str = "", **style: Any) -> None:
+    cells = [shown(float(value), 6) for value in values.values]
+    table.add_row(name, *cells, shown(float(values.sum()), 6), share, **style)
+
+
+def _error_text(data: xr.Dataset, lost: float) -> str:
+    """How far the energy lost is off, and what lies outside."""
+    error, spread = (
+        float(data[name]) for name in ("interpolation_error", "interpolation_standard_error")
+    )
+    scatter = "" if math.isnan(spread) else f" ± {shown(spread, 2)}"
+    part = f" ({percent(error / lost, 2, signed=True)} of the energy lost)" if lost else ""
+    largest = float(data["largest_deviation"])
+    return (
+        f"Interpolation adds {shown(error, 3)}{scatter} kJ{part}; largest deviation of a point "
+        f"{'-' if math.isnan(largest) else percent(largest, 2)}. "
+        f"By: {data.attrs['interpolation_error_method']}.\n"
+        f"Outside of the map: {float(data['share_outside']):.3g} of the duration, "
+        f"{data.attrs['points_outside']}."
+    )
+
+
+def duty_rows(data: xr.Dataset) -> pd.DataFrame:
+    """One row for each number: quantity, unit, mode, component, temperature, value."""
+    import pandas as pd
+
+    tables = []
+    for name, array in data.data_vars.items():
+        table = (
+            array.to_dataframe(name="value").reset_index()
+            if array.ndim
+            else pd.DataFrame({"value": [array.item()]})
+        )
+        tables.append(table.assign(quantity=str(name), unit=array.attrs["units"]))
+    columns = ["quantity", "unit", *data.dims, "value"]
+    return pd.concat(tables, ignore_index=True)[[str(name) for name in columns]]
+
+
+def duty_json(data: xr.Dataset) -> str:
+    """Attributes and rows as JSON; what does not exist is null."""
+    rows = duty_rows(data).astype(object)
+    content = {"attributes": data.attrs, "rows": rows.where(rows.notna(), None).to_dict("records")}
+    return json.dumps(content, indent=2, allow_nan=False)
+
+
+# Warming up as tables, for a terminal and for files.
+
+
+_UNITS = (("h", 3600.0), ("min", 60.0), ("s", 1.0))
+_SHOWN_CONSTANTS = 4
+
+
+def warm_up_tables(data: xr.Dataset) -> RenderableType:
+    """Temperatures at the start, at the end and settled, time constants, and the energy lost."""
+    title = f"Warming up for {duration_text(float(data['time'][-1]))}"
+    heads = ("", "start °C", "end °C", "settled °C", "to 90 %", "capacity J/K")
+    table = number_table(title, *heads, no_wrap=(True, True))
+    for node in data["node"].values:
+        one = data.sel(node=node)
+        temperature = one["temperature"].values
+        table.add_row(
+            in_words(str(node)),
+            f"{temperature[0]:.1f}",
+            f"{temperature[-1]:.1f}",
+            _number(float(one["settled_temperature"])),
+            duration_text(float(one["time_to_90_percent"])),
+            shown(float(one["heat_capacity"])),
+        )
+    losses = number_table("Power loss in W", "", "start", "end", no_wrap=(True, True))
+    for component in data["component"].values:
+        watts = data["loss"].sel(component=component).values
+        if watts.any():
+            losses.add_row(in_words(str(component)), f"{watts[0]:.1f}", f"{watts[-1]:.1f}")
+    losses.add_section()
+    total = data["total_loss"].values
+    losses.add_row("total", f"{total[0]:.1f}", f"{total[-1]:.1f}", style="bold")
+    return titled(one_line(data.attrs["title"]), table, losses, Text(_summary(data)))
+
+
+def _summary(data: xr.Dataset) -> str:
+    """Time constants and energies in words."""
+    constants = data["time_constant"].values
+    lost = float(data["energy_lost"][-1])
+    settled = float(data["energy_lost_settled"])
+    if math.isnan(settled):
+        return f"It does not settle. Energy lost: {shown(lost)} kJ."
+    texts = ", ".join(map(duration_text, constants[:_SHOWN_CONSTANTS]))
+    lines = [
+        f"time constants about the settled state: {texts}",
+        f"energy lost: {shown(lost)} kJ; settled from the start it would be {shown(settled)} kJ"
+        + (f" ({percent(lost / settled - 1, signed=True)} by warming up)" if settled else ""),
+    ]
+    return "\n".join(lines)
+
+
+def duration_text(seconds: float) -> str:
+    """A time in the unit that suits it, ``"1.5 h"``; a dash if there is none."""
+    if math.isnan(seconds):
+        return "-"
+    unit, size = next(((unit, size) for unit, size in _UNITS if seconds >= 2 * size), _UNITS[-1])
+    return f"{seconds / size:.3g} {unit}"
+
+
+def _number(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.1f}"
+
+
+def warm_up_rows(data: xr.Dataset) -> pd.DataFrame:
+    """One row for each time: temperatures of all nodes, all losses, efficiency and energies."""
+    import pandas as pd
+
+    columns = {f"time [{data['time'].attrs['units']}]": data["time"].values}
+    for name, over, ending in (("temperature", "node", ""), ("loss", "component", "_loss")):
+        for one in data[over].values:
+            header = f"{one}{ending or '_temperature'} [{data[name].attrs['units']}]"
+            columns[header] = data[name].sel({over: one}).values
+    for key, array in data.data_vars.items():
+        if array.dims == ("time",):
+            unit = str(array.attrs["units"])
+            columns[str(key) if unit == "1" else f"{key} [{unit}]"] = array.values
+    return pd.DataFrame(columns)

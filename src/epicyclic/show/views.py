@@ -1,0 +1,239 @@
+"""Results as users have them: with tables, pictures, files and a page of a notebook.
+
+What makes these is imported when it is asked for: solving alone loads neither pandas nor
+Matplotlib.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Self, cast
+
+from epicyclic.case.case import Case
+from epicyclic.errors import InputError, Problem
+from epicyclic.files import check_place, whole_file
+from epicyclic.losses.pocket_tables import FlowTables
+from epicyclic.result import result as plain
+from epicyclic.study import heat
+from epicyclic.study import solve as study
+from epicyclic.study.operating import operating_line
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+    from epicyclic.show.record import ResultRecord
+
+FILES = (".nc", ".json", ".html", ".pdf")
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Result(plain.Result):
+    __doc__ = plain.Result.__doc__
+
+    @classmethod
+    def of(cls, solved: plain.Result) -> Self:
+        """What was solved, with views."""
+        return cls(**{it.name: getattr(solved, it.name) for it in fields(solved)})
+
+    def table(
+        self,
+        # ``"losses"``: power, share of the total, group and method of every loss and sum.
+        # ``"numbers"``: value, unit and label of every number, as sweeps store them.
+        of: str = "losses",
+    ) -> pd.DataFrame:
+        """Losses, or every number, as a table.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row for each, named by its key.
+
+        Examples
+        --------
+        >>> import epicyclic as ep
+        >>> result = ep.solve(ep.load_case("talbot-2012"))
+        >>> table = result.table()
+        >>> bool(table.loc["total", "loss [W]"] == result.total)
+        True
+        """
+        import pandas as pd
+
+        if of == "numbers":
+            rows = [(it.key, it.value, it.unit, it.label) for it in self.numbers()]
+            return pd.DataFrame(rows, columns=["key", "value", "unit", "label"]).set_index("key")
+        if of != "losses":
+            problem = Problem("of", f'"{of}"', 'must be "losses" or "numbers".', "Choose one.")
+            raise InputError([problem], "the table")
+        terms = [(it.name, it.watts, it.group, it.left_out or it.method) for it in self.terms]
+        sums = ("load_dependent", "load_independent", "total")
+        terms += [(name, getattr(self, name), "sum", "") for name in sums]
+        columns = ["key", "loss [W]", "group", "method"]
+        losses = pd.DataFrame(terms, columns=columns).set_index("key")
+        share = losses["loss [W]"] / self.total if self.total else float("nan")
+        losses.insert(1, "share of the total", share)
+        return losses
+
+    def plot(
+        self,
+        # Its name, ``"power-flow"``; an unknown one is answered with those that there are.
+        what: str = "losses",
+        *,
+        # Width and height; default: those of a slide. [mm]
+        size: tuple[float, float] | None = None,
+        # Pixels an inch; default: such that the picture is as wide as a slide of 1920 pixels.
+        dpi: float | None = None,
+    ) -> Figure:
+        """One of the pictures of ``epicyclic plot``.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Its ``savefig`` writes a file.
+
+        Examples
+        --------
+        >>> import epicyclic as ep
+        >>> figure = ep.solve(ep.load_case("talbot-2012")).plot("losses", size=(120, 80))
+        """
+        from epicyclic.show.plots.catalogue import figure_of
+
+        return figure_of(_record_of(self), what, size=size, dpi=dpi)
+
+    def save(
+        self,
+        # ``.nc``: everything, for `open_result`, reports and plots; ``.json``: the numbers;
+        # ``.html`` or ``.pdf``: the report.
+        path: str | Path,
+    ) -> None:
+        """Keep the result in a file, whole or not at all.
+
+        Raises
+        ------
+        InputError
+            If there is no place for the file, or it ends otherwise.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import epicyclic as ep
+        >>> result = ep.solve(ep.load_case("talbot-2012"))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     result.save(f"{folder}/result.json")
+        """
+        save(self, Path(path))
+
+    def _repr_html_(self) -> str:
+        """Operating point, key figures, losses, warnings."""
+        from epicyclic.show.html import items_html
+        from epicyclic.show.page import Listing
+        from epicyclic.show.result_tables import key_figures, losses_table, sums_table
+
+        figures = (f"{it.label} {it.cell.text} {it.unit}".rstrip() for it in key_figures(self))
+        lines = (operating_line(self.inputs["operation"]), ", ".join(figures))
+        title = escape(self.title or self.kind.replace("_", " "))
+        losses = losses_table(self) if self.train is None else sums_table(self, self.train)
+        warnings = (Listing(self.warnings, "Warnings"),) if self.warnings else ()
+        head = f"<p><strong>{title}</strong><br>{'<br>'.join(map(escape, lines))}</p>"
+        return f"<div>{head}{items_html(losses, *warnings)}</div>"
+
+
+def save(result: plain.Result, path: Path) -> None:
+    """`Result.save`, of any result."""
+    from epicyclic.show.files import save_result
+    from epicyclic.show.html import check_pdf, report_html, report_pdf
+
+    if path.suffix not in FILES:
+        allowed = f"must end in {', '.join(FILES)}."
+        raise InputError([Problem("path", str(path), allowed, "Name such a file.")], "the result")
+    check_place(path)
+    if path.suffix == ".pdf":
+        check_pdf()
+    if path.suffix == ".nc":
+        save_result(_record_of(result), path)
+        return
+    text = result.to_json() + "\n" if path.suffix == ".json" else report_html(_record_of(result))
+    with whole_file(path) as file:
+        if path.suffix == ".pdf":
+            file.write_bytes(report_pdf(text))
+        else:
+            file.write_text(text, encoding="utf-8")
+
+
+@lru_cache(maxsize=4)
+def _record_of(result: plain.Result) -> ResultRecord:
+    """The fields behind a result, which take longer than the result: several pictures need them."""
+    from epicyclic.show.record import record
+
+    return record(cast(Case, result.case), result=result)
+
+
+def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
+    """The losses of a case.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+        From `load_case`.
+    flow_tables : mapping, optional
+        Tables of flows through pockets, as `sweep` makes them for its points; flows that they do
+        not hold are solved.
+
+    Returns
+    -------
+    Result
+        Its status is ``unphysical`` if a loss is below zero, energy does not balance, or teeth or
+        rollers carry or resist with more than any can; the first of its warnings says why.
+
+    Raises
+    ------
+    ConvergenceError
+        If an iteration ends without a solution, or a loss is not a finite number.
+    """
+    return Result.of(study.solve(case, flow_tables=flow_tables))
+
+
+def solve_for(
+    case: Case,
+    quantity: str,
+    temperature: str | float,
+    *,
+    progress: Callable[[int, int], object] | None = None,
+) -> heat.Found:
+    """The cooling, flow or power with which the oil has a temperature.
+
+    Parameters
+    ----------
+    case : PlanetaryCase or GearPairCase
+    quantity : str
+        ``"cooler_power"``: heat that a cooler takes from the oil; ``"oil_flow"``: oil that leaves
+        and comes back at the inlet temperature; ``"input_power"``: torque at the given speed.
+    temperature : str or float
+        Temperature of the oil in the gearbox: text with a unit, or in kelvin.
+    progress : callable, optional
+        Called with the number of settled states found, and of those expected.
+
+    Returns
+    -------
+    Found
+
+    Raises
+    ------
+    InputError
+        If no value of the quantity leads to that temperature.
+
+    Examples
+    --------
+    >>> import epicyclic as ep
+    >>> case = ep.load_case("talbot-2012-pair", {
+    ...     "operation.torque": "100 N*m", "operation.speed": "2000 rpm"})
+    >>> found = ep.solve_for(case, "oil_flow", "110 degC")
+    >>> round(found.result.heat.oil - 273.15, 4)
+    110.0
+    """
+    found = heat.solve_for(case, quantity, temperature, progress=progress)
+    return replace(found, result=Result.of(found.result))
