@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 # Where the gears of a set stand, and how they must be turned for their teeth to mesh.
 
-
 Point = tuple[float, float]
 """x and y of a centre. [m]"""
 Place = tuple[float, float, float]
@@ -83,7 +82,12 @@ def places_of(
     if isinstance(case, PlanetaryCase):
         return _of_planetary(case)
     if isinstance(case, GearPairCase):
-        return _of_pair(case, next(iter(meshes.values())))
+        # The pinion at the origin, or inside an internal gear there.
+        mesh = next(iter(meshes.values()))
+        tables = {"pinion": case.pinion, "gear": case.gear}
+        ends = ((0.0, 0.0),), ((case.gears.distance, 0.0),)
+        pinion, gear = reversed(ends) if mesh.gear2.internal else ends
+        return SetPlaces(tables, {"pinion": pinion, "gear": gear}, {name: name for name in tables})
     return _of_listed(case, meshes)
 
 
@@ -94,14 +98,6 @@ def _of_planetary(case: PlanetaryCase) -> SetPlaces:
     around = tuple(_polar(case.gears.distance, UP + angle) for angle in angles)
     centers = {"sun": middle, "planet": around, "ring": middle}
     return SetPlaces(tables, centers, {name: name for name in tables})
-
-
-def _of_pair(case: GearPairCase, mesh: Mesh) -> SetPlaces:
-    """The pinion at the origin, or inside an internal gear there."""
-    tables = {"pinion": case.pinion, "gear": case.gear}
-    ends = ((0.0, 0.0),), ((case.gears.distance, 0.0),)
-    pinion, gear = reversed(ends) if mesh.gear2.internal else ends
-    return SetPlaces(tables, {"pinion": pinion, "gear": gear}, {name: name for name in tables})
 
 
 def _of_listed(case: ListedCase, meshes: Mapping[str, Mesh]) -> SetPlaces | None:
@@ -226,7 +222,6 @@ def _meshing(
 #
 # Each gear is one dataset: the outline of one tooth about the axis of the gear, the tooth pointing
 # along y, and the places at which the gear stands, each with the direction of its first tooth.
-
 
 POINTS_PER_SECTION = 12
 """Points of a drawn outline on each section of half a tooth."""

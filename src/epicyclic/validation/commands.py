@@ -123,7 +123,6 @@ def _banded() -> RenderableType:
 
 # The command reproduce: a chapter of the dissertation computed again.
 
-
 PAGE = "index.html"
 
 

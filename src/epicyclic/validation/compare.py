@@ -110,7 +110,6 @@ def _loss(helix_angle: str, face_width: str, model: str) -> float:
 
 # Compare the published figures with what is computed.
 
-
 Verdict = Literal["agrees", "differs", "calibrated", "no verdict"]
 _TOPICS = {
     "Planet bearings": ("planet_bearing_loss", "planet_bearing_ratio", "azimuth_of_gained_rollers"),
@@ -256,7 +255,6 @@ def _compare(figure: dict[str, Any]) -> Comparison:
 
 # Published measurements beside the band that the shipped distributions give. Nothing is fitted.
 
-
 FloatArray = NDArray[np.float64]
 
 DRAWS = 1024
@@ -373,7 +371,6 @@ def _compute(figure: Mapping[str, Any], bands: _Bands, draw: int) -> float:
 #
 # Nothing is fitted to them: what is not published of their heat is varied over its plausible range.
 
-
 _MODEL = "models.temperatures"
 _OF_TESTS = ("branch_slope", "load_dependent_loss", "loss_share")
 """Figures that follow from the loaded tests."""
@@ -427,7 +424,26 @@ def settled_figures(runner: Runner = HERE) -> tuple[SettledFigure, ...]:
     """
     networks = list(_networks())
     settings = [{_MODEL: "inlet"}, {_MODEL: "flank"}, *networks]
-    inlet, flank, *others = _tests_of(settings, runner)
+    # The loaded tests with each of the settings, all computed in one go.
+    content = _settled_content()
+    conditions = [
+        test
+        for temperature, finish in itertools.product(content["temperatures"], content["finishes"])
+        for test in loaded_conditions(temperature, finish, content["planets"])
+    ]
+    points, unloaded = with_unloaded([{**test, **own} for own in settings for test in conditions])
+    rows = runner.run(PointList(source_case(), points))
+    if rows.failures:
+        raise ConvergenceError(
+            f"{len(rows.failures)} of {len(rows)} tests cannot be computed: {rows.failures[0]}"
+        )
+    loss = as_tested(rows, unloaded)
+    tests = list(map(_Test, rows.numbers("input_power")[: loss.size].tolist(), loss.tolist()))
+    names, count = [tuple(test.values()) for test in conditions], len(conditions)
+    inlet, flank, *others = [
+        partial(_chosen, dict(zip(names, tests[first : first + count], strict=True)))
+        for first in range(0, len(tests), count)
+    ]
     middle = others[networks.index(_network(item.value for item in estimates()))]
     return tuple(
         SettledFigure(
@@ -474,29 +490,6 @@ def _settled_figures() -> Iterator[dict[str, Any]]:
 
 def _settled_compute(figure: Mapping[str, Any], tests: LoadedTests) -> float:
     return FIGURES[figure["compute"]](**figure["with"], tests=tests)
-
-
-def _tests_of(settings: Sequence[Mapping[str, Any]], runner: Runner) -> list[LoadedTests]:
-    """The loaded tests with each of the settings, all computed in one go."""
-    content = _settled_content()
-    conditions = [
-        test
-        for temperature, finish in itertools.product(content["temperatures"], content["finishes"])
-        for test in loaded_conditions(temperature, finish, content["planets"])
-    ]
-    points, unloaded = with_unloaded([{**test, **own} for own in settings for test in conditions])
-    rows = runner.run(PointList(source_case(), points))
-    if rows.failures:
-        raise ConvergenceError(
-            f"{len(rows.failures)} of {len(rows)} tests cannot be computed: {rows.failures[0]}"
-        )
-    loss = as_tested(rows, unloaded)
-    tests = list(map(_Test, rows.numbers("input_power")[: loss.size].tolist(), loss.tolist()))
-    names, count = [tuple(test.values()) for test in conditions], len(conditions)
-    return [
-        partial(_chosen, dict(zip(names, tests[first : first + count], strict=True)))
-        for first in range(0, len(tests), count)
-    ]
 
 
 def _chosen(

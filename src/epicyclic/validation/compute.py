@@ -174,33 +174,10 @@ def mesh_stiffness_of(mesh: LoadedMesh) -> float:
     return mesh.mean(mesh.secant_stiffness) / mesh.mesh.face_width / 1e9
 
 
-PROGRAM_FIGURES: dict[str, Callable[..., float]] = {
-    function.__name__: function
-    for function in (
-        mesh_geometry,
-        mesh_power,
-        loss_factor,
-        closed_loss_factor,
-        local_loss_factor,
-        mean_friction,
-        closed_loss,
-        local_loss,
-        stage_loss,
-        sliding_loss,
-        pitch_pressure,
-        smallest_film,
-        largest_film,
-        program_single_stiffness,
-        program_mesh_stiffness,
-    )
-}
-
-
 # The published figures computed: one function for each kind of figure.
 #
 # Each takes plain values as `published.toml` has them and returns a number in the unit stated
 # there.
-
 
 TEST_TORQUES = (250, 500, 750, 1000)
 """Loaded tests: torque on the sun. [N m]"""
@@ -517,24 +494,13 @@ def _mean_friction(pair: str) -> float:
 FIGURES: Mapping[str, Callable[..., float]] = {
     function.__name__: function
     for function in (
-        planet_bearing_loss,
-        planet_bearing_ratio,
-        train_efficiency,
-        train_ratio,
-        bulk_temperature,
-        pair_bulk_temperature,
-        pair_flash_temperature,
-        azimuth_of_gained_rollers,
-        mixture_density,
-        mixture_viscosity,
-        branch_slope,
-        load_dependent_loss,
-        load_independent_loss,
-        loss_share,
-        pocketing_loss,
-        pocketing_speed_exponent,
-        pocketing_oil_ratio,
-        single_stiffness,
-        mean_mesh_stiffness,
+        mesh_geometry, mesh_power, loss_factor, closed_loss_factor, local_loss_factor,
+        mean_friction, closed_loss, local_loss, stage_loss, sliding_loss, pitch_pressure,
+        smallest_film, largest_film, program_single_stiffness, program_mesh_stiffness,
+        planet_bearing_loss, planet_bearing_ratio, azimuth_of_gained_rollers,
+        mixture_density, mixture_viscosity, branch_slope, load_dependent_loss,
+        load_independent_loss, loss_share, pocketing_loss, pocketing_speed_exponent,
+        pocketing_oil_ratio, single_stiffness, mean_mesh_stiffness, train_ratio,
+        train_efficiency, bulk_temperature, pair_bulk_temperature, pair_flash_temperature,
     )
-} | PROGRAM_FIGURES
+}  # fmt: skip

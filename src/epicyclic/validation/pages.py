@@ -186,7 +186,6 @@ def published_text(row: Comparison) -> str:
 
 # The report of the comparison with published figures: one page for all of them.
 
-
 MOST_ROWS = 8
 """Most rows of one picture."""
 _HEAD = (

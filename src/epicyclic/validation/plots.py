@@ -193,7 +193,6 @@ def _described(coordinate: xr.DataArray) -> str:
 
 # The figures of the parametric study of pocketing losses.
 
-
 PUBLISHED = "Talbot (2012)"
 SAME_LINE = 1e-6
 """Values that differ less than this are the same. [1]"""
@@ -245,7 +244,22 @@ def _plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) ->
         )
     if published is not None:
         _study_mark(loss, over, ax, published)
-        _mark_bands(loss, over, ax, published)
+        # Between which losses the axes of the source enclose its curve of the highest speed.
+        for helix, width, low, high in published.bands:
+            values = {"helix_angle": helix, "face_width": width, "speed": published.speed}
+            if not _has(loss, values):
+                continue
+            ax.errorbar(
+                values[over],
+                (low + high) / 2,
+                yerr=(high - low) / 2,
+                ls="none",
+                color=COLOURS[-1],
+                capsize=4,
+                lw=1.2,
+                zorder=3,
+                label=f"{PUBLISHED}, between ticks of its axes, {published.speed:g} rpm",
+            )
     held = [_study_described(study[name]) for name in study.coords if study[name].ndim == 0]
     ax.set(title=", ".join(held) or "Loss", xlabel=label_of(loss[over]), ylabel="pocketing loss, W")
     ax.set_ylim(bottom=0)
@@ -295,25 +309,6 @@ def _study_mark(loss: xr.DataArray, over: str, ax: Axes, published: PublishedStu
         label=f"{PUBLISHED}, {published.speed:g} rpm",
         zorder=3,
     )
-
-
-def _mark_bands(loss: xr.DataArray, over: str, ax: Axes, published: PublishedStudy) -> None:
-    """Between which losses the axes of the source enclose its curve of the highest speed."""
-    for helix, width, low, high in published.bands:
-        values = {"helix_angle": helix, "face_width": width, "speed": published.speed}
-        if not _has(loss, values):
-            continue
-        ax.errorbar(
-            values[over],
-            (low + high) / 2,
-            yerr=(high - low) / 2,
-            ls="none",
-            color=COLOURS[-1],
-            capsize=4,
-            lw=1.2,
-            zorder=3,
-            label=f"{PUBLISHED}, between ticks of its axes, {published.speed:g} rpm",
-        )
 
 
 def _has(loss: xr.DataArray, values: Mapping[str, float]) -> bool:
@@ -374,7 +369,6 @@ def reproduce(figures: Sequence[str], runner: Runner = HERE) -> Iterator[Reprodu
 
 
 # Published figures beside computed ones: how far off each is, and how far off it may be.
-
 
 SHOWN = 0.40
 """Differences beyond it are drawn at the edge, with their number. [1]"""

@@ -18,7 +18,7 @@ from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, build_case, r
 from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.plain import plain
 from epicyclic.case.wording import refused, written
-from epicyclic.errors import InputError, Problem, Status, raise_any
+from epicyclic.errors import Problem, Status, one_problem, raise_any
 from epicyclic.gears.cutting import mated_tools
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_thickness
 from epicyclic.gears.mesh import Mesh
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
 
 # Variants of a mesh as the pocketing study compares them. Talbot (2012), section 4.4.
-
 
 ROUNDING = 1e-9
 """What is less negative is left over from rounding. [m] or [1]"""
@@ -143,8 +142,9 @@ def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketF
             family = replace(family, oil_fraction=variant.oil_fraction)
         return family.flow(speed, mixture, pressure)
     except ValueError as error:
-        problem = Problem(duty.key, "", f"cannot be so: {error}.", "Vary over a smaller range.")
-        raise InputError([problem], "the study") from None
+        raise one_problem(
+            duty.key, "", f"cannot be so: {error}.", "Vary over a smaller range.", "the study"
+        ) from None
 
 
 def _varied_mesh(mesh: Mesh, variant: PocketVariant) -> Mesh:
@@ -365,12 +365,9 @@ def _duty(case: Case, mesh: str | None) -> MeshDuty:
     key = next(iter(duties)) if mesh is None else mesh
     if key not in duties:
         allowed = f"must be {' or '.join(duties)}."
-        raise InputError(
-            [Problem("mesh", written(key), allowed, "Name one of these.")], "the study"
-        )
+        raise one_problem("mesh", written(key), allowed, "Name one of these.", "the study")
     if duties[key].speed1 == 0:
-        problem = Problem(key, "", "does not turn.", "Change operation.speed.")
-        raise InputError([problem], case.source)
+        raise one_problem(key, "", "does not turn.", "Change operation.speed.", case.source)
     return duties[key]
 
 
@@ -439,8 +436,9 @@ def _axis(duty: MeshDuty, name: str, values: tuple[float, ...]) -> StudyAxis:
     try:
         found = teeth_for_module(duty.mesh, values)
     except ValueError as error:
-        problem = Problem("range module", "", f"{error}.", "Give smaller modules.")
-        raise InputError([problem], "the study") from None
+        raise one_problem(
+            "range module", "", f"{error}.", "Give smaller modules.", "the study"
+        ) from None
     return StudyAxis(name, tuple(found), tuple(found.values()))
 
 
@@ -535,7 +533,13 @@ def _dataset(plan: StudyPlan, name: str, rows: Rows, own: list[int]) -> xr.Datas
         variables[key] = (dims, texts, {"long_name": label})
     dataset = xr.Dataset(variables, coordinates, _attributes(plan, name))
     if name == "speed" and dataset.sizes["speed"] > 1:
-        dataset["speed_exponent"] = _exponents(dataset["pocketing_loss"])
+        # Slope of the logarithm of the loss over that of the speed.
+        loss = dataset["pocketing_loss"]
+        speed = np.log(loss["speed"])
+        away = speed - speed.mean()
+        slope: xr.DataArray = (np.log(loss) * away).sum("speed", skipna=False) / (away**2).sum()
+        slope.attrs = {"long_name": "exponent of the speed in the loss", "units": "1"}
+        dataset["speed_exponent"] = slope
     return dataset
 
 
@@ -565,17 +569,7 @@ def _attributes(plan: StudyPlan, name: str) -> dict[str, str]:
     }
 
 
-def _exponents(loss: xr.DataArray) -> xr.DataArray:
-    """Slope of the logarithm of the loss over that of the speed."""
-    speed = np.log(loss["speed"])
-    away = speed - speed.mean()
-    slope: xr.DataArray = (np.log(loss) * away).sum("speed", skipna=False) / (away**2).sum()
-    slope.attrs = {"long_name": "exponent of the speed in the loss", "units": "1"}
-    return slope
-
-
 # What is published of the parametric study of pocketing losses. Talbot (2012), section 4.4.
-
 
 EXAMPLE = "talbot-2012-pair"
 _SAME = ("gears", "pinion", "gear", "lubricant", "surroundings")

@@ -47,7 +47,6 @@ if TYPE_CHECKING:
 
 # How well the losses of a map are known: the same samples of all inputs at each of its points.
 
-
 FloatArray = NDArray[np.float64]
 
 SAMPLES = 32
@@ -178,7 +177,6 @@ class MapStudy:
 # for all. Every sample of the inputs is solved at each of them: the inputs are the same throughout
 # the cycle, so that they do not average out.
 
-
 CYCLE_SAMPLES = 64
 """Points in each of the two sets."""
 POINTS = 16
@@ -271,16 +269,6 @@ def cycle_study(
     """What has to be solved for the uncertainty of the energy of a cycle; see `uncertainty`."""
     count = CYCLE_SAMPLES if samples is None else samples
     check_samples(count)
-    case = _case_of(data, celsius, points)
-    result = solve(case)
-    sums = add_up(data, cycle, celsius, samples=POINTS if points is None else points)
-    energies = _energies(sums, outputs_of(case, result))
-    nearby = nearby_at(case, result, energies.points, runner)
-    sampled = sampled_case(case, result, count, seed, energies.points)
-    return CycleStudy(case, cycle, energies, nearby, sampled, seed)
-
-
-def _case_of(data: xr.Dataset, celsius: tuple[float, ...] | None, points: int | None) -> Case:
     problems = []
     if celsius is not None and len(celsius) > 1:
         allowed = "must be one for an uncertainty."
@@ -293,7 +281,12 @@ def _case_of(data: xr.Dataset, celsius: tuple[float, ...] | None, points: int | 
         problems.append(Problem("case", "", allowed, "Compute the map again."))
     if problems or case is None:
         raise InputError(problems, "the command")
-    return case
+    result = solve(case)
+    sums = add_up(data, cycle, celsius, samples=POINTS if points is None else points)
+    energies = _energies(sums, outputs_of(case, result))
+    nearby = nearby_at(case, result, energies.points, runner)
+    sampled = sampled_case(case, result, count, seed, energies.points)
+    return CycleStudy(case, cycle, energies, nearby, sampled, seed)
 
 
 def _energies(sums: Sums, outputs: Outputs) -> Energies:

@@ -18,7 +18,7 @@ from epicyclic.case.nearest import did_you_mean
 from epicyclic.case.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
 from epicyclic.case.train import TrainCase
 from epicyclic.case.wording import written
-from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
+from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.machine.element import HOUSING
 from epicyclic.results.result import Layout, number_fields
 from epicyclic.study.maps.tables import Lookup, check_map, map_case
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 # had the probability p = 1 - exp(-w tau) to stay, and the sum of x/p over the sample estimates the
 # sum of x over all points, with the variance (1 - p) x^2/p^2 of each, uncorrelated (Cohen and
 # Kaplan, PODC 2007, 225). A cycle of no more points than the sample is summed exactly.
-
 
 Array = NDArray[np.float64]
 _SEED = 0
@@ -156,7 +155,6 @@ def leave_out(lookup: Lookup, node_work: Array) -> Deviation:
 #
 # Near zero torque the rolling loss rises like a root, and at the torque that just drives the drag
 # behind a mesh the loss has a kink. A map that is read linearly needs torques there that crowd.
-
 
 FloatArray = NDArray[np.float64]
 
@@ -297,7 +295,6 @@ def _takes_minutes(case: Case) -> bool:
 # The torque loss refers to the input member, `reference_shaft` in the attributes: the power loss
 # over the magnitude of the speed of that shaft. With it the torque that the shaft passes on is the
 # torque on it less the torque loss times the sign of its speed, driving and coasting.
-
 
 _OWN_AXES = {**AXES, STATE: STATE_KEY}
 _SHAFT_KEYS = (
@@ -453,8 +450,7 @@ def stored_plan(data: xr.Dataset) -> MapPlan:
     case = map_case(data)
     if case is None:
         allowed = "is none of this version of the program."
-        problem = Problem("case", "", allowed, "Compute the map again.")
-        raise InputError([problem], "the map")
+        raise one_problem("case", "", allowed, "Compute the map again.", "the map")
     values = {str(name): written_values(data[name]) for name in data["torque_loss"].dims}
     own = {name: values.pop(name, None) for name in (*AXES, STATE)}
     further = {str(data[name].attrs["case_key"]): texts for name, texts in values.items()}

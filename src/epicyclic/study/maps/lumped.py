@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 from epicyclic.machine.element import OIL
 from epicyclic.machine.heat import NetworkModel
 from epicyclic.study.maps.tables import map_inputs
@@ -40,8 +40,9 @@ def with_temperature_state(data: xr.Dataset, case: Case) -> xr.Dataset:
     check_axis(data.sizes.get("temperature", 0))
     if map_inputs(data).get("models", {}).get("temperatures") == "network":
         allowed = "must be inlet: the map is to hold the losses at the temperature of the oil."
-        problem = Problem("models.temperatures", '"network"', allowed, "Make the map anew.")
-        raise InputError([problem], "the map")
+        raise one_problem(
+            "models.temperatures", '"network"', allowed, "Make the map anew.", "the map"
+        )
     return data.assign_attrs(lumped(case))
 
 
@@ -49,8 +50,7 @@ def check_axis(count: int) -> None:
     """Raise `InputError` unless a map has several temperatures."""
     if count < 2:
         allowed = "must have two or more values, so that it can change."
-        problem = Problem("temperature", "", allowed, 'Give more, as "20,60,100 degC".')
-        raise InputError([problem], "the map")
+        raise one_problem("temperature", "", allowed, 'Give more, as "20,60,100 degC".', "the map")
 
 
 def lumped(case: Case) -> dict[str, float]:
@@ -63,7 +63,7 @@ def lumped(case: Case) -> dict[str, float]:
     """
     if not case.computed:
         allowed = "has losses that are all given: no temperature follows from them."
-        raise InputError([Problem("case", "", allowed, "Choose one with an oil.")])
+        raise one_problem("case", "", allowed, "Choose one with an oil.")
     warm = case.updated({"models.temperatures": "network"})
     model = build(warm).thermal
     assert isinstance(model, NetworkModel)
@@ -74,7 +74,7 @@ def lumped(case: Case) -> dict[str, float]:
     whole = sum(watts for _, watts in leaving)
     if not whole > 0:
         allowed = "loses no power at its operating point, which tells the way of the heat."
-        raise InputError([Problem("operation", "", allowed, "Give a speed.")])
+        raise one_problem("operation", "", allowed, "Give a speed.")
     around = sum(kelvin * watts for kelvin, watts in leaving) / whole
     conductance = whole / (heat.temperatures[OIL] - around)
     return {CAPACITY: capacity, CONDUCTANCE: conductance, SURROUNDINGS: around}

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 # Tables as users keep them (CSV, Excel, Parquet) as rows of plain cells.
 
-
 _NOUN = "measurement"
 _LARGEST_FILE = 10_000_000
 """Largest file, also of what a compressed file holds. [bytes]"""
@@ -159,7 +158,6 @@ def _text(cell: object) -> str:
 
 
 # Measurements as a table states them: conditions, loss, which loss it is, uncertainty.
-
 
 FloatArray = NDArray[np.float64]
 

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 # Axes of a sweep: keys and their values, alone or changing together.
 
-
 MOST_POINTS = 1_000_000
 """Rows of more points do not fit into memory."""
 ROW = "row"
@@ -229,7 +228,6 @@ def coordinate_of(value: Any, quantity: Quantity | None) -> float | str:
 
 
 # Tables of points: a column for each key, a row for each point.
-
 
 _LARGEST_FILE = 10_000_000
 """[bytes]"""

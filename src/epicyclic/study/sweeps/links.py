@@ -19,7 +19,7 @@ from epicyclic.case.keys import field_at, value_of
 from epicyclic.case.parameters import is_continuous
 from epicyclic.case.plain import value_at
 from epicyclic.case.wording import one_line, path_of, sentence
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, one_problem
 from epicyclic.study.sweeps.axes import coordinate_of, field_problem
 from epicyclic.units import format_number, in_unit, one_of, pure_number, with_unit
 
@@ -200,7 +200,6 @@ def _evaluate(node: ast.expr, at_point: Lookup, in_case: Lookup) -> Value:
 
 # Keys of a sweep that follow from others by expressions.
 
-
 Links = Mapping[str, str]
 _WHOLE = 1e-9
 """A result that is nearer to a whole number is that number."""
@@ -363,6 +362,4 @@ def _plain_number(key: str, value: Any) -> float:
 
 def _no_value(key: str, text: str, reason: str) -> InputError:
     remedy = "Correct the expression."
-    return InputError(
-        [Problem(key, f'"{one_line(text)}"', sentence(reason, capital=False), remedy)]
-    )
+    return one_problem(key, f'"{one_line(text)}"', sentence(reason, capital=False), remedy)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from epicyclic.builders.build import layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.operating import AXES, axis_name
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 from epicyclic.files import check_place, whole_file
 from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.results.result import number_fields, origin
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
 
 # Rows of a sweep as an `xarray.Dataset`, and the files it is kept in.
-
 
 FORMATS = (".nc", ".csv", ".parquet")
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
@@ -148,10 +147,13 @@ def _about_pocketing(rows: Rows) -> str:
 def check_output(path: Path) -> None:
     """Raise `InputError` unless a sweep can be written to `path`."""
     if path.suffix not in FORMATS:
-        problem = Problem(
-            "-o", str(path), f"must end in {', '.join(FORMATS)}.", "Choose one of these formats."
+        raise one_problem(
+            "-o",
+            str(path),
+            f"must end in {', '.join(FORMATS)}.",
+            "Choose one of these formats.",
+            "the command",
         )
-        raise InputError([problem], "the command")
     check_place(path)
 
 
@@ -194,7 +196,6 @@ def to_table(dataset: xr.Dataset) -> pd.DataFrame:
 #
 # Both are found at one speed and oil inlet temperature, each at the temperatures it settles at. The
 # loaded oil is hotter and drags less, so that this is less than the loss that depends on the load.
-
 
 Points = tuple[dict[str, Any], ...]
 

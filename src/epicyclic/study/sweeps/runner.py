@@ -24,7 +24,15 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from epicyclic.errors import EpicyclicError, InputError, Problem, Status, is_interrupt, raise_any
+from epicyclic.errors import (
+    EpicyclicError,
+    InputError,
+    Problem,
+    Status,
+    is_interrupt,
+    one_problem,
+    raise_any,
+)
 from epicyclic.files import look_seldom, make_folder
 
 # The journal of an unfinished study: one line for each finished point, written as it finishes.
@@ -192,13 +200,13 @@ class Journal:
         except OSError as error:
             whole, reason = False, str(error.strerror)
         if not whole:
-            problem = Problem(
+            raise one_problem(
                 "journal",
                 str(self.path),
                 f"cannot be written: {reason}.",
                 "Finished points are kept; make room, and give the same command again.",
+                "the sweep",
             )
-            raise InputError([problem], "the sweep")
 
     def _may_be_cut_short(self, line: bytes) -> bool:
         """True for the start of a line of this study."""
@@ -266,14 +274,13 @@ def _parse_heading(line: bytes) -> _Heading | None:
 
 def _error(path: Path, allowed: str) -> InputError:
     remedy = "Move it away or delete it, and give the command again."
-    return InputError([Problem("journal", str(path), allowed, remedy)], "the sweep")
+    return one_problem("journal", str(path), allowed, remedy, "the sweep")
 
 
 # Many independent points: in this process while that is quick, else in workers or on a cluster.
 #
 # Finished points are kept in a journal at once, and rows do not depend on order, workers, shards or
 # interruptions as long as `Plan.solve` is a function of the number of the point.
-
 
 Progress = Callable[..., None]
 Batch = list[tuple[int, Row]]
@@ -445,7 +452,7 @@ def parse_shard(text: str | None) -> tuple[int, int] | None:
 
 def _no_shard(text: str) -> InputError:
     allowed = "must be I/N, with I from 1 to N."
-    return InputError([Problem("--shard", text, allowed, "For example 2/8.")], "the command")
+    return one_problem("--shard", text, allowed, "For example 2/8.", "the command")
 
 
 def heading(plan: Plan, shard: tuple[int, int] | None, output: Mapping[str, Any]) -> dict[str, Any]:
@@ -572,10 +579,13 @@ def _distributed() -> Any:
     try:
         import distributed
     except ImportError:
-        problem = Problem(
-            "--dask", "", "needs the package distributed.", 'Install "epicyclic[dask]".'
-        )
-        raise InputError([problem], "the command") from None
+        raise one_problem(
+            "--dask",
+            "",
+            "needs the package distributed.",
+            'Install "epicyclic[dask]".',
+            "the command",
+        ) from None
     return distributed
 
 
@@ -594,7 +604,7 @@ def _client(address: str, *, trial: bool = False) -> Any:
 
 def _cluster_error(address: str, allowed: str) -> InputError:
     remedy = "Give the address of a running scheduler, as in tcp://host:8786."
-    return InputError([Problem("--dask", f'"{address}"', allowed, remedy)], "the command")
+    return one_problem("--dask", f'"{address}"', allowed, remedy, "the command")
 
 
 def _same(plan: Plan) -> Plan:
@@ -706,4 +716,4 @@ def _check_whole(rows: Rows, shares: Mapping[Path, Sequence[int]]) -> None:
 
 
 def _shard_error(file: Path, allowed: str, remedy: str) -> InputError:
-    return InputError([Problem("FILE", str(file), allowed, remedy)], "the command")
+    return one_problem("FILE", str(file), allowed, remedy, "the command")
