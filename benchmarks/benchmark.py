@@ -215,30 +215,16 @@ def duty_seconds() -> tuple[float, float]:
 
 def clear_caches() -> None:
     from epicyclic.case import build, flanks
-    from epicyclic.contact import (
-        elastic_teeth as mesh_compliance,
-    )
-    from epicyclic.contact import (
-        elastic_teeth as tooth_plate,
-    )
-    from epicyclic.contact import (
-        loaded_mesh,
-    )
+    from epicyclic.contact import elastic_teeth as mesh_compliance
+    from epicyclic.contact import elastic_teeth as tooth_plate
+    from epicyclic.contact import loaded_mesh
     from epicyclic.gears import flanks as contact_lines
     from epicyclic.losses import contact as load_distribution
     from epicyclic.losses import planet_bearing
-    from epicyclic.losses import (
-        pocket_flow as fluid,
-    )
-    from epicyclic.losses import (
-        pocket_flow as network,
-    )
-    from epicyclic.losses import (
-        pocket_geometry as cells,
-    )
-    from epicyclic.losses import (
-        pocket_geometry as geometry,
-    )
+    from epicyclic.losses import pocket_flow as fluid
+    from epicyclic.losses import pocket_flow as network
+    from epicyclic.losses import pocket_geometry as cells
+    from epicyclic.losses import pocket_geometry as geometry
 
     for function in (
         fluid.pocket_flow,
@@ -341,15 +327,9 @@ def pocket_seconds() -> tuple[float, float, float, float]:
         operating point at a new speed, the flow known.
     """
     from epicyclic.builders.build import build
-    from epicyclic.losses import (
-        pocket_flow as network,
-    )
-    from epicyclic.losses import (
-        pocket_geometry as cells,
-    )
-    from epicyclic.losses import (
-        pocket_geometry as geometry,
-    )
+    from epicyclic.losses import pocket_flow as network
+    from epicyclic.losses import pocket_geometry as cells
+    from epicyclic.losses import pocket_geometry as geometry
     from epicyclic.losses.pocket_flow import PocketModel, pocket_flow
     from epicyclic.losses.pocket_geometry import pocket_geometry
 

@@ -76,10 +76,7 @@ def heat_balance(case: Case) -> HeatBalance:
 def with_network(case: Case) -> Case:
     """The case with the network of its parts.
 
-    Raises
-    ------
-    InputError
-        If all its losses are given, so that it has no oil.
+    Raises `InputError` if all its losses are given, so that it has no oil.
     """
     _check_oil(case)
     return case.updated(NETWORK)

@@ -242,12 +242,9 @@ def bearing_details(
 ) -> xr.Dataset:
     """Roller loads of a bearing with units, rows, rollers and slices counted from 1.
 
-    Returns
-    -------
-    xarray.Dataset
-        Dimensions ``row``, ``roller``, ``slice``: ``azimuth`` of each roller from the load,
-        ``axial_position`` of each slice from the middle of the bearing, ``load`` of each roller,
-        ``line_load`` and ``pressure`` (inner race) of each slice.
+    Returns xarray.Dataset: dimensions ``row``, ``roller``, ``slice``: ``azimuth`` of each roller
+    from the load, ``axial_position`` of each slice from the middle of the bearing, ``load`` of each
+    roller, ``line_load`` and ``pressure`` (inner race) of each slice.
     """
     import xarray as xr
 

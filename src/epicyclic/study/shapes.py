@@ -155,10 +155,7 @@ def tooth_directions(
 
     Nothing is checked: whether the set can be assembled so is a matter of the case.
 
-    Returns
-    -------
-    dict of str to list of float
-        By gear; the first one points upwards. [rad]
+    Returns dict of str to list of float: by gear; the first one points upwards. [rad]
     """
     known: dict[_Stand, float] = {}
     stands = [(name, number) for name in centers for number in range(len(centers[name]))]
@@ -232,14 +229,11 @@ def gear_shapes(case: Case) -> dict[str, xr.Dataset]:
 
     Of a train the gears of the sets whose losses are computed.
 
-    Returns
-    -------
-    dict of str to xarray.Dataset
-        By gear, ``"sun"``, of a train ``"P1.sun"``. ``x``, ``y`` over ``point``: one tooth from the
-        middle of a space to the middle of the next; absent if the tooth has no outline.
-        ``center_x``, ``center_y``, ``direction`` over ``place``. Diameters without dimension. Units
-        in ``attrs["units"]``. The attribute ``relative_speed`` is that of the gear over that of the
-        first one of its set, seen from the carrier.
+    Returns dict of str to xarray.Dataset: by gear, ``"sun"``, of a train ``"P1.sun"``. ``x``, ``y``
+    over ``point``: one tooth from the middle of a space to the middle of the next; absent if the
+    tooth has no outline. ``center_x``, ``center_y``, ``direction`` over ``place``. Diameters
+    without dimension. Units in ``attrs["units"]``. The attribute ``relative_speed`` is that of the
+    gear over that of the first one of its set, seen from the carrier.
     """
     return {
         joined_key(prefix, name): shape
@@ -253,12 +247,10 @@ def mesh_views(case: Case) -> dict[str, xr.Dataset]:
 
     Member 1 stands below and pushes to the right, whichever flank carries in the case.
 
-    Returns
-    -------
-    dict of str to xarray.Dataset
-        By mesh, ``"sun_mesh"``, of a train ``"P1.sun_mesh"``. ``center_x``, ``center_y``,
-        ``direction``, ``operating_radius`` over ``gear``; ``path_x``, ``path_y`` over ``end``,
-        where contact begins and ends; ``pressure_angle`` of the line of action.
+    Returns dict of str to xarray.Dataset: by mesh, ``"sun_mesh"``, of a train ``"P1.sun_mesh"``.
+    ``center_x``, ``center_y``, ``direction``, ``operating_radius`` over ``gear``; ``path_x``,
+    ``path_y`` over ``end``, where contact begins and ends; ``pressure_angle`` of the line of
+    action.
     """
     return {
         joined_key(prefix, duty.key): _view(duty.mesh)

@@ -27,10 +27,8 @@ from epicyclic.results.result import Result
 def build_computed(case: Case) -> Built:
     """The machine of a case with gears.
 
-    Raises
-    ------
-    InputError
-        If it is a train in which every set has a given efficiency: there are no teeth to look at.
+    Raises `InputError` if it is a train in which every set has a given efficiency: there are no
+    teeth to look at.
     """
     built = build(case)
     if not built.sets or built.known_fluids is None:

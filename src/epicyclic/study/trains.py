@@ -27,10 +27,7 @@ def loss_sums(
 ) -> dict[str, dict[str, float]]:
     """Sums by set or part, and in each by kind. [W]
 
-    Returns
-    -------
-    dict of str to dict of str to float
-        Of `LOSS_KINDS` those that the set or part has.
+    Returns dict of str to dict of str to float: of `LOSS_KINDS` those that the set or part has.
     """
     kinds = {name: kind for table, kind in _OF_PARTS.items() for name in inputs.get(table, {})}
     sums: dict[str, dict[str, float]] = {}

@@ -320,7 +320,8 @@ def loss_share(
     return min(values) if extreme == "smallest" else max(values)
 
 
-def _pocketing(**changes: object) -> float:
+@cache
+def pair_pocketing(**changes: str | float) -> float:
     """Pocketing loss of the example pair with its keys changed. [W]"""
     case = read_case("talbot-2012-pair")
     updated = case.updated({key.replace("__", "."): value for key, value in changes.items()})
@@ -329,14 +330,14 @@ def _pocketing(**changes: object) -> float:
 
 def pocketing_loss(helix_angle: str, model: str) -> float:
     """Pocketing loss of the example pair at 10000 rpm. [W]"""
-    return _pocketing(gears__helix_angle=helix_angle, models__pocketing=model)
+    return pair_pocketing(gears__helix_angle=helix_angle, models__pocketing=model)
 
 
 def pocketing_speed_exponent(model: str) -> float:
     """Slope of the logarithm of the loss of the spur pair over that of the speed. [1]"""
     speeds = np.arange(1000, 10001, 1000)
     losses = [
-        _pocketing(
+        pair_pocketing(
             gears__helix_angle="0 deg", models__pocketing=model, operation__speed=f"{speed} rpm"
         )
         for speed in speeds
@@ -347,7 +348,7 @@ def pocketing_speed_exponent(model: str) -> float:
 def pocketing_oil_ratio(model: str) -> float:
     """Loss of the spur pair with an oil share of 0.6 over that with 0.05. [1]"""
     rich, lean = (
-        _pocketing(
+        pair_pocketing(
             gears__helix_angle="0 deg", models__pocketing=model, surroundings__oil_air_ratio=share
         )
         for share in (0.6, 0.05)
@@ -400,14 +401,14 @@ def _standard_mesh(teeth1: int, teeth2: int, internal: bool) -> LoadedMesh:
 
 
 @cache
-def _tables_of(name: str) -> dict[str, Any]:
-    """What a file beside `published.toml` holds."""
+def data_file(name: str) -> dict[str, Any]:
+    """What a data file beside this module holds."""
     file = resources.files("epicyclic.validation").joinpath(name)
     return tomllib.loads(file.read_text(encoding="utf-8"))
 
 
 def _train(train: str, changes: Mapping[str, Any]) -> Result:
-    tables = _tables_of("trains.toml").get(train)
+    tables = data_file("trains.toml").get(train)
     case = read_case(train if tables is None else tables)
     return solve(case.updated(changes))
 
@@ -429,7 +430,7 @@ def train_efficiency(train: str, **changes: Any) -> float:
 
 def bulk_temperature(mesh: str) -> float:
     """ISO/TS 6336-22, from the friction and the loss factor printed beside it. [degC]"""
-    given = _tables_of("temperatures.toml")[mesh]
+    given = data_file("temperatures.toml")[mesh]
     rise = bulk_rise_of_loss(
         given["power"] * given["mean_friction"] * given["loss_factor"],
         given["center_distance"],
@@ -456,7 +457,7 @@ def pair_flash_temperature(pair: str, line_load: float) -> float:
     contact = _loaded_pair(pair)[1]
     mesh, start = contact.mesh, contact.mesh.path_start
     speed1, speed2 = contact.speed1 * start, contact.speed2 * mesh.curvature2(start)
-    carried = effusivity(**_tables_of("temperatures.toml")["steel"])
+    carried = effusivity(**data_file("temperatures.toml")["steel"])
     rise = flash_temperature(
         _mean_friction(pair),
         line_load,
@@ -474,7 +475,7 @@ def pair_flash_temperature(pair: str, line_load: float) -> float:
 
 @cache
 def _loaded_pair(pair: str) -> tuple[dict[str, Any], MeshContact]:
-    given = _tables_of("temperatures.toml")[pair]
+    given = data_file("temperatures.toml")[pair]
     return given, mesh_contacts(read_case(given["case"]))["mesh"]
 
 

@@ -87,10 +87,8 @@ def transverse_module(mesh: Mesh, teeth: tuple[int, int]) -> float:
 def teeth_for_module(mesh: Mesh, modules: Sequence[float]) -> dict[float, tuple[int, int]]:
     """Whole teeth whose transverse modules come nearest to `modules`, by their modules.
 
-    Raises
-    ------
-    ValueError
-        If a module leaves fewer teeth than a gear can have, or a ring no more than its mate.
+    Raises `ValueError` if a module leaves fewer teeth than a gear can have, or a ring no more than
+    its mate.
     """
     found = {}
     for module in modules:
@@ -105,10 +103,7 @@ def teeth_for_module(mesh: Mesh, modules: Sequence[float]) -> dict[float, tuple[
 def varied_duty(duty: MeshDuty, variant: PocketVariant) -> MeshDuty:
     """The duty with the mesh, tools and speed of `variant`.
 
-    Raises
-    ------
-    ValueError
-        If such gears do not mesh or cannot be cut.
+    Raises `ValueError` if such gears do not mesh or cannot be cut.
     """
     mesh = _varied_mesh(duty.mesh, variant)
     for what, value in (
@@ -126,12 +121,8 @@ def varied_duty(duty: MeshDuty, variant: PocketVariant) -> MeshDuty:
 def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketFlow:
     """Flow through the pockets of a variant.
 
-    Raises
-    ------
-    InputError
-        If such gears do not mesh or cannot be cut.
-    ConvergenceError
-        If the flow is not found.
+    Raises `InputError` if such gears do not mesh or cannot be cut; `ConvergenceError` if the flow
+    is not found.
     """
     fluids = fluids_of(case)
     mixture = mixture_state(fluids.oil, variant.oil_fraction, fluids.pressure)

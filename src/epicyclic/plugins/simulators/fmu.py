@@ -27,7 +27,7 @@ import numpy as np
 from epicyclic.case.operating import PLANE, STATE
 from epicyclic.case.wording import one_line
 from epicyclic.errors import EpicyclicError, Problem
-from epicyclic.study.maps.lumped import CAPACITY, CONDUCTANCE, SURROUNDINGS
+from epicyclic.study.maps.compute import CAPACITY, CONDUCTANCE, SURROUNDINGS
 from epicyclic.study.maps.tables import Lookup, make_lookup, slack, stated
 from epicyclic.units import CELSIUS, RPM, format_number
 

@@ -69,10 +69,7 @@ def standard_uncertainty(value: UncertainValue) -> float:
 def correlations(values: Sequence[UncertainValue]) -> FloatArray:
     """Matrix of the stated coefficients of correlation.
 
-    Raises
-    ------
-    LinAlgError
-        If no distribution of several values has them all.
+    Raises `LinAlgError` if no distribution of several values has them all.
     """
     place = {value.key: index for index, value in enumerate(values)}
     matrix = np.eye(len(values))

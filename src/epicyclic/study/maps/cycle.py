@@ -46,10 +46,7 @@ class Source:
 def open_source(table: Any) -> Source:
     """The rows of a file, or of columns by name such as a `pandas.DataFrame`.
 
-    Raises
-    ------
-    InputError
-        If there is no such file, or nothing that can be read as a table.
+    Raises `InputError` if there is no such file, or nothing that can be read as a table.
     """
     if not isinstance(table, str | Path):
         return _from_memory(table)
@@ -281,13 +278,7 @@ def open_cycle(
     # Called with the number of rows so far, and None for that of all rows.
     progress: Callable[[int, None], None] | None = None,
 ) -> Cycle:
-    """Read a whole cycle once and check it.
-
-    Raises
-    ------
-    InputError
-        With every problem found.
-    """
+    """Read a whole cycle once and check it; raises `InputError` with every problem found."""
     source = open_source(table)
     columns, problems = _find_columns(source.headers)
     checks = _Checks(columns)

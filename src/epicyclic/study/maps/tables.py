@@ -287,10 +287,7 @@ def make_lookup(data: xr.Dataset) -> Lookup:
     At rest, where no power is lost, the torque loss is split between the components as at the
     slowest speed beside it.
 
-    Raises
-    ------
-    InputError
-        If `data` is no map, has gaps, further axes, or two driven members.
+    Raises `InputError` if `data` is no map, has gaps, further axes, or two driven members.
     """
     check_map(data)
     _check_usable(data)

@@ -84,10 +84,7 @@ def heat_samples(
 ) -> list[list[HeatSample]]:
     """Samples of operating points at some temperatures.
 
-    Returns
-    -------
-    list of list of HeatSample
-        For each temperature one of every point.
+    Returns list of list of HeatSample: for each temperature one of every point.
     """
     machines = [build(case.updated(changes), flow_tables) for changes in points]
     samples: list[list[HeatSample]] = [[] for _ in knots]

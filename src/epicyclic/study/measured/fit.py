@@ -160,12 +160,8 @@ def fit_parameters(
 
     `reach` is how far each may be off before the fit, over its start value; see `reaches`.
 
-    Raises
-    ------
-    InputError
-        If there are fewer points than parameters, or a parameter has no influence.
-    ConvergenceError
-        If the fit does not converge.
+    Raises `InputError` if there are fewer points than parameters, or a parameter has no influence;
+    `ConvergenceError` if the fit does not converge.
     """
     count, size = int(used.sum()), len(parameters)
     if count < size:

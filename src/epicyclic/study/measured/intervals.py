@@ -156,10 +156,7 @@ def profile_ends(residuals: Residuals, found: Linearised) -> FloatArray:
 
     An end beyond a bound is the bound.
 
-    Returns
-    -------
-    ndarray, shape (p, 2)
-        Scaled; NaN where there is none.
+    Returns ndarray, shape (p, 2): scaled; NaN where there is none.
     """
     ends = np.full((found.solution.size, 2), np.nan)
     growth = (found.quantile * found.spread) ** 2

@@ -54,10 +54,7 @@ class Grid:
 def read_grid(path: Path) -> Grid:
     """The cells of a CSV, Excel (first sheet) or Parquet file.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read as such, is empty, or has more than `MOST_ROWS` rows.
+    Raises `InputError` if it cannot be read as such, is empty, or has more than `MOST_ROWS` rows.
     """
     readers = {".xlsx": _excel_rows, ".parquet": _parquet_rows}
     reader = readers.get(path.suffix.lower(), _csv_rows)
@@ -256,10 +253,7 @@ def parse_measurements(
 ) -> Measurements:
     """What the cells of a table mean for a case.
 
-    Raises
-    ------
-    InputError
-        With every mistake in the table.
+    Raises `InputError` with every mistake in the table.
     """
     problems = _Problems(tuple(line for line, _ in grid.rows))
     columns = _columns(grid, case, problems)

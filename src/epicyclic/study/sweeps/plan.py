@@ -29,13 +29,15 @@ from epicyclic.study.solve import pocket_flow_numbers, solve
 from epicyclic.study.sweeps.axes import (
     MOST_POINTS,
     Axis,
+    Point,
+    check_links,
+    keys_behind,
     listed,
     make_axis,
     make_group,
     make_rows,
     too_many,
 )
-from epicyclic.study.sweeps.links import Point, check_links, keys_behind
 from epicyclic.study.sweeps.runner import Plan, Row
 from epicyclic.units import format_number
 
@@ -297,11 +299,8 @@ def make_plan(
 ) -> SweepPlan:
     """Check what is to be varied.
 
-    Raises
-    ------
-    InputError
-        For unknown or unsuitable keys, no values, values that cannot be read, repeated ones, or
-        links that have no value.
+    Raises `InputError` for unknown or unsuitable keys, no values, values that cannot be read,
+    repeated ones, or links that have no value.
     """
     single = {str(key): listed(values) for key, values in (vary or {}).items()}
     groups = [
@@ -357,10 +356,7 @@ def parse_vary(
 
     A unit after the last value, or after the count, holds for all values without one.
 
-    Raises
-    ------
-    InputError
-        If an option is not of that form.
+    Raises `InputError` if an option is not of that form.
     """
     problems = []
     vary: dict[str, list[Any]] = {}
@@ -406,10 +402,7 @@ def parse_together(case: Case, options: Sequence[str]) -> list[dict[str, list[An
 def parse_links(options: Sequence[str]) -> dict[str, str]:
     """The options ``key = expression`` of a command line.
 
-    Raises
-    ------
-    InputError
-        If an option is not of that form, or names a key again.
+    Raises `InputError` if an option is not of that form, or names a key again.
     """
     links: dict[str, str] = {}
     problems = []

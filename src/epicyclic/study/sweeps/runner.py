@@ -137,10 +137,8 @@ class Journal:
     def read(self) -> dict[int, Row]:
         """Finished points by number; none if there is no file.
 
-        Raises
-        ------
-        InputError
-            If the file cannot be read or holds something else than points of this study.
+        Raises `InputError` if the file cannot be read or holds something else than points of this
+        study.
         """
         return dict(self.points())
 
@@ -180,10 +178,7 @@ class Journal:
     def append(self, point: int, row: Row) -> None:
         """Add a finished point; it outlives this process when this returns.
 
-        Raises
-        ------
-        InputError
-            If it cannot be written; what was written before stays.
+        Raises `InputError` if it cannot be written; what was written before stays.
         """
         self._write(_sealed(_RECORD.dump_json(_Record(self.fingerprint, point, row))))
 
@@ -227,10 +222,7 @@ def _opened(path: Path) -> BinaryIO:
 def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
     """Fingerprint and content of the study of which a file holds points.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, or does not say of which study it is.
+    Raises `InputError` if it cannot be read, or does not say of which study it is.
     """
     try:
         with _opened(path) as file:
@@ -435,13 +427,7 @@ def share_of(plan: Plan, shard: tuple[int, int] | None) -> list[int]:
 
 
 def parse_shard(text: str | None) -> tuple[int, int] | None:
-    """The option ``--shard 2/8``.
-
-    Raises
-    ------
-    InputError
-        If it is not of that form.
-    """
+    """The option ``--shard 2/8``; raises `InputError` if it is not of that form."""
     if text is None:
         return None
     match = re.fullmatch(r"\s*(\d{1,9})\s*/\s*(\d{1,9})\s*", text)
@@ -657,10 +643,8 @@ def gather(
 ) -> tuple[Plan, Rows, dict[str, Any]]:
     """The plan of which `files` hold shards, all its points, and how they are to be written.
 
-    Raises
-    ------
-    InputError
-        If a file is no journal, the files are of several plans, or points are missing.
+    Raises `InputError` if a file is no journal, the files are of several plans, or points are
+    missing.
     """
     (first, *_) = files
     mark, content = read_heading(first)
